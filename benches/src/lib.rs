@@ -1,0 +1,1 @@
+//! Systems and data shared by the benches.

@@ -1,0 +1,3 @@
+//! The `flagred` command.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! The numbered examples; each one is a page and a test.

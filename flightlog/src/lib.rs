@@ -1,0 +1,1 @@
+//! One `Flight` out of every log a multirotor pilot has.

@@ -1,0 +1,12 @@
+//! A configurable fuzzy inference engine: Mamdani and Takagi-Sugeno, exact, allocation-free.
+//!
+//! The stages, each a module: text ([`rule`], `yaml`) to [`model`] (what an author wrote), to
+//! `check` (findings), to `engine` (compiled, immutable), to an outcome with its reasons.
+#![cfg_attr(not(feature = "std"), no_std)]
+
+extern crate alloc;
+
+pub mod model;
+pub mod rule;
+
+pub use model::Model;

@@ -1,0 +1,225 @@
+//! What an author wrote: variables, terms, operators and rules, as plain data.
+
+use alloc::{string::String, vec::Vec};
+
+use crate::rule;
+
+mod shape;
+pub use shape::Shape;
+
+/// A rule set: inputs, outputs, operators and rules.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// The name of the rule set.
+    pub name: String,
+    /// What it is for, in the author's words.
+    pub description: Option<String>,
+    /// The inputs, in the order in which the engine takes their values.
+    pub inputs: Vec<Variable>,
+    /// The outputs, in the order in which the engine gives their values.
+    pub outputs: Vec<Output>,
+    /// The operators all rules share.
+    pub operators: Operators,
+    /// The rules.
+    pub rules: Vec<Rule>,
+}
+
+/// A linguistic variable: a range of numbers and the terms that name its parts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variable {
+    /// Its name in rules.
+    pub name: String,
+    /// What it means, in the author's words.
+    pub description: Option<String>,
+    /// The unit of its values, for people: `"%"`, `"m/s"`.
+    pub unit: Option<String>,
+    /// The lower end of its range.
+    pub low: f64,
+    /// The upper end of its range.
+    pub high: f64,
+    /// Its terms.
+    pub terms: Vec<Term>,
+}
+
+/// A term: a name for a fuzzy part of a variable's range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Term {
+    /// Its name in rules.
+    pub name: String,
+    /// The membership function.
+    pub shape: Shape,
+    /// The height of the membership function, in (0, 1]; 1 where the author wrote none.
+    pub height: f64,
+}
+
+/// An output variable, and how its fuzzy result becomes a number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Output {
+    /// Name, range and terms.
+    pub variable: Variable,
+    /// How the aggregated set becomes a number.
+    pub defuzzifier: Defuzzifier,
+    /// Integrate by sampling, to reproduce other programs; `None` is exact.
+    pub samples: Option<Sampling>,
+    /// What the output is where no rule fires.
+    pub when_no_rule_fires: NoRuleFires,
+}
+
+/// What an output is where no rule fires.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NoRuleFires {
+    /// The output is undefined there, and says so.
+    Undefined,
+    /// Evaluation is an error there.
+    Error,
+    /// A value the author chose.
+    Value(f64),
+}
+
+/// How an aggregated fuzzy set becomes a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Defuzzifier {
+    /// The centre of gravity of the aggregated set.
+    Centroid,
+    /// The value that halves the area of the aggregated set.
+    Bisector,
+    /// The smallest value at which the aggregated set is highest.
+    SmallestOfMaxima,
+    /// The mean of all values at which the aggregated set is highest.
+    MeanOfMaxima,
+    /// The largest value at which the aggregated set is highest.
+    LargestOfMaxima,
+    /// Takagi-Sugeno: `sum(w z) / sum(w)` over the rules.
+    WeightedAverage,
+    /// Takagi-Sugeno: `sum(w z)` over the rules.
+    WeightedSum,
+}
+
+/// Sampled integration, for parity with other programs only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sampling {
+    /// The number of samples over the output's range.
+    pub samples: usize,
+    /// Where they stand.
+    pub rule: SamplingRule,
+}
+
+/// Where the samples of a sampled integration stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SamplingRule {
+    /// `low + (i + 0.5) (high - low) / N`, i = 0..N.
+    Midpoint,
+    /// `low + i (high - low) / (N - 1)`, i = 0..N, equal weights at inner points, half at the ends.
+    Trapezoid,
+}
+
+/// The operators that all rules of a model share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Operators {
+    /// AND.
+    pub and: Conjunction,
+    /// OR.
+    pub or: Disjunction,
+    /// How a firing strength cuts or scales a consequent.
+    pub implication: Implication,
+    /// How the consequents of one output join.
+    pub aggregation: Aggregation,
+}
+
+/// AND of two degrees: a t-norm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Conjunction {
+    /// `min(a, b)`.
+    Minimum,
+    /// `a b`.
+    Product,
+    /// `max(0, a + b - 1)` (Lukasiewicz).
+    BoundedDifference,
+    /// `min(a, b)` where the other is 1, else 0.
+    Drastic,
+    /// `a b / (2 - (a + b - a b))`.
+    Einstein,
+    /// `a b / (a + b - a b)`, 0 where both are 0.
+    Hamacher,
+    /// `min(a, b)` where `a + b > 1`, else 0.
+    NilpotentMinimum,
+}
+
+/// OR of two degrees: an s-norm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Disjunction {
+    /// `max(a, b)`.
+    Maximum,
+    /// `a + b - a b`.
+    ProbabilisticSum,
+    /// `min(1, a + b)`.
+    BoundedSum,
+    /// `max(a, b)` where the other is 0, else 1.
+    Drastic,
+    /// `(a + b) / (1 + a b)`.
+    Einstein,
+    /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
+    Hamacher,
+    /// `max(a, b)` where `a + b < 1`, else 1.
+    NilpotentMaximum,
+}
+
+/// How a firing strength `h` and a membership `m` make an activated consequent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Implication {
+    /// `min(h, m)` (Mamdani).
+    Minimum,
+    /// `h m` (Larsen).
+    Product,
+}
+
+/// How activated consequents of one output join.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Aggregation {
+    /// `max(a, b)`.
+    Maximum,
+    /// `a + b - a b`.
+    ProbabilisticSum,
+    /// `min(1, a + b)`.
+    BoundedSum,
+    /// `a + b`, unbounded.
+    Sum,
+}
+
+/// A rule and where it came from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// The rule itself, with its weight.
+    pub rule: rule::Rule,
+    /// How sure its source is of it, in [0, 1]: provenance, not a weight.
+    pub confidence: Option<f64>,
+    /// How many samples stand behind it.
+    pub support: Option<u64>,
+    /// The consequents it beat, with their degrees.
+    pub against: Vec<Beaten>,
+    /// The author's note.
+    pub note: Option<String>,
+}
+
+/// A consequent that lost against the one in the rule, when the rule was learned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beaten {
+    /// The term that lost.
+    pub term: String,
+    /// Its degree.
+    pub degree: f64,
+    /// How many samples stood behind it.
+    pub support: u64,
+}
+
+impl Default for Operators {
+    /// Mamdani's: minimum, maximum, minimum, maximum.
+    fn default() -> Self {
+        Operators {
+            and: Conjunction::Minimum,
+            or: Disjunction::Maximum,
+            implication: Implication::Minimum,
+            aggregation: Aggregation::Maximum,
+        }
+    }
+}

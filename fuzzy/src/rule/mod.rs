@@ -1,0 +1,93 @@
+//! The rule language: the syntax tree. `IF margin IS low AND spread IS very high THEN risk IS high WITH 0.8`.
+//!
+//! Precedence is NOT, then AND, then OR; parentheses group.
+
+use alloc::{boxed::Box, string::String, vec::Vec};
+use core::ops::Range;
+
+/// A name as the author wrote it, with its byte span in the source text.
+///
+/// Two names are equal when their text is: where a name stands does not change what a rule means.
+#[derive(Debug, Clone, Eq)]
+pub struct Name {
+    /// The name itself, without quotes.
+    pub text: String,
+    /// Where it stands in the text it was parsed from; `0..0` for names made by code.
+    pub span: Range<usize>,
+}
+
+impl PartialEq for Name {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+impl From<&str> for Name {
+    fn from(text: &str) -> Self {
+        Name {
+            text: text.into(),
+            span: 0..0,
+        }
+    }
+}
+
+/// One rule: what must hold, what follows, and how much the rule counts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// The antecedent.
+    pub condition: Condition,
+    /// The consequents, at least one; several are joined by AND.
+    pub consequents: Vec<Consequent>,
+    /// `WITH w`: multiplies the firing strength; 1 where the author wrote none.
+    pub weight: f64,
+}
+
+/// The antecedent of a rule, as a tree.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Condition {
+    /// `variable IS hedge* term`.
+    Is(Proposition),
+    /// `NOT condition`: one minus the degree of the condition.
+    Not(Box<Condition>),
+    /// All of them, joined by the conjunction; at least two.
+    And(Vec<Condition>),
+    /// Any of them, joined by the disjunction; at least two.
+    Or(Vec<Condition>),
+}
+
+/// `variable IS hedge* term`. `variable IS NOT term` is the hedge [`Hedge::Not`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Proposition {
+    /// The input.
+    pub variable: Name,
+    /// The hedges in the order written; the one nearest the term applies first.
+    pub hedges: Vec<Hedge>,
+    /// The term; `None` after the hedge `any`, which needs none.
+    pub term: Option<Name>,
+}
+
+/// `output IS hedge* term` behind THEN.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Consequent {
+    /// The output.
+    pub output: Name,
+    /// The term of that output.
+    pub term: Name,
+}
+
+/// A word that changes a degree of membership `x`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hedge {
+    /// `1 - x`.
+    Not,
+    /// `x^2` (concentration, Zadeh 1972).
+    Very,
+    /// `x^(1/2)` (dilation, Zadeh 1972).
+    Somewhat,
+    /// `2 x^2` up to 0.5, `1 - 2 (1 - x)^2` above (contrast intensification).
+    Extremely,
+    /// `(x/2)^(1/2)` up to 0.5, `1 - ((1 - x)/2)^(1/2)` above.
+    Seldom,
+    /// 1 whatever `x` is.
+    Any,
+}
