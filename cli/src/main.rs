@@ -1,3 +1,43 @@
-//! The `flagred` command.
+//! The `flagred` command: assess flights; author, check and explain fuzzy rule sets.
+//!
+//! One file per command; this one only reads the command line and dispatches.
 
-fn main() {}
+mod assess;
+#[allow(dead_code, reason = "the commands that use all of it come next")]
+mod failure;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use failure::{Exit, Failure};
+
+/// Tells from motor commands alone how close a multirotor is to losing it, and serves the authors of fuzzy rule sets.
+///
+/// Exit codes: 0 nothing found, 1 findings, 2 wrong usage, 3 unreadable or not a multirotor.
+#[derive(Parser)]
+#[command(name = "flagred", version, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Say how risky a flight was: verdict, findings, risk over time
+    Assess(assess::Arguments),
+}
+
+impl Command {
+    fn run(self) -> Result<Exit, Failure> {
+        match self {
+            Command::Assess(arguments) => assess::run(&arguments),
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    match Arguments::parse().command.run() {
+        Ok(exit) => exit.into(),
+        Err(failure) => failure.report(),
+    }
+}

@@ -1,0 +1,92 @@
+//! How a command ends: its exit code, and what it says when it cannot go on.
+
+use std::{fmt, io, io::Write, process::ExitCode};
+
+/// How a command that ran to its end ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Exit {
+    /// Nothing to report: 0.
+    Clean,
+    /// Findings at or over what the user asked to fail on: 1.
+    Findings,
+    /// Ran, but some of the input could not be read or was no multirotor: 3.
+    Unreadable,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        ExitCode::from(match exit {
+            Exit::Clean => 0,
+            Exit::Findings => 1,
+            Exit::Unreadable => 3,
+        })
+    }
+}
+
+/// Why a command could not go on. Messages are lower case, hints say what to do.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    code: u8,
+    message: String,
+    help: Option<String>,
+}
+
+impl Failure {
+    /// The command line asks for something that cannot be done: exit code 2.
+    pub(crate) fn usage(message: impl fmt::Display) -> Self {
+        Failure {
+            code: 2,
+            message: message.to_string(),
+            help: None,
+        }
+    }
+
+    /// A file cannot be read or is not what it should be: exit code 3.
+    pub(crate) fn unreadable(message: impl fmt::Display) -> Self {
+        Failure {
+            code: 3,
+            message: message.to_string(),
+            help: None,
+        }
+    }
+
+    /// The findings have been shown already; only the exit code is left to give.
+    pub(crate) fn shown(code: u8) -> Self {
+        Failure {
+            code,
+            message: String::new(),
+            help: None,
+        }
+    }
+
+    /// Adds what to do about it.
+    pub(crate) fn help(mut self, help: impl fmt::Display) -> Self {
+        self.help = Some(help.to_string());
+        self
+    }
+
+    /// Tells the user, and gives the exit code.
+    pub(crate) fn report(self) -> ExitCode {
+        if !self.message.is_empty() {
+            let mut err = anstream::stderr().lock();
+            let red = anstyle::AnsiColor::Red.on_default().bold();
+            // Nothing is left to tell a user whose standard error is closed.
+            let _ = writeln!(err, "{red}error{red:#}: {}", self.message);
+            if let Some(help) = &self.help {
+                let _ = writeln!(err, "  help: {help}");
+            }
+        }
+        ExitCode::from(self.code)
+    }
+}
+
+/// Standard output could not be written. A closed pipe (`flagred ... | head`) is the reader's choice, not a failure.
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            Failure::shown(0)
+        } else {
+            Failure::unreadable(format!("the output cannot be written: {error}"))
+        }
+    }
+}
