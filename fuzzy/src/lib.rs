@@ -6,6 +6,7 @@
 
 extern crate alloc;
 
+pub mod diagnostic;
 pub mod model;
 pub mod rule;
 

@@ -1,9 +1,18 @@
-//! The rule language: the syntax tree. `IF margin IS low AND spread IS very high THEN risk IS high WITH 0.8`.
+//! The rule language: its syntax tree, parser and printer. `IF margin IS low AND spread IS very high THEN risk IS high WITH 0.8`.
 //!
 //! Precedence is NOT, then AND, then OR; parentheses group.
 
 use alloc::{boxed::Box, string::String, vec::Vec};
-use core::ops::Range;
+use core::{ops::Range, str::FromStr};
+
+use crate::diagnostic::Diagnostic;
+
+mod parse;
+mod print;
+#[cfg(test)]
+mod tests;
+
+pub use parse::{DEEPEST_NESTING, parse};
 
 /// A name as the author wrote it, with its byte span in the source text.
 ///
@@ -66,7 +75,7 @@ pub struct Proposition {
     pub term: Option<Name>,
 }
 
-/// `output IS hedge* term` behind THEN.
+/// `output IS term` behind THEN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Consequent {
     /// The output.
@@ -90,4 +99,75 @@ pub enum Hedge {
     Seldom,
     /// 1 whatever `x` is.
     Any,
+}
+
+impl Hedge {
+    /// All hedges.
+    pub const ALL: [Hedge; 6] = [
+        Hedge::Not,
+        Hedge::Very,
+        Hedge::Somewhat,
+        Hedge::Extremely,
+        Hedge::Seldom,
+        Hedge::Any,
+    ];
+
+    /// The word for it in rules.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Hedge::Not => "NOT",
+            Hedge::Very => "very",
+            Hedge::Somewhat => "somewhat",
+            Hedge::Extremely => "extremely",
+            Hedge::Seldom => "seldom",
+            Hedge::Any => "any",
+        }
+    }
+}
+
+impl Rule {
+    /// Whether a word, in any case, is one of the rule language, so that a name equal to it stands in quotes.
+    #[must_use]
+    pub fn is_keyword(word: &str) -> bool {
+        let keywords = ["IF", "IS", "AND", "OR", "THEN", "WITH"];
+        let hedges = Hedge::ALL.iter().map(|hedge| hedge.word());
+        keywords
+            .into_iter()
+            .chain(hedges)
+            .any(|keyword| keyword.eq_ignore_ascii_case(word))
+    }
+}
+
+impl Condition {
+    /// Calls `visit` on every proposition, from left to right.
+    pub fn visit<'a>(&'a self, visit: &mut impl FnMut(&'a Proposition)) {
+        match self {
+            Condition::Is(proposition) => visit(proposition),
+            Condition::Not(inner) => inner.visit(visit),
+            Condition::And(parts) | Condition::Or(parts) => {
+                for part in parts {
+                    part.visit(visit);
+                }
+            }
+        }
+    }
+}
+
+impl FromStr for Rule {
+    type Err = Box<Diagnostic>;
+
+    /// [`parse`].
+    fn from_str(text: &str) -> Result<Self, Box<Diagnostic>> {
+        parse(text)
+    }
+}
+
+/// Whether a name can stand in a rule without quotes.
+fn is_plain_name(name: &str) -> bool {
+    !name.is_empty()
+        && name
+            .chars()
+            .all(|c| c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '%'))
+        && !Rule::is_keyword(name)
 }

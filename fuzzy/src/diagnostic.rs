@@ -1,0 +1,344 @@
+//! One type for every finding: what is wrong, where, and what to do about it.
+
+use alloc::{
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::{fmt, ops::Range};
+
+use serde::Serialize;
+
+/// A finding in a text an author wrote.
+///
+/// Messages are in lower case without a full stop, the author's own words in backticks; what to do
+/// stands apart in `help`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// A short name that never changes, for programs and for looking it up: `unknown-term`.
+    pub code: &'static str,
+    /// What is wrong.
+    pub message: String,
+    /// The bytes of the text it is about; `0..0` for models that were made by code.
+    pub span: Range<usize>,
+    /// Line and column of the start of the span, where the text is at hand.
+    pub position: Option<Position>,
+    /// What to do about it.
+    pub help: Option<String>,
+    /// Other places that explain it.
+    pub related: Vec<Related>,
+}
+
+/// How bad a finding is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// The model works, but hardly as its author means it.
+    Warning,
+    /// The text is no model.
+    Error,
+}
+
+/// Another place that explains a finding: where the first of two equal names stands.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Related {
+    /// The bytes of the text.
+    pub span: Range<usize>,
+    /// What is there.
+    pub message: String,
+}
+
+/// A place in a text, for people: both count from 1, the column in characters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Position {
+    /// The line.
+    pub line: usize,
+    /// The character in the line.
+    pub column: usize,
+}
+
+impl Position {
+    /// The position of a byte in a text; bytes behind its end count as its end.
+    ///
+    /// ```
+    /// use fuzzy::diagnostic::Position;
+    /// assert_eq!(Position::of("a: 1\nb: 2", 8), Position { line: 2, column: 4 });
+    /// ```
+    #[must_use]
+    pub fn of(text: &str, byte: usize) -> Self {
+        let before = text.char_indices().take_while(|&(at, _)| at < byte);
+        before.fold(Position { line: 1, column: 1 }, |here, (_, c)| {
+            if c == '\n' {
+                Position {
+                    line: here.line + 1,
+                    column: 1,
+                }
+            } else {
+                Position {
+                    line: here.line,
+                    column: here.column + 1,
+                }
+            }
+        })
+    }
+}
+
+impl Diagnostic {
+    /// An error.
+    pub fn error(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
+        Diagnostic {
+            severity: Severity::Error,
+            code,
+            message: message.into(),
+            span,
+            position: None,
+            help: None,
+            related: Vec::new(),
+        }
+    }
+
+    /// A warning.
+    pub fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
+        Diagnostic {
+            severity: Severity::Warning,
+            ..Self::error(code, span, message)
+        }
+    }
+
+    /// A note.
+    pub fn note(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
+        Diagnostic {
+            severity: Severity::Note,
+            ..Self::error(code, span, message)
+        }
+    }
+
+    /// The same with what to do about it.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// The same with another place that explains it.
+    #[must_use]
+    pub fn related(mut self, span: Range<usize>, message: impl Into<String>) -> Self {
+        let message = message.into();
+        self.related.push(Related { span, message });
+        self
+    }
+}
+
+/// `3:12: error[unknown-term]: ...`, the help behind it on a line of its own.
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(Position { line, column }) = self.position {
+            write!(f, "{line}:{column}: ")?;
+        }
+        let severity = match self.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        };
+        write!(f, "{severity}[{}]: {}", self.code, self.message)?;
+        match &self.help {
+            Some(help) => write!(f, "\n  help: {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl core::error::Error for Diagnostic {}
+
+/// All findings of one text, in the order of their places: the error of everything that reads text.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Findings(pub Vec<Diagnostic>);
+
+impl Findings {
+    /// Sorts findings by place and gives each its line and column in the text.
+    #[must_use]
+    pub fn locate(mut findings: Vec<Diagnostic>, text: &str) -> Self {
+        findings.sort_by_key(|finding| (finding.span.start, finding.span.end));
+        let mut here = Position { line: 1, column: 1 };
+        let mut at = 0;
+        for finding in &mut findings {
+            // One walk through the text for all findings: each starts where the last one ended.
+            let start = (0..=finding.span.start.min(text.len()))
+                .rev()
+                .find(|&i| text.is_char_boundary(i))
+                .unwrap_or(0);
+            let step = Position::of(text.get(at..start).unwrap_or(""), start - at);
+            here = Position {
+                line: here.line + step.line - 1,
+                column: if step.line > 1 {
+                    step.column
+                } else {
+                    here.column + step.column - 1
+                },
+            };
+            at = start;
+            finding.position = Some(here);
+        }
+        Findings(findings)
+    }
+
+    /// Whether one of them is an error.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.0.iter().any(|f| f.severity == Severity::Error)
+    }
+}
+
+impl fmt::Display for Findings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, finding) in self.0.iter().enumerate() {
+            if i > 0 {
+                f.write_str("\n")?;
+            }
+            finding.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
+impl core::error::Error for Findings {}
+
+/// The candidate that an author who wrote `word` may have meant.
+///
+/// Nearness is the number of letters to insert, delete, replace or swap (optimal string alignment), at most a third
+/// of the longer word's length; case does not count. Of equally near candidates the first one counts.
+///
+/// ```
+/// use fuzzy::diagnostic::nearest;
+/// assert_eq!(nearest("mraginn", ["margin", "spread"]), Some("margin"));
+/// assert_eq!(nearest("wind", ["margin", "spread"]), None);
+/// ```
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // Comparing costs the product of the lengths; nobody means a word longer than this.
+    const LONGEST: usize = 64;
+    let fold = |s: &str| {
+        s.chars()
+            .flat_map(char::to_lowercase)
+            .collect::<Vec<char>>()
+    };
+    let word = fold(word);
+    if word.len() > LONGEST {
+        return None;
+    }
+    let mut best: Option<(usize, &str)> = None;
+    for candidate in candidates {
+        let other = fold(candidate);
+        // At least one letter stays, or any letter would be near any other.
+        let longest = word.len().max(other.len());
+        let allowed = longest.div_ceil(3).min(longest.saturating_sub(1));
+        if other.len() > LONGEST || word.len().abs_diff(other.len()) > allowed {
+            continue;
+        }
+        let distance = edit_distance(&word, &other);
+        if distance <= allowed && best.is_none_or(|(least, _)| distance < least) {
+            best = Some((distance, candidate));
+        }
+    }
+    best.map(|(_, candidate)| candidate)
+}
+
+/// The optimal string alignment distance, three rows at a time.
+fn edit_distance(a: &[char], b: &[char]) -> usize {
+    let mut before: Vec<usize> = Vec::new();
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for (i, &x) in a.iter().enumerate() {
+        let mut row = Vec::with_capacity(b.len() + 1);
+        row.push(i + 1);
+        for (j, &y) in b.iter().enumerate() {
+            let replace = last[j] + usize::from(x != y);
+            let mut least = replace.min(last[j + 1] + 1).min(row[j] + 1);
+            if i > 0 && j > 0 && x == b[j - 1] && a[i - 1] == y {
+                least = least.min(before[j - 1] + 1);
+            }
+            row.push(least);
+        }
+        before = core::mem::replace(&mut last, row);
+    }
+    last.last().copied().unwrap_or(0)
+}
+
+/// ``did you mean `margin`?``, or else what there is: ``one of `margin`, `spread` ``.
+pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let candidates: Vec<&str> = candidates.into_iter().collect();
+    match nearest(word, candidates.iter().copied()) {
+        Some(candidate) => Some(alloc::format!("did you mean `{candidate}`?")),
+        None if candidates.is_empty() => None,
+        None => Some(alloc::format!("there is {}", listed(&candidates))),
+    }
+}
+
+/// ```a`, `b` and `c` ``, cut short where there are many.
+pub(crate) fn listed(words: &[&str]) -> String {
+    const MOST: usize = 12;
+    let mut list = String::new();
+    for (i, word) in words.iter().take(MOST).enumerate() {
+        if i > 0 {
+            let last = i + 1 == words.len();
+            list.push_str(if last { " and " } else { ", " });
+        }
+        list.push('`');
+        list.push_str(word);
+        list.push('`');
+    }
+    if words.len() > MOST {
+        list.push_str(" and ");
+        list.push_str(&(words.len() - MOST).to_string());
+        list.push_str(" more");
+    }
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_follow_lines_and_characters() {
+        let text = "añ: 1\nb: 2\n";
+        for (at, _) in text.char_indices() {
+            let lines: Vec<&str> = text[..at].split('\n').collect();
+            let expected = Position {
+                line: lines.len(),
+                column: lines[lines.len() - 1].chars().count() + 1,
+            };
+            assert_eq!(Position::of(text, at), expected);
+            let one = Diagnostic::error("x", at..at, "x");
+            let found = Findings::locate(alloc::vec![one.clone(), one], text);
+            assert_eq!(found.0[0].position, Some(expected));
+            assert_eq!(found.0[1].position, Some(expected));
+        }
+    }
+
+    #[test]
+    fn near_words_are_found_and_far_ones_are_not() {
+        for (word, meant) in [
+            ("hihg", Some("high")),
+            ("HIGH", Some("high")),
+            ("very-low", Some("very_low")),
+            ("veri low", Some("very_low")),
+            ("x", None),
+            ("", None),
+        ] {
+            assert_eq!(nearest(word, ["low", "high", "very_low"]), meant, "{word}");
+        }
+        assert_eq!(nearest(&"a".repeat(100_000), ["low"]), None);
+    }
+
+    #[test]
+    fn long_lists_are_cut_short() {
+        let words: Vec<String> = (0..20).map(|i| i.to_string()).collect();
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        assert!(listed(&words).ends_with("`11` and 8 more"));
+        assert_eq!(listed(&words[..3]), "`0`, `1` and `2`");
+        assert_eq!(listed(&words[..1]), "`0`");
+    }
+}

@@ -1,0 +1,376 @@
+use alloc::{boxed::Box, string::ToString, vec};
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// `x IS low`
+fn is(variable: &str, hedges: &[Hedge], term: &str) -> Condition {
+    Condition::Is(Proposition {
+        variable: variable.into(),
+        hedges: hedges.to_vec(),
+        term: Some(term.into()),
+    })
+}
+
+fn condition_of(text: &str) -> Condition {
+    let rule = alloc::format!("IF {text} THEN z IS a");
+    parse(&rule)
+        .unwrap_or_else(|d| panic!("{rule}: {d}"))
+        .condition
+}
+
+#[test]
+fn not_binds_tighter_than_and_and_tighter_than_or() {
+    let [a, b, c] = ["a", "b", "c"].map(|x| is(x, &[], "t"));
+    assert_eq!(
+        condition_of("a IS t OR b IS t AND c IS t"),
+        Condition::Or(vec![a.clone(), Condition::And(vec![b.clone(), c.clone()])])
+    );
+    assert_eq!(
+        condition_of("NOT a IS t AND b IS t"),
+        Condition::And(vec![Condition::Not(Box::new(a.clone())), b.clone()])
+    );
+    assert_eq!(
+        condition_of("(a IS t OR b IS t) AND c IS t"),
+        Condition::And(vec![Condition::Or(vec![a, b]), c])
+    );
+}
+
+#[test]
+fn words_are_read_in_any_case_and_names_as_they_stand() {
+    let rule = parse("if Margin Is Very NOT low # why\n tHeN risk is HIGH and note is x with 0.25")
+        .unwrap();
+    assert_eq!(
+        rule.condition,
+        is("Margin", &[Hedge::Very, Hedge::Not], "low")
+    );
+    assert_eq!(rule.weight, 0.25);
+    assert_eq!(rule.consequents.len(), 2);
+    assert_eq!(rule.consequents[0].term.span, 46..50);
+    assert_eq!(
+        rule.to_string(),
+        "IF Margin IS very NOT low THEN risk IS HIGH AND note IS x WITH 0.25"
+    );
+}
+
+#[test]
+fn names_in_quotes_may_hold_anything() {
+    for (written, name) in [
+        ("\"wind speed\"", "wind speed"),
+        ("'wind speed'", "wind speed"),
+        ("\"is\"", "is"),
+        (r#""a \"b\" \\ c\d""#, r#"a "b" \ c\d"#),
+        ("été", "été"),
+        ("m-1.x_%", "m-1.x_%"),
+    ] {
+        assert_eq!(
+            condition_of(&alloc::format!("{written} IS low")),
+            is(name, &[], "low")
+        );
+    }
+}
+
+#[test]
+fn any_needs_no_term() {
+    let bare = |hedges: &[Hedge]| {
+        Condition::Is(Proposition {
+            variable: "x".into(),
+            hedges: hedges.to_vec(),
+            term: None,
+        })
+    };
+    assert_eq!(condition_of("x IS any"), bare(&[Hedge::Any]));
+    assert_eq!(
+        condition_of("(x IS very any)"),
+        bare(&[Hedge::Very, Hedge::Any])
+    );
+    assert_eq!(condition_of("x IS any low"), is("x", &[Hedge::Any], "low"));
+}
+
+#[test]
+fn every_mistake_says_where_and_what_to_do() {
+    for (text, marked, message, help) in [
+        (
+            "",
+            "",
+            "expected `IF` at the start of a rule, found the end of the rule",
+            "a rule reads",
+        ),
+        (
+            "margin IS low",
+            "margin",
+            "expected `IF` at the start of a rule, found `margin`",
+            "a rule reads",
+        ),
+        (
+            "IFmargin IS low THEN r IS h",
+            "IFmargin",
+            "expected `IF` at the start of a rule, found `IFmargin`",
+            "a rule reads",
+        ),
+        (
+            "IF margin low THEN r IS h",
+            "low",
+            "expected `IS` after the input, found `low`",
+            "several words stands in quotes",
+        ),
+        (
+            "IF wind speed IS low THEN r IS h",
+            "speed",
+            "expected `IS` after the input, found `speed`",
+            "stands in quotes",
+        ),
+        (
+            "IF margin = low THEN r IS h",
+            "=",
+            "expected `IS` after the input, found `=`",
+            "write `IS`",
+        ),
+        (
+            "IF margin IS low & s IS low THEN r IS h",
+            "&",
+            "expected `AND`, `OR` or `THEN` after the condition, found `&`",
+            "write `AND`",
+        ),
+        (
+            "IF margin IS low ANd AND s IS low THEN r IS h",
+            "AND",
+            "expected the name of an input, `NOT` or `(`, found `AND`",
+            "in quotes",
+        ),
+        (
+            "IF margin IS low THNE r IS h",
+            "THNE",
+            "expected `AND`, `OR` or `THEN` after the condition, found `THNE`",
+            "did you mean `THEN`?",
+        ),
+        (
+            "IF margin IS THEN r IS h",
+            "THEN",
+            "expected a term or a hedge, found `THEN`",
+            "in quotes: `\"THEN\"`",
+        ),
+        (
+            "IF margin IS very THEN r IS h",
+            "THEN",
+            "expected a term or a hedge, found `THEN`",
+            "in quotes",
+        ),
+        (
+            "IF (margin IS low THEN r IS h",
+            "(",
+            "the bracket `(` is never closed",
+            "add `)`",
+        ),
+        (
+            "IF (margin IS low",
+            "(",
+            "the bracket `(` is never closed",
+            "add `)`",
+        ),
+        (
+            "IF (margin IS low s IS low) THEN r IS h",
+            "s",
+            "expected `AND`, `OR` or `)` after the condition, found `s`",
+            "in quotes",
+        ),
+        (
+            "IF margin IS low) THEN r IS h",
+            ")",
+            "expected `AND`, `OR` or `THEN` after the condition, found `)`",
+            "",
+        ),
+        (
+            "IF margin IS 'low THEN r IS h",
+            "'low THEN r IS h",
+            "the quoted name is never closed",
+            "closing quote",
+        ),
+        (
+            "IF '' IS low THEN r IS h",
+            "''",
+            "the name is empty",
+            "between the quotes",
+        ),
+        (
+            "IF margin IS low THEN r IS very h",
+            "very",
+            "`very` cannot stand after `THEN`",
+            "belong in the condition",
+        ),
+        (
+            "IF margin IS low THEN r IS",
+            "",
+            "expected a term of the output, found the end of the rule",
+            "",
+        ),
+        (
+            "IF margin IS low THEN",
+            "",
+            "expected the name of an output, found the end of the rule",
+            "",
+        ),
+        (
+            "IF margin IS low THEN r h",
+            "h",
+            "expected `IS` after the output, found `h`",
+            "in quotes",
+        ),
+        (
+            "IF margin IS low THEN r IS h OR r IS l",
+            "OR",
+            "expected `AND` or `WITH` after the conclusion, found `OR`",
+            "for `OR` write two rules",
+        ),
+        (
+            "IF margin IS low THEN r IS h ELSE r IS l",
+            "ELSE",
+            "expected `AND` or `WITH` after the conclusion, found `ELSE`",
+            "there is no `ELSE`",
+        ),
+        (
+            "IF margin IS low THEN r IS h WITH",
+            "",
+            "expected a weight after `WITH`, found the end of the rule",
+            "from 0 to 1",
+        ),
+        (
+            "IF margin IS low THEN r IS h WITH nan",
+            "nan",
+            "expected a weight after `WITH`, found `nan`",
+            "from 0 to 1",
+        ),
+        (
+            "IF margin IS low THEN r IS h WITH 80%",
+            "80%",
+            "expected a weight after `WITH`, found `80%`",
+            "from 0 to 1",
+        ),
+        (
+            "IF margin IS low THEN r IS h WITH 1.5",
+            "1.5",
+            "the weight `1.5` is outside [0, 1]",
+            "firing strength",
+        ),
+        (
+            "IF margin IS low THEN r IS h WITH -0.5",
+            "-0.5",
+            "the weight `-0.5` is outside [0, 1]",
+            "firing strength",
+        ),
+        (
+            "IF margin IS low THEN r IS h WITH 0.5 x",
+            "x",
+            "the rule ends after the conclusion, but here stands `x`",
+            "",
+        ),
+        (
+            "IF margin IS low ; THEN r IS h",
+            ";",
+            "expected `AND`, `OR` or `THEN` after the condition, found `;`",
+            "",
+        ),
+    ] {
+        let found = parse(text).unwrap_err();
+        assert_eq!(found.message, message, "{text}");
+        assert_eq!(&text[found.span.clone()], marked, "{text}");
+        let said = found.help.unwrap_or_default();
+        assert!(
+            said.contains(help) && said.is_empty() == help.is_empty(),
+            "{text}: {said}"
+        );
+    }
+}
+
+#[test]
+fn deep_nesting_is_an_error_and_no_crash() {
+    for open in ["(", "NOT ", "NOT ("] {
+        let found = parse(&alloc::format!("IF {}", open.repeat(1 << 20))).unwrap_err();
+        assert_eq!(found.code, "rule-too-deep");
+    }
+    let deep = |n: usize| alloc::format!("IF {}x IS a{} THEN y IS b", "(".repeat(n), ")".repeat(n));
+    assert!(parse(&deep(DEEPEST_NESTING)).is_ok());
+    assert!(parse(&deep(DEEPEST_NESTING + 1)).is_err());
+}
+
+fn any_name() -> impl Strategy<Value = Name> {
+    prop_oneof![
+        3 => "[a-z_][a-z0-9_.%-]{0,5}",
+        1 => "(?i)(if|is|and|or|not|then|with|very|any)",
+        1 => "\\PC{1,8}",
+        1 => "[\"'\\\\#() \n]{1,4}",
+    ]
+    .prop_map(|text| Name::from(text.as_str()))
+}
+
+fn any_proposition() -> impl Strategy<Value = Proposition> {
+    let hedges = proptest::collection::vec(proptest::sample::select(&Hedge::ALL[..]), 0..3);
+    (
+        any_name(),
+        hedges,
+        proptest::option::weighted(0.9, any_name()),
+    )
+        .prop_map(|(variable, mut hedges, term)| {
+            if term.is_none() {
+                hedges.push(Hedge::Any);
+            }
+            Proposition {
+                variable,
+                hedges,
+                term,
+            }
+        })
+}
+
+/// Any rule that can be written down.
+pub(crate) fn any_rule() -> impl Strategy<Value = Rule> {
+    let condition = any_proposition()
+        .prop_map(Condition::Is)
+        .prop_recursive(5, 24, 3, |inner| {
+            let several = proptest::collection::vec(inner.clone(), 2..4);
+            prop_oneof![
+                inner.prop_map(|c| Condition::Not(Box::new(c))),
+                several.clone().prop_map(Condition::And),
+                several.prop_map(Condition::Or),
+            ]
+        });
+    let consequent =
+        (any_name(), any_name()).prop_map(|(output, term)| Consequent { output, term });
+    let consequents = proptest::collection::vec(consequent, 1..3);
+    let weight = prop_oneof![Just(1.0), 0.0..=1.0];
+    (condition, consequents, weight).prop_map(|(condition, consequents, weight)| Rule {
+        condition,
+        consequents,
+        weight,
+    })
+}
+
+proptest! {
+    #[test]
+    fn a_printed_rule_reads_back_as_the_same(rule in any_rule()) {
+        let text = rule.to_string();
+        let again = parse(&text);
+        prop_assert_eq!(again.as_ref(), Ok(&rule), "{}", text);
+    }
+
+    #[test]
+    fn any_text_is_a_rule_or_a_mistake_inside_it(text in "\\PC*") {
+        if let Err(found) = parse(&text) {
+            prop_assert!(text.get(found.span).is_some());
+        }
+    }
+
+    #[test]
+    fn any_words_are_a_rule_or_a_mistake_inside_them(
+        words in proptest::collection::vec(proptest::sample::select(&[
+            "IF", "THEN", "IS", "AND", "OR", "NOT", "WITH", "very", "any", "(", ")", "x", "'a b'", "\"", "0.5", "#\n", "é",
+        ][..]), 0..20)
+    ) {
+        let text = words.join(" ");
+        match parse(&text) {
+            Ok(rule) => prop_assert_eq!(parse(&rule.to_string()), Ok(rule)),
+            Err(found) => prop_assert!(text.get(found.span).is_some()),
+        }
+    }
+}
