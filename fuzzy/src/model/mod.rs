@@ -4,8 +4,10 @@ use alloc::{string::String, vec::Vec};
 
 use crate::rule;
 
+mod builder;
 mod shape;
-pub use shape::Shape;
+pub use builder::ModelBuilder;
+pub use shape::{Shape, ShapeError};
 
 /// A rule set: inputs, outputs, operators and rules.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,6 +2,10 @@
 
 use alloc::{string::String, vec::Vec};
 
+mod membership;
+mod validate;
+pub use validate::ShapeError;
+
 /// A membership function's shape, with its parameters in the unit of the variable.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {

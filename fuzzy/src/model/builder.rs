@@ -1,0 +1,261 @@
+//! Models made in code, for those who write no YAML.
+
+use alloc::{boxed::Box, string::String, vec::Vec};
+
+use super::{
+    Defuzzifier, Model, NoRuleFires, Operators, Output, Rule, Sampling, Shape, Term, Variable,
+};
+use crate::rule::{self, Condition, Consequent, Proposition};
+
+impl Model {
+    /// A model to be filled in code.
+    ///
+    /// # Example: a tip from the service alone
+    /// ```
+    /// use fuzzy::model::{Model, Output, Shape, Variable};
+    /// use fuzzy::rule::{Condition, Rule};
+    /// use fuzzy::Engine;
+    ///
+    /// let model = Model::builder("tip")
+    ///     .input(
+    ///         Variable::new("service", 0.0, 10.0)
+    ///             .term("poor", Shape::LeftShoulder { top: 2.0, foot: 8.0 })
+    ///             .term("good", Shape::RightShoulder { foot: 2.0, top: 8.0 }),
+    ///     )
+    ///     .output(Output::new(
+    ///         Variable::new("tip", 0.0, 20.0)
+    ///             .unit("%")
+    ///             .term("small", Shape::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
+    ///             .term("large", Shape::Triangle { left: 10.0, peak: 15.0, right: 20.0 }),
+    ///     ))
+    ///     .rule(Rule::new(Condition::is("service", "poor"), "tip", "small"))
+    ///     .rule(Rule::new(Condition::is("service", "good"), "tip", "large"))
+    ///     .build();
+    ///
+    /// let engine = Engine::new(&model)?;
+    /// let outcome = engine.evaluate(&[9.0])?;
+    /// assert_eq!(outcome[0].value(), Some(15.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn builder(name: impl Into<String>) -> ModelBuilder {
+        ModelBuilder {
+            model: Model {
+                name: name.into(),
+                description: None,
+                inputs: Vec::new(),
+                outputs: Vec::new(),
+                operators: Operators::default(),
+                rules: Vec::new(),
+            },
+        }
+    }
+}
+
+/// Collects the parts of a [`Model`]; made by [`Model::builder`].
+#[derive(Debug, Clone)]
+pub struct ModelBuilder {
+    model: Model,
+}
+
+impl ModelBuilder {
+    /// What the rule set is for.
+    #[must_use]
+    pub fn description(mut self, text: impl Into<String>) -> Self {
+        self.model.description = Some(text.into());
+        self
+    }
+
+    /// Adds an input.
+    #[must_use]
+    pub fn input(mut self, variable: Variable) -> Self {
+        self.model.inputs.push(variable);
+        self
+    }
+
+    /// Adds an output.
+    #[must_use]
+    pub fn output(mut self, output: Output) -> Self {
+        self.model.outputs.push(output);
+        self
+    }
+
+    /// Sets the operators; Mamdani's where this is not called.
+    #[must_use]
+    pub fn operators(mut self, operators: Operators) -> Self {
+        self.model.operators = operators;
+        self
+    }
+
+    /// Adds a rule.
+    #[must_use]
+    pub fn rule(mut self, rule: rule::Rule) -> Self {
+        self.model.rules.push(Rule::from(rule));
+        self
+    }
+
+    /// The model. Whether its parts fit is found when an engine is made from it.
+    pub fn build(self) -> Model {
+        self.model
+    }
+}
+
+impl From<rule::Rule> for Rule {
+    fn from(rule: rule::Rule) -> Self {
+        Rule {
+            rule,
+            confidence: None,
+            support: None,
+            against: Vec::new(),
+            note: None,
+        }
+    }
+}
+
+impl Variable {
+    /// A variable without terms over `[low, high]`.
+    pub fn new(name: impl Into<String>, low: f64, high: f64) -> Self {
+        Variable {
+            name: name.into(),
+            description: None,
+            unit: None,
+            low,
+            high,
+            terms: Vec::new(),
+        }
+    }
+
+    /// Sets the unit of its values.
+    #[must_use]
+    pub fn unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = Some(unit.into());
+        self
+    }
+
+    /// Adds a term of height 1.
+    #[must_use]
+    pub fn term(mut self, name: impl Into<String>, shape: Shape) -> Self {
+        self.terms.push(Term {
+            name: name.into(),
+            shape,
+            height: 1.0,
+        });
+        self
+    }
+}
+
+impl Term {
+    /// The degree of membership of `x`: the height times the shape's degree, in [0, 1].
+    pub fn membership(&self, x: f64) -> f64 {
+        self.height * self.shape.membership(x)
+    }
+}
+
+impl Output {
+    /// An output with the exact centroid, undefined where no rule fires.
+    pub fn new(variable: Variable) -> Self {
+        Output {
+            variable,
+            defuzzifier: Defuzzifier::Centroid,
+            samples: None,
+            when_no_rule_fires: NoRuleFires::Undefined,
+        }
+    }
+
+    /// Sets the defuzzifier.
+    #[must_use]
+    pub fn defuzzifier(mut self, defuzzifier: Defuzzifier) -> Self {
+        self.defuzzifier = defuzzifier;
+        self
+    }
+
+    /// Integrates by sampling, to reproduce another program.
+    #[must_use]
+    pub fn samples(mut self, sampling: Sampling) -> Self {
+        self.samples = Some(sampling);
+        self
+    }
+
+    /// Sets what the output is where no rule fires.
+    #[must_use]
+    pub fn when_no_rule_fires(mut self, what: NoRuleFires) -> Self {
+        self.when_no_rule_fires = what;
+        self
+    }
+}
+
+impl rule::Rule {
+    /// `IF condition THEN output IS term`, of weight 1.
+    pub fn new(condition: Condition, output: &str, term: &str) -> Self {
+        rule::Rule {
+            condition,
+            consequents: Vec::from([Consequent {
+                output: output.into(),
+                term: term.into(),
+            }]),
+            weight: 1.0,
+        }
+    }
+
+    /// Adds `AND output IS term` behind THEN.
+    #[must_use]
+    pub fn then(mut self, output: &str, term: &str) -> Self {
+        self.consequents.push(Consequent {
+            output: output.into(),
+            term: term.into(),
+        });
+        self
+    }
+
+    /// `WITH weight`.
+    #[must_use]
+    pub fn with(mut self, weight: f64) -> Self {
+        self.weight = weight;
+        self
+    }
+}
+
+impl Condition {
+    /// `variable IS term`.
+    pub fn is(variable: &str, term: &str) -> Self {
+        Condition::is_hedged(variable, &[], term)
+    }
+
+    /// `variable IS hedge* term`.
+    pub fn is_hedged(variable: &str, hedges: &[rule::Hedge], term: &str) -> Self {
+        Condition::Is(Proposition {
+            variable: variable.into(),
+            hedges: hedges.to_vec(),
+            term: Some(term.into()),
+        })
+    }
+
+    /// `self AND other`.
+    #[must_use]
+    pub fn and(self, other: Condition) -> Self {
+        match self {
+            Condition::And(mut all) => {
+                all.push(other);
+                Condition::And(all)
+            }
+            first => Condition::And(Vec::from([first, other])),
+        }
+    }
+
+    /// `self OR other`.
+    #[must_use]
+    pub fn or(self, other: Condition) -> Self {
+        match self {
+            Condition::Or(mut any) => {
+                any.push(other);
+                Condition::Or(any)
+            }
+            first => Condition::Or(Vec::from([first, other])),
+        }
+    }
+
+    /// `NOT self`.
+    #[must_use]
+    pub fn negated(self) -> Self {
+        Condition::Not(Box::new(self))
+    }
+}
