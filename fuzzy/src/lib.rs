@@ -6,8 +6,11 @@
 
 extern crate alloc;
 
+mod defuzzify;
 pub mod diagnostic;
+pub mod engine;
 pub mod model;
 pub mod rule;
 
+pub use engine::Engine;
 pub use model::Model;

@@ -85,7 +85,7 @@ pub struct Consequent {
 }
 
 /// A word that changes a degree of membership `x`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Hedge {
     /// `1 - x`.
     Not,

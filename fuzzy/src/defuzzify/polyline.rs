@@ -1,0 +1,351 @@
+//! The aggregated set where every term is made of straight lines: cut into pieces on which it has a
+//! closed form, without sampling.
+//!
+//! The output's range is cut at every corner of every term when the engine is made; on each interval
+//! every term is one line. Per evaluation each interval is cut where a line meets its own plateau
+//! (implication by minimum), and then where lines cross (maximum) or their sum reaches 1 (bounded sum).
+
+use alloc::vec::Vec;
+
+use crate::engine::operators::smaller;
+use crate::model::{Aggregation, Implication, Term};
+
+/// The terms of one output, as lines between cuts.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Polylines {
+    intervals: Vec<Interval>,
+    lines: Vec<Line>,
+}
+
+#[derive(Debug, Clone)]
+struct Interval {
+    from: f64,
+    to: f64,
+    first_line: usize,
+    end_line: usize,
+}
+
+/// A term on an interval: its degrees just inside the interval's ends.
+#[derive(Debug, Clone)]
+struct Line {
+    term: usize,
+    left: f64,
+    right: f64,
+}
+
+/// A stretch on which the aggregated set is straight, or a product of straight lines.
+#[derive(Debug)]
+pub(crate) struct Piece {
+    /// Where it begins.
+    pub(crate) from: f64,
+    /// Where it ends.
+    pub(crate) to: f64,
+    /// The degree just inside `from`.
+    pub(crate) left: f64,
+    /// The degree just inside `to`.
+    pub(crate) right: f64,
+}
+
+/// A straight line over a stretch.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Segment {
+    left: f64,
+    right: f64,
+}
+
+/// Room to work in, owned by the caller's scratch: never grows while evaluating.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Room {
+    active: Vec<Activated>,
+    cuts: Vec<f64>,
+    segments: Vec<Segment>,
+}
+
+/// A line under a firing strength.
+#[derive(Debug, Clone, Copy)]
+struct Activated {
+    height: f64,
+    left: f64,
+    right: f64,
+}
+
+impl Room {
+    /// Room for `activations` at once.
+    pub(crate) fn new(activations: usize) -> Self {
+        Room {
+            active: Vec::with_capacity(activations),
+            cuts: Vec::with_capacity(activations + 2),
+            segments: Vec::with_capacity(activations),
+        }
+    }
+}
+
+impl Polylines {
+    /// Cuts `[low, high]` at every corner of every term; `None` where a term is curved.
+    pub(crate) fn new(terms: &[Term], low: f64, high: f64) -> Option<Self> {
+        let corners = terms
+            .iter()
+            .map(|term| {
+                let mut corners = term.shape.corners()?;
+                for corner in &mut corners {
+                    corner.1 *= term.height;
+                }
+                Some(corners)
+            })
+            .collect::<Option<Vec<_>>>()?;
+        let mut cuts: Vec<f64> = corners.iter().flatten().map(|corner| corner.0).collect();
+        cuts.retain(|x| low < *x && *x < high);
+        cuts.push(low);
+        cuts.push(high);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        let mut polylines = Polylines {
+            intervals: Vec::new(),
+            lines: Vec::new(),
+        };
+        for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
+            let first_line = polylines.lines.len();
+            for (term, corners) in corners.iter().enumerate() {
+                let (left, right) = limits(corners, from, to);
+                if left > 0.0 || right > 0.0 {
+                    polylines.lines.push(Line { term, left, right });
+                }
+            }
+            polylines.intervals.push(Interval {
+                from,
+                to,
+                first_line,
+                end_line: polylines.lines.len(),
+            });
+        }
+        Some(polylines)
+    }
+
+    /// Calls `visit` for each piece of the aggregated set, from left to right, those of degree 0 left out.
+    ///
+    /// `heights` are firing strengths; those of term k stand at `places[k]..places[k + 1]`.
+    pub(crate) fn pieces(
+        &self,
+        heights: &[f64],
+        places: &[usize],
+        implication: Implication,
+        aggregation: Aggregation,
+        room: &mut Room,
+        mut visit: impl FnMut(Piece),
+    ) {
+        for interval in &self.intervals {
+            let lines = self.lines.get(interval.first_line..interval.end_line);
+            room.active.clear();
+            room.cuts.clear();
+            room.cuts.push(0.0);
+            for line in lines.unwrap_or_default() {
+                let (Some(&first), Some(&end)) = (places.get(line.term), places.get(line.term + 1))
+                else {
+                    continue;
+                };
+                for &height in heights.get(first..end).unwrap_or_default() {
+                    if height > 0.0 {
+                        room.active.push(Activated {
+                            height,
+                            left: line.left,
+                            right: line.right,
+                        });
+                        if implication == Implication::Minimum
+                            && (line.left > height) != (line.right > height)
+                            && line.left != height
+                            && line.right != height
+                        {
+                            room.cuts
+                                .push((height - line.left) / (line.right - line.left));
+                        }
+                    }
+                }
+            }
+            if room.active.is_empty() {
+                continue;
+            }
+            room.cuts.push(1.0);
+            room.cuts.sort_unstable_by(f64::total_cmp);
+            let width = interval.to - interval.from;
+            for (&start, &end) in room.cuts.iter().zip(room.cuts.iter().skip(1)) {
+                if start >= end {
+                    continue;
+                }
+                room.segments.clear();
+                for active in &room.active {
+                    room.segments.push(active.on(start, end, implication));
+                }
+                let stretch = Stretch {
+                    // The ends themselves, so that neighbouring pieces meet exactly.
+                    from: if start == 0.0 {
+                        interval.from
+                    } else {
+                        interval.from + width * start
+                    },
+                    to: if end == 1.0 {
+                        interval.to
+                    } else {
+                        interval.from + width * end
+                    },
+                };
+                join(&room.segments, stretch, aggregation, &mut visit);
+            }
+        }
+    }
+}
+
+impl Activated {
+    /// The activated line between two places in [0, 1] of its interval, with no plateau's end between them.
+    fn on(&self, start: f64, end: f64, implication: Implication) -> Segment {
+        let at = |t: f64| {
+            if t == 0.0 {
+                self.left
+            } else if t == 1.0 {
+                self.right
+            } else {
+                self.left + (self.right - self.left) * t
+            }
+        };
+        Segment {
+            left: implication.of(self.height, at(start)),
+            right: implication.of(self.height, at(end)),
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Stretch {
+    from: f64,
+    to: f64,
+}
+
+impl Stretch {
+    fn at(&self, t: f64) -> f64 {
+        if t >= 1.0 {
+            self.to
+        } else {
+            self.from + (self.to - self.from) * t
+        }
+    }
+}
+
+/// Joins lines over a stretch into pieces.
+fn join(
+    segments: &[Segment],
+    stretch: Stretch,
+    aggregation: Aggregation,
+    visit: &mut impl FnMut(Piece),
+) {
+    match aggregation {
+        Aggregation::Maximum => upper_envelope(segments, stretch, visit),
+        Aggregation::Sum => {
+            let sum = sum(segments);
+            visit(straight(stretch, 0.0, 1.0, sum.left, sum.right));
+        }
+        Aggregation::BoundedSum => {
+            let sum = sum(segments);
+            if (sum.left > 1.0) == (sum.right > 1.0) {
+                let (left, right) = (smaller(1.0, sum.left), smaller(1.0, sum.right));
+                visit(straight(stretch, 0.0, 1.0, left, right));
+            } else {
+                let t = (1.0 - sum.left) / (sum.right - sum.left);
+                visit(straight(stretch, 0.0, t, smaller(1.0, sum.left), 1.0));
+                visit(straight(stretch, t, 1.0, 1.0, smaller(1.0, sum.right)));
+            }
+        }
+        Aggregation::ProbabilisticSum => {}
+    }
+}
+
+fn sum(segments: &[Segment]) -> Segment {
+    let (mut left, mut right) = (0.0, 0.0);
+    for segment in segments {
+        left += segment.left;
+        right += segment.right;
+    }
+    Segment { left, right }
+}
+
+fn straight(stretch: Stretch, start: f64, end: f64, left: f64, right: f64) -> Piece {
+    Piece {
+        from: stretch.at(start),
+        to: stretch.at(end),
+        left,
+        right,
+    }
+}
+
+/// The maximum of lines: from the highest on the left, always on to the next steeper line that crosses.
+fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut impl FnMut(Piece)) {
+    let Some(mut top) = segments.iter().copied().reduce(|best, segment| {
+        if (segment.left, segment.right) > (best.left, best.right) {
+            segment
+        } else {
+            best
+        }
+    }) else {
+        return;
+    };
+    let (mut t, mut y) = (0.0, top.left);
+    loop {
+        let mut next: Option<(f64, Segment)> = None;
+        for &segment in segments {
+            if segment.right <= top.right {
+                continue;
+            }
+            // Where two lines cross, from their distances at both ends.
+            let (behind, ahead) = (top.left - segment.left, segment.right - top.right);
+            let crossing = if behind > 0.0 {
+                behind / (behind + ahead)
+            } else {
+                0.0
+            };
+            let crossing = if crossing > t { crossing } else { t };
+            let steeper = next.is_none_or(|(at, other)| {
+                crossing < at || (crossing == at && segment.right > other.right)
+            });
+            if steeper {
+                next = Some((crossing, segment));
+            }
+        }
+        let Some((crossing, segment)) = next else {
+            break;
+        };
+        if crossing >= 1.0 {
+            break;
+        }
+        if crossing > t {
+            let at_crossing = top.left + (top.right - top.left) * crossing;
+            visit(straight(stretch, t, crossing, y, at_crossing));
+            (t, y) = (crossing, at_crossing);
+        }
+        top = segment;
+    }
+    visit(straight(stretch, t, 1.0, y, top.right));
+}
+
+/// The degrees of a polyline just inside the ends of an interval that holds no corner.
+fn limits(corners: &[(f64, f64)], from: f64, to: f64) -> (f64, f64) {
+    let mut before: Option<(f64, f64)> = None;
+    for &corner in corners {
+        if corner.0 >= to {
+            return match before {
+                None => (corner.1, corner.1),
+                Some(left) => (on_line(left, corner, from), on_line(left, corner, to)),
+            };
+        }
+        before = Some(corner);
+    }
+    let held = before.map_or(0.0, |corner| corner.1);
+    (held, held)
+}
+
+fn on_line(a: (f64, f64), b: (f64, f64), x: f64) -> f64 {
+    if x <= a.0 {
+        a.1
+    } else if x >= b.0 {
+        b.1
+    } else {
+        a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0))
+    }
+}

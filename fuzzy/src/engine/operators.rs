@@ -1,0 +1,218 @@
+//! The operators' formulas. Each stands at its variant in [`crate::model`] and [`crate::rule`].
+
+use crate::model::{Conjunction, Disjunction, Implication};
+use crate::rule::Hedge;
+
+/// The smaller of two numbers that are not NaN: one instruction, unlike `f64::min`.
+#[inline(always)]
+pub(crate) fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers that are not NaN.
+#[inline(always)]
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+impl Conjunction {
+    /// AND of two degrees in [0, 1]; 0 AND anything is 0.
+    #[inline(always)]
+    pub(crate) fn of(self, a: f64, b: f64) -> f64 {
+        match self {
+            Conjunction::Minimum => smaller(a, b),
+            Conjunction::Product => a * b,
+            // Not `a + b - 1`, which loses the digits of a small degree beside 1.
+            Conjunction::BoundedDifference => larger(0.0, smaller(a, b) - (1.0 - larger(a, b))),
+            Conjunction::Drastic => {
+                if larger(a, b) == 1.0 {
+                    smaller(a, b)
+                } else {
+                    0.0
+                }
+            }
+            Conjunction::Einstein => a * b / (1.0 + (1.0 - a) * (1.0 - b)),
+            Conjunction::Hamacher => {
+                let (small, large) = (smaller(a, b), larger(a, b));
+                if small == 0.0 {
+                    0.0
+                } else {
+                    // A factor of at most 1, where the product of two small degrees would underflow.
+                    small * (large / (large + small * (1.0 - large)))
+                }
+            }
+            Conjunction::NilpotentMinimum => {
+                // `a + b > 1`, without the rounding of a sum with a small degree.
+                if smaller(a, b) > 1.0 - larger(a, b) {
+                    smaller(a, b)
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+}
+
+impl Disjunction {
+    /// OR of two degrees in [0, 1]; 0 OR `a` is `a`.
+    #[inline(always)]
+    pub(crate) fn of(self, a: f64, b: f64) -> f64 {
+        match self {
+            Disjunction::Maximum => larger(a, b),
+            Disjunction::ProbabilisticSum => probabilistic_sum(a, b),
+            Disjunction::BoundedSum => smaller(1.0, a + b),
+            Disjunction::Drastic => {
+                if smaller(a, b) == 0.0 {
+                    larger(a, b)
+                } else {
+                    1.0
+                }
+            }
+            Disjunction::Einstein => smaller(1.0, (a + b) / (1.0 + a * b)),
+            Disjunction::Hamacher => {
+                if a * b == 1.0 {
+                    1.0
+                } else {
+                    // The same as (a + b - 2ab) / (1 - ab), without a difference of like numbers.
+                    smaller(1.0, (a * (1.0 - b) + b * (1.0 - a)) / (1.0 - a * b))
+                }
+            }
+            Disjunction::NilpotentMaximum => {
+                if smaller(a, b) < 1.0 - larger(a, b) {
+                    larger(a, b)
+                } else {
+                    1.0
+                }
+            }
+        }
+    }
+}
+
+/// `a + b - a b`, as `a + b (1 - a)`: within [0, 1] whatever the rounding.
+#[inline(always)]
+pub(crate) fn probabilistic_sum(a: f64, b: f64) -> f64 {
+    smaller(1.0, a + b * (1.0 - a))
+}
+
+impl Implication {
+    /// The consequent's degree `membership` under the firing strength `height`.
+    #[inline(always)]
+    pub(crate) fn of(self, height: f64, membership: f64) -> f64 {
+        match self {
+            Implication::Minimum => smaller(height, membership),
+            Implication::Product => height * membership,
+        }
+    }
+}
+
+impl Hedge {
+    /// The hedged degree.
+    pub(crate) fn of(self, x: f64) -> f64 {
+        match self {
+            Hedge::Not => 1.0 - x,
+            Hedge::Very => x * x,
+            Hedge::Somewhat => libm::sqrt(x),
+            Hedge::Extremely => {
+                if x <= 0.5 {
+                    2.0 * x * x
+                } else {
+                    1.0 - 2.0 * (1.0 - x) * (1.0 - x)
+                }
+            }
+            Hedge::Seldom => {
+                if x <= 0.5 {
+                    libm::sqrt(0.5 * x)
+                } else {
+                    1.0 - libm::sqrt(0.5 * (1.0 - x))
+                }
+            }
+            Hedge::Any => 1.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CONJUNCTIONS: [(Conjunction, f64, f64); 7] = [
+        // At (0.5, 0.75) and at (0.25, 0.5), by hand.
+        (Conjunction::Minimum, 0.5, 0.25),
+        (Conjunction::Product, 0.375, 0.125),
+        (Conjunction::BoundedDifference, 0.25, 0.0),
+        (Conjunction::Drastic, 0.0, 0.0),
+        (Conjunction::Einstein, 1.0 / 3.0, 1.0 / 11.0),
+        (Conjunction::Hamacher, 3.0 / 7.0, 0.2),
+        (Conjunction::NilpotentMinimum, 0.5, 0.0),
+    ];
+
+    const DISJUNCTIONS: [(Disjunction, f64, f64); 7] = [
+        (Disjunction::Maximum, 0.75, 0.5),
+        (Disjunction::ProbabilisticSum, 0.875, 0.625),
+        (Disjunction::BoundedSum, 1.0, 0.75),
+        (Disjunction::Drastic, 1.0, 1.0),
+        (Disjunction::Einstein, 10.0 / 11.0, 2.0 / 3.0),
+        (Disjunction::Hamacher, 0.8, 4.0 / 7.0),
+        (Disjunction::NilpotentMaximum, 1.0, 0.5),
+    ];
+
+    const DEGREES: [f64; 9] = [0.0, 1e-300, 1e-9, 0.1, 0.3, 0.5, 0.75, 1.0 - 1e-16, 1.0];
+
+    #[test]
+    fn values_by_hand() {
+        for (and, first, second) in CONJUNCTIONS {
+            assert!((and.of(0.5, 0.75) - first).abs() < 1e-15, "{and:?}");
+            assert!((and.of(0.25, 0.5) - second).abs() < 1e-15, "{and:?}");
+        }
+        for (or, first, second) in DISJUNCTIONS {
+            assert!((or.of(0.5, 0.75) - first).abs() < 1e-15, "{or:?}");
+            assert!((or.of(0.25, 0.5) - second).abs() < 1e-15, "{or:?}");
+        }
+        for (hedge, at_quarter, at_three_quarters) in [
+            (Hedge::Not, 0.75, 0.25),
+            (Hedge::Very, 0.0625, 0.5625),
+            (Hedge::Somewhat, 0.5, 0.75_f64.sqrt()),
+            (Hedge::Extremely, 0.125, 0.875),
+            (Hedge::Seldom, 0.125_f64.sqrt(), 1.0 - 0.125_f64.sqrt()),
+            (Hedge::Any, 1.0, 1.0),
+        ] {
+            assert!((hedge.of(0.25) - at_quarter).abs() < 1e-15, "{hedge:?}");
+            assert!(
+                (hedge.of(0.75) - at_three_quarters).abs() < 1e-15,
+                "{hedge:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn laws_of_norms() {
+        for a in DEGREES {
+            for (and, ..) in CONJUNCTIONS {
+                assert_eq!(and.of(a, 0.0), 0.0, "{and:?}");
+                assert_eq!(and.of(0.0, a), 0.0, "{and:?}");
+                assert!((and.of(a, 1.0) - a).abs() <= 1e-16 * a, "{and:?} at {a}");
+            }
+            for (or, ..) in DISJUNCTIONS {
+                assert_eq!(or.of(a, 0.0), a, "{or:?}");
+                assert_eq!(or.of(0.0, a), a, "{or:?}");
+                assert_eq!(or.of(a, 1.0), 1.0, "{or:?}");
+            }
+            for b in DEGREES {
+                for (and, ..) in CONJUNCTIONS {
+                    let both = and.of(a, b);
+                    // One rounding over the minimum is a rounding, not a law broken.
+                    let most = a.min(b) * (1.0 + 4e-16);
+                    assert!(
+                        (0.0..=most).contains(&both),
+                        "{and:?} of {a} and {b}: {both}"
+                    );
+                }
+                for (or, ..) in DISJUNCTIONS {
+                    let any = or.of(a, b);
+                    let least = a.max(b) * (1.0 - 4e-16);
+                    assert!((least..=1.0).contains(&any), "{or:?} of {a} and {b}: {any}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! What an evaluation says.
+
+use alloc::sync::Arc;
+
+/// What one output is for one set of inputs.
+///
+/// # Example: the value, or why there is none
+/// ```
+/// use fuzzy::engine::{Outcome, State};
+///
+/// let outcome = Outcome { state: State::NoRuleFired, ..Outcome::default() };
+/// assert_eq!(outcome.value(), None);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Outcome {
+    /// The value, or why there is none.
+    pub state: State,
+    /// The largest firing strength (weight included) of a rule of this output, in [0, 1].
+    pub coverage: f64,
+    /// That rule, as its index in the model; of several, the first. `None` where no rule fired.
+    pub dominant: Option<usize>,
+    /// Whether an input lay outside its range and was taken as the range's end.
+    pub clamped: bool,
+}
+
+/// Whether an output has a value.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum State {
+    /// Rules fired, and this is the value.
+    Defined(f64),
+    /// No rule fired; this is the value that the author chose for that.
+    Default(f64),
+    /// No rule fired: the output is undefined here.
+    #[default]
+    NoRuleFired,
+    /// An input is NaN or infinite: nothing can be said.
+    InputNotFinite,
+}
+
+impl Outcome {
+    /// The value: of the rules, or the one chosen by the author for where no rule fires. Never NaN.
+    pub fn value(&self) -> Option<f64> {
+        match self.state {
+            State::Defined(value) | State::Default(value) => Some(value),
+            State::NoRuleFired | State::InputNotFinite => None,
+        }
+    }
+}
+
+/// Why inputs could not be evaluated.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvaluateError {
+    /// Not one value for each input.
+    #[error("{got} values were given for {expected} input(s)")]
+    WrongNumberOfInputs {
+        /// How many inputs the model has.
+        expected: usize,
+        /// How many values were given.
+        got: usize,
+    },
+    /// Not one place for each output.
+    #[error("there is room for {got} outcomes of {expected} output(s)")]
+    WrongNumberOfOutputs {
+        /// How many outputs the model has.
+        expected: usize,
+        /// How many places were given.
+        got: usize,
+    },
+    /// No rule of an output fired, and the model says that this is an error.
+    #[error("no rule fired for output `{output}`")]
+    NoRuleFired {
+        /// The output's name.
+        output: Arc<str>,
+    },
+}
