@@ -9,6 +9,7 @@ extern crate alloc;
 mod defuzzify;
 pub mod diagnostic;
 pub mod engine;
+pub mod map;
 pub mod model;
 pub mod rule;
 

@@ -106,6 +106,16 @@ impl Engine {
         self.outputs.iter().map(|output| &*output.name)
     }
 
+    /// Name, lower and upper end of each input.
+    pub(crate) fn ranges(&self) -> impl Iterator<Item = (&Arc<str>, f64, f64)> {
+        self.inputs.iter().map(|v| (&v.name, v.low, v.high))
+    }
+
+    /// Name, lower and upper end of each output.
+    pub(crate) fn output_ranges(&self) -> impl Iterator<Item = (&Arc<str>, f64, f64)> {
+        self.outputs.iter().map(|v| (&v.name, v.low, v.high))
+    }
+
     /// Room to evaluate in, for [`Engine::evaluate_with`]; one a thread.
     pub fn scratch(&self) -> Scratch {
         Scratch {

@@ -1,0 +1,153 @@
+//! Decision maps: an engine on a grid, with how well each cell is covered by rules.
+
+use alloc::{sync::Arc, vec, vec::Vec};
+
+use crate::Engine;
+use crate::engine::{EvaluateError, Outcome, State};
+
+mod grid;
+mod picture;
+#[cfg(test)]
+mod tests;
+
+pub use grid::{Axis, Fixed, Grid, GridError};
+pub use picture::picture;
+
+/// One output of an engine on every cell of a grid.
+///
+/// # Example: the part of a map that rules cover
+/// ```
+/// # use fuzzy::model::{Model, Output, Shape, Variable};
+/// # use fuzzy::rule::{Condition, Rule};
+/// # let model = Model::builder("m")
+/// #     .input(Variable::new("x", 0.0, 1.0).term("low", Shape::Triangle { left: 0.0, peak: 0.0, right: 0.5 }))
+/// #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("small", Shape::Rectangle { left: 0.0, right: 0.5 })))
+/// #     .rule(Rule::new(Condition::is("x", "low"), "y", "small")).build();
+/// use fuzzy::{Engine, map::{DecisionMap, Grid}};
+///
+/// let engine = Engine::new(&model)?;
+/// let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+/// let covered = (0..map.grid().cells()).filter(|&cell| map.coverage(cell) >= 0.5);
+/// assert_eq!(covered.count(), 3); // x = 0, 0.1 and 0.2
+/// assert_eq!(map.value(0), Some(0.25));
+/// assert_eq!(map.value(10), None);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct DecisionMap {
+    grid: Grid,
+    output: Arc<str>,
+    range: (f64, f64),
+    /// NaN where there is no value; never shown.
+    values: Vec<f64>,
+    coverage: Vec<f64>,
+    /// `u32::MAX` where no rule fired.
+    dominant: Vec<u32>,
+}
+
+const NO_RULE: u32 = u32::MAX;
+
+impl DecisionMap {
+    /// Evaluates one output on every cell of a grid.
+    ///
+    /// Cells where no rule fires have no value, also where the model calls that an error; where the
+    /// author chose a value for that, they have it, and no dominant rule.
+    ///
+    /// # Errors
+    /// The grid was laid over another engine, or there is no such output.
+    pub fn new(engine: &Engine, grid: Grid, output: usize) -> Result<Self, EvaluateError> {
+        let inputs = engine.input_names().len();
+        let named = grid.axes().len() + grid.fixed().len();
+        if named != inputs {
+            return Err(EvaluateError::WrongNumberOfInputs {
+                expected: inputs,
+                got: named,
+            });
+        }
+        let Some((name, low, high)) = engine.output_ranges().nth(output) else {
+            return Err(EvaluateError::WrongNumberOfOutputs {
+                expected: engine.output_names().len(),
+                got: output,
+            });
+        };
+        let mut map = DecisionMap {
+            output: Arc::clone(name),
+            range: (low, high),
+            values: Vec::with_capacity(grid.cells()),
+            coverage: Vec::with_capacity(grid.cells()),
+            dominant: Vec::with_capacity(grid.cells()),
+            grid,
+        };
+        let mut scratch = engine.scratch();
+        let mut point = vec![0.0; inputs];
+        for fixed in map.grid.fixed() {
+            if let Some(value) = point.get_mut(fixed.input) {
+                *value = fixed.value;
+            }
+        }
+        let mut outcomes = vec![Outcome::default(); engine.output_names().len()];
+        for cell in 0..map.grid.cells() {
+            for (axis, i) in map.grid.axes().iter().zip(map.grid.indices(cell)) {
+                if let Some(value) = point.get_mut(axis.input) {
+                    *value = axis.coordinate(i);
+                }
+            }
+            match engine.evaluate_with(&mut scratch, &point, &mut outcomes) {
+                Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
+                Err(error) => return Err(error),
+            }
+            let outcome = outcomes.get(output).copied().unwrap_or_default();
+            map.values.push(outcome.value().unwrap_or(f64::NAN));
+            map.coverage.push(outcome.coverage);
+            let rule = outcome.dominant.and_then(|rule| u32::try_from(rule).ok());
+            map.dominant.push(rule.unwrap_or(NO_RULE));
+        }
+        Ok(map)
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The output's name.
+    pub fn output(&self) -> &str {
+        &self.output
+    }
+
+    /// The output's range.
+    pub fn range(&self) -> (f64, f64) {
+        self.range
+    }
+
+    /// The value of a cell; `None` where there is none, and off the grid.
+    pub fn value(&self, cell: usize) -> Option<f64> {
+        self.values.get(cell).copied().filter(|v| !v.is_nan())
+    }
+
+    /// The largest firing strength of a rule of this output in a cell, in [0, 1].
+    pub fn coverage(&self, cell: usize) -> f64 {
+        self.coverage.get(cell).copied().unwrap_or(0.0)
+    }
+
+    /// The rule of the largest firing strength in a cell, as its index in the model.
+    pub fn dominant(&self, cell: usize) -> Option<usize> {
+        let rule = self.dominant.get(cell).copied();
+        rule.filter(|rule| *rule != NO_RULE)
+            .map(|rule| rule as usize)
+    }
+
+    /// The map read N-linearly between its cells; `None` where a cell that counts there has no value.
+    pub fn interpolate(&self, point: &[f64]) -> Option<f64> {
+        self.grid.interpolate(|cell| self.value(cell), point)
+    }
+
+    /// What a cell says, as an evaluation there would.
+    pub fn state(&self, cell: usize) -> State {
+        match (self.value(cell), self.dominant(cell)) {
+            (Some(value), Some(_)) => State::Defined(value),
+            (Some(value), None) => State::Default(value),
+            (None, _) => State::NoRuleFired,
+        }
+    }
+}
