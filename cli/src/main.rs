@@ -3,6 +3,8 @@
 //! One file per command; this one only reads the command line and dispatches.
 
 mod assess;
+#[allow(dead_code, reason = "the commands that use it come next")]
+mod diagnostics;
 #[allow(dead_code, reason = "the commands that use all of it come next")]
 mod failure;
 

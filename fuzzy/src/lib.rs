@@ -6,12 +6,17 @@
 
 extern crate alloc;
 
+pub mod check;
 mod defuzzify;
 pub mod diagnostic;
 pub mod engine;
+pub mod format;
 pub mod map;
 pub mod model;
 pub mod rule;
+pub mod tree;
+#[cfg(feature = "yaml")]
+pub mod yaml;
 
 pub use engine::Engine;
 pub use model::Model;

@@ -139,7 +139,31 @@ impl Rule {
     }
 }
 
+impl Rule {
+    /// Calls `change` on every name in it, from left to right.
+    pub(crate) fn names_mut(&mut self, change: &mut impl FnMut(&mut Name)) {
+        self.condition.names_mut(change);
+        for consequent in &mut self.consequents {
+            change(&mut consequent.output);
+            change(&mut consequent.term);
+        }
+    }
+}
+
 impl Condition {
+    fn names_mut(&mut self, change: &mut impl FnMut(&mut Name)) {
+        match self {
+            Condition::Is(proposition) => {
+                change(&mut proposition.variable);
+                proposition.term.iter_mut().for_each(change);
+            }
+            Condition::Not(inner) => inner.names_mut(change),
+            Condition::And(parts) | Condition::Or(parts) => {
+                parts.iter_mut().for_each(|part| part.names_mut(change));
+            }
+        }
+    }
+
     /// Calls `visit` on every proposition, from left to right.
     pub fn visit<'a>(&'a self, visit: &mut impl FnMut(&'a Proposition)) {
         match self {

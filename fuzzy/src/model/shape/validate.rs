@@ -6,8 +6,19 @@ use super::Shape;
 
 /// Why the parameters of a shape make no membership function.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct ShapeError(String);
+#[error("{message}")]
+pub struct ShapeError {
+    message: String,
+    /// The parameter to blame by name, or `point 3`, for those who know where it was written.
+    pub(crate) blamed: String,
+}
+
+fn wrong(blamed: &str, message: String) -> Result<(), ShapeError> {
+    Err(ShapeError {
+        message,
+        blamed: blamed.into(),
+    })
+}
 
 impl Shape {
     /// Whether the parameters make a membership function: finite, in order, widths over 0.
@@ -94,7 +105,7 @@ impl Shape {
                 finite("inflection", inflection)?;
                 finite("end", end)?;
                 if inflection == end {
-                    return Err(ShapeError(format!("`inflection` and `end` are both {end}")));
+                    return wrong("end", format!("`inflection` and `end` are both {end}"));
                 }
                 Ok(())
             }
@@ -117,11 +128,9 @@ fn finite(name: &str, value: f64) -> Result<(), ShapeError> {
     if (2.0 * value).is_finite() {
         Ok(())
     } else if value.is_finite() {
-        Err(ShapeError(format!("`{name}` is too large a number")))
+        wrong(name, format!("`{name}` is too large a number"))
     } else {
-        Err(ShapeError(format!(
-            "`{name}` is {value}, not a finite number"
-        )))
+        wrong(name, format!("`{name}` is {value}, not a finite number"))
     }
 }
 
@@ -130,7 +139,7 @@ fn positive(name: &str, value: f64) -> Result<(), ShapeError> {
     if value > 0.0 {
         Ok(())
     } else {
-        Err(ShapeError(format!("`{name}` is {value}, not over 0")))
+        wrong(name, format!("`{name}` is {value}, not over 0"))
     }
 }
 
@@ -142,9 +151,7 @@ fn ordered(parameters: &[(&str, f64)]) -> Result<(), ShapeError> {
         if let [(before, low), (after, high)] = pair
             && low > high
         {
-            return Err(ShapeError(format!(
-                "`{before}` {low} is over `{after}` {high}"
-            )));
+            return wrong(after, format!("`{before}` {low} is over `{after}` {high}"));
         }
     }
     Ok(())
@@ -152,24 +159,24 @@ fn ordered(parameters: &[(&str, f64)]) -> Result<(), ShapeError> {
 
 fn piecewise(points: &[(f64, f64)]) -> Result<(), ShapeError> {
     if points.is_empty() {
-        return Err(ShapeError("there are no points".into()));
+        return wrong("", "there are no points".into());
     }
-    for &(x, degree) in points {
-        finite("x", x)?;
+    let mut before = f64::NEG_INFINITY;
+    for (i, &(x, degree)) in points.iter().enumerate() {
+        let blamed = format!("point {i}");
+        if let Err(error) = finite("x", x) {
+            return wrong(&blamed, error.message);
+        }
         if !(0.0..=1.0).contains(&degree) {
-            return Err(ShapeError(format!(
-                "the degree {degree} at {x} is not in [0, 1]"
-            )));
+            return wrong(
+                &blamed,
+                format!("the degree {degree} at {x} is not in [0, 1]"),
+            );
         }
-    }
-    for pair in points.windows(2) {
-        if let [(before, _), (after, _)] = pair
-            && before > after
-        {
-            return Err(ShapeError(format!(
-                "the point at {after} stands behind {before}"
-            )));
+        if before > x {
+            return wrong(&blamed, format!("the point at {x} stands behind {before}"));
         }
+        before = x;
     }
     Ok(())
 }

@@ -1,0 +1,68 @@
+//! Findings in a text, drawn as a compiler draws them, or as JSON.
+
+use std::{fs, path::Path};
+
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use fuzzy::diagnostic::{Diagnostic, Severity};
+
+use crate::failure::Failure;
+
+/// Draws findings with the lines they are about. `colored` is for terminals; pass what is drawn to `anstream`, which
+/// knows whether it writes to one.
+pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: bool) -> String {
+    let renderer = if colored {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
+    let drawn = findings
+        .iter()
+        .map(|finding| renderer.render(&report(finding, file, text)));
+    let mut drawn = drawn.collect::<Vec<_>>().join("\n\n");
+    if !drawn.is_empty() {
+        drawn.push('\n');
+    }
+    drawn
+}
+
+fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Group<'a>> {
+    let level = match finding.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
+    };
+    let inside = |span: &std::ops::Range<usize>| {
+        let end = span.end.min(text.len());
+        span.start.min(end)..end
+    };
+    let related = finding.related.iter().map(|related| {
+        AnnotationKind::Context
+            .span(inside(&related.span))
+            .label(related.message.as_str())
+    });
+    let snippet = Snippet::source(text)
+        .path(file)
+        .annotation(AnnotationKind::Primary.span(inside(&finding.span)))
+        .annotations(related);
+    let mut group = level
+        .primary_title(finding.message.as_str())
+        .id(finding.code)
+        .element(snippet);
+    if let Some(help) = &finding.help {
+        group = group.element(Level::HELP.message(help.as_str()));
+    }
+    vec![group]
+}
+
+/// Reads a text file; one that is none is the user's to know about, with the place.
+pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
+    let shown = path.display();
+    let bytes = fs::read(path).map_err(|error| {
+        Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
+    })?;
+    String::from_utf8(bytes).map_err(|error| {
+        let good = error.utf8_error().valid_up_to();
+        Failure::unreadable(format!("`{shown}` is no UTF-8 text: byte {good} is none"))
+            .help("a rule set is a text file")
+    })
+}

@@ -1,0 +1,188 @@
+//! The file format of rule sets, version 1: [`Model`] from a tree and back.
+//!
+//! This is the only interpretation of the format, whatever it is written in: `yaml::parse` brings a tree with places,
+//! serde one without. What the keys mean is told in `docs/rule-sets.md`.
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::ops::Range;
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::{
+    check,
+    diagnostic::{Diagnostic, Findings, Severity},
+    model::Model,
+    tree::Node,
+};
+
+mod rules;
+mod shapes;
+mod variables;
+mod words;
+mod write;
+
+/// The version of the format this library reads and writes.
+pub const VERSION: u64 = 1;
+
+/// A model as it was read, and where its parts stand in the text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Document {
+    /// What the author wrote.
+    pub model: Model,
+    /// Where its parts stand.
+    pub places: Places,
+    /// What does not keep the model from working.
+    pub warnings: Findings,
+}
+
+/// Where the parts of a model stand in its text, in the order of the model.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Places {
+    /// The inputs.
+    pub inputs: Vec<VariablePlaces>,
+    /// The outputs.
+    pub outputs: Vec<VariablePlaces>,
+    /// The key `rules`.
+    pub rules_key: Range<usize>,
+    /// The rules.
+    pub rules: Vec<Range<usize>>,
+}
+
+/// Where the parts of a variable stand.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct VariablePlaces {
+    /// Its name.
+    pub name: Range<usize>,
+    /// The names of its terms.
+    pub terms: Vec<Range<usize>>,
+}
+
+/// Reads a model from a tree. The findings of all of it are told at once, but those that follow from another one are not.
+///
+/// # Errors
+/// All findings, where one of them is an error. Without a text at hand they have no line and column.
+pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
+    let mut findings = Vec::new();
+    let mut places = Places::default();
+    let model = model(tree, &mut places, &mut findings);
+    if let Some(model) = &model {
+        // A variable that could not be read is no unknown name.
+        findings.extend(check::names::check(model, &places));
+    }
+    let failed = findings.iter().any(|f| f.severity == Severity::Error);
+    match model {
+        Some(model) if !failed => Ok(Document {
+            model,
+            places,
+            warnings: Findings(findings),
+        }),
+        _ => Err(findings),
+    }
+}
+
+/// The model as far as it can be read; what cannot is a finding, and stands in the model by its name alone.
+fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Option<Model> {
+    const KEYS: [&str; 7] = [
+        "fuzzy",
+        "name",
+        "description",
+        "inputs",
+        "outputs",
+        "operators",
+        "rules",
+    ];
+    let fields = tree.fields("the rule set", &KEYS, findings)?;
+    let version = fields.require("fuzzy", "begin the file with `fuzzy: 1`", findings)?;
+    if version.whole("the format version `fuzzy`", 0, findings)? != VERSION {
+        let written = version.words("the version", findings)?;
+        let message = format!("format version `{}` is not supported", written.text);
+        findings.push(
+            Diagnostic::error("unsupported-version", version.span.clone(), message).help(format!(
+                "this program reads version {VERSION}; a newer one may read this file"
+            )),
+        );
+        // Another version may mean something else by every key behind it.
+        return None;
+    }
+    let mut text_of = |key: &str| {
+        let node = fields.get(key)?;
+        let text = node.words(&format!("`{key}`"), findings)?;
+        Some(text.text.clone())
+    };
+    let (name, description) = (text_of("name"), text_of("description"));
+    if fields.get("name").is_none() {
+        fields.require(
+            "name",
+            "give the rule set a name: `name: my-rules`",
+            findings,
+        );
+    }
+    let inputs = fields
+        .require(
+            "inputs",
+            "write `inputs:` and a name, a range and terms for each",
+            findings,
+        )
+        .and_then(|node| variables::inputs(node, &mut places.inputs, findings));
+    let outputs = fields
+        .require(
+            "outputs",
+            "write `outputs:` and a name, a range and terms for each",
+            findings,
+        )
+        .and_then(|node| variables::outputs(node, &mut places.outputs, findings));
+    let operators = match fields.get("operators") {
+        Some(node) => words::operators(node, findings),
+        None => Some(crate::model::Operators::default()),
+    };
+    let rules_help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`";
+    if let Some(entry) = fields.entry("rules") {
+        places.rules_key = entry.key_span.clone();
+    }
+    let rules = fields
+        .require("rules", rules_help, findings)
+        .and_then(|node| rules::read(node, &mut places.rules, findings));
+    Some(Model {
+        name: name.unwrap_or_default(),
+        description,
+        inputs: inputs?,
+        outputs: outputs?,
+        operators: operators.unwrap_or_default(),
+        rules: rules.unwrap_or_default(),
+    })
+}
+
+/// The model as a tree; reading it again gives the same model.
+#[must_use]
+pub fn write(model: &Model) -> Node {
+    write::model(model)
+}
+
+impl Serialize for Model {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        write(self).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Model {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let tree = Node::deserialize(deserializer)?;
+        let told = |findings| serde::de::Error::custom(Findings(findings).to_string());
+        Ok(read(&tree).map_err(told)?.model)
+    }
+}
+
+/// Text behind a key, where there is some.
+fn optional_text(
+    fields: &crate::tree::Fields<'_>,
+    key: &str,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<String> {
+    let node = fields.get(key)?;
+    let text = node.words(&format!("`{key}`"), findings)?;
+    Some(text.text.clone())
+}

@@ -1,0 +1,176 @@
+//! Rules in a file: `- IF ... THEN ...`, or a mapping that says where the rule came from.
+
+use alloc::{format, string::ToString, vec::Vec};
+use core::ops::Range;
+
+use super::optional_text;
+use crate::{
+    diagnostic::Diagnostic,
+    model::{Beaten, Rule},
+    rule::{self, Condition},
+    tree::{Node, Scalar, Value},
+};
+
+const KEYS: [&str; 5] = ["rule", "confidence", "support", "against", "note"];
+
+pub(super) fn read(
+    node: &Node,
+    places: &mut Vec<Range<usize>>,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Vec<Rule>> {
+    let items = node.items("`rules`", findings)?;
+    if items.is_empty() {
+        findings.push(
+            Diagnostic::error("no-rules", node.span.clone(), "the list of rules is empty")
+                .help("write at least one rule: `- IF input IS term THEN output IS term`"),
+        );
+    }
+    let mut rules = Vec::with_capacity(items.len());
+    for (i, item) in items.iter().enumerate() {
+        if let Some(rule) = one(item, i + 1, findings) {
+            rules.push(rule);
+            places.push(item.span.clone());
+        }
+    }
+    Some(rules)
+}
+
+fn one(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Rule> {
+    let what = format!("rule {number}");
+    let mut found = Rule {
+        rule: rule::Rule {
+            condition: Condition::And(Vec::new()),
+            consequents: Vec::new(),
+            weight: 1.0,
+        },
+        confidence: None,
+        support: None,
+        against: Vec::new(),
+        note: None,
+    };
+    if let Value::Scalar(_) = &node.value {
+        found.rule = parse(node.words(&what, findings)?, findings)?;
+        return Some(found);
+    }
+    let Value::Mapping(pairs) = &node.value else {
+        let finding = node.unexpected(&format!("text or a mapping for {what}"));
+        findings.push(finding.help("write `IF input IS term THEN output IS term`"));
+        return None;
+    };
+    // `- IF ... THEN risk IS high: why` reads as a mapping: the colon is the mistake, not the key.
+    if let [(key, _)] = pairs.as_slice()
+        && let Value::Scalar(scalar) = &key.value
+        && scalar
+            .text
+            .get(..3)
+            .is_some_and(|start| start.eq_ignore_ascii_case("if "))
+    {
+        findings.push(
+            Diagnostic::error(
+                "wrong-type",
+                key.span.clone(),
+                format!("{what} holds a colon"),
+            )
+            .help("put the rule in quotes, or a remark behind `#`"),
+        );
+        return None;
+    }
+    let fields = node.fields(&what, &KEYS, findings)?;
+    let help = "write `{rule: IF input IS term THEN output IS term, confidence: 0.8}`";
+    let text = fields.require("rule", help, findings);
+    found.confidence = fields
+        .get("confidence")
+        .and_then(|node| degree(&format!("the confidence of {what}"), node, findings));
+    found.support = fields
+        .get("support")
+        .and_then(|node| node.whole(&format!("the support of {what}"), 0, findings));
+    found.note = optional_text(&fields, "note", findings);
+    if let Some(node) = fields.get("against") {
+        let what = format!("`against` of {what}");
+        let items = node.items(&what, findings).unwrap_or_default();
+        found.against = items
+            .iter()
+            .filter_map(|item| beaten(&what, item, findings))
+            .collect();
+    }
+    found.rule = parse(text?.words(&what, findings)?, findings)?;
+    Some(found)
+}
+
+/// `{term: high, degree: 0.4, support: 3}`
+fn beaten(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Beaten> {
+    let fields = node.fields(what, &["term", "degree", "support"], findings)?;
+    let help = "write `{term: high, degree: 0.4, support: 3}`";
+    let term = fields.require("term", help, findings);
+    let term = term.and_then(|node| node.words(&format!("the term in {what}"), findings));
+    let degree = fields
+        .require("degree", help, findings)
+        .and_then(|node| self::degree(&format!("the degree in {what}"), node, findings));
+    let support = fields
+        .require("support", help, findings)
+        .and_then(|node| node.whole(&format!("the support in {what}"), 0, findings));
+    Some(Beaten {
+        term: term?.text.to_string(),
+        degree: degree?,
+        support: support?,
+    })
+}
+
+fn degree(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<f64> {
+    let degree = node.finite(what, findings)?;
+    if (0.0..=1.0).contains(&degree) {
+        return Some(degree);
+    }
+    let message = format!("{what} is {degree}, outside [0, 1]");
+    findings.push(
+        Diagnostic::error("value-outside-range", node.span.clone(), message)
+            .help("write a number from 0 to 1"),
+    );
+    None
+}
+
+/// Parses the rule in a scalar; places in it become places in the document.
+fn parse(scalar: &Scalar, findings: &mut Vec<Diagnostic>) -> Option<rule::Rule> {
+    match rule::parse(&scalar.text) {
+        Ok(mut rule) => {
+            rule.names_mut(&mut |name| name.span = scalar.place(name.span.clone()));
+            Some(rule)
+        }
+        Err(mut finding) => {
+            finding.span = scalar.place(finding.span.clone());
+            findings.push(*finding);
+            None
+        }
+    }
+}
+
+/// The rule as it stands in a file.
+pub(super) fn write(rule: &Rule) -> Node {
+    let text = Node::text(rule.rule.to_string());
+    let is_bare = rule.confidence.is_none()
+        && rule.support.is_none()
+        && rule.against.is_empty()
+        && rule.note.is_none();
+    if is_bare {
+        return text;
+    }
+    let mut entries: Vec<(&str, Node)> = Vec::from([("rule", text)]);
+    entries.extend(rule.confidence.map(|c| ("confidence", Node::number(c))));
+    entries.extend(rule.support.map(|s| ("support", whole(s))));
+    if !rule.against.is_empty() {
+        let beaten = rule.against.iter().map(|beaten| {
+            Node::mapping([
+                ("term", Node::text(beaten.term.as_str())),
+                ("degree", Node::number(beaten.degree)),
+                ("support", whole(beaten.support)),
+            ])
+        });
+        entries.push(("against", Node::list(beaten.collect())));
+    }
+    entries.extend(rule.note.as_ref().map(|n| ("note", Node::text(n.as_str()))));
+    Node::mapping(entries)
+}
+
+fn whole(number: u64) -> Node {
+    Node::scalar(number.to_string(), false)
+}

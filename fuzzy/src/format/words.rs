@@ -1,0 +1,82 @@
+//! The words of the format for operators and defuzzifiers.
+
+use alloc::vec::Vec;
+
+use crate::{
+    diagnostic::Diagnostic,
+    model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, Operators},
+    tree::Node,
+};
+
+pub(super) const CONJUNCTIONS: [(&str, Conjunction); 7] = [
+    ("minimum", Conjunction::Minimum),
+    ("product", Conjunction::Product),
+    ("bounded_difference", Conjunction::BoundedDifference),
+    ("drastic", Conjunction::Drastic),
+    ("einstein", Conjunction::Einstein),
+    ("hamacher", Conjunction::Hamacher),
+    ("nilpotent_minimum", Conjunction::NilpotentMinimum),
+];
+
+pub(super) const DISJUNCTIONS: [(&str, Disjunction); 7] = [
+    ("maximum", Disjunction::Maximum),
+    ("probabilistic_sum", Disjunction::ProbabilisticSum),
+    ("bounded_sum", Disjunction::BoundedSum),
+    ("drastic", Disjunction::Drastic),
+    ("einstein", Disjunction::Einstein),
+    ("hamacher", Disjunction::Hamacher),
+    ("nilpotent_maximum", Disjunction::NilpotentMaximum),
+];
+
+pub(super) const IMPLICATIONS: [(&str, Implication); 2] = [
+    ("minimum", Implication::Minimum),
+    ("product", Implication::Product),
+];
+
+pub(super) const AGGREGATIONS: [(&str, Aggregation); 4] = [
+    ("maximum", Aggregation::Maximum),
+    ("probabilistic_sum", Aggregation::ProbabilisticSum),
+    ("bounded_sum", Aggregation::BoundedSum),
+    ("sum", Aggregation::Sum),
+];
+
+pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); 7] = [
+    ("centroid", Defuzzifier::Centroid),
+    ("bisector", Defuzzifier::Bisector),
+    ("smallest_of_maxima", Defuzzifier::SmallestOfMaxima),
+    ("mean_of_maxima", Defuzzifier::MeanOfMaxima),
+    ("largest_of_maxima", Defuzzifier::LargestOfMaxima),
+    ("weighted_average", Defuzzifier::WeightedAverage),
+    ("weighted_sum", Defuzzifier::WeightedSum),
+];
+
+/// The word for a value; every value has one.
+pub(super) fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
+    words
+        .iter()
+        .find(|(_, other)| *other == value)
+        .map_or("", |(word, _)| *word)
+}
+
+pub(super) fn operators(node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Operators> {
+    let keys = ["and", "or", "implication", "aggregation"];
+    let fields = node.fields("`operators`", &keys, findings)?;
+    let mut operators = Operators::default();
+    if let Some(node) = fields.get("and") {
+        let word = node.choice("the operator `and`", &CONJUNCTIONS, findings);
+        operators.and = word.unwrap_or(operators.and);
+    }
+    if let Some(node) = fields.get("or") {
+        let word = node.choice("the operator `or`", &DISJUNCTIONS, findings);
+        operators.or = word.unwrap_or(operators.or);
+    }
+    if let Some(node) = fields.get("implication") {
+        let word = node.choice("the operator `implication`", &IMPLICATIONS, findings);
+        operators.implication = word.unwrap_or(operators.implication);
+    }
+    if let Some(node) = fields.get("aggregation") {
+        let word = node.choice("the operator `aggregation`", &AGGREGATIONS, findings);
+        operators.aggregation = word.unwrap_or(operators.aggregation);
+    }
+    Some(operators)
+}

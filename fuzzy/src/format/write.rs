@@ -1,0 +1,125 @@
+//! A model as a tree, in the short forms where they mean the same.
+
+use alloc::vec::Vec;
+
+use super::{
+    VERSION, rules, shapes,
+    variables::{between_peaks, even_peaks},
+    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, IMPLICATIONS, word_of},
+};
+use crate::{
+    model::{Model, NoRuleFires, Operators, Output, SamplingRule, Shape, Term, Variable},
+    tree::Node,
+};
+
+type Entries = Vec<(&'static str, Node)>;
+
+pub(super) fn model(model: &Model) -> Node {
+    let mut entries: Entries = Vec::from([
+        ("fuzzy", Node::number(VERSION as f64)),
+        ("name", Node::text(model.name.as_str())),
+    ]);
+    entries.extend(description(model.description.as_deref()));
+    let inputs = model.inputs.iter();
+    let inputs = inputs.map(|input| (input.name.as_str(), Node::mapping(variable(input))));
+    entries.push(("inputs", Node::mapping(inputs)));
+    let outputs = model.outputs.iter();
+    let outputs = outputs.map(|o| (o.variable.name.as_str(), output(o)));
+    entries.push(("outputs", Node::mapping(outputs)));
+    entries.push(("operators", operators(&model.operators)));
+    let rules = model.rules.iter().map(rules::write);
+    entries.push(("rules", Node::list(rules.collect())));
+    Node::mapping(entries)
+}
+
+fn description(text: Option<&str>) -> Option<(&'static str, Node)> {
+    text.map(|text| ("description", Node::text(text)))
+}
+
+fn operators(operators: &Operators) -> Node {
+    Node::mapping([
+        ("and", Node::text(word_of(&CONJUNCTIONS, operators.and))),
+        ("or", Node::text(word_of(&DISJUNCTIONS, operators.or))),
+        (
+            "implication",
+            Node::text(word_of(&IMPLICATIONS, operators.implication)),
+        ),
+        (
+            "aggregation",
+            Node::text(word_of(&AGGREGATIONS, operators.aggregation)),
+        ),
+    ])
+}
+
+fn variable(variable: &Variable) -> Entries {
+    let mut entries: Entries = Vec::new();
+    entries.extend(description(variable.description.as_deref()));
+    entries.extend(variable.unit.as_deref().map(|u| ("unit", Node::text(u))));
+    let range = [variable.low, variable.high].map(Node::number);
+    entries.push(("range", Node::list(range.into())));
+    entries.push(terms(variable));
+    entries
+}
+
+fn output(output: &Output) -> Node {
+    let mut entries = variable(&output.variable);
+    let defuzzifier = word_of(&DEFUZZIFIERS, output.defuzzifier);
+    entries.push(("defuzzifier", Node::text(defuzzifier)));
+    if let Some(sampling) = output.samples {
+        let rule = match sampling.rule {
+            SamplingRule::Midpoint => "midpoint",
+            SamplingRule::Trapezoid => "trapezoid",
+        };
+        let samples = Node::number(sampling.samples as f64);
+        entries.push(("samples", Node::mapping([(rule, samples)])));
+    }
+    let otherwise = match output.when_no_rule_fires {
+        NoRuleFires::Undefined => Node::text("undefined"),
+        NoRuleFires::Error => Node::text("error"),
+        NoRuleFires::Value(value) => Node::mapping([("value", Node::number(value))]),
+    };
+    entries.push(("when_no_rule_fires", otherwise));
+    Node::mapping(entries)
+}
+
+/// The terms, as a partition where they are one.
+fn terms(variable: &Variable) -> (&'static str, Node) {
+    let terms = &variable.terms;
+    let names = || terms.iter().map(|term| term.name.as_str());
+    let peaks = peaks(terms);
+    let is_partition = terms.len() >= 2
+        && peaks.is_sorted_by(|a, b| a < b)
+        && peaks
+            .iter()
+            .all(|p| (variable.low..=variable.high).contains(p))
+        && *terms == between_peaks(names().zip(peaks.iter().copied()));
+    if !is_partition {
+        let terms = terms.iter().map(|term| {
+            let (shape, parameters) = shapes::write(&term.shape);
+            let mut entries: Entries = Vec::from([(shape, parameters)]);
+            if term.height != 1.0 {
+                entries.push(("height", Node::number(term.height)));
+            }
+            (term.name.as_str(), Node::mapping(entries))
+        });
+        return ("terms", Node::mapping(terms));
+    }
+    let is_even = even_peaks(variable.low, variable.high, terms.len()).eq(peaks.iter().copied());
+    let partition = if is_even {
+        Node::list(names().map(Node::text).collect())
+    } else {
+        Node::mapping(names().zip(peaks.iter().copied().map(Node::number)))
+    };
+    ("partition", partition)
+}
+
+/// Where each term of a partition would have its peak.
+fn peaks(terms: &[Term]) -> Vec<f64> {
+    let peak = |term: &Term| match term.shape {
+        Shape::Triangle { peak, .. } => Some(peak),
+        Shape::LeftShoulder { top, .. } | Shape::RightShoulder { top, .. } => Some(top),
+        _ => None,
+    };
+    let peaks: Option<Vec<f64>> = terms.iter().map(peak).collect();
+    peaks.unwrap_or_default()
+}

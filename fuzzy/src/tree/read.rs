@@ -1,0 +1,352 @@
+//! Reading a tree: what is expected is asked for, what is wrong goes to the list of findings.
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::ops::Range;
+
+use super::{Node, Scalar, Value};
+use crate::diagnostic::{Diagnostic, suggest};
+
+/// The fields of a mapping whose keys are known.
+pub struct Fields<'a> {
+    /// What the mapping is, for messages: ``input `margin` ``.
+    what: String,
+    /// Where to tell that something is missing.
+    place: Range<usize>,
+    entries: Vec<Entry<'a>>,
+}
+
+/// A key and what stands behind it.
+#[derive(Clone)]
+pub struct Entry<'a> {
+    /// The key.
+    pub key: &'a str,
+    /// Where the key stands.
+    pub key_span: Range<usize>,
+    /// What stands behind it.
+    pub value: &'a Node,
+}
+
+impl<'a> Fields<'a> {
+    /// The value behind a key; a key with nothing behind it counts as absent.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&'a Node> {
+        self.entry(key).map(|entry| entry.value)
+    }
+
+    /// The key and the value behind it; a key with nothing behind it counts as absent.
+    #[must_use]
+    pub fn entry(&self, key: &str) -> Option<&Entry<'a>> {
+        self.entries
+            .iter()
+            .find(|entry| entry.key == key && !entry.value.is_null())
+    }
+
+    /// All keys that are there once, with their values.
+    #[must_use]
+    pub fn entries(&self) -> &[Entry<'a>] {
+        &self.entries
+    }
+
+    /// The value behind a key that has to be there.
+    pub fn require(
+        &self,
+        key: &str,
+        help: &str,
+        findings: &mut Vec<Diagnostic>,
+    ) -> Option<&'a Node> {
+        let found = self.get(key);
+        if found.is_none() {
+            let place = self.entries.iter().find(|entry| entry.key == key);
+            let span = place.map_or(self.place.clone(), |entry| entry.key_span.clone());
+            let message = match place {
+                None => format!("{} has no `{key}`", self.what),
+                Some(_) => format!("`{key}` of {} is empty", self.what),
+            };
+            findings.push(Diagnostic::error("missing-key", span, message).help(help));
+        }
+        found
+    }
+}
+
+impl<'a> Entry<'a> {
+    /// [`Node::fields`] of the value; what is missing in it is told at the key.
+    pub fn fields(
+        &self,
+        what: &str,
+        known: &[&str],
+        findings: &mut Vec<Diagnostic>,
+    ) -> Option<Fields<'a>> {
+        let fields = self.value.fields(what, known, findings)?;
+        Some(Fields {
+            place: self.key_span.clone(),
+            ..fields
+        })
+    }
+}
+
+impl Node {
+    /// Reads a mapping of known keys. `what` names it in messages, as in ``input `margin` ``. An unknown key, a key
+    /// given twice and anything but a mapping is a finding.
+    pub fn fields<'a>(
+        &'a self,
+        what: &str,
+        known: &[&str],
+        findings: &mut Vec<Diagnostic>,
+    ) -> Option<Fields<'a>> {
+        let entries = self.entries(what, "key", findings)?;
+        for entry in &entries {
+            if !known.contains(&entry.key) {
+                let message = format!("{what} has no key `{}`", entry.key);
+                let mut finding = Diagnostic::error("unknown-key", entry.key_span.clone(), message);
+                finding.help = suggest(entry.key, known.iter().copied());
+                findings.push(finding);
+            }
+        }
+        Some(Fields {
+            what: what.to_string(),
+            place: self.span.start..self.span.start,
+            entries,
+        })
+    }
+
+    /// Reads a mapping of names the author chose: of two equal ones the second is a finding `duplicate-<kind>` and
+    /// left out.
+    pub fn entries<'a>(
+        &'a self,
+        what: &str,
+        kind: &str,
+        findings: &mut Vec<Diagnostic>,
+    ) -> Option<Vec<Entry<'a>>> {
+        let Value::Mapping(pairs) = &self.value else {
+            findings.push(self.unexpected(&format!("a mapping for {what}")));
+            return None;
+        };
+        let mut entries: Vec<Entry<'a>> = Vec::with_capacity(pairs.len());
+        let mut seen = alloc::collections::BTreeMap::new();
+        for (key, value) in pairs {
+            let Value::Scalar(scalar) = &key.value else {
+                findings.push(key.unexpected(&format!("a {kind} of {what}")));
+                continue;
+            };
+            if let Some(first) = seen.insert(scalar.text.as_str(), key.span.clone()) {
+                findings.push(duplicate(kind, &scalar.text, what, key.span.clone(), first));
+                continue;
+            }
+            entries.push(Entry {
+                key: &scalar.text,
+                key_span: key.span.clone(),
+                value,
+            });
+        }
+        Some(entries)
+    }
+
+    /// Reads a list.
+    pub fn items(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&[Node]> {
+        match &self.value {
+            Value::List(items) => Some(items),
+            _ => {
+                findings.push(self.unexpected(&format!("a list for {what}")));
+                None
+            }
+        }
+    }
+
+    /// Reads a finite number.
+    pub fn finite(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<f64> {
+        let number = match &self.value {
+            Value::Scalar(scalar) => scalar.as_number(),
+            _ => None,
+        };
+        match number {
+            Some(number) if number.is_finite() => Some(number),
+            Some(_) => {
+                let shown = self.shown();
+                let message = format!("{what} must be a finite number, not {shown}");
+                findings.push(
+                    Diagnostic::error("not-finite", self.span.clone(), message)
+                        .help("write a number such as `0.5`"),
+                );
+                None
+            }
+            None => {
+                let mut finding = self.unexpected(&format!("a number for {what}"));
+                finding.help = self.number_advice();
+                findings.push(finding);
+                None
+            }
+        }
+    }
+
+    /// Reads a whole number from `least` on.
+    pub fn whole(&self, what: &str, least: u64, findings: &mut Vec<Diagnostic>) -> Option<u64> {
+        let found = match &self.value {
+            Value::Scalar(scalar) if !scalar.quoted => scalar.text.parse().ok(),
+            _ => None,
+        };
+        match found {
+            Some(number) if number >= least => Some(number),
+            _ => {
+                let expected = format!("a whole number from {least} on for {what}");
+                findings.push(self.unexpected(&expected));
+                None
+            }
+        }
+    }
+
+    /// Reads text. A number or `true` stands for its own letters: names may look like that.
+    pub fn words(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&Scalar> {
+        match &self.value {
+            Value::Scalar(scalar) if !scalar.is_null() => Some(scalar),
+            _ => {
+                findings.push(self.unexpected(&format!("text for {what}")));
+                None
+            }
+        }
+    }
+
+    /// Reads `true` or `false`.
+    pub fn boolean(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<bool> {
+        let found = match &self.value {
+            Value::Scalar(scalar) if !scalar.quoted => scalar.as_bool(),
+            _ => None,
+        };
+        if found.is_none() {
+            findings.push(self.unexpected(&format!("`true` or `false` for {what}")));
+        }
+        found
+    }
+
+    /// Reads one of several words.
+    pub fn choice<T: Copy>(
+        &self,
+        what: &str,
+        choices: &[(&str, T)],
+        findings: &mut Vec<Diagnostic>,
+    ) -> Option<T> {
+        let word = self.words(what, findings)?;
+        let found = choices.iter().find(|(name, _)| *name == word.text);
+        if found.is_none() {
+            let message = format!("{what} cannot be `{}`", word.text);
+            let mut finding = Diagnostic::error("unknown-word", self.span.clone(), message);
+            finding.help = suggest(&word.text, choices.iter().map(|(name, _)| *name));
+            findings.push(finding);
+        }
+        found.map(|&(_, value)| value)
+    }
+
+    /// A finding: here stands something else than what was expected.
+    #[must_use]
+    pub fn unexpected(&self, expected: &str) -> Diagnostic {
+        let message = format!("expected {expected}, found {}", self.shown());
+        Diagnostic::error("wrong-type", self.span.clone(), message)
+    }
+
+    /// What stands here, for messages.
+    fn shown(&self) -> String {
+        match &self.value {
+            Value::List(_) => "a list".into(),
+            Value::Mapping(_) => "a mapping".into(),
+            Value::Scalar(scalar) if scalar.is_null() => "nothing".into(),
+            Value::Scalar(scalar) => {
+                let cut: String = scalar.text.chars().take(40).collect();
+                let dots = if cut.len() < scalar.text.len() {
+                    "..."
+                } else {
+                    ""
+                };
+                if scalar.quoted {
+                    format!("the text `{cut}{dots}`")
+                } else {
+                    format!("`{cut}{dots}`")
+                }
+            }
+        }
+    }
+
+    fn number_advice(&self) -> Option<String> {
+        let Value::Scalar(scalar) = &self.value else {
+            return None;
+        };
+        let text = scalar.text.trim();
+        let plain = |s: &str| s.parse::<f64>().ok().filter(|x| x.is_finite());
+        if plain(text).is_some() {
+            return Some("a number stands without quotes".into());
+        }
+        if let Some(percent) = text.strip_suffix('%').and_then(plain) {
+            return Some(format!(
+                "write the number alone: `{percent}` or `{}`",
+                percent / 100.0
+            ));
+        }
+        if plain(&text.replacen(',', ".", 1)).is_some() {
+            return Some(format!(
+                "write a decimal point: `{}`",
+                text.replacen(',', ".", 1)
+            ));
+        }
+        let number: String = text
+            .chars()
+            .take_while(|c| c.is_ascii_digit() || matches!(c, '.' | '-' | '+'))
+            .collect();
+        plain(&number).map(|_| format!("write the number without its unit: `{number}`"))
+    }
+}
+
+/// A finding: this name is taken already.
+pub(crate) fn duplicate(
+    kind: &str,
+    name: &str,
+    what: &str,
+    span: Range<usize>,
+    first: Range<usize>,
+) -> Diagnostic {
+    let (code, help) = match kind {
+        "variable" => (
+            "duplicate-variable",
+            "inputs and outputs have different names; rename one of them",
+        ),
+        "term" => (
+            "duplicate-term",
+            "the terms of a variable have different names; rename one of them",
+        ),
+        _ => ("duplicate-key", "keep one of them"),
+    };
+    Diagnostic::error(code, span, format!("{what} has the {kind} `{name}` twice"))
+        .related(first, "the first one")
+        .help(help)
+}
+
+impl Scalar {
+    /// The number it is, if it is one: YAML's forms of decimal numbers, infinities and NaN.
+    #[must_use]
+    pub fn as_number(&self) -> Option<f64> {
+        if self.quoted {
+            return None;
+        }
+        let text = self.text.as_str();
+        let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
+        match unsigned {
+            ".inf" | ".Inf" | ".INF" if text.starts_with('-') => Some(f64::NEG_INFINITY),
+            ".inf" | ".Inf" | ".INF" => Some(f64::INFINITY),
+            ".nan" | ".NaN" | ".NAN" => Some(f64::NAN),
+            // Rust reads `inf` and `nan` as numbers, YAML as words.
+            _ if unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.') => {
+                text.parse().ok()
+            }
+            _ => None,
+        }
+    }
+
+    pub(super) fn as_bool(&self) -> Option<bool> {
+        match self.text.as_str() {
+            "true" | "True" | "TRUE" if !self.quoted => Some(true),
+            "false" | "False" | "FALSE" if !self.quoted => Some(false),
+            _ => None,
+        }
+    }
+}

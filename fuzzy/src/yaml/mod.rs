@@ -1,0 +1,377 @@
+//! YAML: text to [`Node`] and back. The only place that names the YAML library.
+//!
+//! The library is an event parser, not a deserializer: it hands over every key, doubles included, with the bytes it
+//! stands at and the style it is written in. That is what tells an author the place of a wrong word inside a rule
+//! inside a folded scalar, and all findings of a file at once. Aliases (`*name`) are expanded here within limits, so
+//! that a small file cannot ask for much memory.
+
+use alloc::{boxed::Box, collections::BTreeMap, string::String, vec::Vec};
+use core::ops::Range;
+
+use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, ScanError, Span};
+
+use crate::{
+    diagnostic::{Diagnostic, Findings},
+    format::{self, Document},
+    model::Model,
+    tree::{Letter, Node, Places, Scalar, Value},
+};
+
+#[cfg(test)]
+mod tests;
+mod write;
+pub use write::to_text;
+
+/// Lists and mappings nested deeper than this are an error.
+const DEEPEST: usize = 64;
+
+/// Values that aliases may add to a document, beyond which it is an error; 16 bytes of text count as one.
+const MOST_FROM_ALIASES: usize = 100_000;
+
+/// Reads one YAML document.
+///
+/// # Errors
+/// What is no YAML, with its place: one finding, since behind it nothing can be told apart.
+///
+/// # Example
+/// ```
+/// let tree = fuzzy::yaml::read("window: {length_s: 2}")?;
+/// let mut findings = Vec::new();
+/// let window = tree.fields("the file", &["window"], &mut findings).unwrap();
+/// assert!(window.get("window").is_some() && findings.is_empty());
+///
+/// let mistake = fuzzy::yaml::read("range: [0, 1\nunit: s").unwrap_err();
+/// assert!(mistake.to_string().starts_with("2:5: error[yaml-syntax]"));
+/// # Ok::<(), fuzzy::diagnostic::Findings>(())
+/// ```
+pub fn read(text: &str) -> Result<Node, Findings> {
+    build(text).map_err(|finding| Findings::locate(alloc::vec![*finding], text))
+}
+
+/// Reads a rule set in YAML.
+///
+/// # Errors
+/// All findings of the file, with line and column, where one of them is an error.
+///
+/// # Example
+/// ```
+/// let text = "
+/// fuzzy: 1
+/// name: kettle
+/// inputs: {water: {range: [0, 100], unit: °C, partition: [cold, warm, hot]}}
+/// outputs: {heat: {range: [0, 1], partition: [off, on]}}
+/// rules:
+///   - IF water IS hot THEN heat IS off
+///   - IF water IS NOT hot THEN heat IS on
+/// ";
+/// let document = fuzzy::yaml::parse(text)?;
+/// assert_eq!(document.model.rules.len(), 2);
+/// assert_eq!(document.model.inputs[0].terms[2].name, "hot");
+///
+/// let mistakes = fuzzy::yaml::parse(&text.replace("IS hot", "IS hott")).unwrap_err();
+/// assert_eq!(
+///     mistakes.to_string(),
+///     "7:17: error[unknown-term]: input `water` has no term `hott`\n  help: did you mean `hot`?"
+/// );
+/// # Ok::<(), fuzzy::diagnostic::Findings>(())
+/// ```
+pub fn parse(text: &str) -> Result<Document, Findings> {
+    let tree = read(text)?;
+    match format::read(&tree) {
+        Ok(document) => Ok(Document {
+            warnings: Findings::locate(document.warnings.0, text),
+            ..document
+        }),
+        Err(findings) => Err(Findings::locate(findings, text)),
+    }
+}
+
+/// A rule set as YAML; [`parse`] reads the same model from it.
+#[must_use]
+pub fn to_string(model: &Model) -> String {
+    to_text(&format::write(model))
+}
+
+/// A list or mapping that is not yet at its end.
+struct Open {
+    start: usize,
+    end: usize,
+    anchor: usize,
+    content: Content,
+    /// Values inside, and how deep they lie, for the limits on aliases.
+    values: usize,
+    depth: usize,
+}
+
+enum Content {
+    List(Vec<Node>),
+    Mapping(Vec<(Node, Node)>, Option<Node>),
+}
+
+/// A value, how many values it holds and how deep they lie.
+#[derive(Clone)]
+struct Whole {
+    node: Node,
+    values: usize,
+    depth: usize,
+}
+
+fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
+    let options = granit_parser::options! {
+        flow_nesting_limit: DEEPEST,
+        block_nesting_limit: DEEPEST,
+    };
+    let mut open: Vec<Open> = Vec::new();
+    let mut anchors: BTreeMap<usize, Whole> = BTreeMap::new();
+    let mut from_aliases = 0;
+    let mut document = None;
+    for event in Parser::new_from_str_with_options(text, options) {
+        let (event, span) = event.map_err(|error| syntax(text, &error))?;
+        let bytes = span.byte_range().unwrap_or(0..0);
+        if document.is_some() && matches!(event, Event::DocumentStart(..)) {
+            return Err(Box::new(
+                Diagnostic::error("yaml-syntax", bytes, "a second document begins here")
+                    .help("one file holds one document; remove the line `---` and what follows it"),
+            ));
+        }
+        let (done, anchor) = match event {
+            Event::Scalar(value, style, anchor, tag) => {
+                refuse_tag(&span, tag.is_some())?;
+                let node = Node {
+                    value: Value::Scalar(scalar(text, &value, style, &bytes)),
+                    span: bytes,
+                };
+                let (values, depth) = (1 + value.len() / 16, 0);
+                let done = Whole {
+                    node,
+                    values,
+                    depth,
+                };
+                (done, anchor)
+            }
+            Event::SequenceStart(_, anchor, tag) => {
+                refuse_tag(&span, tag.is_some())?;
+                open.push(begin(&bytes, anchor, Content::List(Vec::new())));
+                continue;
+            }
+            Event::MappingStart(_, anchor, tag) => {
+                refuse_tag(&span, tag.is_some())?;
+                open.push(begin(&bytes, anchor, Content::Mapping(Vec::new(), None)));
+                continue;
+            }
+            Event::SequenceEnd | Event::MappingEnd => {
+                let Some(mut ended) = open.pop() else {
+                    continue;
+                };
+                // A flow collection ends with its bracket, a block with its last value.
+                ended.end = ended.end.max(if bytes.is_empty() { 0 } else { bytes.end });
+                let anchor = ended.anchor;
+                (end(ended), anchor)
+            }
+            Event::Alias(id) => {
+                let Some(target) = anchors.get(&id) else {
+                    return Err(Box::new(
+                        Diagnostic::error(
+                            "yaml-syntax",
+                            bytes,
+                            "the alias stands inside what it names",
+                        )
+                        .help("write the value out here"),
+                    ));
+                };
+                from_aliases += target.values;
+                let depth = target.depth + open.len();
+                if from_aliases > MOST_FROM_ALIASES || depth > DEEPEST {
+                    let message = alloc::format!(
+                        "aliases expand to more than {MOST_FROM_ALIASES} values or {DEEPEST} levels"
+                    );
+                    return Err(Box::new(
+                        Diagnostic::error("yaml-too-large", bytes, message)
+                            .help("write the values out, or use fewer aliases"),
+                    ));
+                }
+                (target.clone(), 0)
+            }
+            _ => continue,
+        };
+        if anchor != 0 {
+            anchors.insert(anchor, done.clone());
+        }
+        match open.last_mut() {
+            Some(parent) => put(parent, done),
+            None => document = Some(done.node),
+        }
+    }
+    document.filter(|node| !node.is_null()).ok_or_else(|| {
+        Box::new(
+            Diagnostic::error("empty-file", 0..0, "the file is empty")
+                .help("write a rule set; `flagred new NAME` makes one to start from"),
+        )
+    })
+}
+
+fn begin(bytes: &Range<usize>, anchor: usize, content: Content) -> Open {
+    Open {
+        start: bytes.start,
+        end: bytes.end,
+        anchor,
+        content,
+        values: 1,
+        depth: 0,
+    }
+}
+
+fn end(ended: Open) -> Whole {
+    let value = match ended.content {
+        Content::List(items) => Value::List(items),
+        Content::Mapping(entries, _) => Value::Mapping(entries),
+    };
+    Whole {
+        node: Node {
+            value,
+            span: ended.start..ended.end,
+        },
+        values: ended.values,
+        depth: ended.depth,
+    }
+}
+
+fn put(parent: &mut Open, child: Whole) {
+    parent.end = parent.end.max(child.node.span.end);
+    parent.values += child.values;
+    parent.depth = parent.depth.max(child.depth + 1);
+    match &mut parent.content {
+        Content::List(items) => items.push(child.node),
+        Content::Mapping(entries, key) => match key.take() {
+            Some(key) => entries.push((key, child.node)),
+            None => *key = Some(child.node),
+        },
+    }
+}
+
+fn refuse_tag(span: &Span, tagged: bool) -> Result<(), Box<Diagnostic>> {
+    if !tagged {
+        return Ok(());
+    }
+    let tag = span.tag_span().unwrap_or(*span);
+    let bytes = tag.byte_range().unwrap_or(0..0);
+    Err(Box::new(
+        Diagnostic::error("yaml-syntax", bytes, "tags have no meaning here").help("remove the tag"),
+    ))
+}
+
+fn syntax(text: &str, error: &ScanError) -> Box<Diagnostic> {
+    let at = error.marker().byte_offset().unwrap_or(text.len());
+    let length = text.get(at..).and_then(|rest| rest.chars().next());
+    let span = at..at + length.map_or(0, char::len_utf8);
+    let help = match error.kind() {
+        ErrorKind::TabNotAllowed
+        | ErrorKind::TabInBlockIndentation
+        | ErrorKind::TabInIndentation
+        | ErrorKind::TabAtBlockScalarStart => "indent with spaces",
+        ErrorKind::UnclosedQuotedScalar | ErrorKind::DocumentIndicatorInQuotedScalar => {
+            "add the closing quote"
+        }
+        ErrorKind::MappingValueNotAllowed => {
+            "text that holds `: ` stands in quotes; keys of one mapping begin in the same column"
+        }
+        ErrorKind::UnknownAnchor => "define it with `&name` before it is used",
+        ErrorKind::UnexpectedCharacter { .. } => {
+            "text that begins with a special character stands in quotes"
+        }
+        ErrorKind::RecursionLimitExceeded => "a rule set needs only a few levels",
+        ErrorKind::UnknownQuotedScalarEscape => {
+            "write `\\\\` for a backslash, or use single quotes"
+        }
+        ErrorKind::UnclosedFlowCollection { .. }
+        | ErrorKind::InvalidColonPlacement
+        | ErrorKind::ExpectedFlowMappingSeparator
+        | ErrorKind::ExpectedFlowSequenceSeparator
+        | ErrorKind::UnexpectedEofFlowMapping
+        | ErrorKind::UnexpectedEofFlowSequence => {
+            "look for a missing `]`, `}` or comma before this place"
+        }
+        _ => "check the indentation, and the quotes and brackets before this place",
+    };
+    Box::new(
+        Diagnostic::error(
+            "yaml-syntax",
+            span,
+            alloc::format!("this is no YAML: {}", error.kind()),
+        )
+        .help(help),
+    )
+}
+
+fn scalar(document: &str, value: &str, style: ScalarStyle, bytes: &Range<usize>) -> Scalar {
+    let written = document.get(bytes.clone()).unwrap_or("");
+    let inside = match style {
+        ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => 1,
+        _ => 0,
+    };
+    let in_a_row = written.get(inside..).is_some_and(|w| w.starts_with(value));
+    let places = if in_a_row {
+        Places::Row(bytes.start + inside)
+    } else {
+        Places::Table(table(written, value, style, bytes.start))
+    };
+    // Nothing behind a key is handed over as `~` without a place.
+    let text = if bytes.is_empty() { "" } else { value };
+    Scalar {
+        text: String::from(text),
+        quoted: style != ScalarStyle::Plain,
+        places,
+    }
+}
+
+/// Where each character of a scalar's value stands: both texts have the same characters but for white space, which
+/// folds and is indented, and for escapes in quotes.
+fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<Letter> {
+    let rest = |from: usize| written.get(from..).unwrap_or("");
+    let quoted = matches!(style, ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted);
+    let mut here = usize::from(quoted);
+    let mut letters = Vec::with_capacity(value.len());
+    for (text, c) in value.char_indices() {
+        if !c.is_whitespace() || is_escaped_break(rest(here), style) {
+            here += blank(rest(here), style);
+        }
+        let first = rest(here).chars().next();
+        let length = match (style, first) {
+            (ScalarStyle::DoubleQuoted, Some('\\')) => escape(rest(here)),
+            (ScalarStyle::SingleQuoted, Some('\'')) => 2,
+            // White space that folds away leaves its place to the character behind it.
+            _ if c.is_whitespace() && first != Some(c) => 0,
+            (_, first) => first.map_or(0, char::len_utf8),
+        };
+        let end = (here + length).min(written.len());
+        let document = start + here..start + end;
+        letters.push(Letter { text, document });
+        here = end;
+    }
+    letters
+}
+
+/// The length of the white space here, with line breaks that are escaped.
+fn blank(rest: &str, style: ScalarStyle) -> usize {
+    let mut left = rest.trim_start();
+    while is_escaped_break(left, style) {
+        left = left.get(1..).unwrap_or("").trim_start();
+    }
+    rest.len() - left.len()
+}
+
+/// Whether here is a backslash at the end of a line in double quotes: both vanish, with the indentation behind them.
+fn is_escaped_break(rest: &str, style: ScalarStyle) -> bool {
+    style == ScalarStyle::DoubleQuoted && (rest.starts_with("\\\n") || rest.starts_with("\\\r\n"))
+}
+
+/// The length of the escape here, in double quotes.
+fn escape(rest: &str) -> usize {
+    match rest.chars().nth(1) {
+        Some('x') => 4,
+        Some('u') => 6,
+        Some('U') => 10,
+        Some(other) => 1 + other.len_utf8(),
+        None => 1,
+    }
+}
