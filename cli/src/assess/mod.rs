@@ -1,5 +1,7 @@
 //! `flagred assess`: how risky was this flight?
 
+mod picture;
+
 use std::path::PathBuf;
 
 use crate::failure::{Exit, Failure};
