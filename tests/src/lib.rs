@@ -1,6 +1,6 @@
 //! What the tests across packages share; the tests themselves are in `tests/tests/`.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, process::Command, sync::OnceLock};
 
 /// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent.
 ///
@@ -14,4 +14,45 @@ pub fn shared_data() -> Option<PathBuf> {
             None
         }
     }
+}
+
+/// The `flagred` binary of this workspace, built as the tests are, ready to be given arguments.
+///
+/// Cargo gives a path to a binary only to tests of its own package; these are in another, so the binary is built
+/// here, once for each test program. It is up to date or built already in all but the first.
+///
+/// # Panics
+///
+/// Where the binary does not build.
+#[expect(
+    clippy::panic,
+    reason = "a test that cannot build what it tests has failed"
+)]
+pub fn flagred() -> Command {
+    static BINARY: OnceLock<PathBuf> = OnceLock::new();
+    let binary = BINARY.get_or_init(|| {
+        let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+        let built = Command::new(env!("CARGO"))
+            .args([
+                "build",
+                "--quiet",
+                "-p",
+                "flagred-cli",
+                "--message-format=json",
+            ])
+            .current_dir(workspace)
+            .output();
+        let output = match built {
+            Ok(output) if output.status.success() => output,
+            Ok(output) => panic!("{}", String::from_utf8_lossy(&output.stderr)),
+            Err(error) => panic!("cargo cannot be run: {error}"),
+        };
+        let messages = String::from_utf8_lossy(&output.stdout);
+        let path = messages.lines().find_map(|line| {
+            let (_, rest) = line.split_once("\"executable\":\"")?;
+            rest.split_once('"').map(|(path, _)| PathBuf::from(path))
+        });
+        path.unwrap_or_else(|| panic!("cargo named no binary: {messages}"))
+    });
+    Command::new(binary)
 }

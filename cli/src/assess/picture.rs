@@ -39,9 +39,16 @@ pub(crate) fn over_time(points: &[(f64, Option<f64>)], width: usize) -> String {
         let line: String = columns.iter().map(|&column| cell(column, row)).collect();
         let _ = writeln!(text, "{label}{}", line.trim_end());
     }
-    let (from, to) = (format!("{start_s:.0} s"), format!("{:.0} s", start_s + span_s));
+    let (from, to) = (
+        format!("{start_s:.0} s"),
+        format!("{:.0} s", start_s + span_s),
+    );
     let _ = writeln!(text, "      └{}", "─".repeat(width));
-    let _ = writeln!(text, "       {from}{to:>rest$}", rest = width.saturating_sub(from.chars().count()));
+    let _ = writeln!(
+        text,
+        "       {from}{to:>rest$}",
+        rest = width.saturating_sub(from.chars().count())
+    );
     text
 }
 
@@ -70,7 +77,8 @@ mod tests {
 
     #[test]
     fn a_peak_of_one_step_is_seen_and_the_unknown_is_marked() {
-        let mut points: Vec<(f64, Option<f64>)> = (0..400).map(|i| (i as f64 * 0.1, Some(10.0))).collect();
+        let mut points: Vec<(f64, Option<f64>)> =
+            (0..400).map(|i| (i as f64 * 0.1, Some(10.0))).collect();
         points[200].1 = Some(100.0);
         for point in &mut points[..40] {
             point.1 = None;
