@@ -56,13 +56,8 @@ pub(crate) fn over_time(points: &[(f64, Option<f64>)], width: usize) -> String {
 fn cell(column: Option<Option<f64>>, row: usize) -> char {
     match column {
         None => ' ',
-        Some(None) => {
-            if row == 0 {
-                '·'
-            } else {
-                ' '
-            }
-        }
+        Some(None) if row == 0 => '·',
+        Some(None) => ' ',
         Some(Some(percent)) => {
             // At least one eighth: a risk of 0 is known, and looks known.
             let eighths = ((percent / 100.0 * (ROWS * 8) as f64).round() as usize).max(1);
