@@ -1,1 +1,7 @@
 //! FLAGRED: how close a multirotor is to losing control, told from its motor commands alone.
+extern crate alloc;
+
+pub mod accumulator;
+pub mod attitude;
+pub mod margin;
+pub mod window;

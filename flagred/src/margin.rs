@@ -1,0 +1,162 @@
+//! The motor margin: how far a motor command is from its nearer limit.
+//!
+//! The paper's Eq. 2 and 3. Everything here works on the *effective* range, the part of the command range
+//! that the vehicle uses in flight: a motor at its limit then has margin 0, whatever the vehicle's set-up.
+
+/// How a pulse width becomes a normalised command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Normalisation {
+    /// `(pwm - low) / (high - low)`.
+    #[default]
+    Linear,
+    /// `(pwm - low) / sqrt(high^2 - low^2)`, the denominator as Eq. 2 of the paper prints it.
+    ///
+    /// An erratum: with 1000 and 2000 us a motor at its limit reads 0.577 and never 1. Offered to reproduce
+    /// printed numbers, for nothing else.
+    Printed,
+}
+
+/// A command range: the two values between which a motor can be driven.
+///
+/// # Example: a saturated motor has no margin
+///
+/// ```
+/// use flagred::margin::{Normalisation, Range, margin};
+///
+/// let pwm = Range::new(1000.0, 2000.0).ok_or("low must be below high")?;
+/// let spin = Range::new(0.15, 0.95).ok_or("low must be below high")?; // MOT_SPIN_MIN, MOT_SPIN_MAX
+///
+/// let command = pwm.normalise(1950.0, Normalisation::Linear);
+/// assert_eq!(command, 0.95);
+/// assert_eq!(margin(spin.fraction(command)), 0.0);
+/// # Ok::<(), &str>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    low: f64,
+    high: f64,
+}
+
+impl Range {
+    /// The whole range of a normalised command.
+    pub const FULL: Range = Range {
+        low: 0.0,
+        high: 1.0,
+    };
+
+    /// A range from `low` to `high`; `None` unless both are finite and `low < high`.
+    pub fn new(low: f64, high: f64) -> Option<Range> {
+        (low.is_finite() && high.is_finite() && low < high).then_some(Range { low, high })
+    }
+
+    /// The lower limit.
+    pub fn low(&self) -> f64 {
+        self.low
+    }
+
+    /// The upper limit.
+    pub fn high(&self) -> f64 {
+        self.high
+    }
+
+    /// The normalised command of a pulse width in the unit of this range (us); not clamped.
+    pub fn normalise(&self, pwm: f64, normalisation: Normalisation) -> f64 {
+        let width = match normalisation {
+            Normalisation::Linear => self.high - self.low,
+            Normalisation::Printed => libm::sqrt(self.high * self.high - self.low * self.low),
+        };
+        (pwm - self.low) / width
+    }
+
+    /// Where a value stands in this range: 0 at `low`, 1 at `high`, clamped to these; NaN stays NaN.
+    pub fn fraction(&self, value: f64) -> f64 {
+        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+    }
+}
+
+/// The margin of an effective command in [0, 1]: `min(e, 1 - e)`, in [0, 0.5]; 0 is saturated, low or high.
+pub fn margin(effective: f64) -> f64 {
+    effective.min(1.0 - effective)
+}
+
+/// The limit that a motor is nearer to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Nearly stopped: it cannot give less.
+    Low,
+    /// Nearly at full power: it cannot give more.
+    High,
+}
+
+impl Side {
+    /// The limit nearer to an effective command; the middle counts as high.
+    pub fn of(effective: f64) -> Side {
+        if effective < 0.5 {
+            Side::Low
+        } else {
+            Side::High
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn linear_and_printed_normalisation_of_saturated_and_hovering_motors() {
+        let pwm = Range::new(1000.0, 2000.0).unwrap();
+        for (us, linear, printed) in [
+            (1000.0, 0.0, 0.0),
+            (1460.0, 0.46, 0.265_581),
+            (1500.0, 0.5, 0.288_675),
+            (2000.0, 1.0, 0.577_350),
+        ] {
+            approx::assert_abs_diff_eq!(pwm.normalise(us, Normalisation::Linear), linear);
+            approx::assert_abs_diff_eq!(
+                pwm.normalise(us, Normalisation::Printed),
+                printed,
+                epsilon = 1e-6
+            );
+        }
+        // The reason why the printed form cannot be meant: full power leaves a margin of 0.42.
+        approx::assert_abs_diff_eq!(
+            margin(pwm.normalise(2000.0, Normalisation::Printed)),
+            0.42265,
+            epsilon = 1e-5
+        );
+    }
+
+    #[test]
+    fn a_range_needs_two_finite_limits_in_order() {
+        for (low, high) in [
+            (1.0, 1.0),
+            (2.0, 1.0),
+            (f64::NAN, 1.0),
+            (0.0, f64::INFINITY),
+        ] {
+            assert_eq!(Range::new(low, high), None, "{low} {high}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_command_stays_unknown() {
+        assert!(Range::FULL.fraction(f64::NAN).is_nan());
+    }
+
+    proptest! {
+        #[test]
+        fn margin_is_symmetric_and_bounded(e in 0.0..=1.0f64) {
+            prop_assert!((0.0..=0.5).contains(&margin(e)));
+            prop_assert!((margin(e) - margin(1.0 - e)).abs() < 1e-15);
+            prop_assert_eq!(margin(e) == e, e <= 1.0 - e);
+        }
+
+        #[test]
+        fn fraction_undoes_a_range(low in -10.0..10.0f64, width in 0.01..10.0f64, e in 0.0..=1.0f64) {
+            let range = Range::new(low, low + width).unwrap();
+            prop_assert!((range.fraction(low + e * width) - e).abs() < 1e-9);
+        }
+    }
+}

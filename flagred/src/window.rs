@@ -1,0 +1,453 @@
+//! Statistics of a signal over the last seconds: time-weighted, without drift, in fixed memory.
+//!
+//! A sample stands for the time since the sample before it, so the statistics are integrals over the window
+//! `(t - length, t]` and do not depend on the sample rate; at an even rate they are the plain statistics of
+//! the samples in the window.
+
+use alloc::{vec, vec::Vec};
+
+/// Over how many slots the samples of a window are spread. See [`Window`].
+const SLOTS: usize = 128;
+
+/// A sample that reaches into the window by less than this has left it: time stamps are in microseconds.
+const TIME_RESOLUTION_S: f64 = 1e-6;
+
+/// Mean, spread and extremes of weighted values.
+///
+/// Two of them merge into one without a subtraction of sums (Chan, Golub and LeVeque 1983), so nothing
+/// cancels and nothing drifts.
+///
+/// # Example: the spread of a motor that spends a quarter of its time at full power
+///
+/// ```
+/// use flagred::window::Moments;
+///
+/// let mut command = Moments::of(0.5, 3.0);
+/// command.merge(&Moments::of(1.0, 1.0));
+/// assert_eq!(command.mean(), Some(0.625));
+/// assert_eq!(command.std(), Some(0.046875_f64.sqrt()));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moments {
+    weight: f64,
+    mean: f64,
+    /// `sum(weight (value - mean)^2)`.
+    squares: f64,
+    min: f64,
+    max: f64,
+}
+
+impl Moments {
+    /// Of no value at all.
+    pub const EMPTY: Moments = Moments {
+        weight: 0.0,
+        mean: 0.0,
+        squares: 0.0,
+        min: f64::INFINITY,
+        max: f64::NEG_INFINITY,
+    };
+
+    /// Of one finite value with a weight over 0.
+    pub fn of(value: f64, weight: f64) -> Moments {
+        Moments {
+            weight,
+            mean: value,
+            squares: 0.0,
+            min: value,
+            max: value,
+        }
+    }
+
+    /// Adds the values behind `other`.
+    pub fn merge(&mut self, other: &Moments) {
+        if other.weight <= 0.0 {
+            return;
+        }
+        if self.weight <= 0.0 {
+            *self = *other;
+            return;
+        }
+        let weight = self.weight + other.weight;
+        let share = other.weight / weight;
+        let step = other.mean - self.mean;
+        self.mean += step * share;
+        self.squares += other.squares + step * step * self.weight * share;
+        self.weight = weight;
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+    }
+
+    /// The same values with their weights multiplied by `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Moments {
+        Moments {
+            weight: self.weight * factor,
+            squares: self.squares * factor,
+            ..*self
+        }
+    }
+
+    /// The sum of the weights; in a [`Window`], seconds.
+    pub fn weight(&self) -> f64 {
+        self.weight
+    }
+
+    /// The weighted mean; `None` without a value.
+    pub fn mean(&self) -> Option<f64> {
+        self.known(self.mean)
+    }
+
+    /// The weighted standard deviation of the population; `None` without a value.
+    pub fn std(&self) -> Option<f64> {
+        self.known(libm::sqrt(self.squares / self.weight))
+    }
+
+    /// The weighted root mean square; `None` without a value.
+    pub fn rms(&self) -> Option<f64> {
+        self.known(libm::sqrt(
+            self.squares / self.weight + self.mean * self.mean,
+        ))
+    }
+
+    /// The smallest value; `None` without a value.
+    pub fn min(&self) -> Option<f64> {
+        self.known(self.min)
+    }
+
+    /// The largest value; `None` without a value.
+    pub fn max(&self) -> Option<f64> {
+        self.known(self.max)
+    }
+
+    fn known(&self, statistic: f64) -> Option<f64> {
+        (self.weight > 0.0).then_some(statistic)
+    }
+}
+
+/// The statistics of a signal over the last `length_s` seconds.
+///
+/// Memory is fixed whatever the sample rate, and a sample costs the same whatever the length, on average (the
+/// worst single one about a hundred merges): the window is cut into 128 slots of time, the samples of a slot
+/// are merged, and the slots form a queue of two stacks with running totals. Up to 128 samples a window
+/// (64 Hz at 2 s) every sample has a slot of its own and the statistics are exact; above that only the oldest
+/// slot, of which a part has already left the window, is counted in proportion to the part inside, and the
+/// extremes may remember it for 1/128 of the length too long.
+///
+/// # Example: a second of silence leaves a one-second window empty
+///
+/// ```
+/// use flagred::window::{Moments, Window};
+///
+/// let mut margin = Window::new(1.0);
+/// for i in 1..=50 {
+///     let t_s = f64::from(i) * 0.04;
+///     margin.push(t_s, 0.04, &Moments::of(0.3, 0.04));
+/// }
+/// assert_eq!(margin.samples(), 25);
+/// assert!((margin.total().weight() - 1.0).abs() < 1e-9);
+/// margin.advance(3.0);
+/// assert_eq!(margin.total().mean(), None);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Window {
+    length_s: f64,
+    now_s: f64,
+    /// A ring; the `len` entries from `oldest` on are the slots in use, oldest first.
+    slots: Vec<Slot>,
+    oldest: usize,
+    len: usize,
+    samples: u32,
+    /// How many of the oldest slots have their `and_later` filled in.
+    front: usize,
+    /// The total of all slots behind those.
+    back: Moments,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Slot {
+    /// Which slot of time, counted from t = 0.
+    index: f64,
+    start_s: f64,
+    end_s: f64,
+    samples: u32,
+    moments: Moments,
+    /// The total of this slot and the later ones of the front.
+    and_later: Moments,
+}
+
+impl Window {
+    /// An empty window over the last `length_s` seconds (over 0).
+    pub fn new(length_s: f64) -> Window {
+        let free = Slot {
+            index: 0.0,
+            start_s: 0.0,
+            end_s: 0.0,
+            samples: 0,
+            moments: Moments::EMPTY,
+            and_later: Moments::EMPTY,
+        };
+        Window {
+            length_s,
+            now_s: f64::NEG_INFINITY,
+            slots: vec![free; SLOTS + 2],
+            oldest: 0,
+            len: 0,
+            samples: 0,
+            front: 0,
+            back: Moments::EMPTY,
+        }
+    }
+
+    /// Its length in seconds.
+    pub fn length_s(&self) -> f64 {
+        self.length_s
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.len = 0;
+        self.samples = 0;
+        self.front = 0;
+        self.back = Moments::EMPTY;
+        self.now_s = f64::NEG_INFINITY;
+    }
+
+    /// Adds a sample at `t_s` that stands for the `held_s` seconds before it; its moments weigh `held_s` in all.
+    ///
+    /// `t_s` must not fall; a sample older than the newest one is taken as if it came with that one.
+    pub fn push(&mut self, t_s: f64, held_s: f64, moments: &Moments) {
+        self.advance(t_s);
+        let t_s = self.now_s;
+        let index = libm::floor(t_s * SLOTS as f64 / self.length_s);
+        let full = self.len == self.slots.len();
+        match self.newest() {
+            Some(slot) if slot.index == index || full => {
+                slot.end_s = t_s;
+                slot.samples += 1;
+                slot.moments.merge(moments);
+            }
+            _ => {
+                let at = self.place(self.len);
+                self.slots[at] = Slot {
+                    index,
+                    start_s: t_s - held_s,
+                    end_s: t_s,
+                    samples: 1,
+                    moments: *moments,
+                    and_later: Moments::EMPTY,
+                };
+                self.len += 1;
+            }
+        }
+        self.samples += 1;
+        self.back.merge(moments);
+        self.keep_a_front();
+    }
+
+    /// Lets time pass until `t_s`: what is older than the window leaves it.
+    pub fn advance(&mut self, t_s: f64) {
+        self.now_s = self.now_s.max(t_s);
+        let start_s = self.now_s - self.length_s;
+        while self.len > 0 && self.slots[self.oldest].end_s - start_s <= TIME_RESOLUTION_S {
+            self.samples -= self.slots[self.oldest].samples;
+            self.oldest = self.place(1);
+            self.len -= 1;
+            if self.front > 0 {
+                self.front -= 1;
+            } else {
+                self.back = Moments::EMPTY;
+            }
+            self.keep_a_front();
+        }
+    }
+
+    /// The statistics of what is in the window; the weight is the time it covers in seconds.
+    pub fn total(&self) -> Moments {
+        if self.front == 0 {
+            return self.back.scaled(self.inside_of_oldest());
+        }
+        let mut total = self.slots[self.oldest]
+            .moments
+            .scaled(self.inside_of_oldest());
+        if self.front > 1 {
+            total.merge(&self.slots[self.place(1)].and_later);
+        }
+        total.merge(&self.back);
+        total
+    }
+
+    /// The number of samples in the window.
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// The share of the oldest slot that is inside the window.
+    fn inside_of_oldest(&self) -> f64 {
+        if self.len == 0 {
+            return 1.0;
+        }
+        let slot = &self.slots[self.oldest];
+        let inside_s = slot.end_s - (self.now_s - self.length_s);
+        (inside_s / (slot.end_s - slot.start_s)).min(1.0)
+    }
+
+    /// Moves all but the newest slot, which still takes samples, into the front when that has run out.
+    fn keep_a_front(&mut self) {
+        if self.front > 0 || self.len < 2 {
+            return;
+        }
+        self.front = self.len - 1;
+        let mut and_later = Moments::EMPTY;
+        for i in (0..self.front).rev() {
+            let at = self.place(i);
+            and_later.merge(&self.slots[at].moments);
+            self.slots[at].and_later = and_later;
+        }
+        self.back = self.slots[self.place(self.front)].moments;
+    }
+
+    fn newest(&mut self) -> Option<&mut Slot> {
+        let at = self.place(self.len.checked_sub(1)?);
+        self.slots.get_mut(at)
+    }
+
+    /// Where the i-th oldest slot stands in the ring.
+    fn place(&self, i: usize) -> usize {
+        (self.oldest + i) % self.slots.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The definition itself: the integral over `(t - length, t]` of a signal held between samples.
+    fn integral(samples: &[(f64, f64)], length_s: f64) -> Option<(f64, f64)> {
+        let now = samples.last()?.0;
+        let held = samples.windows(2).map(|pair| {
+            let (start, end) = (pair[0].0.max(now - length_s), pair[1].0);
+            ((end - start).max(0.0), pair[1].1)
+        });
+        let weight: f64 = held.clone().map(|(w, _)| w).sum();
+        let mean = held.clone().map(|(w, x)| w * x).sum::<f64>() / weight;
+        let variance = held.map(|(w, x)| w * (x - mean).powi(2)).sum::<f64>() / weight;
+        (weight > 0.0).then(|| (mean, variance.sqrt()))
+    }
+
+    fn run(window: &mut Window, samples: &[(f64, f64)]) {
+        for pair in samples.windows(2) {
+            let held = pair[1].0 - pair[0].0;
+            window.push(pair[1].0, held, &Moments::of(pair[1].1, held));
+        }
+    }
+
+    #[test]
+    fn an_even_rate_gives_the_plain_statistics_of_the_last_samples() {
+        let samples: Vec<_> = (0..=500)
+            .map(|i| (f64::from(i) * 0.04, (f64::from(i) * 0.7).sin()))
+            .collect();
+        let mut window = Window::new(2.0);
+        run(&mut window, &samples);
+        let last: Vec<f64> = samples[451..].iter().map(|s| s.1).collect();
+        let mean = last.iter().sum::<f64>() / 50.0;
+        let std = (last.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 50.0).sqrt();
+        let total = window.total();
+        assert_eq!(window.samples(), 50);
+        approx::assert_abs_diff_eq!(total.mean().unwrap(), mean, epsilon = 1e-12);
+        approx::assert_abs_diff_eq!(total.std().unwrap(), std, epsilon = 1e-12);
+        approx::assert_abs_diff_eq!(total.weight(), 2.0, epsilon = 1e-9);
+        assert_eq!(total.min(), last.iter().copied().reduce(f64::min));
+        assert_eq!(total.max(), last.iter().copied().reduce(f64::max));
+    }
+
+    #[test]
+    fn a_day_of_samples_does_not_drift() {
+        let mut window = Window::new(2.0);
+        let dt = 0.02;
+        let samples = 24 * 3600 * 50;
+        // A large disturbance in the middle of the day must leave no trace.
+        for i in 1..=samples {
+            let x = if i == samples / 2 { 1e9 } else { 0.3 };
+            window.push(i as f64 * dt, dt, &Moments::of(x, dt));
+        }
+        let total = window.total();
+        assert_eq!(total.mean(), Some(0.3));
+        assert_eq!(total.std(), Some(0.0));
+    }
+
+    #[test]
+    fn the_rate_does_not_matter() {
+        let signal = |t: f64| 0.3 + 0.1 * (t * 0.9).sin();
+        let mut totals = Vec::new();
+        for rate in [10, 25, 400, 4000] {
+            let samples: Vec<_> = (0..=20 * rate)
+                .map(|i| f64::from(i) / f64::from(rate))
+                .map(|t| (t, signal(t)))
+                .collect();
+            let mut window = Window::new(5.0);
+            run(&mut window, &samples);
+            totals.push(window.total());
+        }
+        for total in &totals {
+            approx::assert_abs_diff_eq!(
+                total.mean().unwrap(),
+                totals[3].mean().unwrap(),
+                epsilon = 0.005
+            );
+            approx::assert_abs_diff_eq!(
+                total.std().unwrap(),
+                totals[3].std().unwrap(),
+                epsilon = 0.005
+            );
+        }
+    }
+
+    #[test]
+    fn an_empty_window_knows_nothing() {
+        let total = Window::new(1.0).total();
+        assert_eq!(
+            (
+                total.mean(),
+                total.std(),
+                total.rms(),
+                total.min(),
+                total.max()
+            ),
+            (None, None, None, None, None)
+        );
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn uneven_samples_give_the_integral(
+            steps in prop::collection::vec((0.03..0.5f64, -1.0..1.0f64), 2..200),
+        ) {
+            let mut t = 100.0;
+            let samples: Vec<_> = steps.iter().map(|(dt, x)| { t += dt; (t, *x) }).collect();
+            let mut window = Window::new(3.0);
+            for n in 2..=samples.len() {
+                run(&mut window, &samples[n - 2..n]);
+                let (mean, std) = integral(&samples[..n], 3.0).unwrap();
+                let total = window.total();
+                prop_assert!((total.mean().unwrap() - mean).abs() < 1e-9);
+                prop_assert!((total.std().unwrap() - std).abs() < 1e-7);
+            }
+        }
+
+        #[test]
+        fn merging_is_pooling(a in prop::collection::vec((-5.0..5.0f64, 0.1..2.0f64), 1..20), cut in 0usize..20) {
+            let pooled = a.iter().fold(Moments::EMPTY, |mut m, (x, w)| { m.merge(&Moments::of(*x, *w)); m });
+            let cut = cut.min(a.len());
+            let (mut left, mut right) = (Moments::EMPTY, Moments::EMPTY);
+            for (x, w) in &a[..cut] { left.merge(&Moments::of(*x, *w)); }
+            for (x, w) in &a[cut..] { right.merge(&Moments::of(*x, *w)); }
+            left.merge(&right);
+            prop_assert!((left.mean().unwrap() - pooled.mean().unwrap()).abs() < 1e-12);
+            prop_assert!((left.std().unwrap() - pooled.std().unwrap()).abs() < 1e-9);
+            prop_assert!((left.rms().unwrap().powi(2) - left.mean().unwrap().powi(2) - left.std().unwrap().powi(2)).abs() < 1e-9);
+        }
+    }
+}
