@@ -3,5 +3,8 @@ extern crate alloc;
 
 pub mod accumulator;
 pub mod attitude;
+pub mod gap;
 pub mod margin;
+pub mod source;
+pub mod verdict;
 pub mod window;

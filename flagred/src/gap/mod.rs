@@ -1,0 +1,200 @@
+//! Filling the gaps of a decision map by spatial interpolation.
+//!
+//! Learned rules cover what was flown. Where the antecedent that dominates has no rule, the coverage (the
+//! largest firing strength) of a cell is low and its value an accident of far-off rules; such cells are filled
+//! from the covered rest of the map. Distances are in shares of each input's range, so that no input counts more
+//! because of its unit.
+
+mod inverse_distance;
+mod map;
+mod nearest;
+
+pub use map::{FilledMap, Reading};
+
+/// How a gap is filled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GapMethod {
+    /// The value of the nearest covered cell.
+    Nearest,
+    /// `sum(v / d^power) / sum(1 / d^power)` over the nearest covered cells at the edge of the gap.
+    ///
+    /// Over *all* cells, as the method is often given, a corner reads an average of the whole map: 49 % for a
+    /// saturated drone. Hence the number of neighbours.
+    InverseDistance {
+        /// The power of the distance, over 0.
+        power: f64,
+        /// How many cells count, at least 1.
+        neighbours: usize,
+    },
+}
+
+/// What a cell must not be to count as covered, and how the others get their values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GapSettings {
+    /// How the gap is filled.
+    pub method: GapMethod,
+    /// A cell is a gap below this coverage. With terms that sum to 1 the dominating antecedent fires at 0.5 at
+    /// least, so 0.5 (the default) means: the dominating antecedent has no rule.
+    pub coverage_below: f64,
+}
+
+impl Default for GapSettings {
+    fn default() -> Self {
+        GapSettings {
+            method: GapMethod::Nearest,
+            coverage_below: 0.5,
+        }
+    }
+}
+
+/// A regular grid over the unit cube: each input from one end of its range to the other, both included.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Lattice {
+    /// The number of nodes along each input, the last input running fastest.
+    pub(crate) shape: Vec<usize>,
+    /// By how much the index grows per step along each input.
+    pub(crate) strides: Vec<usize>,
+}
+
+impl Lattice {
+    pub(crate) fn new(shape: &[usize]) -> Lattice {
+        let mut strides = vec![1; shape.len()];
+        for axis in (1..shape.len()).rev() {
+            strides[axis - 1] = strides[axis] * shape[axis];
+        }
+        Lattice {
+            shape: shape.to_vec(),
+            strides,
+        }
+    }
+
+    /// The step along an axis as a share of the range.
+    pub(crate) fn step(&self, axis: usize) -> f64 {
+        1.0 / (self.shape[axis].max(2) - 1) as f64
+    }
+
+    /// The place of a node along an axis.
+    pub(crate) fn place(&self, node: usize, axis: usize) -> usize {
+        node / self.strides[axis] % self.shape[axis]
+    }
+
+    /// The coordinates of a node in the unit cube.
+    pub(crate) fn point(&self, node: usize) -> Vec<f64> {
+        (0..self.shape.len())
+            .map(|axis| self.place(node, axis) as f64 * self.step(axis))
+            .collect()
+    }
+
+    /// The nodes next to a node, along every axis.
+    pub(crate) fn neighbours(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.shape.len()).flat_map(move |axis| {
+            let place = self.place(node, axis);
+            let before = (place > 0).then(|| node - self.strides[axis]);
+            let behind = (place + 1 < self.shape[axis]).then(|| node + self.strides[axis]);
+            before.into_iter().chain(behind)
+        })
+    }
+}
+
+/// Fills every value whose node is not covered; gives each node's distance to the nearest covered node (0 for a
+/// covered one), in shares of the ranges.
+///
+/// Where nothing is covered nothing can be filled: the distances are infinite and the values stay.
+pub(crate) fn fill(
+    lattice: &Lattice,
+    covered: &[bool],
+    values: &mut [f64],
+    method: GapMethod,
+) -> Vec<f32> {
+    let nearest = nearest::nearest(lattice, covered);
+    let distances = nearest.iter().map(|n| n.distance() as f32).collect();
+    match method {
+        GapMethod::Nearest => {
+            for node in 0..values.len() {
+                if let (false, Some(from)) = (covered[node], nearest[node].node()) {
+                    values[node] = values[from];
+                }
+            }
+        }
+        GapMethod::InverseDistance { power, neighbours } => {
+            inverse_distance::fill(lattice, covered, values, power, neighbours);
+        }
+    }
+    distances
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    pub(crate) const METHODS: [GapMethod; 2] = [
+        GapMethod::Nearest,
+        GapMethod::InverseDistance {
+            power: 2.0,
+            neighbours: 8,
+        },
+    ];
+
+    #[test]
+    fn neighbours_stop_at_the_edge() {
+        let lattice = Lattice::new(&[3, 4]);
+        assert_eq!(lattice.neighbours(0).collect::<Vec<_>>(), [4, 1]);
+        assert_eq!(lattice.neighbours(5).collect::<Vec<_>>(), [1, 9, 4, 6]);
+        assert_eq!(lattice.point(5), [0.5, 1.0 / 3.0]);
+    }
+
+    #[test]
+    fn where_nothing_is_covered_nothing_is_filled() {
+        for method in METHODS {
+            let mut values = [1.0, 2.0, 3.0];
+            let distances = fill(&Lattice::new(&[3]), &[false; 3], &mut values, method);
+            assert_eq!(values, [1.0, 2.0, 3.0]);
+            assert!(distances.iter().all(|d| d.is_infinite()));
+        }
+    }
+
+    #[test]
+    fn a_gap_between_two_cells_takes_from_both() {
+        let filled = |method| {
+            let mut values = [0.0, -1.0, -1.0, -1.0, 100.0];
+            let covered = [true, false, false, false, true];
+            let distances = fill(&Lattice::new(&[5]), &covered, &mut values, method);
+            assert_eq!(distances, [0.0, 0.25, 0.5, 0.25, 0.0]);
+            values
+        };
+        assert_eq!(filled(METHODS[0])[1], 0.0);
+        assert_eq!(filled(METHODS[0])[3], 100.0);
+        // 100 (1/0.75^2) / (1/0.25^2 + 1/0.75^2) = 10
+        approx::assert_abs_diff_eq!(filled(METHODS[1])[1], 10.0, epsilon = 1e-9);
+        approx::assert_abs_diff_eq!(filled(METHODS[1])[2], 50.0, epsilon = 1e-9);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        #[test]
+        fn covered_cells_stay_and_averages_cannot_overshoot(
+            cells in prop::collection::vec((any::<bool>(), 0.0..100.0f64), 3 * 4 * 5),
+        ) {
+            let lattice = Lattice::new(&[3, 4, 5]);
+            let covered: Vec<bool> = cells.iter().map(|c| c.0).collect();
+            let original: Vec<f64> = cells.iter().map(|c| c.1).collect();
+            prop_assume!(covered.iter().any(|c| *c));
+            let known = || (0..60).filter(|i| covered[*i]).map(|i| original[i]);
+            let (low, high) = (known().fold(f64::MAX, f64::min), known().fold(f64::MIN, f64::max));
+            for method in METHODS {
+                let mut values = original.clone();
+                let distances = fill(&lattice, &covered, &mut values, method);
+                for i in 0..60 {
+                    prop_assert_eq!(distances[i] == 0.0, covered[i]);
+                    if covered[i] {
+                        prop_assert_eq!(values[i], original[i]);
+                    } else {
+                        prop_assert!(values[i] >= low - 1e-9 && values[i] <= high + 1e-9);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,431 @@
+//! Where a model input comes from: a statistic of a signal over a window.
+
+use alloc::{string::String, vec, vec::Vec};
+
+use crate::{
+    margin::margin,
+    window::{Moments, Window},
+};
+
+/// What is observed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Signal {
+    /// The effective command `e` of each motor: 0 at its lower limit, 1 at its upper one.
+    MotorCommand,
+    /// The margin `min(e, 1 - e)` of each motor, 0 to 0.5.
+    MotorMargin,
+    /// How far each motor is from its lower limit: `e`.
+    MotorMarginLowSide,
+    /// How far each motor is from its upper limit: `1 - e`.
+    MotorMarginHighSide,
+    /// A signal that the flight carries beside the motors, by name: `battery_v`.
+    Named(String),
+}
+
+impl Signal {
+    /// The signals every flight has, by the names profiles use.
+    pub const MOTORS: [(&'static str, Signal); 4] = [
+        ("motor_command", Signal::MotorCommand),
+        ("motor_margin", Signal::MotorMargin),
+        ("motor_margin_low_side", Signal::MotorMarginLowSide),
+        ("motor_margin_high_side", Signal::MotorMarginHighSide),
+    ];
+
+    /// The signal of a name; a name that is not one of [`Signal::MOTORS`] is one of the flight's own.
+    pub fn named(name: &str) -> Signal {
+        Signal::MOTORS
+            .into_iter()
+            .find(|(known, _)| *known == name)
+            .map_or_else(|| Signal::Named(name.into()), |(_, signal)| signal)
+    }
+
+    /// Whether the signal has one value for each motor.
+    pub fn is_of_motors(&self) -> bool {
+        !matches!(self, Signal::Named(_))
+    }
+}
+
+/// A statistic over time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Statistic {
+    /// The mean.
+    Mean,
+    /// The standard deviation.
+    Std,
+    /// The root mean square.
+    Rms,
+    /// The smallest value.
+    Min,
+    /// The largest value.
+    Max,
+    /// The latest value; over motors, their mean.
+    Last,
+    /// The share of time, in [0, 1], spent below a value; over motors, the mean of their shares.
+    ShareBelow(f64),
+    /// The share of time, in [0, 1], spent above a value; over motors, the mean of their shares.
+    ShareAbove(f64),
+}
+
+/// How the motors of one sample become one value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Motors {
+    /// They do not: the statistic is over all motors and the whole window at once.
+    #[default]
+    Pooled,
+    /// Their mean.
+    Mean,
+    /// Their standard deviation: the spread between motors.
+    Std,
+    /// The smallest of them.
+    Min,
+    /// The largest of them.
+    Max,
+}
+
+/// Where a model input comes from.
+///
+/// `{mean: motor_margin}` pools all motors; `{mean: {min: motor_margin}}` is the mean over time of the lowest
+/// motor; `{std: {mean: motor_command}}` is the spread over time of what the motors do together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// The statistic over time.
+    pub statistic: Statistic,
+    /// How the motors of one sample become one value, before the statistic.
+    pub motors: Motors,
+    /// What is observed.
+    pub signal: Signal,
+    /// Over how many seconds.
+    pub window_s: f64,
+}
+
+/// The values of a sample that sources draw on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Values<'a> {
+    /// The effective command of each motor; NaN is unknown.
+    pub(crate) motors: &'a [f64],
+    /// The named signals, in the order in which the monitor was told their names; NaN is unknown.
+    pub(crate) named: &'a [f64],
+}
+
+/// The windows that a number of sources need, each window shared by those that look at the same thing.
+#[derive(Debug, Clone)]
+pub(crate) struct Observer {
+    inputs: Vec<Input>,
+    channels: Vec<Channel>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Input {
+    channel: usize,
+    statistic: Statistic,
+}
+
+/// One thing observed over one window.
+#[derive(Debug, Clone)]
+struct Channel {
+    observed: Observed,
+    motors: Motors,
+    threshold: Option<Threshold>,
+    window: Window,
+    /// The latest value; over motors, their mean.
+    last: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Threshold {
+    Below(f64),
+    Above(f64),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Observed {
+    Command,
+    Margin,
+    LowSide,
+    HighSide,
+    Named(usize),
+}
+
+impl Observer {
+    /// The windows for `sources`; the named signals stand at the places of their names.
+    ///
+    /// # Errors
+    ///
+    /// The name of a signal that is not among `names`.
+    pub(crate) fn new<'a>(
+        sources: impl IntoIterator<Item = &'a Source>,
+        names: &[&str],
+    ) -> Result<Observer, String> {
+        let mut observer = Observer {
+            inputs: vec![],
+            channels: vec![],
+        };
+        for source in sources {
+            let observed = match &source.signal {
+                Signal::MotorCommand => Observed::Command,
+                Signal::MotorMargin => Observed::Margin,
+                Signal::MotorMarginLowSide => Observed::LowSide,
+                Signal::MotorMarginHighSide => Observed::HighSide,
+                Signal::Named(name) => Observed::Named(
+                    names
+                        .iter()
+                        .position(|known| known == name)
+                        .ok_or_else(|| name.clone())?,
+                ),
+            };
+            let threshold = match source.statistic {
+                Statistic::ShareBelow(value) => Some(Threshold::Below(value)),
+                Statistic::ShareAbove(value) => Some(Threshold::Above(value)),
+                _ => None,
+            };
+            let same = observer.channels.iter().position(|channel| {
+                channel.observed == observed
+                    && channel.motors == source.motors
+                    && channel.threshold == threshold
+                    && channel.window.length_s() == source.window_s
+            });
+            let channel = same.unwrap_or_else(|| {
+                observer.channels.push(Channel {
+                    observed,
+                    motors: source.motors,
+                    threshold,
+                    window: Window::new(source.window_s),
+                    last: None,
+                });
+                observer.channels.len() - 1
+            });
+            observer.inputs.push(Input {
+                channel,
+                statistic: source.statistic,
+            });
+        }
+        Ok(observer)
+    }
+
+    pub(crate) fn clear(&mut self) {
+        for channel in &mut self.channels {
+            channel.window.clear();
+            channel.last = None;
+        }
+    }
+
+    /// Adds a sample at `t_s` that stands for the `held_s` seconds before it.
+    pub(crate) fn push(&mut self, t_s: f64, held_s: f64, values: &Values<'_>) {
+        for channel in &mut self.channels {
+            let now = channel.reduce(values);
+            channel.last = now.mean();
+            if now.weight() > 0.0 {
+                // A sample weighs its time, however many motors it knows.
+                channel
+                    .window
+                    .push(t_s, held_s, &now.scaled(held_s / now.weight()));
+            } else {
+                channel.window.advance(t_s);
+            }
+        }
+    }
+
+    /// The number of inputs.
+    pub(crate) fn len(&self) -> usize {
+        self.inputs.len()
+    }
+
+    /// The value of an input, and how much of its window is behind it; `None` where nothing is known.
+    pub(crate) fn value(&self, input: usize) -> Option<Observation> {
+        let Input { channel, statistic } = *self.inputs.get(input)?;
+        let channel = self.channels.get(channel)?;
+        let total = channel.window.total();
+        let value = match statistic {
+            Statistic::Mean | Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => total.mean(),
+            Statistic::Std => total.std(),
+            Statistic::Rms => total.rms(),
+            Statistic::Min => total.min(),
+            Statistic::Max => total.max(),
+            Statistic::Last => channel.last,
+        };
+        Some(Observation {
+            value: value?,
+            samples: match statistic {
+                Statistic::Last => None,
+                _ => Some(channel.window.samples()),
+            },
+            covered_s: total.weight(),
+            window_s: channel.window.length_s(),
+        })
+    }
+}
+
+/// The value of an input.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Observation {
+    pub(crate) value: f64,
+    /// The samples in the window; `None` for a statistic that needs but one.
+    pub(crate) samples: Option<u32>,
+    pub(crate) covered_s: f64,
+    pub(crate) window_s: f64,
+}
+
+impl Channel {
+    /// The values of one sample, each motor known with weight 1.
+    fn reduce(&self, values: &Values<'_>) -> Moments {
+        let observe: fn(f64) -> f64 = match self.observed {
+            Observed::Named(index) => {
+                let value = values.named.get(index).copied().unwrap_or(f64::NAN);
+                return self.threshold(value);
+            }
+            Observed::Command | Observed::LowSide => |e| e,
+            Observed::Margin => margin,
+            Observed::HighSide => |e| 1.0 - e,
+        };
+        if self.motors == Motors::Pooled {
+            let mut all = Moments::EMPTY;
+            for e in values.motors {
+                all.merge(&self.threshold(observe(*e)));
+            }
+            return all;
+        }
+        let mut all = Moments::EMPTY;
+        for e in values.motors.iter().filter(|e| e.is_finite()) {
+            all.merge(&Moments::of(observe(*e), 1.0));
+        }
+        let one = match self.motors {
+            Motors::Pooled | Motors::Mean => all.mean(),
+            Motors::Std => all.std(),
+            Motors::Min => all.min(),
+            Motors::Max => all.max(),
+        };
+        self.threshold(one.unwrap_or(f64::NAN))
+    }
+
+    /// The value itself, or for a share whether it is beyond the threshold.
+    fn threshold(&self, value: f64) -> Moments {
+        if !value.is_finite() {
+            return Moments::EMPTY;
+        }
+        let counted = match self.threshold {
+            None => value,
+            Some(Threshold::Below(limit)) => f64::from(u8::from(value < limit)),
+            Some(Threshold::Above(limit)) => f64::from(u8::from(value > limit)),
+        };
+        Moments::of(counted, 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(statistic: Statistic, motors: Motors, signal: &str) -> Source {
+        Source {
+            statistic,
+            motors,
+            signal: Signal::named(signal),
+            window_s: 1.0,
+        }
+    }
+
+    fn observe(sources: &[Source], samples: &[[f64; 2]]) -> Vec<Option<f64>> {
+        let mut observer = Observer::new(sources, &["battery_v"]).unwrap();
+        for (i, motors) in samples.iter().enumerate() {
+            observer.push(
+                i as f64 * 0.1,
+                0.1,
+                &Values {
+                    motors,
+                    named: &[14.8],
+                },
+            );
+        }
+        (0..observer.len())
+            .map(|i| observer.value(i).map(|o| o.value))
+            .collect()
+    }
+
+    #[test]
+    fn statistics_pool_motors_or_reduce_them_first() {
+        // Four motor samples: 0.2, 0.6, 0.4, 1.0.
+        let samples = [[0.2, 0.6], [0.4, 1.0]];
+        let table = [
+            (Statistic::Mean, Motors::Pooled, "motor_command", 0.55),
+            (Statistic::Mean, Motors::Pooled, "motor_margin", 0.25),
+            (
+                Statistic::Std,
+                Motors::Pooled,
+                "motor_command",
+                0.0875_f64.sqrt(),
+            ),
+            (Statistic::Mean, Motors::Min, "motor_margin", 0.1),
+            (Statistic::Mean, Motors::Min, "motor_margin_low_side", 0.3),
+            (Statistic::Mean, Motors::Min, "motor_margin_high_side", 0.2),
+            (Statistic::Min, Motors::Pooled, "motor_margin", 0.0),
+            (Statistic::Max, Motors::Mean, "motor_command", 0.7),
+            (Statistic::Mean, Motors::Std, "motor_command", 0.25),
+            (Statistic::Std, Motors::Mean, "motor_command", 0.15),
+            (
+                Statistic::Rms,
+                Motors::Std,
+                "motor_command",
+                0.065_f64.sqrt(),
+            ),
+            (Statistic::Last, Motors::Pooled, "motor_command", 0.7),
+            (
+                Statistic::ShareBelow(0.01),
+                Motors::Pooled,
+                "motor_margin",
+                0.25,
+            ),
+            (
+                Statistic::ShareBelow(0.01),
+                Motors::Min,
+                "motor_margin",
+                0.5,
+            ),
+            (
+                Statistic::ShareAbove(0.5),
+                Motors::Pooled,
+                "motor_command",
+                0.5,
+            ),
+            (Statistic::Last, Motors::Pooled, "battery_v", 14.8),
+        ];
+        let sources: Vec<Source> = table.iter().map(|t| source(t.0, t.1, t.2)).collect();
+        for (found, (statistic, motors, signal, expected)) in
+            observe(&sources, &samples).into_iter().zip(table)
+        {
+            let found = found.unwrap();
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{statistic:?} {motors:?} {signal}: {found}"
+            );
+        }
+    }
+
+    #[test]
+    fn unknown_motors_count_for_nothing() {
+        let sources = [
+            source(Statistic::Mean, Motors::Pooled, "motor_command"),
+            source(Statistic::Last, Motors::Min, "motor_command"),
+        ];
+        let found = observe(&sources, &[[0.2, f64::NAN], [f64::NAN; 2]]);
+        assert_eq!(found, [Some(0.2), None]);
+    }
+
+    #[test]
+    fn inputs_that_look_at_the_same_thing_share_a_window() {
+        let sources = [
+            source(Statistic::Mean, Motors::Pooled, "motor_command"),
+            source(Statistic::Std, Motors::Pooled, "motor_command"),
+            source(Statistic::Std, Motors::Min, "motor_command"),
+        ];
+        assert_eq!(Observer::new(&sources, &[]).unwrap().channels.len(), 2);
+    }
+
+    #[test]
+    fn a_signal_that_the_flight_lacks_is_named() {
+        let sources = [source(Statistic::Last, Motors::Pooled, "rangefinder_m")];
+        assert_eq!(
+            Observer::new(&sources, &["battery_v"]).unwrap_err(),
+            "rangefinder_m"
+        );
+    }
+}

@@ -1,0 +1,425 @@
+//! From risk to words: levels with hysteresis, a minimum duration and silence where alarms mean nothing.
+//!
+//! Pilots switch off warnings that cry too often, so a level is raised only after it has been exceeded for a
+//! while, falls only after it has been clearly undercut for a while, and no level is raised just after take-off.
+
+use alloc::{vec, vec::Vec};
+
+use crate::margin::{Side, margin};
+
+/// How risky it is, or was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Nothing to say.
+    Good,
+    /// The pilot should know.
+    Warn,
+    /// Control is about to be lost, or was.
+    Fail,
+}
+
+/// The quantity that a threshold is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// The risk of the moment.
+    Risk,
+    /// The elevated risk.
+    ElevatedRisk,
+}
+
+/// From where on a level is exceeded; either quantity is enough.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Threshold {
+    /// The risk in % at or above which the level is exceeded.
+    pub risk_pct: Option<f64>,
+    /// The elevated risk in % at or above which the level is exceeded.
+    pub elevated_risk_pct: Option<f64>,
+}
+
+impl Threshold {
+    /// What exceeds the threshold lowered by `relief_pct`, and the threshold itself.
+    fn exceeded(
+        &self,
+        risk_pct: f64,
+        elevated_pct: f64,
+        relief_pct: f64,
+    ) -> Option<(Measure, f64)> {
+        let by = |limit: Option<f64>, value: f64| limit.filter(|limit| value >= limit - relief_pct);
+        by(self.elevated_risk_pct, elevated_pct)
+            .map(|limit| (Measure::ElevatedRisk, limit))
+            .or_else(|| by(self.risk_pct, risk_pct).map(|limit| (Measure::Risk, limit)))
+    }
+}
+
+/// When levels are raised and lowered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VerdictSettings {
+    /// When to warn.
+    pub warn: Threshold,
+    /// When it fails.
+    pub fail: Threshold,
+    /// A level is lowered only below its threshold less this, in %.
+    pub hysteresis_pct: f64,
+    /// A level is raised when it has been exceeded for this long, in seconds.
+    pub raise_after_s: f64,
+    /// A level is lowered when it has been undercut for this long, in seconds.
+    pub clear_after_s: f64,
+    /// In the first seconds in the air the elevated risk rests and no level is raised.
+    pub quiet_after_take_off_s: f64,
+    /// What is raised in the last seconds before touching down is taken back.
+    pub quiet_before_landing_s: f64,
+}
+
+impl Default for VerdictSettings {
+    fn default() -> Self {
+        VerdictSettings {
+            warn: Threshold {
+                risk_pct: None,
+                elevated_risk_pct: Some(50.0),
+            },
+            fail: Threshold {
+                risk_pct: None,
+                elevated_risk_pct: Some(90.0),
+            },
+            hysteresis_pct: 20.0,
+            raise_after_s: 0.5,
+            clear_after_s: 3.0,
+            quiet_after_take_off_s: 4.0,
+            quiet_before_landing_s: 2.0,
+        }
+    }
+}
+
+/// A time during which the level was above [`Level::Good`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finding {
+    /// The highest level reached.
+    pub level: Level,
+    /// Since when it was exceeded, in seconds.
+    pub from_s: f64,
+    /// When it was raised: `raise_after_s` later.
+    pub raised_s: f64,
+    /// Until when it was exceeded; the last sample where the flight ended before.
+    pub to_s: f64,
+    /// What exceeded the highest level reached.
+    pub measure: Measure,
+    /// The threshold of that level in %.
+    pub threshold_pct: f64,
+    /// The largest value of the measure in that time, in %.
+    pub peak_pct: f64,
+    /// The motor with the least margin on average over that time; `None` where no motor is known.
+    pub motor: Option<MotorFinding>,
+}
+
+/// The motor behind a finding.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotorFinding {
+    /// Which one, counted from 0 in the order of the samples.
+    pub motor: usize,
+    /// The limit it was nearest to.
+    pub side: Side,
+    /// Its mean margin.
+    pub mean_margin: f64,
+    /// Its least margin.
+    pub least_margin: f64,
+}
+
+/// Keeps the level over time.
+#[derive(Debug, Clone)]
+pub(crate) struct Alert {
+    settings: VerdictSettings,
+    level: Level,
+    /// Since when warn and fail are exceeded.
+    exceeded_since: [Option<f64>; 2],
+    /// When the level was last exceeded, give or take the hysteresis.
+    last_exceeded_s: f64,
+    finding: Option<Finding>,
+    motors: Vec<MotorRecord>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct MotorRecord {
+    samples: u32,
+    mean_margin: f64,
+    least_margin: f64,
+    side: Side,
+}
+
+const NO_RECORD: MotorRecord = MotorRecord {
+    samples: 0,
+    mean_margin: 0.0,
+    least_margin: f64::INFINITY,
+    side: Side::High,
+};
+
+/// What a sample did to the level.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Step {
+    /// The new level, where it changed.
+    pub(crate) change: Option<Level>,
+    /// The finding that ended.
+    pub(crate) ended: Option<Finding>,
+}
+
+impl Alert {
+    pub(crate) fn new(settings: VerdictSettings, motors: usize) -> Alert {
+        Alert {
+            settings,
+            level: Level::Good,
+            exceeded_since: [None; 2],
+            last_exceeded_s: 0.0,
+            finding: None,
+            motors: vec![NO_RECORD; motors],
+        }
+    }
+
+    pub(crate) fn level(&self) -> Level {
+        self.level
+    }
+
+    /// The finding that has not ended yet, as it stands.
+    pub(crate) fn open(&self) -> Option<Finding> {
+        self.finding.map(|finding| Finding {
+            motor: self.weakest_motor(),
+            ..finding
+        })
+    }
+
+    /// Adds a moment of known risk.
+    pub(crate) fn push(
+        &mut self,
+        t_s: f64,
+        risk_pct: f64,
+        elevated_pct: f64,
+        motors: &[f64],
+    ) -> Step {
+        let settings = self.settings;
+        let was_idle = self.exceeded_since == [None; 2] && self.finding.is_none();
+        let thresholds = [
+            (Level::Warn, settings.warn, 0),
+            (Level::Fail, settings.fail, 1),
+        ];
+        let mut step = Step::default();
+        let mut held = Level::Good;
+        for (level, threshold, i) in thresholds {
+            // What is raised already is held down to the hysteresis.
+            let relief = if self.level >= level {
+                settings.hysteresis_pct
+            } else {
+                0.0
+            };
+            let Some((measure, threshold_pct)) =
+                threshold.exceeded(risk_pct, elevated_pct, relief)
+            else {
+                self.exceeded_since[i] = None;
+                continue;
+            };
+            let since_s = *self.exceeded_since[i].get_or_insert(t_s);
+            held = level;
+            if level > self.level && t_s - since_s >= settings.raise_after_s {
+                self.level = level;
+                step.change = Some(level);
+                let from_s = self.finding.map_or(since_s, |finding| finding.from_s);
+                let raised_s = self.finding.map_or(t_s, |finding| finding.raised_s);
+                self.finding = Some(Finding {
+                    level,
+                    from_s,
+                    raised_s,
+                    to_s: t_s,
+                    measure,
+                    threshold_pct,
+                    peak_pct: f64::NEG_INFINITY,
+                    motor: None,
+                });
+            }
+        }
+        let idle = self.exceeded_since == [None; 2] && self.finding.is_none();
+        if was_idle && !idle {
+            self.motors.fill(NO_RECORD);
+        }
+        if held > Level::Good {
+            self.record_motors(motors);
+        }
+        if let Some(finding) = &mut self.finding {
+            let value = match finding.measure {
+                Measure::Risk => risk_pct,
+                Measure::ElevatedRisk => elevated_pct,
+            };
+            finding.peak_pct = finding.peak_pct.max(value);
+            if held > Level::Good {
+                finding.to_s = t_s;
+            }
+        }
+        if held >= self.level {
+            self.last_exceeded_s = t_s;
+        } else if t_s - self.last_exceeded_s >= settings.clear_after_s {
+            self.level = held;
+            self.last_exceeded_s = t_s;
+            step.change = Some(held);
+            if held == Level::Good {
+                step.ended = self.open();
+                self.finding = None;
+            }
+        }
+        step
+    }
+
+    /// Ends it all: the flight, or the knowledge of it, is over. What was raised too shortly before a landing
+    /// is taken back.
+    pub(crate) fn end(&mut self, t_s: f64, landed: bool) -> Step {
+        let quiet_s = if landed {
+            self.settings.quiet_before_landing_s
+        } else {
+            0.0
+        };
+        let ended = self
+            .open()
+            .filter(|finding| !landed || t_s - finding.raised_s >= quiet_s);
+        let change = (self.level > Level::Good).then_some(Level::Good);
+        self.level = Level::Good;
+        self.exceeded_since = [None; 2];
+        self.finding = None;
+        Step { change, ended }
+    }
+
+    fn record_motors(&mut self, motors: &[f64]) {
+        for (record, e) in self.motors.iter_mut().zip(motors) {
+            if e.is_finite() {
+                let margin = margin(*e);
+                record.samples += 1;
+                record.mean_margin += (margin - record.mean_margin) / f64::from(record.samples);
+                if margin < record.least_margin {
+                    record.least_margin = margin;
+                    record.side = Side::of(*e);
+                }
+            }
+        }
+    }
+
+    fn weakest_motor(&self) -> Option<MotorFinding> {
+        let known = self
+            .motors
+            .iter()
+            .enumerate()
+            .filter(|(_, r)| r.samples > 0);
+        let weakest = known.min_by(|(_, a), (_, b)| a.mean_margin.total_cmp(&b.mean_margin));
+        weakest.map(|(motor, record)| MotorFinding {
+            motor,
+            side: record.side,
+            mean_margin: record.mean_margin,
+            least_margin: record.least_margin,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTINGS: VerdictSettings = VerdictSettings {
+        warn: Threshold {
+            risk_pct: None,
+            elevated_risk_pct: Some(50.0),
+        },
+        fail: Threshold {
+            risk_pct: Some(95.0),
+            elevated_risk_pct: Some(80.0),
+        },
+        hysteresis_pct: 10.0,
+        raise_after_s: 0.5,
+        clear_after_s: 2.0,
+        quiet_after_take_off_s: 0.0,
+        quiet_before_landing_s: 2.0,
+    };
+
+    /// Runs (seconds, risk, elevated risk) at 10 Hz; gives what changed when, and the findings.
+    fn run(phases: &[(f64, f64, f64)]) -> (Vec<(f64, Level)>, Vec<Finding>, Alert) {
+        let mut alert = Alert::new(SETTINGS, 2);
+        let (mut changes, mut findings, mut i) = (vec![], vec![], 0);
+        for (seconds, risk, elevated) in phases {
+            for _ in 0..(seconds * 10.0) as usize {
+                let t_s = f64::from(i) / 10.0;
+                let step = alert.push(t_s, *risk, *elevated, &[0.4, 0.95]);
+                changes.extend(step.change.map(|level| (t_s, level)));
+                findings.extend(step.ended);
+                i += 1;
+            }
+        }
+        (changes, findings, alert)
+    }
+
+    #[test]
+    fn a_spike_shorter_than_the_minimum_says_nothing() {
+        let (changes, findings, alert) = run(&[
+            (1.0, 0.0, 0.0),
+            (0.4, 0.0, 60.0),
+            (1.0, 0.0, 0.0),
+            (0.4, 99.0, 0.0),
+            (1.0, 0.0, 0.0),
+        ]);
+        assert_eq!((changes, findings), (vec![], vec![]));
+        assert_eq!(alert.open(), None);
+    }
+
+    #[test]
+    fn one_episode_is_one_finding_whatever_its_ups_and_downs() {
+        let (changes, findings, _) = run(&[
+            (1.0, 0.0, 0.0),
+            (2.0, 0.0, 60.0),
+            // Within the hysteresis, then below it for less than clear_after_s.
+            (5.0, 0.0, 45.0),
+            (1.0, 0.0, 0.0),
+            (1.0, 0.0, 90.0),
+            (5.0, 0.0, 0.0),
+        ]);
+        assert_eq!(
+            changes,
+            [
+                (1.5, Level::Warn),
+                (9.5, Level::Fail),
+                (11.9, Level::Good)
+            ]
+        );
+        assert_eq!(findings.len(), 1);
+        let finding = findings[0];
+        assert_eq!(finding.level, Level::Fail);
+        assert_eq!(
+            (finding.from_s, finding.raised_s, finding.to_s),
+            (1.0, 1.5, 9.9)
+        );
+        assert_eq!(finding.measure, Measure::ElevatedRisk);
+        assert_eq!((finding.threshold_pct, finding.peak_pct), (80.0, 90.0));
+        let motor = finding.motor.unwrap();
+        assert_eq!((motor.motor, motor.side), (1, Side::High));
+        approx::assert_abs_diff_eq!(motor.mean_margin, 0.05, epsilon = 1e-12);
+    }
+
+    #[test]
+    fn either_quantity_is_enough() {
+        let (changes, _, alert) = run(&[(2.0, 99.0, 0.0)]);
+        assert_eq!(changes, [(0.5, Level::Fail)]);
+        assert_eq!(alert.open().map(|f| f.measure), Some(Measure::Risk));
+    }
+
+    #[test]
+    fn what_is_raised_just_before_landing_is_taken_back() {
+        let (_, _, mut alert) = run(&[(2.0, 0.0, 90.0)]);
+        let mut later = alert.clone();
+        assert_eq!(alert.end(2.0, true).ended, None);
+        assert!(later.end(3.0, true).ended.is_some());
+        // A link that is lost is no landing.
+        let (_, _, mut alert) = run(&[(2.0, 0.0, 90.0)]);
+        assert!(alert.end(2.0, false).ended.is_some());
+    }
+
+    #[test]
+    fn falling_from_fail_to_warn_keeps_the_finding_open() {
+        let (changes, findings, alert) = run(&[(2.0, 0.0, 90.0), (4.0, 0.0, 60.0)]);
+        assert_eq!(
+            changes,
+            [(0.5, Level::Fail), (3.9, Level::Warn)]
+        );
+        assert_eq!(findings, []);
+        assert_eq!(alert.open().map(|f| f.level), Some(Level::Fail));
+    }
+}
