@@ -3,8 +3,11 @@ extern crate alloc;
 
 pub mod accumulator;
 pub mod attitude;
+pub mod estimator;
 pub mod gap;
 pub mod margin;
+pub mod monitor;
+pub mod profile;
 pub mod source;
 pub mod verdict;
 pub mod window;

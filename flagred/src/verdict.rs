@@ -208,8 +208,7 @@ impl Alert {
             } else {
                 0.0
             };
-            let Some((measure, threshold_pct)) =
-                threshold.exceeded(risk_pct, elevated_pct, relief)
+            let Some((measure, threshold_pct)) = threshold.exceeded(risk_pct, elevated_pct, relief)
             else {
                 self.exceeded_since[i] = None;
                 continue;
@@ -374,11 +373,7 @@ mod tests {
         ]);
         assert_eq!(
             changes,
-            [
-                (1.5, Level::Warn),
-                (9.5, Level::Fail),
-                (11.9, Level::Good)
-            ]
+            [(1.5, Level::Warn), (9.5, Level::Fail), (11.9, Level::Good)]
         );
         assert_eq!(findings.len(), 1);
         let finding = findings[0];
@@ -415,10 +410,7 @@ mod tests {
     #[test]
     fn falling_from_fail_to_warn_keeps_the_finding_open() {
         let (changes, findings, alert) = run(&[(2.0, 0.0, 90.0), (4.0, 0.0, 60.0)]);
-        assert_eq!(
-            changes,
-            [(0.5, Level::Fail), (3.9, Level::Warn)]
-        );
+        assert_eq!(changes, [(0.5, Level::Fail), (3.9, Level::Warn)]);
         assert_eq!(findings, []);
         assert_eq!(alert.open().map(|f| f.level), Some(Level::Fail));
     }

@@ -1,6 +1,11 @@
 //! A decision map whose gaps are filled, read anywhere between its nodes.
 
-use super::{GapMethod, Lattice, fill};
+use fuzzy::{
+    Engine, Model,
+    engine::{EvaluateError, Outcome},
+};
+
+use super::{GapMethod, GapSettings, Lattice, fill};
 
 /// A decision map without gaps: the value at each node of a grid, and how far from the covered part it is.
 #[derive(Debug, Clone)]
@@ -66,6 +71,52 @@ impl FilledMap {
             values,
             distances,
         })
+    }
+
+    /// Evaluates an output of a model at the nodes of a grid and fills its gaps; `None` where there are none to fill.
+    ///
+    /// # Errors
+    ///
+    /// Where the engine is not that of the model.
+    pub(crate) fn of(
+        engine: &Engine,
+        model: &Model,
+        output: usize,
+        shape: &[usize],
+        settings: &GapSettings,
+    ) -> Result<Option<FilledMap>, EvaluateError> {
+        let ranges: Vec<(f64, f64)> = model.inputs.iter().map(|i| (i.low, i.high)).collect();
+        let lattice = Lattice::new(shape);
+        let nodes = shape.iter().product();
+        let coverage_below = settings.coverage_below(model);
+        let mut scratch = engine.scratch();
+        let mut outcomes = vec![Outcome::default(); engine.output_names().len()];
+        let mut inputs = vec![0.0; shape.len()];
+        let mut values = Vec::with_capacity(nodes);
+        let mut covered = Vec::with_capacity(nodes);
+        for node in 0..nodes {
+            for (axis, (input, (low, high))) in inputs.iter_mut().zip(&ranges).enumerate() {
+                let last = shape[axis] - 1;
+                *input = low + (high - low) * lattice.place(node, axis) as f64 / last as f64;
+            }
+            match engine.evaluate_with(&mut scratch, &inputs, &mut outcomes) {
+                Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
+                Err(other) => return Err(other),
+            }
+            let outcome = outcomes.get(output).copied().unwrap_or_default();
+            covered.push(outcome.coverage >= coverage_below && outcome.value().is_some());
+            values.push(outcome.value().unwrap_or(f64::NAN));
+        }
+        if covered.iter().all(|covered| *covered) {
+            return Ok(None);
+        }
+        Ok(FilledMap::new(
+            &ranges,
+            shape,
+            values,
+            &covered,
+            settings.method,
+        ))
     }
 
     /// The values at the nodes, the last input running fastest.

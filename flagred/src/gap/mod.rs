@@ -5,6 +5,8 @@
 //! from the covered rest of the map. Distances are in shares of each input's range, so that no input counts more
 //! because of its unit.
 
+use fuzzy::{Model, model::Conjunction};
+
 mod inverse_distance;
 mod map;
 mod nearest;
@@ -12,9 +14,10 @@ mod nearest;
 pub use map::{FilledMap, Reading};
 
 /// How a gap is filled.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum GapMethod {
     /// The value of the nearest covered cell.
+    #[default]
     Nearest,
     /// `sum(v / d^power) / sum(1 / d^power)` over the nearest covered cells at the edge of the gap.
     ///
@@ -28,22 +31,36 @@ pub enum GapMethod {
     },
 }
 
+impl GapMethod {
+    /// Inverse distance as it is when nothing else is said: power 2, 8 neighbours.
+    pub const INVERSE_DISTANCE: GapMethod = GapMethod::InverseDistance {
+        power: 2.0,
+        neighbours: 8,
+    };
+}
+
 /// What a cell must not be to count as covered, and how the others get their values.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GapSettings {
     /// How the gap is filled.
     pub method: GapMethod,
-    /// A cell is a gap below this coverage. With terms that sum to 1 the dominating antecedent fires at 0.5 at
-    /// least, so 0.5 (the default) means: the dominating antecedent has no rule.
-    pub coverage_below: f64,
+    /// A cell is a gap below this coverage; `None` is the least with which the dominating antecedent can fire, see
+    /// [`GapSettings::coverage_below`].
+    pub coverage_below: Option<f64>,
 }
 
-impl Default for GapSettings {
-    fn default() -> Self {
-        GapSettings {
-            method: GapMethod::Nearest,
-            coverage_below: 0.5,
-        }
+impl GapSettings {
+    /// The coverage below which a cell of the map of a model is a gap.
+    ///
+    /// Where none is set: with terms that sum to 1 the dominating antecedent has memberships of 0.5 at least. With
+    /// the minimum as AND it fires at 0.5 or more, with the product of n inputs at `0.5^n`: less means that the
+    /// dominating antecedent has no rule. With the other conjunctions only what no rule covers at all is a gap.
+    pub fn coverage_below(&self, model: &Model) -> f64 {
+        self.coverage_below.unwrap_or(match model.operators.and {
+            Conjunction::Minimum => 0.5,
+            Conjunction::Product => libm::pow(0.5, model.inputs.len() as f64),
+            _ => f64::MIN_POSITIVE,
+        })
     }
 }
 
@@ -124,17 +141,11 @@ pub(crate) fn fill(
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    pub(crate) const METHODS: [GapMethod; 2] = [
-        GapMethod::Nearest,
-        GapMethod::InverseDistance {
-            power: 2.0,
-            neighbours: 8,
-        },
-    ];
+    const METHODS: [GapMethod; 2] = [GapMethod::Nearest, GapMethod::INVERSE_DISTANCE];
 
     #[test]
     fn neighbours_stop_at_the_edge() {

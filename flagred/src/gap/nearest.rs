@@ -116,14 +116,14 @@ mod tests {
         fn it_finds_what_trying_all_finds(covered in prop::collection::vec(prop::bool::weighted(0.1), 4 * 3 * 6)) {
             let lattice = Lattice::new(&[4, 3, 6]);
             let found = nearest(&lattice, &covered);
-            for node in 0..covered.len() {
+            for (node, found) in found.iter().enumerate() {
                 let here = lattice.point(node);
                 let least = (0..covered.len()).filter(|n| covered[*n]).map(|n| {
                     lattice.point(n).iter().zip(&here).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
                 }).fold(f64::INFINITY, f64::min);
-                prop_assert_eq!(least.is_finite(), found[node].node().is_some());
+                prop_assert_eq!(least.is_finite(), found.node().is_some());
                 if least.is_finite() {
-                    prop_assert!((found[node].distance() - least.sqrt()).abs() < 1e-12);
+                    prop_assert!((found.distance() - least.sqrt()).abs() < 1e-12);
                 }
             }
         }

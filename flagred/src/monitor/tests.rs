@@ -1,0 +1,305 @@
+use fuzzy::{
+    Model,
+    model::{NoRuleFires, Output, Shape, Variable},
+    rule::{Condition, Rule},
+};
+
+use super::*;
+use crate::{
+    accumulator::AccumulatorSettings,
+    gap::GapSettings,
+    profile::{ProfileInput, Sampling},
+    source::{Motors, Signal, Source, Statistic},
+    verdict::{Threshold, VerdictSettings},
+};
+
+/// The risk falls from 100 % at a mean margin of 0 to 0 % at 0.5, by two rules; `without_low` leaves out the first.
+fn rules(without_low: bool) -> Model {
+    let margin = Variable::new("margin", 0.0, 0.5)
+        .term(
+            "low",
+            Shape::LeftShoulder {
+                top: 0.1,
+                foot: 0.4,
+            },
+        )
+        .term(
+            "high",
+            Shape::RightShoulder {
+                foot: 0.1,
+                top: 0.4,
+            },
+        );
+    let risk = Variable::new("risk", 0.0, 100.0)
+        .term(
+            "small",
+            Shape::Triangle {
+                left: 0.0,
+                peak: 10.0,
+                right: 20.0,
+            },
+        )
+        .term(
+            "large",
+            Shape::Triangle {
+                left: 80.0,
+                peak: 90.0,
+                right: 100.0,
+            },
+        );
+    let mut model = Model::builder("one input")
+        .input(margin)
+        .output(Output::new(risk))
+        .rule(Rule::new(Condition::is("margin", "low"), "risk", "large"))
+        .rule(Rule::new(Condition::is("margin", "high"), "risk", "small"))
+        .build();
+    if without_low {
+        model.rules.remove(0);
+    }
+    model
+}
+
+fn profile() -> Profile {
+    let source = |signal: &str| Source {
+        statistic: Statistic::Mean,
+        motors: Motors::Pooled,
+        signal: Signal::named(signal),
+        window_s: 2.0,
+    };
+    Profile {
+        name: "test".into(),
+        description: None,
+        rules: "test".into(),
+        inputs: vec![ProfileInput {
+            name: "margin".into(),
+            source: source("motor_margin"),
+        }],
+        output: "risk".into(),
+        sampling: Sampling::default(),
+        gap: GapSettings::default(),
+        elevated_risk: AccumulatorSettings::default(),
+        verdict: VerdictSettings {
+            warn: Threshold {
+                risk_pct: None,
+                elevated_risk_pct: Some(50.0),
+            },
+            ..VerdictSettings::default()
+        },
+    }
+}
+
+/// Flies (seconds, both motors' command, in the air) at a rate.
+fn fly(monitor: &mut Monitor, rate_hz: f64, phases: &[(f64, f64, bool)]) -> Vec<Assessment> {
+    let mut assessments = Vec::new();
+    let mut i = 0.0;
+    for (seconds, e, in_air) in phases {
+        for _ in 0..(seconds * rate_hz) as usize {
+            assessments.push(monitor.push(&Sample {
+                t_s: i / rate_hz,
+                motors: &[*e, *e],
+                in_air: *in_air,
+                signals: &[],
+            }));
+            i += 1.0;
+        }
+    }
+    assessments
+}
+
+fn risk_at(assessments: &[Assessment], t_s: f64) -> Result<f64, Unknown> {
+    let at = assessments.iter().rfind(|a| a.t_s <= t_s + 1e-9).unwrap();
+    at.risk.map(|estimate| estimate.risk_pct)
+}
+
+#[test]
+fn risk_follows_the_motors_within_the_window_and_is_unknown_on_the_ground() {
+    let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
+    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let flight = fly(
+        &mut monitor,
+        25.0,
+        &[
+            (5.0, 0.0, false),
+            (20.0, 0.5, true),
+            (20.0, 1.0, true),
+            (3.0, 0.0, false),
+        ],
+    );
+    assert_eq!(risk_at(&flight, 4.0), Err(Unknown::OnGround));
+    assert_eq!(risk_at(&flight, 5.2), Err(Unknown::WarmingUp { input: 0 }));
+    approx::assert_abs_diff_eq!(risk_at(&flight, 10.0).unwrap(), 10.0, epsilon = 1e-9);
+    approx::assert_abs_diff_eq!(risk_at(&flight, 26.0).unwrap(), 50.0, epsilon = 5.0);
+    approx::assert_abs_diff_eq!(risk_at(&flight, 28.0).unwrap(), 90.0, epsilon = 1e-9);
+    assert_eq!(risk_at(&flight, 46.0), Err(Unknown::OnGround));
+
+    let changes: Vec<_> = flight
+        .iter()
+        .filter_map(|a| a.change.map(|level| (a.t_s, level)))
+        .collect();
+    let [
+        (warn_s, Level::Warn),
+        (fail_s, Level::Fail),
+        (45.0, Level::Good),
+    ] = changes[..]
+    else {
+        panic!("{changes:?}");
+    };
+    assert!(25.0 < warn_s && warn_s < fail_s && fail_s < 33.0);
+    let findings: Vec<Finding> = flight.iter().filter_map(|a| a.ended).collect();
+    assert_eq!(findings.len(), 1);
+    assert_eq!(findings[0].motor.map(|m| m.mean_margin), Some(0.0));
+    assert_eq!(monitor.finish(), None);
+}
+
+#[test]
+fn the_first_seconds_in_the_air_raise_nothing() {
+    let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
+    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let flight = fly(&mut monitor, 25.0, &[(1.0, 0.0, false), (4.0, 1.0, true)]);
+    let last = flight.last().unwrap();
+    assert!(last.risk.unwrap().risk_pct > 80.0);
+    assert_eq!(last.elevated_risk_pct, Some(0.0));
+    assert_eq!(last.level, Some(Level::Good));
+}
+
+#[test]
+fn a_gap_is_filled_and_says_so() {
+    let estimator = Estimator::new(&profile(), &rules(true)).unwrap();
+    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let flight = fly(&mut monitor, 25.0, &[(5.0, 0.5, true), (5.0, 1.0, true)]);
+    let covered = flight[100].risk.unwrap();
+    assert_eq!((covered.filled_from, covered.coverage), (None, 1.0));
+    let filled = flight.last().unwrap().risk.unwrap();
+    assert_eq!(filled.coverage, 0.0);
+    // Half of the range is covered: the term `high` is at 0.5 in the middle.
+    approx::assert_abs_diff_eq!(filled.filled_from.unwrap(), 0.5, epsilon = 0.02);
+    approx::assert_abs_diff_eq!(filled.risk_pct, 10.0, epsilon = 1e-9);
+}
+
+#[test]
+fn no_rule_and_nothing_to_fill_from_is_unknown() {
+    let mut model = rules(true);
+    model.rules.clear();
+    let estimator = Estimator::new(&profile(), &model).unwrap();
+    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let flight = fly(&mut monitor, 25.0, &[(3.0, 0.5, true)]);
+    assert_eq!(risk_at(&flight, 3.0), Err(Unknown::NoRule));
+}
+
+#[test]
+fn an_author_who_calls_it_an_error_that_no_rule_fires_still_gets_the_gap_filled() {
+    let mut model = rules(true);
+    model.outputs[0].when_no_rule_fires = NoRuleFires::Error;
+    let estimator = Estimator::new(&profile(), &model).unwrap();
+    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let flight = fly(&mut monitor, 25.0, &[(3.0, 1.0, true)]);
+    assert!(flight.last().unwrap().risk.unwrap().filled_from.is_some());
+}
+
+#[test]
+fn too_few_samples_are_unknown_and_say_what_helps() {
+    let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
+    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let flight = fly(&mut monitor, 1.0, &[(30.0, 0.5, true)]);
+    let unknown = flight.last().unwrap().risk.unwrap_err();
+    assert_eq!(
+        unknown,
+        Unknown::TooFewSamples {
+            input: 0,
+            samples: 2
+        }
+    );
+    assert_eq!(
+        unknown.explain(estimator.profile()),
+        "input `margin` has 2 samples in 2 s and needs 5: log the motors at 2.5 Hz or more"
+    );
+}
+
+#[test]
+fn after_a_lost_link_or_a_restart_nothing_old_is_carried_on() {
+    let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
+    for jump_s in [60.0, -15.0] {
+        let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+        fly(&mut monitor, 25.0, &[(20.0, 1.0, true)]);
+        let open = monitor.clone().finish().unwrap();
+        assert_eq!(open.level, Level::Fail);
+        let after = monitor.push(&Sample {
+            t_s: 20.0 + jump_s,
+            motors: &[0.5, 0.5],
+            in_air: true,
+            signals: &[],
+        });
+        assert_eq!(after.ended, Some(open));
+        assert_eq!(after.change, Some(Level::Good));
+        assert!(after.risk.is_err());
+        assert_eq!(after.elevated_risk_pct, None);
+    }
+}
+
+#[test]
+fn repeated_late_and_damaged_samples_change_nothing() {
+    let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
+    let mut clean = Monitor::new(&estimator, 2, &[]).unwrap();
+    let mut dirty = clean.clone();
+    for i in 0..500 {
+        let t_s = f64::from(i) * 0.04;
+        let push = |monitor: &mut Monitor, t_s: f64, e: f64| {
+            monitor.push(&Sample {
+                t_s,
+                motors: &[e, 0.5],
+                in_air: true,
+                signals: &[],
+            })
+        };
+        let expected = push(&mut clean, t_s, 0.5);
+        assert_eq!(push(&mut dirty, t_s, 0.5), expected);
+        for bad_s in [t_s, t_s - 0.04, f64::NAN, f64::INFINITY] {
+            let bad = push(&mut dirty, bad_s, 0.0);
+            assert_eq!(bad.risk, Err(Unknown::OutOfOrder));
+        }
+    }
+}
+
+#[test]
+fn a_motor_that_is_no_number_between_0_and_1_is_unknown() {
+    let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
+    for garbage in [f64::NAN, f64::INFINITY, 65535.0, -0.1] {
+        let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+        let mut last = None;
+        for i in 0..100 {
+            last = Some(monitor.push(&Sample {
+                t_s: f64::from(i) * 0.04,
+                motors: &[0.5, garbage],
+                in_air: true,
+                signals: &[],
+            }));
+        }
+        let risk = last.unwrap().risk.unwrap().risk_pct;
+        approx::assert_abs_diff_eq!(risk, 10.0, epsilon = 1e-9);
+        let all_unknown = monitor.push(&Sample {
+            t_s: 10.0,
+            motors: &[garbage; 2],
+            in_air: true,
+            signals: &[],
+        });
+        assert_eq!(all_unknown.risk, Err(Unknown::NoValue { input: 0 }));
+    }
+}
+
+#[test]
+fn what_a_flight_lacks_is_told_when_the_monitor_is_made() {
+    let mut profile = profile();
+    profile.inputs[0].source.signal = Signal::named("battery_v");
+    let estimator = Estimator::new(&profile, &rules(false)).unwrap();
+    assert_eq!(
+        Monitor::new(&estimator, 4, &["wind_m_s"]).unwrap_err(),
+        MonitorError::NoSignal {
+            signal: "battery_v".into()
+        }
+    );
+    assert_eq!(
+        Monitor::new(&estimator, 0, &["battery_v"]).unwrap_err(),
+        MonitorError::NoMotors
+    );
+    assert!(Monitor::new(&estimator, 4, &["wind_m_s", "battery_v"]).is_ok());
+}

@@ -1,0 +1,82 @@
+//! A profile: what a flight's signals mean to a rule set, and what its risk means to a pilot.
+
+use alloc::{string::String, vec::Vec};
+
+use crate::{
+    accumulator::AccumulatorSettings, gap::GapSettings, source::Source, verdict::VerdictSettings,
+};
+
+/// Everything between a flight and its verdict but the rules themselves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// Its name.
+    pub name: String,
+    /// What it is for, in the author's words.
+    pub description: Option<String>,
+    /// The rule set: the name of a shipped one, or a file beside the profile.
+    pub rules: String,
+    /// Where each input of the rule set comes from.
+    pub inputs: Vec<ProfileInput>,
+    /// The output of the rule set that is the risk, in %.
+    pub output: String,
+    /// When an input counts as known.
+    pub sampling: Sampling,
+    /// What happens where no rule applies.
+    pub gap: GapSettings,
+    /// How risks add up to the elevated risk.
+    pub elevated_risk: AccumulatorSettings,
+    /// When levels are raised and lowered.
+    pub verdict: VerdictSettings,
+}
+
+/// An input of the rule set and where it comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProfileInput {
+    /// The name of the input in the rule set.
+    pub name: String,
+    /// Where its value comes from.
+    pub source: Source,
+}
+
+/// When an input counts as known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampling {
+    /// The fewest samples a window must hold: at a few samples per second a spread means little.
+    pub min_samples: u32,
+    /// How much time a window must cover before it counts, in seconds, or its whole length where that is less.
+    pub warm_up_s: f64,
+    /// Longer than this without a sample, in seconds, and what was before is forgotten.
+    pub longest_gap_s: f64,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Sampling {
+            min_samples: 5,
+            warm_up_s: 1.0,
+            longest_gap_s: 2.0,
+        }
+    }
+}
+
+impl Profile {
+    /// The names of the signals beside the motors that it needs, each once.
+    pub fn signals(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for input in &self.inputs {
+            if let crate::source::Signal::Named(name) = &input.source.signal
+                && !names.contains(&name.as_str())
+            {
+                names.push(name);
+            }
+        }
+        names
+    }
+
+    /// The longest window of an input, in seconds.
+    pub fn longest_window_s(&self) -> f64 {
+        self.inputs
+            .iter()
+            .fold(0.0, |longest, i| f64::max(longest, i.source.window_s))
+    }
+}
