@@ -5,7 +5,6 @@ use std::{path::PathBuf, process::Command, sync::OnceLock};
 /// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent.
 ///
 /// Says so where it does not: the tests that need the data are skipped then.
-#[allow(clippy::print_stderr)]
 pub fn shared_data() -> Option<PathBuf> {
     match std::env::var_os("FLAGRED_SHARED") {
         Some(folder) => Some(PathBuf::from(folder).join("data")),
