@@ -1,0 +1,408 @@
+//! What ArduPilot's parameters and messages say about the vehicle: its kind, its motors,
+//! the range of their commands.
+
+use std::collections::BTreeMap;
+
+use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
+
+/// Parameters by name, each with the FIRST value that the log has of it: in flight,
+/// failure tests and learning change them.
+#[derive(Debug, Default)]
+pub(crate) struct Parameters(BTreeMap<String, f64>);
+
+impl Parameters {
+    pub(crate) fn insert(&mut self, name: &str, value: f64) {
+        if value.is_finite() && !self.0.contains_key(name) {
+            self.0.insert(name.to_owned(), value);
+        }
+    }
+
+    pub(crate) fn get(&self, name: &str) -> Option<f64> {
+        self.0.get(name).copied()
+    }
+
+    fn pair(&self, low: &str, high: &str) -> Option<(f64, f64)> {
+        Some((self.get(low)?, self.get(high)?)).filter(|(low, high)| high > low)
+    }
+}
+
+/// Outputs (from 1) that SERVOn_FUNCTION gives to motors, in order of the motor number.
+fn motor_outputs(parameters: &Parameters) -> Vec<(u16, u16)> {
+    let mut motors: Vec<(u16, u16)> = (1..=32)
+        .filter_map(|output| {
+            let function = parameters.get(&format!("SERVO{output}_FUNCTION"))?;
+            Some((motor_of_function(function as i64)?, output))
+        })
+        .collect();
+    motors.sort_unstable();
+    motors
+}
+
+/// Whether the log has any SERVOn_FUNCTION: firmware before 3.5 has none.
+fn has_functions(parameters: &Parameters) -> bool {
+    (1..=32).any(|output| parameters.get(&format!("SERVO{output}_FUNCTION")).is_some())
+}
+
+/// Motor number of a SERVOn_FUNCTION: 33..40 are motors 1..8, 82..85 are 9..12,
+/// 160..179 are 13..32.
+fn motor_of_function(function: i64) -> Option<u16> {
+    let number = match function {
+        33..=40 => function - 32,
+        82..=85 => function - 73,
+        160..=179 => function - 147,
+        _ => return None,
+    };
+    u16::try_from(number).ok()
+}
+
+/// The motors of outputs labelled `label` and a number.
+fn motors_by_function(parameters: &Parameters, label: &str) -> Vec<Motor> {
+    motor_outputs(parameters)
+        .into_iter()
+        .map(|(number, output)| {
+            let name = format!("SERVO{output}_FUNCTION");
+            let function = parameters.get(&name).unwrap_or_default();
+            Motor {
+                number,
+                output: format!("{label}{output}"),
+                source: format!("{name} = {function}"),
+            }
+        })
+        .collect()
+}
+
+/// The motors of a vehicle: by SERVOn_FUNCTION; where the log has none (firmware before
+/// 3.5), the outputs 1 to N with N from the frame.
+pub(crate) fn motors(parameters: &Parameters, vehicle: &Vehicle, label: &str) -> Vec<Motor> {
+    if has_functions(parameters) {
+        return motors_by_function(parameters, label);
+    }
+    let Some(frame) = &vehicle.frame else {
+        return Vec::new();
+    };
+    (1..=motors_of_frame(frame).unwrap_or(0))
+        .map(|number| Motor {
+            number,
+            output: format!("{label}{number}"),
+            source: format!("frame {frame} (the log has no SERVOn_FUNCTION)"),
+        })
+        .collect()
+}
+
+/// Armed and in-air times from the commands alone, for logs without events: armed while
+/// any motor runs, in the air while the mean command is above 0.2.
+pub(crate) fn air_from_commands(flight: &Flight) -> (Option<Intervals>, Option<Intervals>) {
+    let (Some(range), Some(last_s)) = (&flight.range, flight.commands.t_s().last()) else {
+        return (None, None);
+    };
+    let first_s = flight.commands.t_s().first().copied().unwrap_or_default();
+    let changes = |state: &dyn Fn(&[f64]) -> bool| {
+        let mut changes: Vec<(f64, bool)> = flight
+            .commands
+            .rows()
+            .map(|(t_s, row)| (t_s, state(row)))
+            .collect();
+        changes.dedup_by_key(|&mut (_, state)| state);
+        changes
+    };
+    let running = |row: &[f64]| row.iter().any(|&raw| raw > range.low + 1.0);
+    let flying = |row: &[f64]| {
+        let known: Vec<f64> = row.iter().filter_map(|&raw| flight.command(raw)).collect();
+        known.iter().sum::<f64>() > 0.2 * known.len() as f64
+    };
+    let intervals = |state: &dyn Fn(&[f64]) -> bool, rule: &str| {
+        let rule = format!("{rule} (the log has no events that tell)");
+        Intervals::from_changes(&changes(state), false, first_s, *last_s, rule)
+    };
+    (
+        Some(intervals(&running, "any motor above its lowest command")),
+        Some(intervals(&flying, "mean command above 0.2 of the range")),
+    )
+}
+
+/// Name of a flight mode of ArduCopter.
+pub(crate) fn copter_mode(number: i64) -> String {
+    const NAMES: &[&str] = &[
+        "STABILIZE",
+        "ACRO",
+        "ALT_HOLD",
+        "AUTO",
+        "GUIDED",
+        "LOITER",
+        "RTL",
+        "CIRCLE",
+        "",
+        "LAND",
+        "",
+        "DRIFT",
+        "",
+        "SPORT",
+        "FLIP",
+        "AUTOTUNE",
+        "POSHOLD",
+        "BRAKE",
+        "THROW",
+        "AVOID_ADSB",
+        "GUIDED_NOGPS",
+        "SMART_RTL",
+        "FLOWHOLD",
+        "FOLLOW",
+        "ZIGZAG",
+        "SYSTEMID",
+        "AUTOROTATE",
+        "AUTO_RTL",
+        "TURTLE",
+    ];
+    let name = usize::try_from(number)
+        .ok()
+        .and_then(|index| NAMES.get(index));
+    match name {
+        Some(name) if !name.is_empty() => (*name).into(),
+        _ => format!("mode {number}"),
+    }
+}
+
+/// Number of motors of a frame by the name or class that the log gives it.
+fn motors_of_frame(frame: &str) -> Option<u16> {
+    let class = frame.split(['/', ' ']).next().unwrap_or(frame);
+    Some(match class.to_ascii_uppercase().as_str() {
+        "QUAD" | "QUAD_X" => 4,
+        "TRI" => 3,
+        "HEXA" | "Y6" => 6,
+        "OCTA" | "OCTA_QUAD" | "OCTAQUAD" => 8,
+        "DODECAHEXA" => 12,
+        "DECA" => 10,
+        _ => return None,
+    })
+}
+
+/// Name of a FRAME_CLASS.
+fn frame_of_class(class: i64) -> Option<&'static str> {
+    Some(match class {
+        1 => "QUAD",
+        2 => "HEXA",
+        3 => "OCTA",
+        4 => "OCTA_QUAD",
+        5 => "Y6",
+        6 => "HELI",
+        7 => "TRI",
+        8 => "SINGLE",
+        9 => "COAX",
+        11 => "HELI_DUAL",
+        12 => "DODECAHEXA",
+        13 => "HELI_QUAD",
+        14 => "DECA",
+        _ => return None,
+    })
+}
+
+/// Full range of the motor outputs: MOT_PWM_MIN/MAX if both are above 0, else
+/// RCn_MIN/MAX of the throttle channel n.
+pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
+    let range = |(low, high), source| Range {
+        low,
+        high,
+        unit: "us",
+        source,
+    };
+    let own = parameters
+        .pair("MOT_PWM_MIN", "MOT_PWM_MAX")
+        .filter(|(low, _)| *low > 0.0);
+    if let Some(own) = own {
+        return Some(range(own, "MOT_PWM_MIN/MAX".into()));
+    }
+    let (channel, from) = match parameters.get("RCMAP_THROTTLE") {
+        Some(channel) => (channel as i64, "RCMAP_THROTTLE"),
+        None => (3, "no RCMAP_THROTTLE, so its default"),
+    };
+    let radio = parameters.pair(&format!("RC{channel}_MIN"), &format!("RC{channel}_MAX"))?;
+    let source =
+        format!("RC{channel}_MIN/MAX (MOT_PWM_MIN/MAX not set; throttle channel from {from})");
+    Some(range(radio, source))
+}
+
+/// The part of the range that is used in flight: MOT_SPIN_MIN..MOT_SPIN_MAX, before
+/// firmware 3.4 THR_MIN / 1000 .. 1.
+pub(crate) fn effective_range(parameters: &Parameters) -> Range {
+    let range = |low, high, source: &str| Range {
+        low,
+        high,
+        unit: "1",
+        source: source.into(),
+    };
+    if let Some((low, high)) = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
+        return range(low, high, "MOT_SPIN_MIN/MAX");
+    }
+    match parameters.get("THR_MIN").map(|value| value / 1000.0) {
+        Some(low) if (0.0..1.0).contains(&low) => range(low, 1.0, "THR_MIN / 1000 .. 1"),
+        _ => crate::flight::whole_range("the log has no MOT_SPIN_MIN/MAX and no THR_MIN"),
+    }
+}
+
+/// The vehicle from the texts of the log (`ArduCopter V4.5.1 (...)`, `Frame: QUAD/X`)
+/// and its parameters.
+pub(crate) fn vehicle<'a>(
+    texts: impl Iterator<Item = &'a str> + Clone,
+    parameters: &Parameters,
+) -> Vehicle {
+    let firmware = texts.clone().find(|text| kind_of_firmware(text).is_some());
+    let class = parameters.get("FRAME_CLASS").map(|class| class as i64);
+    let frame = texts
+        .filter_map(|text| text.strip_prefix("Frame: "))
+        .map(str::to_owned)
+        .next()
+        .or_else(|| frame_of_class(class?).map(str::to_owned));
+    let (mut kind, mut source) = match firmware {
+        Some(text) => (
+            kind_of_firmware(text).unwrap_or_default(),
+            format!("message `{text}`"),
+        ),
+        None => kind_of_parameters(parameters),
+    };
+    if kind == VehicleKind::Multirotor && matches!(class, Some(6 | 8 | 9 | 11 | 13)) {
+        kind = VehicleKind::Helicopter;
+        source = format!("FRAME_CLASS = {}", class.unwrap_or_default());
+    }
+    if kind == VehicleKind::Plane && parameters.get("Q_ENABLE").is_some_and(|on| on > 0.0) {
+        kind = VehicleKind::Vtol;
+        source.push_str(" and Q_ENABLE");
+    }
+    Vehicle {
+        kind,
+        source,
+        frame,
+        firmware: firmware.map(str::to_owned),
+    }
+}
+
+fn kind_of_firmware(text: &str) -> Option<VehicleKind> {
+    const NAMES: &[(&str, VehicleKind)] = &[
+        ("ArduCopter", VehicleKind::Multirotor),
+        ("APM:Copter", VehicleKind::Multirotor),
+        ("ArduPlane", VehicleKind::Plane),
+        ("APM:Plane", VehicleKind::Plane),
+        ("ArduRover", VehicleKind::Rover),
+        ("APM:Rover", VehicleKind::Rover),
+        ("Rover V", VehicleKind::Rover),
+        ("ArduSub", VehicleKind::Submarine),
+        ("AntennaTracker", VehicleKind::Other),
+        ("Blimp", VehicleKind::Other),
+    ];
+    NAMES
+        .iter()
+        .find(|(name, _)| text.starts_with(name))
+        .map(|(_, kind)| *kind)
+}
+
+/// The kind from parameters that only one kind of vehicle has.
+fn kind_of_parameters(parameters: &Parameters) -> (VehicleKind, String) {
+    const SIGNS: &[(&str, VehicleKind)] = &[
+        ("ATC_RAT_RLL_P", VehicleKind::Multirotor),
+        ("RATE_RLL_P", VehicleKind::Multirotor),
+        ("TECS_CLMB_MAX", VehicleKind::Plane),
+        ("CRUISE_SPEED", VehicleKind::Rover),
+    ];
+    SIGNS
+        .iter()
+        .find(|(name, _)| parameters.get(name).is_some())
+        .map(|(name, kind)| (*kind, format!("parameter {name}")))
+        .unwrap_or((VehicleKind::Unknown, "the log names no firmware".into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameters(pairs: &[(&str, f64)]) -> Parameters {
+        let mut parameters = Parameters::default();
+        for (name, value) in pairs {
+            parameters.insert(name, *value);
+        }
+        parameters
+    }
+
+    #[test]
+    fn functions_name_motors() {
+        for (function, motor) in [
+            (32, None),
+            (33, Some(1)),
+            (40, Some(8)),
+            (41, None),
+            (82, Some(9)),
+            (85, Some(12)),
+            (160, Some(13)),
+        ] {
+            assert_eq!(motor_of_function(function), motor, "{function}");
+        }
+    }
+
+    #[test]
+    fn the_first_value_of_a_parameter_counts() {
+        let found = motors_by_function(
+            &parameters(&[
+                ("SERVO1_FUNCTION", 34.0),
+                ("SERVO5_FUNCTION", 33.0),
+                ("SERVO1_FUNCTION", 1.0),
+            ]),
+            "C",
+        );
+        let found: Vec<_> = found
+            .iter()
+            .map(|m| (m.number, m.output.as_str()))
+            .collect();
+        assert_eq!(found, [(1, "C5"), (2, "C1")]);
+    }
+
+    #[test]
+    fn range_comes_from_the_motors_or_the_throttle_stick() {
+        let own = [("MOT_PWM_MIN", 1100.0), ("MOT_PWM_MAX", 1900.0)];
+        let radio = [
+            ("RC3_MIN", 1000.0),
+            ("RC3_MAX", 2000.0),
+            ("MOT_PWM_MIN", 0.0),
+        ];
+        let mapped = [
+            ("RCMAP_THROTTLE", 1.0),
+            ("RC1_MIN", 1094.0),
+            ("RC1_MAX", 1934.0),
+        ];
+        for (pairs, low, high) in [
+            (&own[..], 1100.0, 1900.0),
+            (&radio[..], 1000.0, 2000.0),
+            (&mapped[..], 1094.0, 1934.0),
+        ] {
+            let range = pwm_range(&parameters(pairs)).unwrap();
+            assert_eq!((range.low, range.high), (low, high), "{}", range.source);
+        }
+        assert_eq!(pwm_range(&parameters(&[("RC3_MIN", 1000.0)])), None);
+    }
+
+    #[test]
+    fn effective_range_by_generation() {
+        let new = parameters(&[("MOT_SPIN_MIN", 0.15), ("MOT_SPIN_MAX", 0.95)]);
+        assert_eq!(effective_range(&new).high, 0.95);
+        let old = effective_range(&parameters(&[("THR_MIN", 130.0)]));
+        assert_eq!((old.low, old.high), (0.13, 1.0));
+        let none = effective_range(&parameters(&[]));
+        assert_eq!((none.low, none.high), (0.0, 1.0));
+    }
+
+    #[test]
+    fn kinds() {
+        let class = |class| parameters(&[("FRAME_CLASS", class)]);
+        let q = parameters(&[("Q_ENABLE", 1.0)]);
+        for (text, parameters, kind) in [
+            ("ArduCopter V4.7.0", class(1.0), VehicleKind::Multirotor),
+            ("ArduCopter V4.7.0", class(6.0), VehicleKind::Helicopter),
+            ("ArduPlane V4.5.0", class(1.0), VehicleKind::Plane),
+            ("ArduPlane V4.5.0", q, VehicleKind::Vtol),
+            ("Hello", class(1.0), VehicleKind::Unknown),
+        ] {
+            let found = vehicle([text].into_iter(), &parameters);
+            assert_eq!(found.kind, kind, "{text}");
+        }
+        let named = vehicle(["ArduCopter V3", "Frame: HEXA/X"].into_iter(), &class(1.0));
+        assert_eq!(named.frame.as_deref(), Some("HEXA/X"));
+        assert_eq!(motors_of_frame("HEXA/X"), Some(6));
+    }
+}

@@ -1,0 +1,426 @@
+//! Flight CSV: `t_s`, the motor commands and any signals; see `docs/flight-csv.md`.
+
+use std::io::BufRead;
+
+use csv::{ByteRecord, ReaderBuilder};
+
+use crate::flight::whole_range;
+use crate::input::Input;
+use crate::read::io_error;
+use crate::signal::Label;
+use crate::{
+    Commands, Flight, Format, Intervals, Motor, Options, Range, ReadError, Report, Series,
+    VehicleKind,
+};
+
+/// Whether the first line that is no comment names a column `t_s`.
+pub(crate) fn looks_like(start: &[u8]) -> bool {
+    let start = start.strip_prefix(BOM).unwrap_or(start);
+    start
+        .split(|&byte| byte == b'\n')
+        .map(<[u8]>::trim_ascii)
+        .find(|line| !line.is_empty() && !line.starts_with(b"#"))
+        .is_some_and(|line| {
+            line.split(|&byte| byte == b',')
+                .any(|name| cell(name) == b"t_s")
+        })
+}
+
+const BOM: &[u8] = b"\xef\xbb\xbf";
+
+/// A cell without white space and quotes around it.
+fn cell(bytes: &[u8]) -> &[u8] {
+    let bytes = bytes.trim_ascii();
+    match bytes {
+        [b'"', inner @ .., b'"'] => inner.trim_ascii(),
+        _ => bytes,
+    }
+}
+
+pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, ReadError> {
+    let mut flight = Flight::empty(Format::Csv);
+    let (header, lines) = read_header(input)?;
+    let mut reader = ReaderBuilder::new()
+        .flexible(true)
+        .has_headers(false)
+        .comment(Some(b'#'))
+        .from_reader(input);
+    let mut record = ByteRecord::new();
+    if !reader.read_byte_record(&mut record).map_err(broken)? {
+        return Err(problem(lines + 1, "there is no line of column names", HELP));
+    }
+    let layout = Layout::new(&record, lines + 1, options)?;
+    let mut rows = Rows::new(&layout);
+    loop {
+        match reader.read_byte_record(&mut record) {
+            Ok(false) => break,
+            Ok(true) => {
+                let line = lines + record.position().map_or(0, csv::Position::line);
+                rows.add(&layout, &record, line, &mut flight.report);
+            }
+            Err(error) => return Err(broken(error)),
+        }
+    }
+    if rows.last_was_short {
+        flight.report.truncated = true;
+    }
+    flight.motors = layout.motors();
+    flight.armed = None;
+    flight.in_air = Some(rows.in_air());
+    flight.commands = rows.commands;
+    flight.series = vec![rows.series];
+    flight.series.retain(|series| !series.is_empty());
+    apply_header(&mut flight, header, &layout)?;
+    Ok(flight)
+}
+
+const HELP: &str = "a flight CSV has the columns `t_s` and `pwm1`.. (us) or `motor1`.. (0 to 1)";
+
+fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
+    ReadError::Csv {
+        path: String::new(),
+        line,
+        problem: problem.into(),
+        help: help.into(),
+    }
+    .with_path("the log")
+}
+
+fn broken(error: csv::Error) -> ReadError {
+    io_error(std::io::Error::other(error))
+}
+
+struct HeaderLine {
+    line: u64,
+    key: String,
+    value: String,
+}
+
+/// The `# key: value` lines on top, and how many lines were read.
+fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64), ReadError> {
+    let mut header = Vec::new();
+    let mut lines = 0;
+    loop {
+        let mut next = input.fill_buf().map_err(io_error)?;
+        if lines == 0 && next.starts_with(BOM) {
+            input.consume(BOM.len());
+            next = input.fill_buf().map_err(io_error)?;
+        }
+        if !matches!(next.first(), Some(b'#' | b'\r' | b'\n')) {
+            return Ok((header, lines));
+        }
+        let mut text = Vec::new();
+        input.read_until(b'\n', &mut text).map_err(io_error)?;
+        lines += 1;
+        let text = String::from_utf8_lossy(&text);
+        if let Some((key, value)) = text.trim().trim_start_matches('#').split_once(':') {
+            header.push(HeaderLine {
+                line: lines,
+                key: key.trim().into(),
+                value: value.trim().into(),
+            });
+        }
+    }
+}
+
+/// What the columns hold.
+struct Layout {
+    time: usize,
+    /// Column of each motor, in order.
+    motors: Vec<usize>,
+    /// `pwm` or `motor`.
+    stem: &'static str,
+    in_air: Option<usize>,
+    signals: Vec<(usize, String)>,
+}
+
+impl Layout {
+    fn new(names: &ByteRecord, line: u64, options: &Options) -> Result<Self, ReadError> {
+        let names: Vec<String> = names
+            .iter()
+            .map(|name| String::from_utf8_lossy(cell(name)).into_owned())
+            .collect();
+        for (column, name) in names.iter().enumerate() {
+            if names[..column].contains(name) && !name.is_empty() {
+                let text = format!("the column `{name}` is there twice");
+                return Err(problem(line, text, "give each column a name of its own"));
+            }
+        }
+        let find = |name: &str| names.iter().position(|other| other == name);
+        let Some(time) = find("t_s") else {
+            return Err(problem(line, "there is no column `t_s`", HELP));
+        };
+        let [pwm, motor] = ["pwm", "motor"].map(|stem| numbered(&names, stem));
+        if !pwm.is_empty() && !motor.is_empty() {
+            let text = "there are both `pwm` and `motor` columns";
+            return Err(problem(line, text, "keep one kind of them"));
+        }
+        let (stem, mut motors) = match pwm.is_empty() {
+            false => ("pwm", pwm),
+            true => ("motor", motor),
+        };
+        motors.sort_unstable();
+        for (index, &(number, _)) in motors.iter().enumerate() {
+            if number != index as u64 + 1 {
+                let text = format!(
+                    "there is a column `{stem}{number}` but no `{stem}{}`",
+                    index + 1
+                );
+                return Err(problem(line, text, "number the motors from 1 without gaps"));
+            }
+        }
+        let motors: Vec<usize> = motors.into_iter().map(|(_, column)| column).collect();
+        let in_air = find("in_air");
+        let signals = names
+            .iter()
+            .enumerate()
+            .filter(|(column, name)| {
+                *column != time
+                    && Some(*column) != in_air
+                    && !motors.contains(column)
+                    && !name.is_empty()
+                    && options.wants(name)
+            })
+            .map(|(column, name)| (column, name.clone()))
+            .collect();
+        Ok(Self {
+            time,
+            motors,
+            stem,
+            in_air,
+            signals,
+        })
+    }
+
+    fn motors(&self) -> Vec<Motor> {
+        (1..=self.motors.len())
+            .map(|number| {
+                let name = format!("{}{number}", self.stem);
+                Motor {
+                    number: u16::try_from(number).unwrap_or(u16::MAX),
+                    source: format!("column `{name}`"),
+                    output: name,
+                }
+            })
+            .collect()
+    }
+}
+
+/// Columns named `stem` and a number, with their numbers.
+fn numbered(names: &[String], stem: &str) -> Vec<(u64, usize)> {
+    let number = |name: &String| name.strip_prefix(stem)?.parse().ok();
+    names
+        .iter()
+        .enumerate()
+        .filter_map(|(column, name)| Some((number(name)?, column)))
+        .collect()
+}
+
+struct Rows {
+    commands: Commands,
+    series: Series,
+    air_changes: Vec<(f64, bool)>,
+    has_air: bool,
+    first_s: f64,
+    last_s: f64,
+    last_was_short: bool,
+}
+
+impl Rows {
+    fn new(layout: &Layout) -> Self {
+        let labels = layout.signals.iter().map(|(_, name)| Label {
+            name: name.clone(),
+            unit: unit_of(name).into(),
+            source: format!("column `{name}`"),
+        });
+        Self {
+            commands: Commands::new(layout.motors.len()),
+            series: Series::new(labels.collect()),
+            air_changes: Vec::new(),
+            has_air: layout.in_air.is_some(),
+            first_s: f64::INFINITY,
+            last_s: f64::NEG_INFINITY,
+            last_was_short: false,
+        }
+    }
+
+    fn add(&mut self, layout: &Layout, record: &ByteRecord, line: u64, report: &mut Report) {
+        self.last_was_short = false;
+        match self.try_add(layout, record) {
+            Ok(()) => report.messages += 1,
+            Err(why) => {
+                report.bad_messages += 1;
+                report.because(|| format!("line {line}: {why}"));
+                self.last_was_short = record.len() < layout.columns();
+            }
+        }
+    }
+
+    fn try_add(&mut self, layout: &Layout, record: &ByteRecord) -> Result<(), String> {
+        if record.len() < layout.columns() {
+            return Err(format!("{} of {} columns", record.len(), layout.columns()));
+        }
+        let t_s = number(record, layout.time)?;
+        if !t_s.is_finite() {
+            return Err("the time is missing".into());
+        }
+        if t_s < self.last_s {
+            return Err("the time goes back".into());
+        }
+        let read = |column: &usize| number(record, *column);
+        let commands: Vec<f64> = layout.motors.iter().map(read).collect::<Result<_, _>>()?;
+        let signals: Vec<f64> = layout
+            .signals
+            .iter()
+            .map(|(column, _)| read(column))
+            .collect::<Result<_, _>>()?;
+        if let Some(column) = layout.in_air {
+            self.air_changes.push((t_s, read(&column)? > 0.5));
+            self.air_changes.dedup_by_key(|&mut (_, state)| state);
+        }
+        self.first_s = self.first_s.min(t_s);
+        self.last_s = t_s;
+        if !commands.is_empty() {
+            self.commands.push(t_s, commands);
+        }
+        if !signals.is_empty() {
+            self.series.push(t_s, signals);
+        }
+        Ok(())
+    }
+
+    fn in_air(&self) -> Intervals {
+        let rule = match self.has_air {
+            true => "column `in_air`",
+            false => "there is no column `in_air`: every row counts as in the air",
+        };
+        let before = !self.has_air;
+        Intervals::from_changes(&self.air_changes, before, self.first_s, self.last_s, rule)
+    }
+}
+
+impl Layout {
+    /// Columns a row must have for nothing to be missing.
+    fn columns(&self) -> usize {
+        let signals = self.signals.iter().map(|(column, _)| *column);
+        let all = self
+            .motors
+            .iter()
+            .copied()
+            .chain(signals)
+            .chain(self.in_air);
+        all.fold(self.time, usize::max) + 1
+    }
+}
+
+/// The number in a cell: NaN for an empty one and for `nan`.
+fn number(record: &ByteRecord, column: usize) -> Result<f64, String> {
+    let bytes = cell(record.get(column).unwrap_or_default());
+    if bytes.is_empty() {
+        return Ok(f64::NAN);
+    }
+    let text = String::from_utf8_lossy(bytes);
+    match text.parse::<f64>() {
+        Ok(value) if value.is_infinite() => Err(format!("`{text}` is not finite")),
+        Ok(value) => Ok(value),
+        Err(_) => Err(format!("`{text}` is not a number")),
+    }
+}
+
+/// The unit that the end of a name tells, as in `roll_deg`.
+fn unit_of(name: &str) -> &'static str {
+    const UNITS: &[(&str, &str)] = &[
+        ("_deg_s", "deg/s"),
+        ("_m_s2", "m/s2"),
+        ("_m_s", "m/s"),
+        ("_deg", "deg"),
+        ("_pct", "%"),
+        ("_mah", "mAh"),
+        ("_us", "us"),
+        ("_hz", "Hz"),
+        ("_v", "V"),
+        ("_a", "A"),
+        ("_m", "m"),
+        ("_s", "s"),
+    ];
+    UNITS
+        .iter()
+        .find(|(end, _)| name.ends_with(end))
+        .map_or("", |(_, unit)| unit)
+}
+
+fn apply_header(
+    flight: &mut Flight,
+    header: Vec<HeaderLine>,
+    layout: &Layout,
+) -> Result<(), ReadError> {
+    let value = |key: &str| -> Result<Option<f64>, ReadError> {
+        let Some(entry) = header.iter().find(|entry| entry.key == key) else {
+            return Ok(None);
+        };
+        match entry.value.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Some(value)),
+            _ => {
+                let text = format!("`{key}` is `{}`, not a number", entry.value);
+                Err(problem(entry.line, text, "write it as `# key: number`"))
+            }
+        }
+    };
+    let pair = |low: &str, high: &str| -> Result<Option<(f64, f64)>, ReadError> {
+        let (Some(low_value), Some(high_value)) = (value(low)?, value(high)?) else {
+            return Ok(None);
+        };
+        if high_value > low_value {
+            return Ok(Some((low_value, high_value)));
+        }
+        let line = header.iter().find(|entry| entry.key == high);
+        let text = format!("`{high}` is not above `{low}`");
+        Err(problem(
+            line.map_or(1, |entry| entry.line),
+            text,
+            "swap or correct the two",
+        ))
+    };
+    let pwm = pair("pwm_low_us", "pwm_high_us")?;
+    if layout.stem == "motor" && !layout.motors.is_empty() {
+        flight.range = Some(Range {
+            low: 0.0,
+            high: 1.0,
+            unit: "1",
+            source: "columns `motor1`.. are fractions".into(),
+        });
+    } else if let Some((low, high)) = pwm {
+        flight.range = Some(Range {
+            low,
+            high,
+            unit: "us",
+            source: "header pwm_low_us, pwm_high_us".into(),
+        });
+    }
+    flight.effective = match pair("effective_low", "effective_high")? {
+        Some((low, high)) => Range {
+            low,
+            high,
+            unit: "1",
+            source: "header effective_low, effective_high".into(),
+        },
+        None => whole_range("no effective_low and effective_high in the header"),
+    };
+    for entry in &header {
+        match entry.key.as_str() {
+            "vehicle" => flight.vehicle.frame = Some(entry.value.clone()),
+            "firmware" => flight.vehicle.firmware = Some(entry.value.clone()),
+            "vehicle_kind" => {
+                flight.vehicle.kind = VehicleKind::from_name(&entry.value);
+                flight.vehicle.source = "header vehicle_kind".into();
+            }
+            _ => {}
+        }
+    }
+    flight.utc_at_zero_s = value("utc_at_zero_s")?;
+    flight.header = header
+        .into_iter()
+        .map(|entry| (entry.key, entry.value))
+        .collect();
+    Ok(())
+}

@@ -1,0 +1,190 @@
+//! DataFlash is self-describing: FMT records say what the others hold.
+
+use std::borrow::Cow;
+
+/// Type of the FMT records themselves.
+pub(crate) const FMT: u8 = 128;
+
+/// One field of a message.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) label: String,
+    /// The letter that stands for its type.
+    pub(crate) kind: u8,
+    /// Where it starts in the payload of a binary record.
+    offset: usize,
+}
+
+/// A kind of message, as its FMT record describes it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Format {
+    pub(crate) type_id: u8,
+    /// Bytes of a binary record, its header of three included.
+    pub(crate) length: usize,
+    pub(crate) name: String,
+    pub(crate) columns: Vec<Column>,
+}
+
+impl Format {
+    pub(crate) fn new(type_id: u8, length: usize, name: &str, kinds: &str, labels: &str) -> Self {
+        let mut offset = 0;
+        let columns = kinds
+            .bytes()
+            .zip(labels.split(','))
+            .map(|(kind, label)| {
+                let column = Column {
+                    label: label.trim().into(),
+                    kind,
+                    offset,
+                };
+                offset += width(kind);
+                column
+            })
+            .collect();
+        Self {
+            type_id,
+            length,
+            name: name.into(),
+            columns,
+        }
+    }
+
+    /// The format that a binary FMT record (its payload) describes; `None` when its
+    /// length cannot be one.
+    pub(crate) fn from_payload(payload: &[u8]) -> Option<Self> {
+        let (&[type_id, length], rest) = payload.split_first_chunk()?;
+        let (name, rest) = rest.split_first_chunk::<4>()?;
+        let (kinds, rest) = rest.split_first_chunk::<16>()?;
+        let labels = rest.get(..64)?;
+        let format = Self::new(
+            type_id,
+            length.into(),
+            &ascii(name)?,
+            &ascii(kinds)?,
+            &ascii(labels)?,
+        );
+        let end = format
+            .columns
+            .last()
+            .map_or(0, |c| c.offset + width(c.kind));
+        (format.length >= 3 + end).then_some(format)
+    }
+
+    /// Index of the first of `labels` that this message has.
+    pub(crate) fn column(&self, labels: &[&str]) -> Option<usize> {
+        labels
+            .iter()
+            .find_map(|label| self.columns.iter().position(|c| c.label == *label))
+    }
+}
+
+/// Bytes of a type of field; 0 for an unknown letter.
+fn width(kind: u8) -> usize {
+    match kind {
+        b'b' | b'B' | b'M' => 1,
+        b'h' | b'H' | b'c' | b'C' | b'g' => 2,
+        b'i' | b'I' | b'f' | b'e' | b'E' | b'L' | b'n' => 4,
+        b'd' | b'q' | b'Q' => 8,
+        b'N' => 16,
+        b'Z' | b'a' => 64,
+        _ => 0,
+    }
+}
+
+/// Text up to the first zero; `None` when it is not printable ASCII, so not a definition.
+fn ascii(bytes: &[u8]) -> Option<Cow<'_, str>> {
+    let text = bytes.split(|&byte| byte == 0).next()?;
+    let printable = text.iter().all(|byte| (b' '..=b'~').contains(byte));
+    printable.then(|| String::from_utf8_lossy(text))
+}
+
+/// The fields of one message, in either encoding.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Cells<'a> {
+    /// Payload of a binary record, after its header.
+    Binary(&'a [u8]),
+    /// Fields of a text line, after its name.
+    Text(&'a [&'a str]),
+}
+
+impl Cells<'_> {
+    /// The number in a column, scaled to its unit; `None` where there is none.
+    pub(crate) fn number(&self, format: &Format, column: usize) -> Option<f64> {
+        let described = format.columns.get(column)?;
+        match self {
+            Self::Binary(payload) => {
+                binary_number(payload.get(described.offset..)?, described.kind)
+            }
+            Self::Text(cells) => cells.get(column)?.parse().ok(),
+        }
+    }
+
+    /// The text in a column.
+    pub(crate) fn text(&self, format: &Format, column: usize) -> Option<String> {
+        let described = format.columns.get(column)?;
+        match self {
+            Self::Binary(payload) => {
+                if !matches!(described.kind, b'n' | b'N' | b'Z') {
+                    return None;
+                }
+                let end = described.offset + width(described.kind);
+                let bytes = payload.get(described.offset..end)?;
+                let text = bytes.split(|&byte| byte == 0).next()?;
+                Some(String::from_utf8_lossy(text).trim().to_owned())
+            }
+            // A text may hold commas, and is always the last column.
+            Self::Text(cells) => Some(cells.get(column..)?.join(",").trim().to_owned()),
+        }
+    }
+}
+
+fn binary_number(bytes: &[u8], kind: u8) -> Option<f64> {
+    Some(match kind {
+        b'b' => f64::from(i8::from_le_bytes(*bytes.first_chunk()?)),
+        b'B' | b'M' => f64::from(*bytes.first()?),
+        b'h' => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)),
+        b'H' => f64::from(u16::from_le_bytes(*bytes.first_chunk()?)),
+        b'c' => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)) * 0.01,
+        b'C' => f64::from(u16::from_le_bytes(*bytes.first_chunk()?)) * 0.01,
+        b'i' => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)),
+        b'I' => f64::from(u32::from_le_bytes(*bytes.first_chunk()?)),
+        b'e' => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)) * 0.01,
+        b'E' => f64::from(u32::from_le_bytes(*bytes.first_chunk()?)) * 0.01,
+        b'L' => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)) * 1e-7,
+        b'f' => f64::from(f32::from_le_bytes(*bytes.first_chunk()?)),
+        b'd' => f64::from_le_bytes(*bytes.first_chunk()?),
+        b'q' => i64::from_le_bytes(*bytes.first_chunk()?) as f64,
+        b'Q' => u64::from_le_bytes(*bytes.first_chunk()?) as f64,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_where_their_types_put_them() {
+        let format = Format::new(200, 3 + 8 + 2 + 4, "TEST", "QcL", "TimeUS,A,Lat");
+        let mut payload = 1_500_000_u64.to_le_bytes().to_vec();
+        payload.extend((-1234_i16).to_le_bytes());
+        payload.extend(123_456_789_i32.to_le_bytes());
+        let cells = Cells::Binary(&payload);
+        assert_eq!(cells.number(&format, 0), Some(1_500_000.0));
+        assert_eq!(cells.number(&format, 1), Some(-12.34));
+        assert_eq!(cells.number(&format, 2), Some(12.345_678_9));
+        assert_eq!(cells.number(&format, 3), None);
+        assert_eq!(Cells::Binary(&payload[..9]).number(&format, 1), None);
+    }
+
+    #[test]
+    fn a_definition_shorter_than_its_fields_is_none() {
+        let mut payload = vec![200, 12];
+        for (text, width) in [("TEST", 4), ("QQ", 16), ("TimeUS,A", 64)] {
+            payload.extend(text.bytes().chain(std::iter::repeat(0)).take(width));
+        }
+        assert_eq!(Format::from_payload(&payload), None);
+        payload[1] = 19;
+        assert_eq!(Format::from_payload(&payload).unwrap().columns.len(), 2);
+    }
+}

@@ -1,0 +1,183 @@
+//! ArduPilot DataFlash logs.
+//!
+//! A binary log is a row of records: `A3 95`, a type, and as many bytes as the FMT record
+//! of that type said. Nothing protects a record, so it is only believed when another one
+//! follows it; see <https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html>.
+
+mod collect;
+mod format;
+mod signals;
+
+use std::io;
+
+use self::collect::Collector;
+use self::format::{Cells, FMT, Format};
+use crate::input::Input;
+use crate::{Flight, Options};
+
+const HEAD: [u8; 2] = [0xa3, 0x95];
+/// Length of the FMT records, the only ones known before the log is read.
+const FMT_LENGTH: usize = 89;
+/// No record is longer: its length is one byte.
+const LONGEST: usize = 255;
+
+/// Whether the start of a file holds a DataFlash definition.
+pub(crate) fn looks_like(start: &[u8]) -> bool {
+    start.starts_with(&[HEAD[0], HEAD[1], FMT])
+        || start
+            .windows(8)
+            .any(|bytes| bytes.starts_with(&HEAD) && bytes.ends_with(b"FMT\0"))
+}
+
+pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Flight> {
+    let mut scanner = Scanner::new(options);
+    loop {
+        let (window, at_end) = input.window()?;
+        let used = scanner.scan(window, at_end);
+        io::BufRead::consume(input, used);
+        if at_end {
+            break;
+        }
+    }
+    Ok(scanner
+        .collector
+        .finish(Flight::empty(crate::Format::DataFlash)))
+}
+
+struct Scanner<'o> {
+    collector: Collector<'o>,
+    /// Length of the records of each type; 0 for types without a definition.
+    lengths: [u8; 256],
+    wanted: [bool; 256],
+}
+
+impl<'o> Scanner<'o> {
+    fn new(options: &'o Options) -> Self {
+        let mut lengths = [0; 256];
+        lengths[usize::from(FMT)] = FMT_LENGTH as u8;
+        let mut wanted = [false; 256];
+        wanted[usize::from(FMT)] = true;
+        Self {
+            collector: Collector::new(options),
+            lengths,
+            wanted,
+        }
+    }
+
+    /// Reads the records of a window and says how many bytes it is done with: all but a
+    /// record that may go on behind the window, or really all at the end of the log.
+    fn scan(&mut self, window: &[u8], at_end: bool) -> usize {
+        let mut at = 0;
+        let mut messages = 0;
+        // Two records and the next head are in sight of each other, but for the end.
+        let sure = if at_end {
+            window.len()
+        } else {
+            window.len().saturating_sub(2 * LONGEST + HEAD.len())
+        };
+        while at < sure {
+            match self.record(&window[at..]) {
+                Found::Record { type_id, payload } => {
+                    messages += 1;
+                    at += 3 + payload.len();
+                    if self.wanted[usize::from(type_id)] {
+                        self.take(type_id, payload);
+                    }
+                }
+                Found::Cut => {
+                    self.collector.report.truncated = true;
+                    self.collector
+                        .report
+                        .because(|| "the log ends inside a message".into());
+                    self.collector.report.skipped_bytes += (window.len() - at) as u64;
+                    at = window.len();
+                }
+                Found::Damage { skip } => {
+                    self.collector.report.skipped_bytes += skip as u64;
+                    self.collector
+                        .report
+                        .because(|| "bytes that belong to no message".into());
+                    at += skip;
+                }
+            }
+        }
+        self.collector.report.messages += messages;
+        at.min(window.len())
+    }
+
+    fn take(&mut self, type_id: u8, payload: &[u8]) {
+        if type_id != FMT {
+            return self.collector.message(type_id, Cells::Binary(payload));
+        }
+        let Some(format) = Format::from_payload(payload) else {
+            self.collector.report.bad_messages += 1;
+            self.collector
+                .report
+                .because(|| "a definition that makes no sense".into());
+            return;
+        };
+        let (type_id, length) = (format.type_id, format.length);
+        if self.collector.define(format) && type_id != FMT {
+            self.lengths[usize::from(type_id)] = u8::try_from(length).unwrap_or(0);
+            self.wanted[usize::from(type_id)] = self.collector.wants(type_id);
+        }
+    }
+
+    /// What is at the start of `bytes`.
+    fn record<'a>(&self, bytes: &'a [u8]) -> Found<'a> {
+        let length = self.length(bytes);
+        if length == 0 {
+            return Found::Damage {
+                skip: self.next_head(bytes, 1, bytes.len()),
+            };
+        }
+        let (Some(payload), Some(&type_id)) = (bytes.get(3..length), bytes.get(2)) else {
+            return Found::Cut;
+        };
+        if bytes.len() == length || self.starts(&bytes[length..]) {
+            return Found::Record { type_id, payload };
+        }
+        // Nothing follows where something should. If a record starts inside of this one
+        // and is itself followed by another, then this one lost bytes; else the next did.
+        let inner = self.next_head(bytes, 1, length);
+        if inner < length && self.starts(&bytes[inner + self.length(&bytes[inner..])..]) {
+            return Found::Damage { skip: inner };
+        }
+        Found::Record { type_id, payload }
+    }
+
+    /// Length of the record that starts here; 0 when none does.
+    fn length(&self, bytes: &[u8]) -> usize {
+        match bytes {
+            [a, b, type_id, ..] if [*a, *b] == HEAD => self.lengths[usize::from(*type_id)].into(),
+            _ => 0,
+        }
+    }
+
+    /// Whether a record starts here, or the log ends.
+    fn starts(&self, bytes: &[u8]) -> bool {
+        self.length(bytes) > 0 || HEAD.starts_with(&bytes[..bytes.len().min(2)])
+    }
+
+    /// Where the next record starts, from `from` and before `to`; `to` when none does.
+    fn next_head(&self, bytes: &[u8], from: usize, to: usize) -> usize {
+        (from..to)
+            .find(|&at| {
+                let length = self.length(&bytes[at..]);
+                length > 0 && at + length <= bytes.len()
+            })
+            .unwrap_or(to)
+    }
+}
+
+enum Found<'a> {
+    Record {
+        type_id: u8,
+        payload: &'a [u8],
+    },
+    /// The log ends before the record does.
+    Cut,
+    Damage {
+        skip: usize,
+    },
+}

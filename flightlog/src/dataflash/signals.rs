@@ -1,0 +1,122 @@
+//! Which DataFlash messages hold which signals.
+
+/// How a signal is made from the fields of a message.
+pub(crate) enum From {
+    /// The first of these labels that the message has.
+    Field(&'static [&'static str]),
+    /// As `Field`; logged in hundredths where the field is an integer (firmware before 3.3).
+    Hundredths(&'static [&'static str]),
+    /// Length of the vector of these two.
+    Length(&'static str, &'static str),
+}
+
+/// Signals of one kind of message: how made, name, unit.
+pub(crate) struct Spec {
+    pub(crate) message: &'static str,
+    pub(crate) signals: &'static [(From, &'static str, &'static str)],
+}
+
+/// Labels of the field that tells several sensors, cores or batteries apart: number 0 counts.
+pub(crate) const INSTANCE: &[&str] = &["I", "Inst", "Instance", "IMU", "C"];
+
+use From::{Field, Hundredths, Length};
+
+const WIND: &[(From, &str, &str)] = &[
+    (Field(&["VWN"]), "ekf_wind_north_m_s", "m/s"),
+    (Field(&["VWE"]), "ekf_wind_east_m_s", "m/s"),
+    (Length("VWN", "VWE"), "ekf_wind_m_s", "m/s"),
+];
+
+pub(crate) const SPECS: &[Spec] = &[
+    Spec {
+        message: "ATT",
+        signals: &[
+            (Field(&["DesRoll", "RollIn"]), "roll_des_deg", "deg"),
+            (Field(&["Roll"]), "roll_deg", "deg"),
+            (Field(&["DesPitch", "PitchIn"]), "pitch_des_deg", "deg"),
+            (Field(&["Pitch"]), "pitch_deg", "deg"),
+            (Field(&["DesYaw", "YawIn"]), "yaw_des_deg", "deg"),
+            (Field(&["Yaw"]), "yaw_deg", "deg"),
+        ],
+    },
+    Spec {
+        message: "BAT",
+        signals: &[
+            (Field(&["Volt"]), "battery_v", "V"),
+            (Field(&["Curr"]), "battery_a", "A"),
+            (Field(&["CurrTot"]), "battery_used_mah", "mAh"),
+            (Field(&["RemPct"]), "battery_remaining_pct", "%"),
+        ],
+    },
+    Spec {
+        message: "CURR",
+        signals: &[
+            (Hundredths(&["Volt"]), "battery_v", "V"),
+            (Hundredths(&["Curr"]), "battery_a", "A"),
+            (Field(&["CurrTot"]), "battery_used_mah", "mAh"),
+        ],
+    },
+    Spec {
+        message: "CTUN",
+        signals: &[(Field(&["Alt", "BarAlt"]), "altitude_m", "m")],
+    },
+    Spec {
+        message: "VIBE",
+        signals: &[
+            (Field(&["VibeX"]), "vibration_x_m_s2", "m/s2"),
+            (Field(&["VibeY"]), "vibration_y_m_s2", "m/s2"),
+            (Field(&["VibeZ"]), "vibration_z_m_s2", "m/s2"),
+            (Field(&["Clip", "Clip0"]), "accelerometer_clips", ""),
+        ],
+    },
+    Spec {
+        message: "GPS",
+        signals: &[
+            (Field(&["Status"]), "gps_fix", ""),
+            (Field(&["NSats"]), "gps_satellites", ""),
+            (Field(&["HDop"]), "gps_hdop", ""),
+            (Field(&["Spd"]), "ground_speed_m_s", "m/s"),
+        ],
+    },
+    Spec {
+        message: "GPA",
+        signals: &[
+            (Field(&["HAcc"]), "gps_horizontal_accuracy_m", "m"),
+            (Field(&["VAcc"]), "gps_vertical_accuracy_m", "m"),
+        ],
+    },
+    Spec {
+        message: "RAD",
+        signals: &[
+            (Field(&["RSSI"]), "radio_rssi", ""),
+            (Field(&["RemRSSI"]), "radio_remote_rssi", ""),
+            (Field(&["Noise"]), "radio_noise", ""),
+        ],
+    },
+    Spec {
+        message: "RSSI",
+        signals: &[
+            (Field(&["RXRSSI"]), "rc_rssi", ""),
+            (Field(&["RXLQ"]), "rc_link_quality_pct", "%"),
+        ],
+    },
+    Spec {
+        message: "XKF2",
+        signals: WIND,
+    },
+    Spec {
+        message: "NKF2",
+        signals: WIND,
+    },
+    Spec {
+        message: "EKF2",
+        signals: WIND,
+    },
+    Spec {
+        message: "SIMW",
+        signals: &[
+            (Length("WN", "WE"), "wind_m_s", "m/s"),
+            (Field(&["WD"]), "wind_down_m_s", "m/s"),
+        ],
+    },
+];

@@ -1,0 +1,75 @@
+//! Why a file could not be read at all.
+
+/// A log that could not be read. A damaged log is no error: it gives what is there,
+/// and says in its [`Report`](crate::Report) what is missing.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file could not be opened, or reading it failed.
+    #[error("cannot read `{path}`: {source}")]
+    Io {
+        /// The path as the user gave it; `standard input`, or `the log` for a reader.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// There is nothing in it.
+    #[error("`{path}` is empty")]
+    Empty {
+        /// The path as the user gave it.
+        path: String,
+    },
+    /// It is something else than a flight log.
+    #[error("`{path}` is {what}, not a flight log")]
+    NotALog {
+        /// The path as the user gave it.
+        path: String,
+        /// What it looks like, such as `a PNG picture`.
+        what: String,
+    },
+    /// It is a flight CSV, but its columns or values make no flight.
+    #[error("`{path}`, line {line}: {problem}")]
+    Csv {
+        /// The path as the user gave it.
+        path: String,
+        /// Line in the file, from 1.
+        line: u64,
+        /// What is wrong there.
+        problem: String,
+        /// What to do about it.
+        help: String,
+    },
+}
+
+impl ReadError {
+    /// What to do about it, apart from the message.
+    ///
+    /// ```
+    /// let picture = b"\x89PNG\r\n\x1a\n and so on";
+    /// let error = flightlog::read(&picture[..], &flightlog::Options::default()).unwrap_err();
+    /// assert_eq!(error.to_string(), "`the log` is a PNG picture, not a flight log");
+    /// assert!(error.help().is_some());
+    /// ```
+    pub fn help(&self) -> Option<&str> {
+        match self {
+            Self::Io { .. } => None,
+            Self::Empty { .. } => Some("the download or copy may have failed: fetch the log again"),
+            Self::NotALog { what, .. } if what.contains("git-lfs") => {
+                Some("fetch the log itself with `git lfs pull`")
+            }
+            Self::NotALog { .. } => Some(
+                "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
+            ),
+            Self::Csv { help, .. } => Some(help),
+        }
+    }
+
+    pub(crate) fn with_path(mut self, name: &str) -> Self {
+        match &mut self {
+            Self::Io { path, .. }
+            | Self::Empty { path }
+            | Self::NotALog { path, .. }
+            | Self::Csv { path, .. } => name.clone_into(path),
+        }
+        self
+    }
+}

@@ -1,0 +1,131 @@
+//! What a log does not hold, so that a question about it has no answer.
+
+use crate::{Flight, VehicleKind};
+
+/// Rows a second below which a spread over a window means little.
+const SLOWEST_HZ: f64 = 5.0;
+
+/// Something the log does not hold: the reason why a value is not available (NA).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Gap {
+    /// The vehicle is known, and is no multirotor.
+    #[error("the vehicle is a {kind}, not a multirotor ({from})")]
+    NotAMultirotor {
+        /// What it is.
+        kind: VehicleKind,
+        /// How that is known.
+        from: String,
+    },
+    /// No output is known to drive a motor.
+    #[error("the log does not say which outputs drive the motors")]
+    NoMotors,
+    /// Motors are known, but their commands were not logged.
+    #[error("the commands of the motors are not in the log")]
+    NoCommands,
+    /// The range of the motor commands is unknown.
+    #[error("the range of the motor commands is not in the log")]
+    NoRange,
+    /// The motors were never armed.
+    #[error("the motors were never armed")]
+    NeverArmed,
+    /// The vehicle never left the ground while motor commands were logged.
+    #[error("the vehicle was never in the air")]
+    NeverInAir,
+    /// The log does not tell when the vehicle was in the air.
+    #[error("the log does not tell when the vehicle was in the air")]
+    AirUnknown,
+    /// Attitude and its set point are not both logged.
+    #[error("attitude and its set point are not both in the log")]
+    NoAttitude,
+    /// Motor commands come too rarely for a spread.
+    #[error("motor commands are logged at {rate_hz:.1} Hz, too slow for a spread")]
+    TooSlow {
+        /// Rows a second.
+        rate_hz: f64,
+    },
+}
+
+impl Gap {
+    /// What the pilot can do so that the next log holds it.
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            Self::NotAMultirotor { .. } | Self::NeverArmed | Self::NeverInAir => None,
+            Self::NoMotors => Some(
+                "ArduPilot: log from boot, so that the SERVOn_FUNCTION parameters are in it; CSV: name the columns pwm1.. or motor1..",
+            ),
+            Self::NoCommands => {
+                Some("ArduPilot: set bit 10 (RCOUT) of LOG_BITMASK; PX4: log actuator_motors")
+            }
+            Self::NoRange => Some(
+                "ArduPilot: log from boot, so that MOT_PWM_MIN/MAX are in it; CSV: add `# pwm_low_us:` and `# pwm_high_us:`",
+            ),
+            Self::AirUnknown => {
+                Some("ArduPilot: EV messages, PX4: vehicle_land_detected, CSV: a column `in_air`")
+            }
+            Self::NoAttitude => Some(
+                "ArduPilot: set bit 0 or 1 (attitude) of LOG_BITMASK; PX4: log vehicle_attitude and vehicle_attitude_setpoint",
+            ),
+            Self::TooSlow { .. } => Some(
+                "use the log on the vehicle instead of telemetry, or raise the rate: ArduPilot LOG_BITMASK bit 0 (fast attitude) or SRx_RC_CHAN for telemetry, PX4 SDLOG_PROFILE",
+            ),
+        }
+    }
+
+    pub(crate) fn stops_statistics(&self) -> bool {
+        !matches!(self, Self::NoAttitude | Self::TooSlow { .. })
+    }
+}
+
+impl Flight {
+    /// Everything this log does not hold, the gravest first; empty for a log that can
+    /// answer every question.
+    ///
+    /// ```
+    /// let log = "t_s,motor1\n0,0.5\n1,0.4\n2,0.4\n";
+    /// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
+    /// let gaps: Vec<String> = flight.gaps().iter().map(ToString::to_string).collect();
+    /// assert_eq!(gaps, [
+    ///     "attitude and its set point are not both in the log",
+    ///     "motor commands are logged at 1.0 Hz, too slow for a spread",
+    /// ]);
+    /// # Ok::<(), flightlog::ReadError>(())
+    /// ```
+    pub fn gaps(&self) -> Vec<Gap> {
+        let mut gaps = Vec::new();
+        if !matches!(
+            self.vehicle.kind,
+            VehicleKind::Multirotor | VehicleKind::Unknown
+        ) {
+            gaps.push(Gap::NotAMultirotor {
+                kind: self.vehicle.kind,
+                from: self.vehicle.source.clone(),
+            });
+        }
+        if self.motors.is_empty() {
+            gaps.push(Gap::NoMotors);
+        } else if self.commands.is_empty() {
+            gaps.push(Gap::NoCommands);
+        }
+        if self.range.is_none() && !self.motors.is_empty() {
+            gaps.push(Gap::NoRange);
+        }
+        let never = |intervals: &crate::Intervals| intervals.spans.is_empty();
+        if self.armed.as_ref().is_some_and(never) {
+            gaps.push(Gap::NeverArmed);
+        }
+        match &self.in_air {
+            None => gaps.push(Gap::AirUnknown),
+            Some(spans) if never(spans) => gaps.push(Gap::NeverInAir),
+            Some(_) => {}
+        }
+        let attitude = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
+        if attitude.iter().any(|name| self.signal(name).is_none()) {
+            gaps.push(Gap::NoAttitude);
+        }
+        if let Some(rate_hz) = self.command_rate_hz().filter(|&rate| rate < SLOWEST_HZ) {
+            gaps.push(Gap::TooSlow { rate_hz });
+        }
+        gaps
+    }
+}

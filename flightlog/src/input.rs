@@ -1,0 +1,103 @@
+//! A sliding view into a stream: the readers see slices, memory stays bounded.
+
+use std::io::{self, BufRead, Read};
+
+/// Bytes seen at a time; every record of every format is much shorter.
+const WINDOW: usize = 1 << 18;
+
+pub(crate) struct Input<'r> {
+    source: Box<dyn Read + 'r>,
+    buffer: Vec<u8>,
+    start: usize,
+    end: usize,
+    taken: u64,
+    at_end: bool,
+    /// Compressed data may end early or be damaged: then what came before counts.
+    compressed: bool,
+    failure: Option<String>,
+}
+
+impl<'r> Input<'r> {
+    pub(crate) fn new(source: Box<dyn Read + 'r>, compressed: bool) -> Self {
+        Self {
+            source,
+            buffer: vec![0; WINDOW],
+            start: 0,
+            end: 0,
+            taken: 0,
+            at_end: false,
+            compressed,
+            failure: None,
+        }
+    }
+
+    /// Fills the window and shows it: a whole window, or all that is left with `true`.
+    pub(crate) fn window(&mut self) -> io::Result<(&[u8], bool)> {
+        self.buffer.copy_within(self.start..self.end, 0);
+        self.end -= self.start;
+        self.start = 0;
+        while self.end < WINDOW && !self.at_end {
+            self.read_more()?;
+        }
+        Ok((&self.buffer[..self.end], self.at_end))
+    }
+
+    fn read_more(&mut self) -> io::Result<()> {
+        match self.source.read(&mut self.buffer[self.end..]) {
+            Ok(0) => self.at_end = true,
+            Ok(read) => self.end += read,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) if self.compressed => {
+                self.failure = Some(format!("the gzip stream is cut or damaged: {error}"));
+                self.at_end = true;
+            }
+            Err(error) => return Err(error),
+        }
+        Ok(())
+    }
+
+    /// Bytes taken so far.
+    pub(crate) fn taken(&self) -> u64 {
+        self.taken
+    }
+
+    /// Why the stream ended before its time, if it did.
+    pub(crate) fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+
+    /// Everything from here on, the bytes in the window first.
+    pub(crate) fn into_rest(self) -> impl Read + 'r {
+        let seen = io::Cursor::new(self.buffer[self.start..self.end].to_vec());
+        seen.chain(self.source)
+    }
+}
+
+impl Read for Input<'_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let from = self.fill_buf()?;
+        let count = from.len().min(to.len());
+        to[..count].copy_from_slice(&from[..count]);
+        self.consume(count);
+        Ok(count)
+    }
+}
+
+impl BufRead for Input<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.start == self.end && !self.at_end {
+            self.start = 0;
+            self.end = 0;
+            while self.end == 0 && !self.at_end {
+                self.read_more()?;
+            }
+        }
+        Ok(&self.buffer[self.start..self.end])
+    }
+
+    fn consume(&mut self, count: usize) {
+        let count = count.min(self.end - self.start);
+        self.start += count;
+        self.taken += count as u64;
+    }
+}

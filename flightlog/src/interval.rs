@@ -1,0 +1,133 @@
+//! Stretches of time in which something was the case: armed, in the air.
+
+/// One stretch of time on the log's clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// First time of the interval, seconds.
+    pub start_s: f64,
+    /// Time at which it was over, seconds; the last time of the log when it never was.
+    pub end_s: f64,
+    /// The log ended while it still was the case.
+    pub ends_with_log: bool,
+}
+
+impl Interval {
+    /// Length in seconds.
+    pub fn duration_s(&self) -> f64 {
+        self.end_s - self.start_s
+    }
+
+    fn contains(&self, t_s: f64) -> bool {
+        t_s >= self.start_s && (t_s < self.end_s || self.ends_with_log)
+    }
+}
+
+/// Intervals in order of time, and the rule by which they were found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Intervals {
+    /// The intervals, in order of time and apart from each other.
+    pub spans: Vec<Interval>,
+    /// How they were found, such as `EV 28 (not landed) to EV 18 (land complete)`.
+    pub rule: String,
+}
+
+impl Intervals {
+    /// Whether `t_s` lies in one of the intervals (start included, end not).
+    pub fn contains(&self, t_s: f64) -> bool {
+        let after = self.spans.partition_point(|span| span.start_s <= t_s);
+        after
+            .checked_sub(1)
+            .and_then(|i| self.spans.get(i))
+            .is_some_and(|span| span.contains(t_s))
+    }
+
+    /// Length of all intervals together, in seconds.
+    ///
+    /// ```
+    /// # use flightlog::{Interval, Intervals};
+    /// let span = Interval { start_s: 10.0, end_s: 12.5, ends_with_log: false };
+    /// let intervals = Intervals { spans: vec![span], rule: "an example".into() };
+    /// assert_eq!(intervals.duration_s(), 2.5);
+    /// assert!(intervals.contains(10.0) && !intervals.contains(12.5));
+    /// ```
+    pub fn duration_s(&self) -> f64 {
+        self.spans.iter().map(Interval::duration_s).sum()
+    }
+
+    /// From changes of state: each is the time from which the state holds.
+    /// `before` is the state ahead of the first change, from `first_s` on.
+    pub(crate) fn from_changes(
+        changes: &[(f64, bool)],
+        before: bool,
+        first_s: f64,
+        last_s: f64,
+        rule: impl Into<String>,
+    ) -> Self {
+        let mut spans = Vec::new();
+        let mut start = before.then_some(first_s);
+        for &(t_s, state) in changes {
+            match (start, state) {
+                (None, true) => start = Some(t_s),
+                (Some(start_s), false) => {
+                    if t_s > start_s {
+                        spans.push(Interval {
+                            start_s,
+                            end_s: t_s,
+                            ends_with_log: false,
+                        });
+                    }
+                    start = None;
+                }
+                _ => {}
+            }
+        }
+        if let Some(start_s) = start.filter(|&start_s| last_s >= start_s) {
+            spans.push(Interval {
+                start_s,
+                end_s: last_s,
+                ends_with_log: true,
+            });
+        }
+        Self {
+            spans,
+            rule: rule.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_become_intervals() {
+        let changes = [(1.0, true), (2.0, true), (3.0, false), (5.0, true)];
+        let found = Intervals::from_changes(&changes, false, 0.0, 8.0, "test");
+        let spans: Vec<_> = found
+            .spans
+            .iter()
+            .map(|s| (s.start_s, s.end_s, s.ends_with_log))
+            .collect();
+        assert_eq!(spans, [(1.0, 3.0, false), (5.0, 8.0, true)]);
+        assert_eq!(found.duration_s(), 5.0);
+        for (t, inside) in [
+            (0.0, false),
+            (1.0, true),
+            (2.99, true),
+            (3.0, false),
+            (8.0, true),
+        ] {
+            assert_eq!(found.contains(t), inside, "{t}");
+        }
+    }
+
+    #[test]
+    fn a_state_before_the_first_change_counts() {
+        let found = Intervals::from_changes(&[(3.0, false)], true, 1.0, 8.0, "test");
+        assert_eq!(found.duration_s(), 2.0);
+        let all = Intervals::from_changes(&[], true, 1.0, 8.0, "test");
+        assert_eq!(all.duration_s(), 7.0);
+        let none = Intervals::from_changes(&[], false, 1.0, 8.0, "test");
+        assert!(none.spans.is_empty());
+    }
+}

@@ -1,0 +1,107 @@
+//! Servo outputs as ArduPilot logs them, before it is known which of them drive motors.
+
+use crate::{Commands, Motor};
+
+/// A pulse that is no pulse: the output was not logged in that row.
+const MISSING: u16 = u16::MAX;
+
+/// Rows of pulse widths, a column an output.
+#[derive(Debug, Default)]
+pub(crate) struct Outputs {
+    t_s: Vec<f64>,
+    /// Columns by output number less one; shorter than `t_s` while nothing was logged since.
+    columns: Vec<Vec<u16>>,
+}
+
+impl Outputs {
+    /// Adds the values (output from 1, pulse in us) of a message. Outputs above 14 come in
+    /// messages of their own, which complete the row that the `first` message began.
+    /// Gives whether a row had to be dropped because its time goes back.
+    pub(crate) fn add(
+        &mut self,
+        t_s: f64,
+        first: bool,
+        values: impl Iterator<Item = (u16, f64)>,
+    ) -> bool {
+        let mut dropped = false;
+        if first || self.t_s.is_empty() {
+            if self.t_s.last().is_some_and(|&last| t_s < last) {
+                dropped = true;
+                if self
+                    .t_s
+                    .len()
+                    .checked_sub(2)
+                    .is_some_and(|i| self.t_s[i] > t_s)
+                {
+                    return true;
+                }
+                self.pop();
+            }
+            self.t_s.push(t_s);
+        }
+        let row = self.t_s.len() - 1;
+        for (output, value) in values {
+            let index = usize::from(output.saturating_sub(1));
+            if self.columns.len() <= index {
+                self.columns.resize_with(index + 1, Vec::new);
+            }
+            let Some(column) = self.columns.get_mut(index) else {
+                continue;
+            };
+            column.resize(row, MISSING);
+            column.push(match value {
+                value if (0.0..f64::from(MISSING)).contains(&value) => value as u16,
+                _ => MISSING,
+            });
+        }
+        dropped
+    }
+
+    fn pop(&mut self) {
+        self.t_s.pop();
+        for column in &mut self.columns {
+            column.truncate(self.t_s.len());
+        }
+    }
+
+    /// Every logged output as a motor of the same number.
+    pub(crate) fn motors_by_name(&self, label: &str, source: &str) -> Vec<Motor> {
+        (1..=self.columns.len() as u16)
+            .map(|number| Motor {
+                number,
+                output: format!("{label}{number}"),
+                source: source.into(),
+            })
+            .collect()
+    }
+
+    /// The commands of these motors; their outputs are named by a label and the number.
+    pub(crate) fn commands(self, motors: &[Motor]) -> Commands {
+        let mut commands = Commands::new(motors.len());
+        let columns: Vec<Option<&Vec<u16>>> = motors
+            .iter()
+            .map(|motor| {
+                let digits = motor
+                    .output
+                    .trim_start_matches(|c: char| !c.is_ascii_digit());
+                let output: usize = digits.parse().ok()?;
+                self.columns.get(output.checked_sub(1)?)
+            })
+            .collect();
+        // Outputs that were never logged are no commands.
+        if columns.iter().all(Option::is_none) {
+            return commands;
+        }
+        for (row, &t_s) in self.t_s.iter().enumerate() {
+            let values =
+                columns
+                    .iter()
+                    .map(|column| match column.and_then(|column| column.get(row)) {
+                        Some(&value) if value != MISSING => f64::from(value),
+                        _ => f64::NAN,
+                    });
+            commands.push(t_s, values);
+        }
+        commands
+    }
+}

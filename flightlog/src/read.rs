@@ -1,0 +1,157 @@
+//! The front door: what kind of log is it, and who reads it.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use crate::input::Input;
+use crate::{Flight, ReadError, csv, dataflash};
+
+/// What to read.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Names of the signals to keep; `None` keeps all. Motor commands, armed and in-air
+    /// times, modes and messages are always read. Messages that hold nothing that was
+    /// asked for are passed over without being decoded.
+    pub signals: Option<Vec<String>>,
+}
+
+impl Options {
+    /// Whether the signal `name` is asked for.
+    pub(crate) fn wants(&self, name: &str) -> bool {
+        self.signals
+            .as_ref()
+            .is_none_or(|names| names.iter().any(|wanted| wanted == name))
+    }
+}
+
+/// Reads the log at `path`; `-` is standard input. The content tells its format, never
+/// the name, and it may be gzipped.
+///
+/// # Errors
+///
+/// When there is no such file, when it is empty, or when it is no flight log. A damaged
+/// log is no error: see [`Flight::report`].
+///
+/// ```no_run
+/// let flight = flightlog::open("flight.bin", &flightlog::Options::default())?;
+/// println!("{}: {} motors", flight.vehicle.kind, flight.motors.len());
+/// # Ok::<(), flightlog::ReadError>(())
+/// ```
+pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Flight, ReadError> {
+    let path = path.as_ref();
+    if path == Path::new("-") {
+        return read(io::stdin().lock(), options)
+            .map_err(|error| error.with_path("standard input"));
+    }
+    let name = path.display().to_string();
+    let file = File::open(path).and_then(|file| match file.metadata()?.is_dir() {
+        true => Err(io::ErrorKind::IsADirectory.into()),
+        false => Ok(file),
+    });
+    match file {
+        Ok(file) => read(file, options).map_err(|error| error.with_path(&name)),
+        Err(source) => Err(ReadError::Io { path: name, source }),
+    }
+}
+
+/// Reads a log from any source of bytes, once and from front to back.
+///
+/// # Errors
+///
+/// As [`open`].
+///
+/// ```
+/// let log = "# vehicle: my quad\nt_s,motor1,motor2,motor3,motor4\n0.0,0.4,0.4,0.5,0.5\n";
+/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
+/// assert_eq!(flight.motors.len(), 4);
+/// # Ok::<(), flightlog::ReadError>(())
+/// ```
+pub fn read(source: impl Read, options: &Options) -> Result<Flight, ReadError> {
+    let mut input = Input::new(Box::new(source), false);
+    let (start, _) = input.window().map_err(io_error)?;
+    if start.starts_with(&[0x1f, 0x8b]) {
+        let unpacked = flate2::read::MultiGzDecoder::new(input.into_rest());
+        input = Input::new(Box::new(unpacked), true);
+    }
+    read_unpacked(&mut input, options)
+}
+
+fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, ReadError> {
+    let (start, _) = input.window().map_err(io_error)?;
+    let mut flight = match sniff(start) {
+        Content::DataFlash => dataflash::read(input, options).map_err(io_error)?,
+        Content::Csv => csv::read(input, options)?,
+        Content::Empty => {
+            return Err(ReadError::Empty {
+                path: UNNAMED.into(),
+            });
+        }
+        Content::Other(what) => {
+            return Err(ReadError::NotALog {
+                path: UNNAMED.into(),
+                what: what.into(),
+            });
+        }
+    };
+    flight.report.bytes = input.taken();
+    if let Some(failure) = input.failure() {
+        flight.report.truncated = true;
+        flight.report.reason = Some(failure.into());
+    }
+    Ok(flight)
+}
+
+/// What a log is called in an error until the caller names it.
+const UNNAMED: &str = "the log";
+
+pub(crate) fn io_error(source: io::Error) -> ReadError {
+    ReadError::Io {
+        path: UNNAMED.into(),
+        source,
+    }
+}
+
+enum Content {
+    DataFlash,
+    Csv,
+    Empty,
+    Other(&'static str),
+}
+
+/// Signatures of files that people hand in by mistake.
+const OTHER_FILES: &[(&[u8], &str)] = &[
+    (b"\x89PNG", "a PNG picture"),
+    (b"\xff\xd8\xff", "a JPEG picture"),
+    (b"GIF8", "a GIF picture"),
+    (b"%PDF", "a PDF document"),
+    (b"PK\x03\x04", "a ZIP archive (unpack it first)"),
+    (b"7z\xbc\xaf", "a 7z archive (unpack it first)"),
+    (b"\x28\xb5\x2f\xfd", "a zstd archive (unpack it first)"),
+    (b"\xfd7zXZ", "an xz archive (unpack it first)"),
+    (b"BZh", "a bzip2 archive (unpack it first)"),
+    (b"\x7fELF", "a program"),
+    (b"<!DOCTYPE", "a web page"),
+    (b"<html", "a web page"),
+    (b"version https://git-lfs", "a git-lfs pointer"),
+];
+
+/// The content of a log from its first bytes; where those are damaged, from what follows.
+fn sniff(start: &[u8]) -> Content {
+    if start.is_empty() {
+        return Content::Empty;
+    }
+    if let Some((_, what)) = OTHER_FILES.iter().find(|(sign, _)| start.starts_with(sign)) {
+        return Content::Other(what);
+    }
+    if dataflash::looks_like(start) {
+        return Content::DataFlash;
+    }
+    if csv::looks_like(start) {
+        return Content::Csv;
+    }
+    match std::str::from_utf8(&start[..start.len().min(1024)]) {
+        Err(error) if error.error_len().is_some() => Content::Other("an unknown binary file"),
+        _ => Content::Other("a text file"),
+    }
+}

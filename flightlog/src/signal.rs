@@ -1,0 +1,212 @@
+//! Signals: named values over time, each group of them on a time base of its own.
+
+/// What a signal is: its name, its unit and where in the log it came from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Label {
+    /// Name with the unit in it, such as `roll_deg`.
+    pub name: String,
+    /// Unit, such as `deg`; empty when the value has none or none is known.
+    pub unit: String,
+    /// Where it came from, such as `ATT.Roll`.
+    pub source: String,
+}
+
+/// Signals that share one time base, as the fields of one log message do.
+///
+/// A value that is not known at some time is stored as NaN; [`Signal::at`] and
+/// [`Hold::at`] give `None` for it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Series {
+    t_s: Vec<f64>,
+    labels: Vec<Label>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Series {
+    pub(crate) fn new(labels: Vec<Label>) -> Self {
+        let columns = labels.iter().map(|_| Vec::new()).collect();
+        Self {
+            t_s: Vec::new(),
+            labels,
+            columns,
+        }
+    }
+
+    /// Adds one row; `values` are in the order of the labels. Times never go back: where
+    /// this one does, either it or the row before is wrong, and that one is dropped, which
+    /// the answer `true` tells.
+    pub(crate) fn push(&mut self, t_s: f64, values: impl IntoIterator<Item = f64>) -> bool {
+        let mut dropped = false;
+        if let [.., last] = self.t_s[..]
+            && t_s < last
+        {
+            if let [.., before, _] = self.t_s[..]
+                && t_s < before
+            {
+                return true;
+            }
+            self.t_s.pop();
+            for column in &mut self.columns {
+                column.pop();
+            }
+            dropped = true;
+        }
+        self.t_s.push(t_s);
+        let mut values = values.into_iter();
+        for column in &mut self.columns {
+            column.push(values.next().unwrap_or(f64::NAN));
+        }
+        dropped
+    }
+
+    /// Times of the rows, in seconds on the log's clock, never decreasing.
+    pub fn t_s(&self) -> &[f64] {
+        &self.t_s
+    }
+
+    /// The signals of this series.
+    pub fn signals(&self) -> impl Iterator<Item = Signal<'_>> {
+        self.labels
+            .iter()
+            .zip(&self.columns)
+            .map(|(label, values)| Signal {
+                label,
+                t_s: &self.t_s,
+                values,
+            })
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.t_s.is_empty()
+    }
+}
+
+/// One signal: what it is, when, and its values.
+#[derive(Debug, Clone, Copy)]
+pub struct Signal<'a> {
+    /// Name, unit and source.
+    pub label: &'a Label,
+    /// Times in seconds on the log's clock, never decreasing.
+    pub t_s: &'a [f64],
+    /// One value for each time; NaN where it is not known.
+    pub values: &'a [f64],
+}
+
+impl<'a> Signal<'a> {
+    /// The latest value at or before `t_s` (zero-order hold); `None` before the first
+    /// sample and where the value is not known.
+    pub fn at(&self, t_s: f64) -> Option<f64> {
+        let after = self.t_s.partition_point(|&t| t <= t_s);
+        let value = *self.values.get(after.checked_sub(1)?)?;
+        value.is_finite().then_some(value)
+    }
+
+    /// A cursor for reading the signal at times that only go forward.
+    pub fn hold(&self) -> Hold<'a> {
+        Hold {
+            t_s: self.t_s,
+            values: self.values,
+            after: 0,
+        }
+    }
+
+    /// Samples a second: the inverse of the median time step, `None` under two samples.
+    pub fn rate_hz(&self) -> Option<f64> {
+        rate_hz(self.t_s)
+    }
+}
+
+/// Zero-order hold over a signal for times that only go forward: one pass over the
+/// signal in all, however many times are asked for.
+///
+/// # Example: the roll angle at each motor sample
+///
+/// ```
+/// let log = "t_s,motor1,roll_deg\n0.0,0.4,1.5\n0.1,0.5,2.5\n";
+/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
+/// let mut roll = flight.signal("roll_deg").map(|signal| signal.hold());
+/// let held: Vec<_> = flight
+///     .commands
+///     .rows()
+///     .map(|(t_s, _)| roll.as_mut().and_then(|hold| hold.at(t_s)))
+///     .collect();
+/// assert_eq!(held, [Some(1.5), Some(2.5)]);
+/// # Ok::<(), flightlog::ReadError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Hold<'a> {
+    t_s: &'a [f64],
+    values: &'a [f64],
+    after: usize,
+}
+
+impl Hold<'_> {
+    /// The latest value at or before `t_s`; `t_s` must not be before that of the last call.
+    pub fn at(&mut self, t_s: f64) -> Option<f64> {
+        while self.t_s.get(self.after).is_some_and(|&t| t <= t_s) {
+            self.after += 1;
+        }
+        let value = *self.values.get(self.after.checked_sub(1)?)?;
+        value.is_finite().then_some(value)
+    }
+}
+
+/// The inverse of the median positive time step; `None` when there is none.
+pub(crate) fn rate_hz(t_s: &[f64]) -> Option<f64> {
+    let mut steps: Vec<f64> = t_s
+        .windows(2)
+        .filter_map(|pair| match pair {
+            [a, b] if b > a => Some(b - a),
+            _ => None,
+        })
+        .collect();
+    if steps.is_empty() {
+        return None;
+    }
+    let middle = steps.len() / 2;
+    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(1.0 / *median)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn series() -> Series {
+        let mut series = Series::new(vec![Label {
+            name: "x".into(),
+            unit: String::new(),
+            source: "test".into(),
+        }]);
+        for (t, x) in [(1.0, 10.0), (2.0, 20.0), (2.0, 21.0), (4.0, f64::NAN)] {
+            series.push(t, [x]);
+        }
+        series
+    }
+
+    #[test]
+    fn holds_the_latest_value() {
+        let series = series();
+        let signal = series.signals().next().unwrap();
+        let mut hold = signal.hold();
+        for (t, expected) in [
+            (0.5, None),
+            (1.0, Some(10.0)),
+            (1.9, Some(10.0)),
+            (2.0, Some(21.0)),
+            (3.9, Some(21.0)),
+            (4.0, None),
+            (9.0, None),
+        ] {
+            assert_eq!(signal.at(t), expected, "at {t}");
+            assert_eq!(hold.at(t), expected, "hold at {t}");
+        }
+    }
+
+    #[test]
+    fn rate_is_that_of_the_median_step() {
+        assert_eq!(rate_hz(&[0.0, 0.1, 0.2, 5.0]), Some(10.0));
+        assert_eq!(rate_hz(&[1.0]), None);
+        assert_eq!(rate_hz(&[1.0, 1.0]), None);
+    }
+}

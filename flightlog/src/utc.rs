@@ -1,0 +1,32 @@
+//! From GPS time to UTC.
+
+/// GPS time starts on 6 January 1980, in seconds since 1970.
+const GPS_EPOCH_S: f64 = 315_964_800.0;
+/// UTC seconds from which GPS is ahead of UTC by so many leap seconds
+/// (IERS Bulletin C).
+const LEAPS: &[(f64, f64)] = &[
+    (1_483_228_800.0, 18.0),
+    (1_435_708_800.0, 17.0),
+    (1_341_100_800.0, 16.0),
+    (1_230_768_000.0, 15.0),
+];
+
+/// Seconds since 1970 of a GPS week and the seconds in it.
+pub(crate) fn from_gps_s(week: f64, seconds: f64) -> f64 {
+    let gps_s = GPS_EPOCH_S + week * 604_800.0 + seconds;
+    let leap = LEAPS.iter().find(|(from_s, leap)| gps_s - leap >= *from_s);
+    gps_s - leap.map_or(14.0, |(_, leap)| *leap)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leap_seconds_of_the_day() {
+        // 2016-12-31 23:59:59 UTC was GPS 1167264016, two seconds later it was midnight.
+        let (week, seconds) = (1930.0, 1_167_264_016.0 - 1930.0 * 604_800.0);
+        assert_eq!(from_gps_s(week, seconds), 1_483_228_799.0);
+        assert_eq!(from_gps_s(week, seconds + 2.0), 1_483_228_800.0);
+    }
+}

@@ -1,0 +1,252 @@
+//! Flight logs against reference values made with pymavlink and pyulog, which stand beside
+//! the developers' checkout: `FLAGRED_SHARED` is the folder that holds `data/`.
+
+use std::collections::HashMap;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use flate2::read::GzDecoder;
+use flightlog::{Flight, Options, Range, Statistics};
+use serde_json::Value;
+
+/// The folder of reference data, or `None` where there is none.
+fn data() -> Option<PathBuf> {
+    let shared = std::env::var_os("FLAGRED_SHARED");
+    if shared.is_none() {
+        eprintln!("skipped: FLAGRED_SHARED is not set");
+    }
+    Some(Path::new(&shared?).join("data"))
+}
+
+fn open(path: &Path) -> Flight {
+    flightlog::open(path, &Options::default()).unwrap()
+}
+
+fn gunzip(path: &Path) -> String {
+    let file = std::fs::File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let mut text = String::new();
+    GzDecoder::new(file).read_to_string(&mut text).unwrap();
+    text
+}
+
+/// A CSV table as columns; empty cells are `None`.
+fn columns(text: &str) -> HashMap<String, Vec<Option<f64>>> {
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let mut columns = vec![Vec::new(); names.len()];
+    for line in lines {
+        for (column, cell) in columns.iter_mut().zip(line.split(',')) {
+            column.push(cell.parse().ok());
+        }
+    }
+    let names = names.into_iter().map(str::to_owned);
+    names.zip(columns).collect()
+}
+
+#[track_caller]
+fn close(what: &str, ours: f64, theirs: &Value, relative: f64) {
+    let theirs = theirs
+        .as_f64()
+        .unwrap_or_else(|| panic!("{what} is not in the truth"));
+    let tolerance = relative * theirs.abs().max(1e-9);
+    assert!(
+        (ours - theirs).abs() <= tolerance,
+        "{what}: {ours} instead of {theirs}"
+    );
+}
+
+fn compare_statistics(log: &str, ours: &Statistics, truth: &Value) {
+    assert_eq!(
+        Some(ours.samples as u64),
+        truth["n_samples"].as_u64(),
+        "{log}: rows in the air"
+    );
+    for (name, value) in [
+        ("mean_margin", ours.margin_mean),
+        ("min_margin", ours.margin_min),
+        ("std_margin", ours.margin_std),
+        ("mean_of_min_over_motors", ours.margin_mean_of_min),
+        ("mean_command", ours.command_mean),
+        ("std_command", ours.command_std),
+    ] {
+        close(&format!("{log}: {name}"), value, &truth[name], 1e-6);
+    }
+}
+
+fn compare_range(log: &str, range: &Range, low: &Value, high: &Value) {
+    close(
+        &format!("{log}: low end from {}", range.source),
+        range.low,
+        low,
+        1e-9,
+    );
+    close(
+        &format!("{log}: high end from {}", range.source),
+        range.high,
+        high,
+        1e-9,
+    );
+}
+
+/// Row by row: times and raw values.
+fn compare_rows(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
+    assert_eq!(flight.commands.len(), truth["t_s"].len(), "{log}: rows");
+    for (row, (t_s, raw)) in flight.commands.rows().enumerate() {
+        assert!(
+            (t_s - truth["t_s"][row].unwrap()).abs() < 1e-5,
+            "{log}, row {row}: {t_s}"
+        );
+        for (motor, &ours) in raw.iter().enumerate() {
+            // A motor that is told to stop is NaN in PX4 logs, and 0 here.
+            let theirs = truth[&format!("u{}", motor + 1)][row].filter(|u| u.is_finite());
+            let theirs = theirs.unwrap_or(0.0);
+            let tolerance = 1e-6 * theirs.abs().max(1e-9);
+            assert!(
+                (ours - theirs).abs() <= tolerance,
+                "{log}, row {row}: {ours} for {theirs}"
+            );
+        }
+    }
+}
+
+/// Attitude row by row, in degrees.
+fn compare_attitude(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
+    for name in ["roll_deg", "pitch_deg", "roll_des_deg", "pitch_des_deg"] {
+        let theirs = &truth[name.trim_end_matches("_deg")];
+        let signal = flight
+            .signal(name)
+            .unwrap_or_else(|| panic!("{log}: no {name}"));
+        for (row, theirs) in theirs.iter().enumerate() {
+            let t_s = truth["t_s"][row].unwrap();
+            match (signal.at(t_s + 1e-5), theirs) {
+                (Some(ours), Some(theirs)) => {
+                    let off = (ours - theirs).abs();
+                    assert!(off < 1e-3, "{log}, {name} at {t_s}: {ours} for {theirs}");
+                }
+                (ours, theirs) => assert_eq!(ours, *theirs, "{log}, {name} at {t_s}"),
+            }
+        }
+    }
+}
+
+/// Logs that pause while disarmed. The reference counts a pause after a last row in the air
+/// as flown, 628 s and 55 s of them; the events say that the craft stood on the ground.
+const PAUSES_ON_THE_GROUND: &[&str] = &["ap_beast_sample.bin", "ap_maik17.bin"];
+
+fn seconds_by_rows(flight: &Flight) -> f64 {
+    let in_air = |pair: &&[f64]| flight.is_in_air(pair[0]) == Some(true);
+    let pairs = flight.commands.t_s().windows(2);
+    pairs.filter(in_air).map(|pair| pair[1] - pair[0]).sum()
+}
+
+fn compare(folder: &Path, log: &str) {
+    let flight = open(&folder.join(log));
+    let truth_of = |end: &str| folder.join("truth").join(format!("{log}.{end}"));
+    let summary = std::fs::read_to_string(truth_of("summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+
+    assert_eq!(
+        flight.vehicle.firmware.as_deref(),
+        summary["firmware"].as_str(),
+        "{log}"
+    );
+    assert_eq!(
+        Some(flight.motors.len() as u64),
+        summary["n_motors"].as_u64(),
+        "{log}"
+    );
+    for motor in &flight.motors {
+        let theirs = &summary["channels"][format!("motor{}", motor.number)];
+        if let Some(theirs) = theirs.as_str() {
+            assert_eq!(
+                motor.output.replace("Mot", "C"),
+                theirs,
+                "{log}: {}",
+                motor.source
+            );
+        }
+    }
+    let range = flight
+        .range
+        .as_ref()
+        .unwrap_or_else(|| panic!("{log}: no range"));
+    match summary.get("pwm_min") {
+        Some(low) => compare_range(log, range, low, &summary["pwm_max"]),
+        None => compare_range(log, range, &summary["out_min"], &summary["out_max"]),
+    }
+    if let Some(low) = summary.get("effective_lo") {
+        compare_range(log, &flight.effective, low, &summary["effective_hi"]);
+    }
+    compare_rows(log, &flight, &columns(&gunzip(&truth_of("motors.csv.gz"))));
+    compare_attitude(log, &flight, &columns(&gunzip(&truth_of("att.csv.gz"))));
+
+    // The reference adds up the time steps after each row in the air.
+    let in_air_s = summary["in_air_s"].as_f64().unwrap();
+    let by_rows_s = seconds_by_rows(&flight);
+    assert!(
+        (by_rows_s - in_air_s).abs() < 0.2,
+        "{log}: {by_rows_s} s in the air for {in_air_s}"
+    );
+    if !PAUSES_ON_THE_GROUND.contains(&log) {
+        let spans_s = flight.in_air.as_ref().unwrap().duration_s();
+        assert!(
+            (spans_s - in_air_s).abs() < 0.2,
+            "{log}: {spans_s} s in the air for {in_air_s}"
+        );
+    }
+    let full = flight.full_range_statistics().unwrap();
+    compare_statistics(log, &full, &summary["full_range"]);
+    if summary["effective_range"].is_object() {
+        compare_statistics(
+            log,
+            &flight.statistics().unwrap(),
+            &summary["effective_range"],
+        );
+    }
+}
+
+#[test]
+fn simulated_flights_are_as_in_their_reference() {
+    let Some(data) = data() else { return };
+    for log in [
+        "hover_calm.BIN",
+        "steady.BIN",
+        "intermittent.BIN",
+        "payload.BIN",
+        "octoquad.BIN",
+        "octoquad_crash.BIN",
+    ] {
+        compare(&data.join("flights"), log);
+    }
+}
+
+#[test]
+fn public_logs_are_as_in_their_reference() {
+    let Some(data) = data() else { return };
+    for log in [
+        "ap_beast_mechfail36.bin",
+        "ap_beast_sample.bin",
+        "ap_delorean183.bin",
+        "ap_maik17.bin",
+    ] {
+        compare(&data.join("logs"), log);
+    }
+}
+
+#[test]
+fn flight_csv_series_are_read_whole() {
+    let Some(data) = data() else { return };
+    let flight = open(&data.join("sitl2/timeseries/f000.csv.gz"));
+    assert!(flight.report.is_clean(), "{:?}", flight.report);
+    assert_eq!(flight.motors.len(), 8);
+    assert_eq!(flight.vehicle.frame.as_deref(), Some("x8_def_c60"));
+    assert_eq!(flight.effective.low, 0.15);
+    assert!(flight.signal("climb_m_s").is_some());
+    assert!(
+        flight
+            .header
+            .contains(&("judged_from_s".into(), "16.34".into()))
+    );
+    assert!((flight.command_rate_hz().unwrap() - 25.0).abs() < 1e-6);
+    flight.statistics().unwrap();
+}
