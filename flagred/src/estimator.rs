@@ -5,12 +5,16 @@ use alloc::{string::String, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     engine::{CompileError, EvaluateError, Outcome, Scratch},
+    map::{DecisionMap, Grid, GridError},
 };
 
-use crate::{gap::FilledMap, profile::Profile};
+use crate::{
+    gap::{FilledMap, is_gap},
+    profile::Profile,
+};
 
-/// The most nodes a map has that is made to fill gaps; the more inputs, the fewer nodes along each.
-const MAP_NODES: usize = 100_000;
+/// The most cells a map has that is made to fill gaps; the more inputs, the fewer points along each.
+const MAP_CELLS: usize = 100_000;
 
 /// A profile and its rule set, compiled: immutable, and shared by any number of monitors.
 #[derive(Debug, Clone)]
@@ -19,7 +23,7 @@ pub struct Estimator {
     engine: Engine,
     output: usize,
     coverage_below: f64,
-    /// `None` where no gap is in reach: every node is covered.
+    /// `None` where no gap is in reach: every cell is covered.
     filled: Option<FilledMap>,
     /// Which input of the profile each input of the model is.
     order: Vec<usize>,
@@ -48,6 +52,9 @@ pub enum EstimatorError {
     /// The rule set itself does not compile.
     #[error("the rule set cannot be used: {0}")]
     Rules(#[from] CompileError),
+    /// It has too many inputs for a map that fills gaps.
+    #[error("the map of the rule set cannot be laid: {0}")]
+    Map(#[from] GridError),
     /// The map that fills gaps could not be evaluated.
     #[error("the rule set cannot be evaluated everywhere: {0}")]
     Evaluate(#[from] EvaluateError),
@@ -123,14 +130,16 @@ impl Estimator {
                 })
             })
             .collect::<Result<Vec<usize>, EstimatorError>>()?;
-        let shape = vec![nodes_along(model.inputs.len()); model.inputs.len()];
-        let filled = FilledMap::of(&engine, model, output, &shape, &profile.gap)?;
+        let coverage_below = profile.gap.coverage_below(model);
+        let grid = Grid::new(&engine, points_along(model.inputs.len()))?;
+        let map = DecisionMap::new(&engine, grid, output)?;
+        let filled = FilledMap::new(map, coverage_below, profile.gap.method);
         Ok(Estimator {
-            coverage_below: profile.gap.coverage_below(model),
+            coverage_below,
             profile: profile.clone(),
             engine,
             output,
-            filled,
+            filled: (filled.filled_share() > 0.0).then_some(filled),
             order,
         })
     }
@@ -163,7 +172,7 @@ impl Estimator {
         let reading = self
             .filled
             .as_ref()
-            .filter(|_| outcome.coverage < self.coverage_below)
+            .filter(|_| is_gap(outcome.coverage, self.coverage_below))
             .and_then(|map| map.read(&memory.inputs));
         let risk_pct = reading
             .map(|reading| reading.value)
@@ -178,10 +187,10 @@ impl Estimator {
     }
 }
 
-/// How many nodes the map that fills gaps has along each of so many inputs: 101, or fewer so that there are not more
-/// than [`MAP_NODES`] in all, but at least 3.
-fn nodes_along(inputs: usize) -> usize {
-    let most = libm::pow(MAP_NODES as f64, 1.0 / inputs.max(1) as f64);
+/// How many points the map that fills gaps has along each of so many inputs: 101, or fewer so that there are not more
+/// than [`MAP_CELLS`] in all, but at least 3.
+fn points_along(inputs: usize) -> usize {
+    let most = libm::pow(MAP_CELLS as f64, 1.0 / inputs.max(1) as f64);
     (most as usize).clamp(3, 101)
 }
 

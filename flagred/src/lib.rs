@@ -8,6 +8,7 @@ pub mod gap;
 pub mod margin;
 pub mod monitor;
 pub mod profile;
+pub mod shipped;
 pub mod source;
 pub mod verdict;
 pub mod window;

@@ -120,6 +120,31 @@ pub enum MonitorError {
 ///
 /// After it is made it allocates nothing, its memory does not grow, and a sample costs the same whatever the lengths
 /// of the windows.
+///
+/// # Example: a motor saturates for two seconds
+///
+/// ```
+/// use flagred::{estimator::Estimator, monitor::{Monitor, Sample}, shipped, verdict::Level};
+///
+/// let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// let estimator = Estimator::new(&profile, &rules)?;
+/// let mut monitor = Monitor::new(&estimator, 4, &[])?;
+///
+/// let mut level = None;
+/// for i in 0..500 {
+///     let t_s = f64::from(i) * 0.04;
+///     let hovering = [0.4, 0.4, 0.41, 0.41];
+///     let saturated = [0.0, 1.0, 0.05, 1.0];
+///     let motors = if t_s < 10.0 { hovering } else { saturated };
+///     let assessment = monitor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
+///     level = assessment.level.max(level);
+/// }
+/// assert_eq!(level, Some(Level::Fail));
+/// let finding = monitor.finish().ok_or("no finding")?;
+/// assert!(finding.from_s > 10.0 && finding.from_s < 15.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Monitor<'a> {
     estimator: &'a Estimator,

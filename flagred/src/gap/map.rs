@@ -1,18 +1,14 @@
-//! A decision map whose gaps are filled, read anywhere between its nodes.
+//! A decision map whose gaps are filled.
 
-use fuzzy::{
-    Engine, Model,
-    engine::{EvaluateError, Outcome},
-};
+use fuzzy::map::DecisionMap;
 
-use super::{GapMethod, GapSettings, Lattice, fill};
+use super::{GapMethod, Lattice, fill, is_gap};
 
-/// A decision map without gaps: the value at each node of a grid, and how far from the covered part it is.
+/// A decision map without gaps: what rules cover is as they say, what they do not is filled from there.
 #[derive(Debug, Clone)]
 pub struct FilledMap {
-    lattice: Lattice,
-    /// The range of each input.
-    ranges: Vec<(f64, f64)>,
+    map: DecisionMap,
+    /// NaN where nothing could be filled; never shown.
     values: Vec<f64>,
     distances: Vec<f32>,
 }
@@ -22,208 +18,147 @@ pub struct FilledMap {
 pub struct Reading {
     /// The value.
     pub value: f64,
-    /// How far from the nearest covered node it was taken, in shares of the inputs' ranges; 0 within the covered
-    /// part.
+    /// How far the nearest covered cell is, in shares of the inputs' ranges; 0 within the covered part.
     pub distance: f64,
 }
 
 impl FilledMap {
-    /// Fills a map over the `ranges` of the inputs, with `shape` nodes along each (ends included, the last input
-    /// running fastest).
-    ///
-    /// `None` unless there is a node for each product of the shape, in `values` and in `covered`, and at least
-    /// two nodes along each input.
+    /// Fills the cells whose coverage is below `coverage_below`, or that have no value.
     ///
     /// # Example: a gap in the middle of a line
     ///
     /// ```
     /// use flagred::gap::{FilledMap, GapMethod};
+    /// use fuzzy::{Engine, map::{DecisionMap, Grid}};
     ///
-    /// let values = vec![10.0, f64::NAN, 30.0];
+    /// let model = fuzzy::yaml::parse("
+    /// fuzzy: 1
+    /// name: two ends
+    /// inputs: {x: {range: [0, 1], partition: {low: 0, middle: 0.5, high: 1}}}
+    /// outputs: {y: {range: [0, 100], partition: [small, medium, large]}}
+    /// rules: [IF x IS low THEN y IS small, IF x IS high THEN y IS large]
+    /// ")?.model;
+    /// let engine = Engine::new(&model)?;
+    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 5)?, 0)?;
+    /// assert_eq!(map.value(2), None);
+    ///
     /// let method = GapMethod::InverseDistance { power: 2.0, neighbours: 2 };
-    /// let map = FilledMap::new(&[(0.0, 0.5)], &[3], values, &[true, false, true], method)
-    ///     .ok_or("shapes differ")?;
-    /// let middle = map.read(&[0.25]).ok_or("nothing is covered")?;
-    /// assert_eq!((middle.value, middle.distance), (20.0, 0.5));
-    /// # Ok::<(), &str>(())
+    /// let filled = FilledMap::new(map, 0.5, method);
+    /// let middle = filled.read(&[0.5]).ok_or("nothing is covered")?;
+    /// assert_eq!((middle.value, middle.distance), (50.0, 0.25));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn new(
-        ranges: &[(f64, f64)],
-        shape: &[usize],
-        mut values: Vec<f64>,
-        covered: &[bool],
-        method: GapMethod,
-    ) -> Option<FilledMap> {
-        let nodes = shape.iter().try_fold(1usize, |n, s| n.checked_mul(*s))?;
-        let fits = shape.len() == ranges.len()
-            && shape.iter().all(|s| *s >= 2)
-            && values.len() == nodes
-            && covered.len() == nodes
-            && u32::try_from(nodes).is_ok();
-        if !fits {
-            return None;
+    pub fn new(map: DecisionMap, coverage_below: f64, method: GapMethod) -> FilledMap {
+        let cells = 0..map.grid().cells();
+        let covered: Vec<bool> = cells
+            .clone()
+            .map(|cell| !is_gap(map.coverage(cell), coverage_below) && map.value(cell).is_some())
+            .collect();
+        let mut values: Vec<f64> = cells
+            .map(|cell| map.value(cell).unwrap_or(f64::NAN))
+            .collect();
+        let shape: Vec<usize> = map.grid().axes().iter().map(|axis| axis.points).collect();
+        let distances = fill(&Lattice::new(&shape), &covered, &mut values, method);
+        for (value, distance) in values.iter_mut().zip(&distances) {
+            if distance.is_infinite() {
+                *value = f64::NAN;
+            }
         }
-        let lattice = Lattice::new(shape);
-        let distances = fill(&lattice, covered, &mut values, method);
-        Some(FilledMap {
-            lattice,
-            ranges: ranges.to_vec(),
+        FilledMap {
+            map,
             values,
             distances,
-        })
-    }
-
-    /// Evaluates an output of a model at the nodes of a grid and fills its gaps; `None` where there are none to fill.
-    ///
-    /// # Errors
-    ///
-    /// Where the engine is not that of the model.
-    pub(crate) fn of(
-        engine: &Engine,
-        model: &Model,
-        output: usize,
-        shape: &[usize],
-        settings: &GapSettings,
-    ) -> Result<Option<FilledMap>, EvaluateError> {
-        let ranges: Vec<(f64, f64)> = model.inputs.iter().map(|i| (i.low, i.high)).collect();
-        let lattice = Lattice::new(shape);
-        let nodes = shape.iter().product();
-        let coverage_below = settings.coverage_below(model);
-        let mut scratch = engine.scratch();
-        let mut outcomes = vec![Outcome::default(); engine.output_names().len()];
-        let mut inputs = vec![0.0; shape.len()];
-        let mut values = Vec::with_capacity(nodes);
-        let mut covered = Vec::with_capacity(nodes);
-        for node in 0..nodes {
-            for (axis, (input, (low, high))) in inputs.iter_mut().zip(&ranges).enumerate() {
-                let last = shape[axis] - 1;
-                *input = low + (high - low) * lattice.place(node, axis) as f64 / last as f64;
-            }
-            match engine.evaluate_with(&mut scratch, &inputs, &mut outcomes) {
-                Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
-                Err(other) => return Err(other),
-            }
-            let outcome = outcomes.get(output).copied().unwrap_or_default();
-            covered.push(outcome.coverage >= coverage_below && outcome.value().is_some());
-            values.push(outcome.value().unwrap_or(f64::NAN));
         }
-        if covered.iter().all(|covered| *covered) {
-            return Ok(None);
-        }
-        Ok(FilledMap::new(
-            &ranges,
-            shape,
-            values,
-            &covered,
-            settings.method,
-        ))
     }
 
-    /// The values at the nodes, the last input running fastest.
-    pub fn values(&self) -> &[f64] {
-        &self.values
+    /// The map before it was filled, with its grid.
+    pub fn map(&self) -> &DecisionMap {
+        &self.map
     }
 
-    /// The distance of each node to the nearest covered one, in shares of the inputs' ranges.
-    pub fn distances(&self) -> &[f32] {
-        &self.distances
+    /// The value of a cell; `None` where nothing is covered to fill it from, and off the grid.
+    pub fn value(&self, cell: usize) -> Option<f64> {
+        self.values.get(cell).copied().filter(|v| !v.is_nan())
     }
 
-    /// The value at a point, N-linearly between the nodes around it; inputs beyond their range count as its end.
-    ///
-    /// `None` where there is no such number of inputs, one of them is NaN, or nothing is covered.
+    /// The distance of a cell to the nearest covered one, in shares of the inputs' ranges: 0 for a covered one,
+    /// infinite where there is none.
+    pub fn distance(&self, cell: usize) -> f64 {
+        self.distances
+            .get(cell)
+            .map_or(f64::INFINITY, |d| f64::from(*d))
+    }
+
+    /// Whether a cell was filled.
+    pub fn is_filled(&self, cell: usize) -> bool {
+        self.distance(cell) > 0.0
+    }
+
+    /// The share of the cells that were filled.
+    pub fn filled_share(&self) -> f64 {
+        let filled = self.distances.iter().filter(|d| **d > 0.0).count();
+        filled as f64 / self.distances.len().max(1) as f64
+    }
+
+    /// The value at a point with a coordinate for each axis of the grid, N-linearly between cells; beyond the grid,
+    /// at its end. `None` where nothing is covered, or the point has another number of coordinates.
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
-        if point.len() != self.ranges.len() || point.iter().any(|x| x.is_nan()) {
-            return None;
-        }
-        let mut reading = Reading {
-            value: 0.0,
-            distance: 0.0,
-        };
-        self.corners(point, 0, 0, 1.0, &mut reading);
-        (reading.value.is_finite() && reading.distance.is_finite()).then_some(reading)
-    }
-
-    /// Adds the corners of the cell around `point`, from `axis` on.
-    fn corners(&self, point: &[f64], axis: usize, node: usize, weight: f64, sum: &mut Reading) {
-        let (Some(x), Some((low, high))) = (point.get(axis), self.ranges.get(axis)) else {
-            sum.value += weight * self.values[node];
-            sum.distance += weight * f64::from(self.distances[node]);
-            return;
-        };
-        let last = self.lattice.shape[axis] - 1;
-        let place = ((x - low) / (high - low)).clamp(0.0, 1.0) * last as f64;
-        let below = (place as usize).min(last - 1);
-        let share = place - below as f64;
-        let stride = self.lattice.strides[axis];
-        for (place, part) in [(below, 1.0 - share), (below + 1, share)] {
-            // A corner without weight may be undefined: it must not spoil the sum.
-            if part > 0.0 {
-                self.corners(point, axis + 1, node + place * stride, weight * part, sum);
-            }
-        }
+        let grid = self.map.grid();
+        Some(Reading {
+            value: grid.interpolate(|cell| self.value(cell), point)?,
+            distance: grid.interpolate(|cell| Some(self.distance(cell)), point)?,
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use fuzzy::{Engine, Model, map::Grid};
 
-    fn plane() -> FilledMap {
-        // 1 + 2 x + 4 y on 3 x 5 nodes over [0, 2] x [0, 4].
-        let values = (0..15)
-            .map(|i| 1.0 + 2.0 * f64::from(i / 5) + 4.0 * f64::from(i % 5))
-            .collect();
-        FilledMap::new(
-            &[(0.0, 2.0), (0.0, 4.0)],
-            &[3, 5],
-            values,
-            &[true; 15],
-            GapMethod::Nearest,
-        )
-        .unwrap()
+    fn filled(model: &Model, method: GapMethod) -> FilledMap {
+        let engine = Engine::new(model).unwrap();
+        let grid = Grid::new(&engine, 51).unwrap();
+        FilledMap::new(DecisionMap::new(&engine, grid, 0).unwrap(), 0.5, method)
     }
 
-    proptest! {
-        #[test]
-        fn reading_between_nodes_is_linear(x in -0.5..2.5f64, y in -0.5..4.5f64) {
-            let expected = 1.0 + 2.0 * x.clamp(0.0, 2.0) + 4.0 * y.clamp(0.0, 4.0);
-            let reading = plane().read(&[x, y]).unwrap();
-            prop_assert!((reading.value - expected).abs() < 1e-12);
-            prop_assert_eq!(reading.distance, 0.0);
+    #[test]
+    fn the_papers_corner_is_the_gap_and_a_saturated_drone_reads_high_in_it() {
+        let model = crate::shipped::rule_set("flagred-paper").unwrap().unwrap();
+        for method in [GapMethod::Nearest, GapMethod::INVERSE_DISTANCE] {
+            let map = filled(&model, method);
+            for cell in 0..51 * 51 {
+                let point = map.map().grid().point(cell);
+                let in_corner = point[0] < 0.15 - 1e-9 && point[1] < 0.05 - 1e-9;
+                assert_eq!(map.is_filled(cell), in_corner, "{point:?}");
+            }
+            let saturated = map.read(&[0.0, 0.0]).unwrap();
+            assert!(saturated.value >= 75.0, "{method:?} {}", saturated.value);
+            assert!(saturated.distance > 0.0);
         }
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
-        let new = |shape: &[usize], nodes: usize| {
-            FilledMap::new(
-                &[(0.0, 1.0)],
-                shape,
-                vec![0.0; nodes],
-                &vec![true; nodes],
-                GapMethod::Nearest,
-            )
-        };
-        assert!(new(&[3], 3).is_some());
-        assert!(new(&[3], 4).is_none());
-        assert!(new(&[1], 1).is_none());
-        assert!(new(&[3, 3], 9).is_none());
-        assert!(plane().read(&[0.0]).is_none());
-        assert!(plane().read(&[0.0, f64::NAN]).is_none());
+    fn inverse_distance_over_all_cells_is_the_trap_that_neighbours_avoid() {
+        let model = crate::shipped::rule_set("flagred-paper").unwrap().unwrap();
+        let map = filled(&model, GapMethod::Nearest);
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for cell in (0..51 * 51).filter(|cell| !map.is_filled(*cell)) {
+            let point = map.map().grid().point(cell);
+            let weight = 1.0 / ((point[0] / 0.5).powi(2) + (point[1] / 0.5).powi(2));
+            sum += weight * map.value(cell).unwrap();
+            weights += weight;
+        }
+        // The classic form calls a saturated drone harmless.
+        approx::assert_abs_diff_eq!(sum / weights, 49.0, epsilon = 2.0);
     }
 
     #[test]
     fn a_map_of_nothing_reads_as_unknown() {
-        let map = FilledMap::new(
-            &[(0.0, 1.0)],
-            &[3],
-            vec![f64::NAN; 3],
-            &[false; 3],
-            GapMethod::Nearest,
-        )
-        .unwrap();
-        assert_eq!(map.read(&[0.3]), None);
+        let mut model = crate::shipped::rule_set("flagred-paper").unwrap().unwrap();
+        model.rules.clear();
+        let map = filled(&model, GapMethod::Nearest);
+        assert_eq!(map.read(&[0.1, 0.1]), None);
+        assert_eq!(map.filled_share(), 1.0);
     }
 }

@@ -32,10 +32,10 @@ pub enum GapMethod {
 }
 
 impl GapMethod {
-    /// Inverse distance as it is when nothing else is said: power 2, 8 neighbours.
+    /// Inverse distance as it is when nothing else is said: power 2, 4 neighbours.
     pub const INVERSE_DISTANCE: GapMethod = GapMethod::InverseDistance {
         power: 2.0,
-        neighbours: 8,
+        neighbours: 4,
     };
 }
 
@@ -62,6 +62,12 @@ impl GapSettings {
             _ => f64::MIN_POSITIVE,
         })
     }
+}
+
+/// Whether a coverage is below the one from which on a cell counts as covered. Half way between two peaks, where both
+/// terms should be at 0.5, rounding leaves one of them a hair below it.
+pub(crate) fn is_gap(coverage: f64, coverage_below: f64) -> bool {
+    coverage < coverage_below - 1e-9 * coverage_below
 }
 
 /// A regular grid over the unit cube: each input from one end of its range to the other, both included.

@@ -6,14 +6,40 @@ use crate::{
     accumulator::AccumulatorSettings, gap::GapSettings, source::Source, verdict::VerdictSettings,
 };
 
+mod read;
+
 /// Everything between a flight and its verdict but the rules themselves.
+///
+/// # Example: a third input, without a line of code
+///
+/// ```
+/// use flagred::profile::Profile;
+///
+/// let profile = Profile::from_yaml("
+/// flagred: 1
+/// name: with-battery
+/// rules: my-rules.yaml
+/// window_s: 2
+/// inputs:
+///   margin: {mean: motor_margin}
+///   spread: {std: motor_command}
+///   lowest: {mean: {min: motor_margin}, window_s: 10}
+///   battery: {last: battery_remaining_pct}
+/// ")?;
+/// assert_eq!(profile.inputs.len(), 4);
+/// assert_eq!(profile.signals(), ["battery_remaining_pct"]);
+///
+/// let mistake = Profile::from_yaml("flagred: 1\nname: x\nrules: y\ninputs: {m: {meen: motor_margin}}");
+/// assert!(mistake.unwrap_err().to_string().contains("did you mean `mean`?"));
+/// # Ok::<(), fuzzy::diagnostic::Findings>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// Its name.
     pub name: String,
     /// What it is for, in the author's words.
     pub description: Option<String>,
-    /// The rule set: the name of a shipped one, or a file beside the profile.
+    /// The rule set: the name of a shipped one ([`crate::shipped`]), or a file beside the profile.
     pub rules: String,
     /// Where each input of the rule set comes from.
     pub inputs: Vec<ProfileInput>,

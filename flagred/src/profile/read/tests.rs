@@ -1,0 +1,158 @@
+use super::*;
+
+const START: &str =
+    "flagred: 1\nname: test\nrules: test\ninputs:\n  margin: {mean: motor_margin}\n";
+
+#[test]
+fn what_a_profile_leaves_out_has_defaults() {
+    let profile = Profile::from_yaml(START).unwrap();
+    assert_eq!(profile.output, "risk");
+    assert_eq!(profile.inputs[0].source.window_s, WINDOW_S);
+    assert_eq!(profile.sampling, Sampling::default());
+    assert_eq!(profile.gap, GapSettings::default());
+    assert_eq!(profile.elevated_risk, AccumulatorSettings::default());
+    assert_eq!(profile.verdict, VerdictSettings::default());
+}
+
+#[test]
+fn every_setting_is_read() {
+    let profile = Profile::from_yaml(
+        "
+flagred: 1
+name: all
+description: everything set
+rules: some.yaml
+output: danger
+window_s: 3
+min_samples: 7
+warm_up_s: 0.5
+longest_gap_s: 4
+inputs:
+  a: {std: {std: motor_command}, window_s: 30}
+  b: {share_below: 0.02, of: {min: motor_margin}}
+  c: {share_above: 0.9, of: battery_v, window_s: 1}
+  d: {last: battery_v}
+  e: {rms: motor_margin_high_side}
+gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
+elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
+verdict:
+  warn: {risk: 60, elevated_risk: 40}
+  fail: {risk: 95}
+  hysteresis: 5
+  raise_after_s: 1
+  clear_after_s: 2
+  quiet_after_take_off_s: 3
+  quiet_before_landing_s: 4
+",
+    )
+    .unwrap();
+    assert_eq!(profile.description.as_deref(), Some("everything set"));
+    assert_eq!(
+        (profile.rules.as_str(), profile.output.as_str()),
+        ("some.yaml", "danger")
+    );
+    assert_eq!(
+        profile.sampling,
+        Sampling {
+            min_samples: 7,
+            warm_up_s: 0.5,
+            longest_gap_s: 4.0
+        }
+    );
+    let source = |statistic, motors, signal: &str, window_s| Source {
+        statistic,
+        motors,
+        signal: Signal::named(signal),
+        window_s,
+    };
+    let sources: Vec<&Source> = profile.inputs.iter().map(|i| &i.source).collect();
+    assert_eq!(
+        sources,
+        [
+            &source(Statistic::Std, Motors::Std, "motor_command", 30.0),
+            &source(
+                Statistic::ShareBelow(0.02),
+                Motors::Min,
+                "motor_margin",
+                3.0
+            ),
+            &source(Statistic::ShareAbove(0.9), Motors::Pooled, "battery_v", 1.0),
+            &source(Statistic::Last, Motors::Pooled, "battery_v", 3.0),
+            &source(
+                Statistic::Rms,
+                Motors::Pooled,
+                "motor_margin_high_side",
+                3.0
+            ),
+        ]
+    );
+    assert_eq!(
+        profile.gap.method,
+        GapMethod::InverseDistance {
+            power: 3.0,
+            neighbours: 4
+        }
+    );
+    assert_eq!(profile.gap.coverage_below, Some(0.25));
+    assert_eq!(profile.elevated_risk.window_s, 5.0);
+    assert_eq!(profile.elevated_risk.high_pct, 80.0);
+    assert_eq!(profile.elevated_risk.low_pct, 20.0);
+    assert_eq!(profile.elevated_risk.rise_pct_per_s, 30.0);
+    assert_eq!(profile.elevated_risk.fall_pct_per_s, 3.0);
+    let threshold = |risk_pct, elevated_risk_pct| Threshold {
+        risk_pct,
+        elevated_risk_pct,
+    };
+    assert_eq!(
+        profile.verdict,
+        VerdictSettings {
+            warn: threshold(Some(60.0), Some(40.0)),
+            fail: threshold(Some(95.0), None),
+            hysteresis_pct: 5.0,
+            raise_after_s: 1.0,
+            clear_after_s: 2.0,
+            quiet_after_take_off_s: 3.0,
+            quiet_before_landing_s: 4.0,
+        }
+    );
+}
+
+#[test]
+fn all_mistakes_are_told_at_once_with_their_places() {
+    let text = "flagred: 1
+name: wrong
+rules: flagred-paper
+window: 2
+min_samples: none
+inputs:
+  margin: {meen: motor_margin}
+  spread: {std: motor_command, mean: motor_command}
+  lowest: {mean: {least: motor_margin}}
+  battery: {mean: {min: battery_v}}
+  share: {share_below: 0.1}
+  mean: {mean: motor_margin, of: motor_margin, window_s: -1}
+  mean: {mean: motor_margin}
+gap: {method: neerest, coverage_below: -1}
+elevated_risk: {high: 20, low: 80, rise_per_s: fast}
+verdict: {warn: {}, fail: {risk: 150}, hysteresis: .nan}
+";
+    let findings = Profile::from_yaml(text).unwrap_err();
+    insta::assert_snapshot!(findings);
+}
+
+#[test]
+fn what_is_no_profile_says_so() {
+    for (text, expected) in [
+        ("", "the file is empty"),
+        ("[1, 2]", "expected a mapping"),
+        ("name: x", "the profile has no `flagred`"),
+        (
+            "flagred: 2\nname: x\nrules: y\ninputs: {a: {last: b}}",
+            "version 1 only",
+        ),
+        ("flagred: 1\nname: [", "no YAML"),
+    ] {
+        let message = Profile::from_yaml(text).unwrap_err().to_string();
+        assert!(message.contains(expected), "{text:?}: {message}");
+    }
+}
