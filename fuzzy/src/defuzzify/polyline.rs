@@ -7,6 +7,8 @@
 
 use alloc::vec::Vec;
 
+use super::piece::Piece;
+use super::{Heights, Joint};
 use crate::engine::operators::smaller;
 use crate::model::{Aggregation, Implication, Term};
 
@@ -33,19 +35,6 @@ struct Line {
     right: f64,
 }
 
-/// A stretch on which the aggregated set is straight, or a product of straight lines.
-#[derive(Debug)]
-pub(crate) struct Piece {
-    /// Where it begins.
-    pub(crate) from: f64,
-    /// Where it ends.
-    pub(crate) to: f64,
-    /// The degree just inside `from`.
-    pub(crate) left: f64,
-    /// The degree just inside `to`.
-    pub(crate) right: f64,
-}
-
 /// A straight line over a stretch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Segment {
@@ -57,7 +46,7 @@ pub(crate) struct Segment {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Room {
     active: Vec<Activated>,
-    cuts: Vec<f64>,
+    pub(super) cuts: Vec<f64>,
     segments: Vec<Segment>,
 }
 
@@ -70,11 +59,11 @@ struct Activated {
 }
 
 impl Room {
-    /// Room for `activations` at once.
-    pub(crate) fn new(activations: usize) -> Self {
+    /// Room for `activations` and `cuts` at once.
+    pub(crate) fn new(activations: usize, cuts: usize) -> Self {
         Room {
             active: Vec::with_capacity(activations),
-            cuts: Vec::with_capacity(activations + 2),
+            cuts: Vec::with_capacity(cuts.max(activations + 2)),
             segments: Vec::with_capacity(activations),
         }
     }
@@ -121,17 +110,19 @@ impl Polylines {
         Some(polylines)
     }
 
-    /// Calls `visit` for each piece of the aggregated set, from left to right, those of degree 0 left out.
-    ///
-    /// `heights` are firing strengths; those of term k stand at `places[k]..places[k + 1]`.
+    /// Whether a term is 0 on the whole range.
+    pub(crate) fn is_empty(&self, term: usize) -> bool {
+        self.lines.iter().all(|line| line.term != term)
+    }
+
+    /// Calls `visit` for each piece of the aggregated set, from left to right; where no term is alive
+    /// there is none.
     pub(crate) fn pieces(
         &self,
-        heights: &[f64],
-        places: &[usize],
-        implication: Implication,
-        aggregation: Aggregation,
+        heights: Heights<'_>,
+        joint: Joint,
         room: &mut Room,
-        mut visit: impl FnMut(Piece),
+        visit: &mut dyn FnMut(&Piece<'_>),
     ) {
         for interval in &self.intervals {
             let lines = self.lines.get(interval.first_line..interval.end_line);
@@ -139,18 +130,14 @@ impl Polylines {
             room.cuts.clear();
             room.cuts.push(0.0);
             for line in lines.unwrap_or_default() {
-                let (Some(&first), Some(&end)) = (places.get(line.term), places.get(line.term + 1))
-                else {
-                    continue;
-                };
-                for &height in heights.get(first..end).unwrap_or_default() {
+                for &height in heights.of(line.term) {
                     if height > 0.0 {
                         room.active.push(Activated {
                             height,
                             left: line.left,
                             right: line.right,
                         });
-                        if implication == Implication::Minimum
+                        if joint.implication == Implication::Minimum
                             && (line.left > height) != (line.right > height)
                             && line.left != height
                             && line.right != height
@@ -173,7 +160,7 @@ impl Polylines {
                 }
                 room.segments.clear();
                 for active in &room.active {
-                    room.segments.push(active.on(start, end, implication));
+                    room.segments.push(active.on(start, end, joint.implication));
                 }
                 let stretch = Stretch {
                     // The ends themselves, so that neighbouring pieces meet exactly.
@@ -188,7 +175,7 @@ impl Polylines {
                         interval.from + width * end
                     },
                 };
-                join(&room.segments, stretch, aggregation, &mut visit);
+                join(&room.segments, stretch, joint.aggregation, visit);
             }
         }
     }
@@ -234,26 +221,40 @@ fn join(
     segments: &[Segment],
     stretch: Stretch,
     aggregation: Aggregation,
-    visit: &mut impl FnMut(Piece),
+    visit: &mut dyn FnMut(&Piece<'_>),
 ) {
     match aggregation {
         Aggregation::Maximum => upper_envelope(segments, stretch, visit),
         Aggregation::Sum => {
             let sum = sum(segments);
-            visit(straight(stretch, 0.0, 1.0, sum.left, sum.right));
+            visit(&straight(stretch, 0.0, 1.0, sum.left, sum.right));
         }
         Aggregation::BoundedSum => {
             let sum = sum(segments);
             if (sum.left > 1.0) == (sum.right > 1.0) {
                 let (left, right) = (smaller(1.0, sum.left), smaller(1.0, sum.right));
-                visit(straight(stretch, 0.0, 1.0, left, right));
+                visit(&straight(stretch, 0.0, 1.0, left, right));
             } else {
                 let t = (1.0 - sum.left) / (sum.right - sum.left);
-                visit(straight(stretch, 0.0, t, smaller(1.0, sum.left), 1.0));
-                visit(straight(stretch, t, 1.0, 1.0, smaller(1.0, sum.right)));
+                visit(&straight(stretch, 0.0, t, smaller(1.0, sum.left), 1.0));
+                visit(&straight(stretch, t, 1.0, 1.0, smaller(1.0, sum.right)));
             }
         }
-        Aggregation::ProbabilisticSum => {}
+        Aggregation::ProbabilisticSum => {
+            let degree = |t: f64| {
+                segments.iter().fold(0.0, |sum, segment| {
+                    let line = segment.left + (segment.right - segment.left) * t;
+                    aggregation.of(sum, line)
+                })
+            };
+            visit(&Piece {
+                from: stretch.from,
+                to: stretch.to,
+                left: degree(0.0),
+                right: degree(1.0),
+                curve: Some(&|x| degree((x - stretch.from) / (stretch.to - stretch.from))),
+            });
+        }
     }
 }
 
@@ -266,17 +267,18 @@ fn sum(segments: &[Segment]) -> Segment {
     Segment { left, right }
 }
 
-fn straight(stretch: Stretch, start: f64, end: f64, left: f64, right: f64) -> Piece {
+fn straight(stretch: Stretch, start: f64, end: f64, left: f64, right: f64) -> Piece<'static> {
     Piece {
         from: stretch.at(start),
         to: stretch.at(end),
         left,
         right,
+        curve: None,
     }
 }
 
 /// The maximum of lines: from the highest on the left, always on to the next steeper line that crosses.
-fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut impl FnMut(Piece)) {
+fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut dyn FnMut(&Piece<'_>)) {
     let Some(mut top) = segments.iter().copied().reduce(|best, segment| {
         if (segment.left, segment.right) > (best.left, best.right) {
             segment
@@ -316,12 +318,12 @@ fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut impl FnMut
         }
         if crossing > t {
             let at_crossing = top.left + (top.right - top.left) * crossing;
-            visit(straight(stretch, t, crossing, y, at_crossing));
+            visit(&straight(stretch, t, crossing, y, at_crossing));
             (t, y) = (crossing, at_crossing);
         }
         top = segment;
     }
-    visit(straight(stretch, t, 1.0, y, top.right));
+    visit(&straight(stretch, t, 1.0, y, top.right));
 }
 
 /// The degrees of a polyline just inside the ends of an interval that holds no corner.

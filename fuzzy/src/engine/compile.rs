@@ -1,144 +1,26 @@
 //! From names to indices, with every problem of the model found at once.
 
-use alloc::{collections::BTreeMap, string::String, sync::Arc, vec::Vec};
+use alloc::{
+    collections::{BTreeMap, BTreeSet},
+    format,
+    string::String,
+    sync::Arc,
+    vec,
+    vec::Vec,
+};
 
 use super::condition::Step;
-use super::{Action, CompiledOutput, CompiledRule, Engine, Input, Literal};
-use crate::defuzzify::polyline::Polylines;
-use crate::model::{
-    Aggregation, Defuzzifier, Model, NoRuleFires, Output, Shape, ShapeError, Term, Variable,
-};
+use super::literal::{Literal, Literals};
+use super::problem::{CompileError, Problem};
+use super::rules::{Action, Draft, Rules};
+use super::{CompiledOutput, Engine, Input};
+use crate::defuzzify::weighted::Consequence;
+use crate::defuzzify::{Defuzzify, Merging};
+use crate::model::{Model, NoRuleFires, Output, Shape, Term, Variable};
 use crate::rule::{Condition, Hedge, Proposition};
 
-/// Why a model makes no engine: every problem found.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct CompileError {
-    /// The problems, in the order of the model; at least one.
-    pub problems: Vec<Problem>,
-}
-
-impl core::fmt::Display for CompileError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        for (i, problem) in self.problems.iter().enumerate() {
-            if i > 0 {
-                f.write_str("; ")?;
-            }
-            problem.fmt(f)?;
-        }
-        Ok(())
-    }
-}
-
-impl core::error::Error for CompileError {}
-
-/// One reason why a model makes no engine. `rule` is an index into [`Model::rules`]; messages count from 1.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Problem {
-    /// There is nothing to compute.
-    #[error("the model has no outputs")]
-    NoOutputs,
-    /// Two variables of one kind, or two terms of one variable, share a name.
-    #[error("`{name}` is defined twice in {place}")]
-    Duplicate {
-        /// The name.
-        name: String,
-        /// Where: `the inputs`, `the outputs` or a variable.
-        place: String,
-    },
-    /// A range that is empty or not finite.
-    #[error("the range of `{variable}` is not from a finite number up to a larger one")]
-    Range {
-        /// The variable.
-        variable: String,
-    },
-    /// Parameters that make no membership function.
-    #[error("term `{term}` of `{variable}`: {error}")]
-    Shape {
-        /// The variable.
-        variable: String,
-        /// The term.
-        term: String,
-        /// What is wrong with it.
-        error: ShapeError,
-    },
-    /// A height outside (0, 1].
-    #[error("term `{term}` of `{variable}`: the height is not in (0, 1]")]
-    Height {
-        /// The variable.
-        variable: String,
-        /// The term.
-        term: String,
-    },
-    /// A shape that the output's defuzzifier cannot use, or that no input can have.
-    #[error("term `{term}` of `{variable}`: {why}")]
-    Misfit {
-        /// The variable.
-        variable: String,
-        /// The term.
-        term: String,
-        /// Why it does not fit.
-        why: &'static str,
-    },
-    /// A term that is 0 on all of its output's range, where it can say nothing.
-    #[error("term `{term}` of `{variable}` is 0 on the whole range")]
-    OutsideRange {
-        /// The variable.
-        variable: String,
-        /// The term.
-        term: String,
-    },
-    /// A rule names an input, an output or a term that the model does not have.
-    #[error("rule {} names `{name}`, which is no {kind}", rule + 1)]
-    Unknown {
-        /// The rule.
-        rule: usize,
-        /// The name.
-        name: String,
-        /// `input`, `output` or `term of ...`.
-        kind: String,
-    },
-    /// A proposition without a term whose hedges do not end it.
-    #[error(
-        "rule {} says nothing of `{variable}`: a term, or the hedge `any`, is missing",
-        rule + 1
-    )]
-    NoTerm {
-        /// The rule.
-        rule: usize,
-        /// The input.
-        variable: String,
-    },
-    /// A rule with no consequent, or an empty AND or OR.
-    #[error("rule {} is empty", rule + 1)]
-    EmptyRule {
-        /// The rule.
-        rule: usize,
-    },
-    /// A weight outside [0, 1].
-    #[error("the weight of rule {} is not in [0, 1]", rule + 1)]
-    Weight {
-        /// The rule.
-        rule: usize,
-    },
-    /// A value for where no rule fires that lies outside the output's range.
-    #[error("the value of `{output}` where no rule fires is not in its range")]
-    DefaultOutsideRange {
-        /// The output.
-        output: String,
-    },
-    /// A combination that the engine does not have.
-    #[error("output `{output}`: {why}")]
-    Unsupported {
-        /// The output.
-        output: String,
-        /// What it is.
-        why: &'static str,
-    },
-}
-
 impl Engine {
-    /// Compiles a model: names become indices, conditions flat programs, output terms lines between cuts.
+    /// Compiles a model: names become indices, rules a table, output terms closed forms.
     ///
     /// # Errors
     /// Every problem of the model that keeps it from being evaluated on every finite input.
@@ -146,10 +28,12 @@ impl Engine {
         let mut compiler = Compiler {
             model,
             problems: Vec::new(),
-            literals: Vec::new(),
-            literal_ids: BTreeMap::new(),
+            literals: BTreeMap::new(),
         };
-        let engine = compiler.engine();
+        compiler.variables();
+        compiler.literals();
+        let drafts = compiler.drafts();
+        let engine = compiler.engine(drafts);
         if compiler.problems.is_empty() {
             Ok(engine)
         } else {
@@ -160,105 +44,50 @@ impl Engine {
     }
 }
 
+/// Input, term and hedges in the order in which they apply.
+type LiteralKey = (usize, Option<usize>, Vec<Hedge>);
+
 struct Compiler<'m> {
     model: &'m Model,
     problems: Vec<Problem>,
-    literals: Vec<Literal>,
-    literal_ids: BTreeMap<(usize, Option<usize>, Vec<Hedge>), u32>,
+    /// Numbered by input, term and hedges, whatever the order of the rules.
+    literals: BTreeMap<LiteralKey, u32>,
 }
 
 impl Compiler<'_> {
-    fn engine(&mut self) -> Engine {
+    fn variables(&mut self) {
         let model = self.model;
         if model.outputs.is_empty() {
             self.problems.push(Problem::NoOutputs);
         }
         self.duplicates("the inputs", model.inputs.iter().map(|v| &v.name));
-        self.duplicates(
-            "the outputs",
-            model.outputs.iter().map(|o| &o.variable.name),
-        );
+        let outputs = model.outputs.iter().map(|o| &o.variable.name);
+        self.duplicates("the outputs", outputs);
         for input in &model.inputs {
             self.variable(input);
+            for term in &input.terms {
+                if matches!(term.shape, Shape::Linear { .. }) {
+                    self.misfit(input, term, "`linear` is no membership function");
+                }
+            }
         }
-        let mut outputs = Vec::new();
-        let mut first_place = 0;
         for output in &model.outputs {
-            let compiled = self.output(output, first_place);
-            first_place += compiled.places.last().copied().unwrap_or(0);
-            outputs.push(compiled);
-        }
-        let mut engine = Engine {
-            inputs: model
-                .inputs
-                .iter()
-                .map(|v| Input {
-                    name: v.name.as_str().into(),
-                    low: v.low,
-                    high: v.high,
-                })
-                .collect(),
-            literals: Vec::new(),
-            steps: Vec::new(),
-            rules: Vec::new(),
-            actions: Vec::new(),
-            outputs,
-            operators: model.operators,
-            places: first_place,
-        };
-        for (index, rule) in model.rules.iter().enumerate() {
-            let rule = &rule.rule;
-            if !(0.0..=1.0).contains(&rule.weight) {
-                self.problems.push(Problem::Weight { rule: index });
-            }
-            if rule.consequents.is_empty() {
-                self.problems.push(Problem::EmptyRule { rule: index });
-            }
-            let first_step = engine.steps.len();
-            self.condition(index, &rule.condition, &mut engine.steps);
-            let first_action = engine.actions.len();
-            for consequent in &rule.consequents {
-                let found = model
-                    .outputs
-                    .iter()
-                    .position(|o| o.variable.name == consequent.output.text);
-                let Some(output) = found else {
-                    self.unknown(index, &consequent.output.text, "output".into());
-                    continue;
-                };
-                let variable = &model.outputs[output].variable;
-                let found = position(&variable.terms, &consequent.term.text);
-                let Some(term) = found else {
-                    let kind = alloc::format!("term of `{}`", variable.name);
-                    self.unknown(index, &consequent.term.text, kind);
-                    continue;
-                };
-                let place = engine.outputs[output].first_place + term;
-                engine.actions.push(Action { output, place });
-            }
-            engine.rules.push(CompiledRule {
-                first_step,
-                end_step: engine.steps.len(),
-                first_action,
-                end_action: engine.actions.len(),
-                weight: rule.weight,
-                index,
-            });
-        }
-        engine.literals = core::mem::take(&mut self.literals);
-        engine
-    }
-
-    fn duplicates<'n>(&mut self, place: &str, names: impl Iterator<Item = &'n String>) {
-        let mut seen = Vec::new();
-        for name in names {
-            if seen.contains(&name) {
-                self.problems.push(Problem::Duplicate {
-                    name: name.clone(),
-                    place: place.into(),
+            self.variable(&output.variable);
+            if let NoRuleFires::Value(value) = output.when_no_rule_fires
+                && !(output.variable.low..=output.variable.high).contains(&value)
+            {
+                self.problems.push(Problem::DefaultOutsideRange {
+                    output: output.variable.name.clone(),
                 });
             }
-            seen.push(name);
+            if let Some(sampling) = output.samples
+                && sampling.samples < 2
+            {
+                self.problems.push(Problem::TooFewSamples {
+                    output: output.variable.name.clone(),
+                    samples: sampling.samples,
+                });
+            }
         }
     }
 
@@ -271,8 +100,7 @@ impl Compiler<'_> {
                 variable: name.clone(),
             });
         }
-        let place = alloc::format!("`{name}`");
-        self.duplicates(&place, variable.terms.iter().map(|t| &t.name));
+        self.duplicates(&format!("`{name}`"), variable.terms.iter().map(|t| &t.name));
         for term in &variable.terms {
             if let Err(error) = term.shape.validate() {
                 self.problems.push(Problem::Shape {
@@ -290,26 +118,272 @@ impl Compiler<'_> {
         }
     }
 
-    fn output(&mut self, output: &Output, first_place: usize) -> CompiledOutput {
-        let variable = &output.variable;
-        self.variable(variable);
-        if let NoRuleFires::Value(value) = output.when_no_rule_fires
-            && !(variable.low..=variable.high).contains(&value)
-        {
-            self.problems.push(Problem::DefaultOutsideRange {
-                output: variable.name.clone(),
+    fn duplicates<'n>(&mut self, place: &str, names: impl Iterator<Item = &'n String>) {
+        let mut seen = BTreeSet::new();
+        for name in names {
+            if !seen.insert(name) {
+                self.problems.push(Problem::Duplicate {
+                    name: name.clone(),
+                    place: place.into(),
+                });
+            }
+        }
+    }
+
+    fn misfit(&mut self, variable: &Variable, term: &Term, why: &'static str) {
+        self.problems.push(Problem::Misfit {
+            variable: variable.name.clone(),
+            term: term.name.clone(),
+            why,
+        });
+    }
+
+    fn unknown(&mut self, rule: usize, name: &str, kind: impl Into<String>) {
+        self.problems.push(Problem::Unknown {
+            rule,
+            name: name.into(),
+            kind: kind.into(),
+        });
+    }
+
+    /// Finds and numbers all literals of all rules.
+    fn literals(&mut self) {
+        let model = self.model;
+        for (index, rule) in model.rules.iter().enumerate() {
+            self.find_literals(index, &rule.rule.condition);
+        }
+        for (id, number) in self.literals.values_mut().zip(0..) {
+            *id = number;
+        }
+    }
+
+    fn find_literals(&mut self, rule: usize, condition: &Condition) {
+        match condition {
+            Condition::Is(proposition) => {
+                if let Some(key) = self.key(Some(rule), proposition) {
+                    self.literals.insert(key, 0);
+                }
+            }
+            Condition::Not(inner) => self.find_literals(rule, inner),
+            Condition::And(all) | Condition::Or(all) => {
+                if all.is_empty() {
+                    self.problems.push(Problem::EmptyRule { rule });
+                }
+                for condition in all {
+                    self.find_literals(rule, condition);
+                }
+            }
+        }
+    }
+
+    /// What a proposition names; its problems are noted for `rule`.
+    fn key(&mut self, rule: Option<usize>, proposition: &Proposition) -> Option<LiteralKey> {
+        let model = self.model;
+        let variable = &proposition.variable.text;
+        let Some(input) = model.inputs.iter().position(|v| &v.name == variable) else {
+            if let Some(rule) = rule {
+                self.unknown(rule, variable, "input");
+            }
+            return None;
+        };
+        let term = match &proposition.term {
+            None if proposition.hedges.contains(&Hedge::Any) => None,
+            None => {
+                if let Some(rule) = rule {
+                    self.problems.push(Problem::NoTerm {
+                        rule,
+                        variable: variable.clone(),
+                    });
+                }
+                return None;
+            }
+            Some(name) => {
+                let found = position(&model.inputs[input].terms, &name.text);
+                if let (None, Some(rule)) = (found, rule) {
+                    self.unknown(rule, &name.text, format!("term of `{variable}`"));
+                }
+                Some(found?)
+            }
+        };
+        let hedges = proposition.hedges.iter().rev().copied().collect();
+        Some((input, term, hedges))
+    }
+
+    fn literal(&mut self, proposition: &Proposition) -> u32 {
+        let key = self.key(None, proposition);
+        key.and_then(|key| self.literals.get(&key).copied())
+            .unwrap_or(0)
+    }
+
+    /// The rules as literals, steps and actions, in an order that is that of their content: the order of
+    /// lines in a rule set changes no bit of an answer.
+    fn drafts(&mut self) -> Vec<Draft> {
+        let model = self.model;
+        let inputs_of: Vec<usize> = self.literals.keys().map(|key| key.0).collect();
+        let mut drafts = Vec::new();
+        for (index, rule) in model.rules.iter().enumerate() {
+            let rule = &rule.rule;
+            if !(0.0..=1.0).contains(&rule.weight) {
+                self.problems.push(Problem::Weight { rule: index });
+            }
+            if rule.consequents.is_empty() {
+                self.problems.push(Problem::EmptyRule { rule: index });
+            }
+            let mut steps = Vec::new();
+            self.condition(&rule.condition, &mut steps);
+            let mut actions = Vec::new();
+            for consequent in &rule.consequents {
+                let name = &consequent.output.text;
+                let found = model.outputs.iter().position(|o| &o.variable.name == name);
+                let Some(output) = found else {
+                    self.unknown(index, name, "output");
+                    continue;
+                };
+                let variable = &model.outputs[output].variable;
+                let Some(term) = position(&variable.terms, &consequent.term.text) else {
+                    self.unknown(index, &consequent.term.text, format!("term of `{name}`"));
+                    continue;
+                };
+                actions.push(Action {
+                    weight: rule.weight,
+                    place: term as u32,
+                    output: output as u32,
+                    rule: index as u32,
+                    sums: false,
+                });
+            }
+            drafts.push(Draft {
+                literals: plain(&steps, &inputs_of),
+                steps,
+                actions,
             });
         }
-        if output.defuzzifier != Defuzzifier::Centroid || output.samples.is_some() {
-            self.unsupported(variable, "this defuzzifier");
+        let content = |draft: &Draft| {
+            let actions = draft.actions.iter();
+            actions
+                .map(|a| (a.output, a.place, a.weight.to_bits()))
+                .collect::<Vec<_>>()
+        };
+        drafts.sort_by_cached_key(|draft| {
+            (draft.literals.clone(), draft.steps.clone(), content(draft))
+        });
+        drafts
+    }
+
+    fn condition(&mut self, condition: &Condition, steps: &mut Vec<Step>) {
+        match condition {
+            Condition::Is(proposition) => steps.push(Step::Push(self.literal(proposition))),
+            Condition::Not(inner) => {
+                self.condition(inner, steps);
+                steps.push(Step::Not);
+            }
+            Condition::And(all) => self.joined(all, steps, Step::AndLiteral, Step::And),
+            Condition::Or(any) => self.joined(any, steps, Step::OrLiteral, Step::Or),
         }
-        let merged = self.model.operators.aggregation == Aggregation::Maximum;
-        if !merged {
-            self.unsupported(variable, "this aggregation");
+    }
+
+    fn joined(
+        &mut self,
+        conditions: &[Condition],
+        steps: &mut Vec<Step>,
+        with_literal: fn(u32) -> Step,
+        with_top: Step,
+    ) {
+        for (i, condition) in conditions.iter().enumerate() {
+            match condition {
+                Condition::Is(proposition) if i > 0 => {
+                    steps.push(with_literal(self.literal(proposition)));
+                }
+                _ => {
+                    self.condition(condition, steps);
+                    if i > 0 {
+                        steps.push(with_top);
+                    }
+                }
+            }
         }
-        let polylines = Polylines::new(&variable.terms, variable.low, variable.high);
-        if polylines.is_none() {
-            self.unsupported(variable, "curved terms");
+    }
+
+    fn engine(&mut self, mut drafts: Vec<Draft>) -> Engine {
+        let model = self.model;
+        let mut outputs = Vec::new();
+        let mut first_place = 0;
+        for (index, output) in model.outputs.iter().enumerate() {
+            let compiled = self.output(index, output, first_place, &mut drafts);
+            first_place += compiled.places.last().copied().unwrap_or(0);
+            outputs.push(compiled);
+        }
+        let mut by_input = vec![Vec::new(); model.inputs.len()];
+        for (input, term, hedges) in self.literals.keys() {
+            let always = || Term {
+                name: String::new(),
+                shape: Shape::Constant { value: 1.0 },
+                height: 1.0,
+            };
+            by_input[*input].push(Literal {
+                term: term.map_or_else(always, |t| model.inputs[*input].terms[t].clone()),
+                hedges: hedges.clone(),
+            });
+        }
+        let mut first = 0;
+        let mut inputs = Vec::new();
+        let mut literals = Vec::new();
+        for (variable, of_input) in model.inputs.iter().zip(by_input) {
+            let count = of_input.len() as u32;
+            literals.push(Literals::new(first, of_input, variable.low, variable.high));
+            first += count;
+            inputs.push(Input {
+                name: Arc::from(variable.name.as_str()),
+                low: variable.low,
+                high: variable.high,
+            });
+        }
+        let operators = model.operators;
+        Engine {
+            rules: Rules::new(operators.and, operators.or, &drafts, &literals),
+            inputs,
+            literals,
+            literal_count: first as usize,
+            outputs,
+            places: first_place,
+        }
+    }
+
+    /// Compiles an output and gives the drafts' actions on it their places.
+    fn output(
+        &mut self,
+        index: usize,
+        output: &Output,
+        first_place: usize,
+        drafts: &mut [Draft],
+    ) -> CompiledOutput {
+        let variable = &output.variable;
+        let operators = self.model.operators;
+        let merging = Merging::of(output.defuzzifier, operators);
+        let actions = || drafts.iter().flat_map(|draft| &draft.actions);
+        let here = |action: &&Action| action.output as usize == index;
+        let mut counts = vec![0; variable.terms.len()];
+        for action in actions().filter(here) {
+            counts[action.place as usize] += 1;
+        }
+        let used: Vec<bool> = counts.iter().map(|count| *count > 0).collect();
+        if merging != Merging::Apart {
+            counts.fill(1);
+        }
+        let mut places = vec![0];
+        for count in counts {
+            places.push(places.last().copied().unwrap_or(0) + count);
+        }
+        let mut next = places.clone();
+        for action in drafts.iter_mut().flat_map(|draft| &mut draft.actions) {
+            if action.output as usize == index {
+                let term = action.place as usize;
+                action.place = (first_place + next[term]) as u32;
+                action.sums = merging == Merging::Sum;
+                if merging == Merging::Apart {
+                    next[term] += 1;
+                }
+            }
         }
         CompiledOutput {
             name: Arc::from(variable.name.as_str()),
@@ -317,113 +391,83 @@ impl Compiler<'_> {
             high: variable.high,
             when_no_rule_fires: output.when_no_rule_fires,
             first_place,
-            places: (0..=variable.terms.len()).collect(),
-            polylines: polylines.unwrap_or_default(),
+            places,
+            defuzzify: self.defuzzify(output, &used),
         }
     }
 
-    fn unsupported(&mut self, variable: &Variable, why: &'static str) {
-        self.problems.push(Problem::Unsupported {
-            output: variable.name.clone(),
-            why,
-        });
-    }
-
-    fn unknown(&mut self, rule: usize, name: &str, kind: String) {
-        self.problems.push(Problem::Unknown {
-            rule,
-            name: name.into(),
-            kind,
-        });
-    }
-
-    fn condition(&mut self, rule: usize, condition: &Condition, steps: &mut Vec<Step>) {
-        match condition {
-            Condition::Is(proposition) => {
-                steps.push(Step::Push(self.literal(rule, proposition)));
-            }
-            Condition::Not(inner) => {
-                self.condition(rule, inner, steps);
-                steps.push(Step::Not);
-            }
-            Condition::And(all) => {
-                self.joined(rule, all, steps, Step::AndLiteral, Step::And);
-            }
-            Condition::Or(any) => {
-                self.joined(rule, any, steps, Step::OrLiteral, Step::Or);
-            }
-        }
-    }
-
-    fn joined(
-        &mut self,
-        rule: usize,
-        conditions: &[Condition],
-        steps: &mut Vec<Step>,
-        with_literal: fn(u32) -> Step,
-        with_top: Step,
-    ) {
-        let Some((first, others)) = conditions.split_first() else {
-            self.problems.push(Problem::EmptyRule { rule });
-            return;
-        };
-        self.condition(rule, first, steps);
-        for other in others {
-            if let Condition::Is(proposition) = other {
-                steps.push(with_literal(self.literal(rule, proposition)));
-            } else {
-                self.condition(rule, other, steps);
-                steps.push(with_top);
-            }
-        }
-    }
-
-    /// The index of a proposition's literal; the same for the same input, term and hedges.
-    fn literal(&mut self, rule: usize, proposition: &Proposition) -> u32 {
-        let model = self.model;
-        let variable = &proposition.variable.text;
-        let Some(input) = model.inputs.iter().position(|v| &v.name == variable) else {
-            self.unknown(rule, variable, "input".into());
-            return 0;
-        };
-        let terms = &model.inputs[input].terms;
-        let term = match &proposition.term {
-            None => {
-                if !proposition.hedges.contains(&Hedge::Any) {
-                    self.problems.push(Problem::NoTerm {
-                        rule,
-                        variable: variable.clone(),
+    fn defuzzify(&mut self, output: &Output, used: &[bool]) -> Defuzzify {
+        let variable = &output.variable;
+        let operators = self.model.operators;
+        if output.defuzzifier.is_weighted() {
+            let mut z = Vec::new();
+            for term in &variable.terms {
+                let mut strangers = Vec::new();
+                let input = |name: &str| self.model.inputs.iter().position(|v| v.name == name);
+                let consequence = Consequence::new(&term.shape, input, |name| {
+                    strangers.push(String::from(name))
+                });
+                for name in strangers {
+                    self.problems.push(Problem::UnknownCoefficient {
+                        output: variable.name.clone(),
+                        term: term.name.clone(),
+                        name,
                     });
                 }
-                None
-            }
-            Some(name) => {
-                let found = position(terms, &name.text);
-                if found.is_none() {
-                    let kind = alloc::format!("term of `{variable}`");
-                    self.unknown(rule, &name.text, kind);
+                if consequence.is_none() {
+                    let why = "a weighted defuzzifier takes `constant`, `linear` and `singleton`";
+                    self.misfit(variable, term, why);
                 }
-                found
+                z.extend(consequence);
             }
-        };
-        let literals = &mut self.literals;
-        let key = (input, term, proposition.hedges.clone());
-        *self.literal_ids.entry(key).or_insert_with(|| {
-            literals.push(Literal {
-                input,
-                term: term.and_then(|t| terms.get(t)).map_or(
-                    Term {
-                        name: String::new(),
-                        shape: Shape::Constant { value: 1.0 },
-                        height: 1.0,
-                    },
-                    Term::clone,
-                ),
-                hedges: proposition.hedges.iter().rev().copied().collect(),
-            });
-            literals.len() as u32 - 1
-        })
+            return Defuzzify::weighted(output, operators, z);
+        }
+        let defuzzify = Defuzzify::fuzzy(output, operators);
+        for (term, used) in variable.terms.iter().zip(used) {
+            let why = match term.shape {
+                Shape::Linear { .. } => "`linear` takes a weighted defuzzifier",
+                Shape::Singleton { .. } => {
+                    "a singleton has no area: it takes a weighted defuzzifier"
+                }
+                _ => continue,
+            };
+            if *used {
+                self.misfit(variable, term, why);
+            }
+        }
+        for (index, (term, used)) in variable.terms.iter().zip(used).enumerate() {
+            let area = !matches!(term.shape, Shape::Linear { .. } | Shape::Singleton { .. });
+            if *used && area && defuzzify.is_empty(index) {
+                self.problems.push(Problem::OutsideRange {
+                    variable: variable.name.clone(),
+                    term: term.name.clone(),
+                });
+            }
+        }
+        defuzzify
     }
+}
+
+/// The literals of a plain AND of different inputs, ascending; `None` of another condition.
+fn plain(steps: &[Step], inputs_of: &[usize]) -> Option<Vec<u32>> {
+    let (first, others) = steps.split_first()?;
+    let Step::Push(first) = first else {
+        return None;
+    };
+    let mut literals = Vec::from([*first]);
+    for step in others {
+        let Step::AndLiteral(literal) = step else {
+            return None;
+        };
+        literals.push(*literal);
+    }
+    literals.sort_unstable();
+    let input = |literal: &u32| inputs_of.get(*literal as usize);
+    let different = literals.windows(2).all(|pair| match pair {
+        [a, b] => input(a) != input(b),
+        _ => true,
+    });
+    different.then_some(literals)
 }
 
 fn position(terms: &[Term], name: &str) -> Option<usize> {

@@ -2,30 +2,33 @@
 
 use alloc::{sync::Arc, vec, vec::Vec};
 
-use crate::defuzzify::integrals::Integrals;
-use crate::defuzzify::polyline::{Polylines, Room};
-use crate::model::{NoRuleFires, Operators, Term};
-use crate::rule::Hedge;
-use condition::Step;
+use crate::defuzzify::polyline::Room;
+use crate::defuzzify::{Defuzzify, Heights};
+use crate::model::NoRuleFires;
+use literal::Literals;
+use operators::{larger, smaller};
+use rules::{FiringRoom, Rules, Strongest};
 
 mod compile;
 mod condition;
+mod literal;
 pub(crate) mod operators;
 mod outcome;
+mod problem;
+mod rules;
 
-pub use compile::{CompileError, Problem};
 pub use outcome::{EvaluateError, Outcome, State};
+pub use problem::{CompileError, Problem};
 
 /// A compiled model. It holds indices only, never changes, and can be shared between threads.
 #[derive(Debug, Clone)]
 pub struct Engine {
     inputs: Vec<Input>,
-    literals: Vec<Literal>,
-    steps: Vec<Step>,
-    rules: Vec<CompiledRule>,
-    actions: Vec<Action>,
+    literals: Vec<Literals>,
+    literal_count: usize,
+    rules: Rules,
     outputs: Vec<CompiledOutput>,
-    operators: Operators,
+    /// How many heights there are over all outputs.
     places: usize,
 }
 
@@ -36,32 +39,6 @@ struct Input {
     high: f64,
 }
 
-/// A hedged term of an input; hedges in the order in which they apply.
-#[derive(Debug, Clone)]
-struct Literal {
-    input: usize,
-    term: Term,
-    hedges: Vec<Hedge>,
-}
-
-#[derive(Debug, Clone)]
-struct CompiledRule {
-    first_step: usize,
-    end_step: usize,
-    first_action: usize,
-    end_action: usize,
-    weight: f64,
-    /// Its index in the model.
-    index: usize,
-}
-
-/// A consequent: where its firing strength goes.
-#[derive(Debug, Clone)]
-struct Action {
-    output: usize,
-    place: usize,
-}
-
 #[derive(Debug, Clone)]
 struct CompiledOutput {
     name: Arc<str>,
@@ -70,18 +47,19 @@ struct CompiledOutput {
     when_no_rule_fires: NoRuleFires,
     /// Where the heights of this output begin.
     first_place: usize,
-    /// Where, after `first_place`, the heights of each term begin.
+    /// Where, after `first_place`, the heights of each term begin, and where the last one's end.
     places: Vec<usize>,
-    polylines: Polylines,
+    defuzzify: Defuzzify,
 }
 
 /// What an evaluation works in: made once by [`Engine::scratch`], used again and again.
 #[derive(Debug, Clone)]
 pub struct Scratch {
-    clamped_inputs: Vec<f64>,
+    values: Vec<f64>,
     degrees: Vec<f64>,
-    stack: Vec<f64>,
+    firing: FiringRoom,
     heights: Vec<f64>,
+    strongest: Vec<Strongest>,
     room: Room,
 }
 
@@ -118,12 +96,14 @@ impl Engine {
 
     /// Room to evaluate in, for [`Engine::evaluate_with`]; one a thread.
     pub fn scratch(&self) -> Scratch {
+        let cuts = self.outputs.iter().map(|output| output.defuzzify.cuts());
         Scratch {
-            clamped_inputs: vec![0.0; self.inputs.len()],
-            degrees: vec![0.0; self.literals.len()],
-            stack: Vec::with_capacity(self.steps.len()),
+            values: vec![0.0; self.inputs.len()],
+            degrees: vec![0.0; self.literal_count],
+            firing: self.rules.room(&self.literals),
             heights: vec![0.0; self.places],
-            room: Room::new(self.places),
+            strongest: vec![Strongest::NONE; self.outputs.len()],
+            room: Room::new(self.places, self.places + cuts.max().unwrap_or(0)),
         }
     }
 
@@ -162,81 +142,80 @@ impl Engine {
                 got: outcomes.len(),
             });
         }
-        if inputs.iter().any(|x| !x.is_finite()) {
-            outcomes.fill(Outcome {
-                state: State::InputNotFinite,
-                ..Outcome::default()
-            });
-            return Ok(());
-        }
         let mut clamped = false;
-        scratch.clamped_inputs.clear();
-        for (&value, input) in inputs.iter().zip(&self.inputs) {
-            let inside = value.max(input.low).min(input.high);
-            clamped |= inside != value;
-            scratch.clamped_inputs.push(inside);
+        for ((&value, input), place) in inputs.iter().zip(&self.inputs).zip(&mut scratch.values) {
+            if !value.is_finite() {
+                outcomes.fill(Outcome {
+                    state: State::InputNotFinite,
+                    ..Outcome::default()
+                });
+                return Ok(());
+            }
+            *place = larger(input.low, smaller(input.high, value));
+            clamped |= *place != value;
         }
-        outcomes.fill(Outcome {
-            clamped,
-            ..Outcome::default()
-        });
-        scratch.degrees.clear();
-        for literal in &self.literals {
-            let x = scratch.clamped_inputs.get(literal.input).copied();
-            scratch.degrees.push(literal.degree(x.unwrap_or(f64::NAN)));
-        }
-        self.fire(scratch, outcomes);
-        for (output, outcome) in self.outputs.iter().zip(outcomes) {
-            outcome.state = self.defuzzify(output, scratch)?;
+        self.fire(scratch);
+        for (index, (output, outcome)) in self.outputs.iter().zip(outcomes).enumerate() {
+            let strongest = scratch.strongest[index];
+            let fired = strongest.strength > 0.0;
+            *outcome = Outcome {
+                state: self.state(output, strongest.strength, scratch)?,
+                coverage: strongest.strength,
+                dominant: fired.then_some(strongest.rule as usize),
+                clamped,
+            };
         }
         Ok(())
     }
 
-    /// Fires all rules: heights of consequents, coverage and the dominant rule of each output.
-    fn fire(&self, scratch: &mut Scratch, outcomes: &mut [Outcome]) {
+    /// Fires all rules on the values in the scratch.
+    #[inline(always)]
+    fn fire(&self, scratch: &mut Scratch) {
         scratch.heights.fill(0.0);
-        for rule in &self.rules {
-            let steps = self.steps.get(rule.first_step..rule.end_step);
-            let degree = condition::run(
-                steps.unwrap_or_default(),
-                &scratch.degrees,
-                self.operators.and,
-                self.operators.or,
-                &mut scratch.stack,
-            );
-            let strength = rule.weight * degree;
-            let actions = self.actions.get(rule.first_action..rule.end_action);
-            for action in actions.unwrap_or_default() {
-                if let Some(height) = scratch.heights.get_mut(action.place) {
-                    *height = operators::larger(*height, strength);
-                }
-                if let Some(outcome) = outcomes.get_mut(action.output)
-                    && strength > outcome.coverage
-                {
-                    outcome.coverage = strength;
-                    outcome.dominant = Some(rule.index);
-                }
+        scratch.strongest.fill(Strongest::NONE);
+        if self.rules.needs_degrees {
+            scratch.degrees.fill(0.0);
+            for (literals, &value) in self.literals.iter().zip(&scratch.values) {
+                literals.degrees(value, |literal, degree| {
+                    scratch.degrees[(literals.first + literal) as usize] = degree;
+                });
             }
         }
+        self.rules.fire(
+            &self.literals,
+            &scratch.values,
+            &scratch.degrees,
+            &mut scratch.firing,
+            &mut scratch.heights,
+            &mut scratch.strongest,
+        );
     }
 
-    fn defuzzify(
+    #[inline(always)]
+    fn state(
         &self,
         output: &CompiledOutput,
+        strongest: f64,
         scratch: &mut Scratch,
     ) -> Result<State, EvaluateError> {
-        let heights = scratch.heights.get(output.first_place..);
-        let mut integrals = Integrals::about(output.low + 0.5 * (output.high - output.low));
-        output.polylines.pieces(
-            heights.unwrap_or_default(),
-            &output.places,
-            self.operators.implication,
-            self.operators.aggregation,
-            &mut scratch.room,
-            |piece| integrals.add(&piece),
-        );
-        if let Some(value) = integrals.centroid() {
-            return Ok(State::Defined(value.max(output.low).min(output.high)));
+        if strongest > 0.0 {
+            let end = output.first_place + output.places[output.places.len() - 1];
+            let heights = &mut scratch.heights[output.first_place..end];
+            if strongest < TINY && output.defuzzify.is_fuzzy() {
+                for height in heights.iter_mut() {
+                    *height *= FROM_TINY;
+                }
+            }
+            let heights = Heights {
+                heights,
+                places: &output.places,
+            };
+            let value = output
+                .defuzzify
+                .value(heights, &scratch.values, &mut scratch.room);
+            if let Some(value) = value {
+                return Ok(State::Defined(value));
+            }
         }
         match output.when_no_rule_fires {
             NoRuleFires::Undefined => Ok(State::NoRuleFired),
@@ -248,13 +227,12 @@ impl Engine {
     }
 }
 
-impl Literal {
-    fn degree(&self, x: f64) -> f64 {
-        self.hedges
-            .iter()
-            .fold(self.term.membership(x), |degree, hedge| hedge.of(degree))
-    }
-}
+/// Below this, areas would lose digits to underflow. Where all strengths are so small, only their ratios
+/// count: every set is cut so low that its slopes are vertical to the last digit, so all of them can be
+/// multiplied by [`FROM_TINY`].
+const TINY: f64 = 1e-200;
+/// 2^500: multiplying by it rounds nothing.
+const FROM_TINY: f64 = 3.273_390_607_896_142e150;
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! The operators' formulas. Each stands at its variant in [`crate::model`] and [`crate::rule`].
 
-use crate::model::{Conjunction, Disjunction, Implication};
+use crate::model::{Aggregation, Conjunction, Disjunction, Implication};
 use crate::rule::Hedge;
 
 /// The smaller of two numbers that are not NaN: one instruction, unlike `f64::min`.
@@ -101,6 +101,19 @@ impl Implication {
         match self {
             Implication::Minimum => smaller(height, membership),
             Implication::Product => height * membership,
+        }
+    }
+}
+
+impl Aggregation {
+    /// The degree of two activated consequents together.
+    #[inline(always)]
+    pub(crate) fn of(self, a: f64, b: f64) -> f64 {
+        match self {
+            Aggregation::Maximum => larger(a, b),
+            Aggregation::ProbabilisticSum => probabilistic_sum(a, b),
+            Aggregation::BoundedSum => smaller(1.0, a + b),
+            Aggregation::Sum => a + b,
         }
     }
 }

@@ -160,9 +160,9 @@ fn every_problem_of_a_model_at_once() {
     term `low` of `x`: `sd` is -1, not over 0
     the range of `x` is not from a finite number up to a larger one
     the value of `y` where no rule fires is not in its range
-    the weight of rule 1 is not in [0, 1]
     rule 3 names `z`, which is no input
     rule 3 names `middle`, which is no term of `x`
+    the weight of rule 1 is not in [0, 1]
     rule 3 names `none`, which is no term of `y`
     "
     );

@@ -1,0 +1,257 @@
+//! The aggregated set where a term is curved: cut where shapes change their nature and where they meet
+//! plateaus and each other, and integrated between the cuts.
+
+use alloc::vec::Vec;
+
+use super::piece::{Piece, root};
+use super::polyline::Room;
+use super::{Heights, Joint};
+use crate::model::{Aggregation, Implication, Shape, Term};
+
+/// The terms of one output and where to cut its range for each of them.
+#[derive(Debug, Clone)]
+pub(crate) struct Curves {
+    terms: Vec<Term>,
+    /// Place and term, in the order of places; the ends of the range belong to no term.
+    cuts: Vec<(f64, Option<usize>)>,
+}
+
+/// Where a curve passes these degrees it is cut, so that no stretch hides a narrow term.
+const LEVELS: [f64; 11] = [
+    1e-14, 1e-9, 1e-6, 1e-3, 0.03, 0.2, 0.5, 0.8, 0.97, 0.999, 0.999_999,
+];
+
+impl Curves {
+    pub(crate) fn new(terms: &[Term], low: f64, high: f64) -> Self {
+        let mut cuts = Vec::from([(low, None), (high, None)]);
+        for (index, term) in terms.iter().enumerate() {
+            for x in landmarks(&term.shape) {
+                if low < x && x < high {
+                    cuts.push((x, Some(index)));
+                }
+            }
+        }
+        cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Curves {
+            terms: terms.to_vec(),
+            cuts,
+        }
+    }
+
+    /// The most cuts that an evaluation can need room for.
+    pub(crate) fn room(&self) -> usize {
+        self.cuts.len() + self.terms.len() * self.terms.len()
+    }
+
+    /// Whether a term is 0 on the whole range.
+    pub(crate) fn is_empty(&self, term: usize) -> bool {
+        let Some(shape) = self.terms.get(term) else {
+            return true;
+        };
+        let inside = |x: f64| shape.membership(x) > 0.0;
+        let mut places = self.cuts.iter().zip(self.cuts.iter().skip(1));
+        places.all(|((a, _), (b, _))| !inside(*a) && !inside(0.5 * (a + b)) && !inside(*b))
+    }
+
+    /// The degree of the aggregated set at `x`.
+    pub(crate) fn degree(&self, heights: Heights<'_>, joint: Joint, x: f64) -> f64 {
+        let mut degree = 0.0;
+        for (index, term) in self.terms.iter().enumerate() {
+            let mut membership = None;
+            for &height in heights.of(index) {
+                if height > 0.0 {
+                    let membership = *membership.get_or_insert_with(|| term.membership(x));
+                    let cut = joint.implication.of(height, membership);
+                    degree = joint.aggregation.of(degree, cut);
+                }
+            }
+        }
+        degree
+    }
+
+    /// Calls `visit` for each piece of the aggregated set, from left to right.
+    pub(crate) fn pieces(
+        &self,
+        heights: Heights<'_>,
+        joint: Joint,
+        room: &mut Room,
+        visit: &mut dyn FnMut(&Piece<'_>),
+    ) {
+        let cuts = &mut room.cuts;
+        cuts.clear();
+        let active = |term: usize| heights.of(term).iter().any(|h| *h > 0.0);
+        for &(x, term) in &self.cuts {
+            if term.is_none_or(active) && cuts.last() != Some(&x) {
+                cuts.push(x);
+            }
+        }
+        let landmarks = cuts.len();
+        for i in 1..landmarks {
+            let (Some(&a), Some(&b)) = (cuts.get(i - 1), cuts.get(i)) else {
+                break;
+            };
+            self.kinks(heights, joint, (a, b), cuts);
+        }
+        cuts.sort_unstable_by(f64::total_cmp);
+        let degree = |x: f64| self.degree(heights, joint, x);
+        for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
+            if from < to {
+                visit(&Piece {
+                    from,
+                    to,
+                    // Just inside, where a step at the cut has been taken.
+                    left: degree(from.next_up()),
+                    right: degree(to.next_down()),
+                    curve: Some(&degree),
+                });
+            }
+        }
+    }
+
+    /// Adds the places between two cuts where a term meets one of its plateaus, two terms cross (maximum)
+    /// or the sum reaches 1 (bounded sum). One that is missed, because shapes meet twice between two cuts or
+    /// because room is short, costs time in the integration, not exactness.
+    fn kinks(&self, heights: Heights<'_>, joint: Joint, (a, b): (f64, f64), cuts: &mut Vec<f64>) {
+        let (a, b) = (a.next_up(), b.next_down());
+        let mut cut_at_sign_change = |f: &dyn Fn(f64) -> f64| {
+            let (fa, fb) = (f(a), f(b));
+            if fa * fb < 0.0 && cuts.len() < cuts.capacity() {
+                cuts.push(root(a, b, f));
+            }
+        };
+        if joint.implication == Implication::Minimum {
+            for (index, term) in self.terms.iter().enumerate() {
+                for &height in heights.of(index) {
+                    if height > 0.0 {
+                        cut_at_sign_change(&|x| term.membership(x) - height);
+                    }
+                }
+            }
+        }
+        if joint.aggregation == Aggregation::Maximum {
+            let activated = |index: usize, term: &Term, x: f64| {
+                let membership = term.membership(x);
+                let heights = heights.of(index).iter();
+                heights.fold(0.0, |most: f64, h| {
+                    most.max(joint.implication.of(*h, membership))
+                })
+            };
+            for (i, first) in self.terms.iter().enumerate() {
+                for (j, second) in self.terms.iter().enumerate().skip(i + 1) {
+                    cut_at_sign_change(&|x| activated(i, first, x) - activated(j, second, x));
+                }
+            }
+        }
+        if joint.aggregation == Aggregation::BoundedSum {
+            let unbounded = Joint {
+                aggregation: Aggregation::Sum,
+                ..joint
+            };
+            cut_at_sign_change(&|x| self.degree(heights, unbounded, x) - 1.0);
+        }
+    }
+}
+
+/// The places at which a shape changes its nature or passes one of the levels.
+fn landmarks(shape: &Shape) -> Vec<f64> {
+    let mut places = Vec::new();
+    match *shape {
+        Shape::Gaussian { mean, sd } => {
+            flank(&mut places, mean, -sd, gaussian_reach);
+            flank(&mut places, mean, sd, gaussian_reach);
+        }
+        Shape::Gaussian2 {
+            left_mean,
+            left_sd,
+            right_mean,
+            right_sd,
+        } => {
+            flank(&mut places, left_mean, -left_sd, gaussian_reach);
+            flank(&mut places, right_mean, right_sd, gaussian_reach);
+        }
+        Shape::Bell {
+            center,
+            width,
+            slope,
+        } => {
+            // Levels closer to 1 as well: |t|^(2 slope) is rough at the middle where the slope is low.
+            let reach = |level: f64| libm::pow((1.0 - level) / level, 0.5 / slope);
+            flank(&mut places, center, -width, reach);
+            flank(&mut places, center, width, reach);
+            for halving in 1..40 {
+                let distance = width * libm::exp2(-f64::from(halving));
+                places.extend([center - distance, center + distance]);
+            }
+        }
+        Shape::Spike { center, width } => {
+            let reach = |level: f64| -0.1 * libm::log(level);
+            flank(&mut places, center, -width, reach);
+            flank(&mut places, center, width, reach);
+        }
+        Shape::Sigmoid { inflection, slope } => sigmoid(&mut places, inflection, slope),
+        Shape::SigmoidDifference {
+            left_inflection,
+            left_slope,
+            right_inflection,
+            right_slope,
+        }
+        | Shape::SigmoidProduct {
+            left_inflection,
+            left_slope,
+            right_inflection,
+            right_slope,
+        } => {
+            sigmoid(&mut places, left_inflection, left_slope);
+            sigmoid(&mut places, right_inflection, right_slope);
+            // Where the two sigmoids are equal their difference has a kink.
+            let slopes = left_slope - right_slope;
+            places.push((left_slope * left_inflection - right_slope * right_inflection) / slopes);
+        }
+        Shape::SShape { foot: a, top: b } | Shape::ZShape { top: a, foot: b } => {
+            places.extend([a, 0.5 * (a + b), b]);
+        }
+        Shape::PiShape {
+            left,
+            left_top,
+            right_top,
+            right,
+        } => places.extend([
+            left,
+            0.5 * (left + left_top),
+            left_top,
+            right_top,
+            0.5 * (right_top + right),
+            right,
+        ]),
+        Shape::Cosine { center, width } => {
+            places.extend([center - 0.5 * width, center, center + 0.5 * width]);
+        }
+        Shape::Concave { inflection, end } => places.extend([
+            inflection,
+            end,
+            end - 5.0 * (end - inflection),
+            end - 25.0 * (end - inflection),
+        ]),
+        _ => places.extend(shape.corners().unwrap_or_default().iter().map(|c| c.0)),
+    }
+    places.retain(|x| x.is_finite());
+    places
+}
+
+/// `sqrt(-2 ln level)`: how many standard deviations from the mean a gaussian passes a level.
+fn gaussian_reach(level: f64) -> f64 {
+    libm::sqrt(-2.0 * libm::log(level))
+}
+
+fn flank(places: &mut Vec<f64>, middle: f64, width: f64, reach: impl Fn(f64) -> f64) {
+    places.push(middle);
+    places.extend(LEVELS.map(|level| middle + width * reach(level)));
+}
+
+fn sigmoid(places: &mut Vec<f64>, inflection: f64, slope: f64) {
+    if slope != 0.0 {
+        let reach = |level: f64| libm::log(level / (1.0 - level)) / slope;
+        flank(places, inflection, 1.0, reach);
+        flank(places, inflection, -1.0, reach);
+    }
+}

@@ -1,0 +1,107 @@
+//! Where an aggregated set is highest.
+
+use super::piece::{Piece, root};
+use crate::model::Defuzzifier;
+
+/// Degrees this close to the highest, as a part of it, count as the highest: what rounding can do to a
+/// plateau made of two slopes.
+const PLATEAU: f64 = 1e-12;
+
+/// The highest degree seen.
+#[derive(Debug, Default, Clone, Copy)]
+pub(crate) struct Highest(pub(crate) f64);
+
+impl Highest {
+    pub(crate) fn see(&mut self, piece: &Piece<'_>) {
+        let inner = peak(piece).map_or(0.0, |(_, degree)| degree);
+        self.0 = self.0.max(piece.left).max(piece.right).max(inner);
+    }
+}
+
+/// The values at which the set is highest.
+#[derive(Debug, Default, Clone, Copy)]
+pub(crate) struct Maxima {
+    least_degree: f64,
+    smallest: Option<f64>,
+    largest: f64,
+    length: f64,
+    moment: f64,
+    points: f64,
+    sum: f64,
+}
+
+impl Maxima {
+    pub(crate) fn of(highest: Highest) -> Self {
+        Maxima {
+            least_degree: highest.0 * (1.0 - PLATEAU),
+            ..Maxima::default()
+        }
+    }
+
+    pub(crate) fn see(&mut self, piece: &Piece<'_>) {
+        let least = self.least_degree;
+        let high = |degree: f64| degree >= least;
+        let middle = 0.5 * (piece.from + piece.to);
+        let flat = piece.curve.is_none_or(|curve| high(curve(middle)));
+        let (left, right) = (high(piece.left), high(piece.right));
+        if left && right && flat {
+            let width = piece.to - piece.from;
+            self.point(piece.from);
+            self.largest = piece.to;
+            self.length += width;
+            self.moment += width * middle;
+            return;
+        }
+        if left {
+            self.point(piece.from);
+        }
+        if let Some((x, degree)) = peak(piece)
+            && high(degree)
+        {
+            self.point(x);
+        }
+        if right {
+            self.point(piece.to);
+        }
+    }
+
+    fn point(&mut self, x: f64) {
+        if self.smallest.is_some() && x == self.largest {
+            return;
+        }
+        self.smallest = self.smallest.or(Some(x));
+        self.largest = x;
+        self.points += 1.0;
+        self.sum += x;
+    }
+
+    /// The value; `None` of a set that is 0 everywhere.
+    pub(crate) fn value(&self, defuzzifier: Defuzzifier) -> Option<f64> {
+        let smallest = self.smallest?;
+        Some(match defuzzifier {
+            Defuzzifier::SmallestOfMaxima => smallest,
+            Defuzzifier::LargestOfMaxima => self.largest,
+            _ if self.length > 0.0 => self.moment / self.length,
+            _ => self.sum / self.points,
+        })
+    }
+}
+
+/// The highest place inside a curve that rises from its beginning and falls to its end.
+fn peak(piece: &Piece<'_>) -> Option<(f64, f64)> {
+    let curve = piece.curve?;
+    let width = piece.to - piece.from;
+    let step = 0.02 * width;
+    // The derivative by central differences of sixth order.
+    let derivative = |x: f64| {
+        let difference = |k: f64| curve(x + k * step) - curve(x - k * step);
+        45.0 * difference(1.0) - 9.0 * difference(2.0) + difference(3.0)
+    };
+    let (a, b) = (piece.from + 3.0 * step, piece.to - 3.0 * step);
+    if derivative(a) > 0.0 && derivative(b) < 0.0 {
+        let x = root(a, b, derivative);
+        Some((x, curve(x)))
+    } else {
+        None
+    }
+}

@@ -1,0 +1,91 @@
+//! Sampled defuzzification, to reproduce programs that sample. Its error is theirs.
+
+use crate::model::{Defuzzifier, Sampling, SamplingRule};
+
+impl Sampling {
+    /// The value of a set given by its degree at `x`; `None` where every sample is 0.
+    pub(crate) fn value(
+        self,
+        defuzzifier: Defuzzifier,
+        (low, high): (f64, f64),
+        degree: impl Fn(f64) -> f64,
+    ) -> Option<f64> {
+        match defuzzifier {
+            Defuzzifier::SmallestOfMaxima
+            | Defuzzifier::MeanOfMaxima
+            | Defuzzifier::LargestOfMaxima => self.maxima(defuzzifier, low, high, degree),
+            Defuzzifier::Bisector => self.bisector(low, high, degree),
+            _ => {
+                let (mut area, mut moment) = (0.0, 0.0);
+                for i in 0..self.samples {
+                    let (x, weight) = self.sample(i, low, high);
+                    let y = weight * degree(x);
+                    area += y;
+                    moment += x * y;
+                }
+                (area > 0.0).then(|| moment / area)
+            }
+        }
+    }
+
+    /// The place and weight of a sample.
+    fn sample(self, i: usize, low: f64, high: f64) -> (f64, f64) {
+        match self.rule {
+            SamplingRule::Midpoint => {
+                let step = (high - low) / self.samples as f64;
+                (low + (i as f64 + 0.5) * step, 1.0)
+            }
+            SamplingRule::Trapezoid => {
+                let last = self.samples.saturating_sub(1);
+                let x = low + i as f64 * ((high - low) / last as f64);
+                (x, if i == 0 || i == last { 0.5 } else { 1.0 })
+            }
+        }
+    }
+
+    /// The first sample at which half of the sum is reached.
+    fn bisector(self, low: f64, high: f64, degree: impl Fn(f64) -> f64) -> Option<f64> {
+        let terms = || {
+            (0..self.samples).map(|i| {
+                let (x, weight) = self.sample(i, low, high);
+                (x, weight * degree(x))
+            })
+        };
+        let half = 0.5 * terms().map(|(_, y)| y).sum::<f64>();
+        let mut sum = 0.0;
+        let mut reached = terms().skip_while(|(_, y)| {
+            sum += y;
+            sum < half
+        });
+        let first = reached.next().map(|(x, _)| x);
+        first.filter(|_| half > 0.0)
+    }
+
+    fn maxima(
+        self,
+        defuzzifier: Defuzzifier,
+        low: f64,
+        high: f64,
+        degree: impl Fn(f64) -> f64,
+    ) -> Option<f64> {
+        let (mut highest, mut smallest, mut largest) = (0.0, low, low);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for i in 0..self.samples {
+            let (x, _) = self.sample(i, low, high);
+            let y = degree(x);
+            if y > highest {
+                (highest, smallest, sum, count) = (y, x, 0.0, 0.0);
+            }
+            if y == highest && y > 0.0 {
+                largest = x;
+                sum += x;
+                count += 1.0;
+            }
+        }
+        (count > 0.0).then_some(match defuzzifier {
+            Defuzzifier::SmallestOfMaxima => smallest,
+            Defuzzifier::LargestOfMaxima => largest,
+            _ => sum / count,
+        })
+    }
+}

@@ -1,0 +1,77 @@
+//! Takagi-Sugeno consequents.
+
+use alloc::vec::Vec;
+
+use crate::model::{Defuzzifier, Shape};
+
+/// `z = constant + sum(coefficient input)`.
+#[derive(Debug, Clone)]
+pub(crate) struct Consequence {
+    constant: f64,
+    /// Input and coefficient.
+    coefficients: Vec<(usize, f64)>,
+}
+
+impl Consequence {
+    /// The consequent of a term; `None` of a shape that is no consequent. A singleton is a constant.
+    /// Names of inputs that `input` does not know are given to `unknown`.
+    pub(crate) fn new(
+        shape: &Shape,
+        input: impl Fn(&str) -> Option<usize>,
+        mut unknown: impl FnMut(&str),
+    ) -> Option<Self> {
+        let (constant, coefficients) = match shape {
+            Shape::Constant { value: constant } | Shape::Singleton { at: constant } => {
+                (*constant, Vec::new())
+            }
+            Shape::Linear {
+                coefficients,
+                constant,
+            } => {
+                let mut indexed = Vec::new();
+                for (name, coefficient) in coefficients {
+                    match input(name) {
+                        Some(index) => indexed.push((index, *coefficient)),
+                        None => unknown(name),
+                    }
+                }
+                // By input, so that the order of the lines does not change a bit of the sum.
+                indexed.sort_by_key(|(index, _)| *index);
+                (*constant, indexed)
+            }
+            _ => return None,
+        };
+        Some(Consequence {
+            constant,
+            coefficients,
+        })
+    }
+
+    fn z(&self, inputs: &[f64]) -> f64 {
+        self.coefficients
+            .iter()
+            .fold(self.constant, |sum, (input, coefficient)| {
+                sum + coefficient * inputs.get(*input).copied().unwrap_or(0.0)
+            })
+    }
+}
+
+/// `sum(w z) / sum(w)` or `sum(w z)`; `None` where no weight is over 0.
+pub(crate) fn value(
+    consequences: &[Consequence],
+    weights: &[f64],
+    inputs: &[f64],
+    defuzzifier: Defuzzifier,
+) -> Option<f64> {
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (consequence, &weight) in consequences.iter().zip(weights) {
+        if weight > 0.0 {
+            sum += weight * consequence.z(inputs);
+            total += weight;
+        }
+    }
+    (total > 0.0).then_some(match defuzzifier {
+        Defuzzifier::WeightedSum => sum,
+        _ => sum / total,
+    })
+}

@@ -1,0 +1,292 @@
+//! From an input's value to the degrees of the literals on it.
+
+use alloc::vec::Vec;
+
+use crate::model::{Shape, Term};
+use crate::rule::Hedge;
+
+/// A hedged term of an input. Hedges stand in the order in which they apply.
+#[derive(Debug, Clone)]
+pub(super) struct Literal {
+    pub(super) term: Term,
+    pub(super) hedges: Vec<Hedge>,
+}
+
+impl Literal {
+    pub(super) fn degree(&self, x: f64) -> f64 {
+        self.hedges
+            .iter()
+            .fold(self.term.membership(x), |degree, hedge| hedge.of(degree))
+    }
+}
+
+/// The literals of one input. Straight ones are cut into intervals, so that only those alive at a
+/// value are touched.
+#[derive(Debug, Clone)]
+pub(super) struct Literals {
+    /// The first of them among all of the engine's literals.
+    pub(super) first: u32,
+    /// How many there are.
+    pub(super) count: u32,
+    /// Where intervals begin; values before the first cut lie in interval 0.
+    pub(super) cuts: Vec<f64>,
+    /// The lines alive on interval i are `lines[starts[i]..starts[i + 1]]`.
+    starts: Vec<u32>,
+    lines: Vec<Line>,
+    curved: Vec<(u32, Literal)>,
+}
+
+/// `base + rise ((x - foot) / run)`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    pub(super) literal: u32,
+    pub(super) foot: f64,
+    pub(super) run: f64,
+    pub(super) base: f64,
+    pub(super) rise: f64,
+}
+
+impl Line {
+    /// Measured from the lower end of a slope: exactly 0 at its foot, exactly 1 at its top, and as exact
+    /// as the value itself near the foot.
+    #[inline(always)]
+    pub(super) fn degree(&self, x: f64) -> f64 {
+        self.base + self.rise * ((x - self.foot) / self.run)
+    }
+}
+
+impl Literals {
+    pub(super) fn new(first: u32, literals: Vec<Literal>, low: f64, high: f64) -> Self {
+        let count = literals.len() as u32;
+        let (mut straight, mut curved) = (Vec::new(), Vec::new());
+        for (literal, index) in literals.into_iter().zip(0..) {
+            match lines(&literal) {
+                Some(lines) => straight.push((index, lines)),
+                None => curved.push((index, literal)),
+            }
+        }
+        let starts = straight.iter().flat_map(|(_, lines)| lines);
+        let mut cuts: Vec<f64> = starts.map(|(start, _)| *start).collect();
+        cuts.retain(|x| low < *x && *x <= high);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        let mut table = Literals {
+            first,
+            count,
+            starts: Vec::from([0]),
+            lines: Vec::new(),
+            curved,
+            cuts: Vec::new(),
+        };
+        for &x in core::iter::once(&low).chain(&cuts) {
+            for (index, lines) in &straight {
+                let alive = lines.iter().rev().find(|(start, _)| *start <= x);
+                if let Some((_, line)) = alive
+                    && (line.base > 0.0 || line.rise > 0.0)
+                {
+                    table.lines.push(Line {
+                        literal: *index,
+                        ..*line
+                    });
+                }
+            }
+            table.starts.push(table.lines.len() as u32);
+        }
+        table.cuts = cuts;
+        table
+    }
+
+    /// The interval in which a value of the range lies.
+    #[inline(always)]
+    fn interval(&self, x: f64) -> usize {
+        if self.cuts.len() <= 16 {
+            self.cuts.iter().map(|cut| usize::from(x >= *cut)).sum()
+        } else {
+            self.cuts.partition_point(|cut| x >= *cut)
+        }
+    }
+
+    /// Calls `visit` with each literal that may be alive at `x`, by its place among this input's
+    /// literals, and its degree, which may be 0.
+    #[inline(always)]
+    pub(super) fn degrees(&self, x: f64, mut visit: impl FnMut(u32, f64)) {
+        let interval = self.interval(x);
+        let (start, end) = (self.starts[interval], self.starts[interval + 1]);
+        for line in &self.lines[start as usize..end as usize] {
+            visit(line.literal, line.degree(x));
+        }
+        for (index, literal) in &self.curved {
+            visit(*index, literal.degree(x));
+        }
+    }
+
+    /// The most literals that can be alive at once.
+    pub(super) fn most_alive(&self) -> usize {
+        let ends = self.starts.iter().zip(self.starts.iter().skip(1));
+        let most = ends.map(|(start, end)| end - start).max().unwrap_or(0);
+        most as usize + self.curved.len()
+    }
+}
+
+/// The lines of a plain straight term and where each begins to hold, from minus infinity on; `None` of
+/// another.
+pub(super) fn lines(literal: &Literal) -> Option<Vec<(f64, Line)>> {
+    if !literal.hedges.is_empty() || literal.term.height != 1.0 {
+        return None;
+    }
+    let shape = &literal.term.shape;
+    let corners = shape.corners()?;
+    let flat = |degree: f64| Line {
+        literal: 0,
+        foot: 0.0,
+        run: f64::INFINITY,
+        base: degree,
+        rise: 0.0,
+    };
+    let mut lines = Vec::new();
+    let mut before: Option<(f64, f64)> = None;
+    for &(x, y) in &corners {
+        match before {
+            None => lines.push((f64::NEG_INFINITY, flat(y))),
+            Some(left) if left.0 < x => after(&mut lines, shape, left, Some((x, y)), flat),
+            Some(_) => {}
+        }
+        before = Some((x, y));
+    }
+    if let Some(last) = before {
+        after(&mut lines, shape, last, None, flat);
+    }
+    Some(lines)
+}
+
+/// Adds the line from a corner to the next one, or for good where there is none; before it, the corner
+/// itself where a step has a higher degree.
+fn after(
+    lines: &mut Vec<(f64, Line)>,
+    shape: &Shape,
+    corner: (f64, f64),
+    next: Option<(f64, f64)>,
+    flat: impl Fn(f64) -> Line,
+) {
+    let (x, y) = corner;
+    let at_corner = shape.membership(x);
+    let start = if at_corner == y {
+        x
+    } else {
+        lines.push((x, flat(at_corner)));
+        x.next_up()
+    };
+    let line = match next {
+        Some(next) if next.1 != y => {
+            let (low, high) = if y < next.1 {
+                (corner, next)
+            } else {
+                (next, corner)
+            };
+            Line {
+                literal: 0,
+                foot: low.0,
+                run: high.0 - low.0,
+                base: low.1,
+                rise: high.1 - low.1,
+            }
+        }
+        _ => flat(y),
+    };
+    lines.push((start, line));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{string::String, vec};
+    use proptest::prelude::*;
+
+    fn shapes() -> Vec<Shape> {
+        vec![
+            Shape::Triangle {
+                left: 0.1,
+                peak: 0.3,
+                right: 0.7,
+            },
+            Shape::Triangle {
+                left: 0.0,
+                peak: 0.0,
+                right: 0.7,
+            },
+            Shape::Triangle {
+                left: 0.2,
+                peak: 1.0,
+                right: 1.0,
+            },
+            Shape::Triangle {
+                left: 0.5,
+                peak: 0.5,
+                right: 0.5,
+            },
+            Shape::Trapezoid {
+                left: -0.5,
+                left_top: 0.2,
+                right_top: 0.4,
+                right: 1.5,
+            },
+            Shape::LeftShoulder {
+                top: 0.25,
+                foot: 0.25,
+            },
+            Shape::RightShoulder {
+                foot: 0.1,
+                top: 0.9,
+            },
+            Shape::Rectangle {
+                left: 0.25,
+                right: 0.5,
+            },
+            Shape::Singleton { at: 0.5 },
+            Shape::Constant { value: 0.4 },
+            Shape::Piecewise {
+                points: vec![
+                    (0.1, 0.5),
+                    (0.3, 0.2),
+                    (0.3, 0.9),
+                    (0.6, 0.1),
+                    (0.6, 0.0),
+                    (0.9, 0.3),
+                ],
+            },
+            Shape::Gaussian { mean: 0.4, sd: 0.1 },
+        ]
+    }
+
+    fn literal(shape: Shape, hedges: &[Hedge]) -> Literal {
+        Literal {
+            term: Term {
+                name: String::new(),
+                shape,
+                height: 1.0,
+            },
+            hedges: hedges.to_vec(),
+        }
+    }
+
+    proptest! {
+        /// The table gives the bits of the membership functions.
+        #[test]
+        fn table_is_membership(x in prop_oneof![
+            0.0..=1.0,
+            prop::sample::select(vec![0.0, 0.1, 0.2, 0.25, 0.3, 0.5, 0.6, 0.7, 0.9, 1.0]),
+        ], ulps in -1..=1) {
+            let x: f64 = x;
+            let x = match ulps { -1 => x.next_down(), 1 => x.next_up(), _ => x }.clamp(0.0, 1.0);
+            let mut all: Vec<Literal> =
+                shapes().into_iter().map(|shape| literal(shape, &[])).collect();
+            all.push(literal(Shape::LeftShoulder { top: 0.2, foot: 0.6 }, &[Hedge::Very, Hedge::Not]));
+            let table = Literals::new(0, all.clone(), 0.0, 1.0);
+            let mut degrees = vec![0.0; all.len()];
+            table.degrees(x, |literal, degree| degrees[literal as usize] = degree);
+            for (literal, degree) in all.iter().zip(degrees) {
+                prop_assert_eq!(degree, literal.degree(x), "{:?} at {}", literal, x);
+            }
+        }
+    }
+}
