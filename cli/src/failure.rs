@@ -80,6 +80,17 @@ impl Failure {
     }
 }
 
+/// A log that cannot be read: exit code 3.
+impl From<flightlog::ReadError> for Failure {
+    fn from(error: flightlog::ReadError) -> Self {
+        let failure = Failure::unreadable(&error);
+        match error.help() {
+            Some(help) => failure.help(help),
+            None => failure,
+        }
+    }
+}
+
 /// Standard output could not be written. A closed pipe (`flagred ... | head`) is the reader's choice, not a failure.
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {

@@ -7,6 +7,7 @@ mod assess;
 mod diagnostics;
 #[allow(dead_code, reason = "the commands that use all of it come next")]
 mod failure;
+mod inspect;
 
 use std::process::ExitCode;
 
@@ -27,12 +28,15 @@ struct Arguments {
 enum Command {
     /// Say how risky a flight was: verdict, findings, risk over time
     Assess(assess::Arguments),
+    /// Show what is in a flight log, and where each value came from
+    Inspect(inspect::Arguments),
 }
 
 impl Command {
     fn run(self) -> Result<Exit, Failure> {
         match self {
             Command::Assess(arguments) => assess::run(&arguments),
+            Command::Inspect(arguments) => inspect::run(&arguments),
         }
     }
 }

@@ -24,6 +24,7 @@ pub(crate) enum Placed {
 #[derive(Debug, Default)]
 pub(crate) struct Clock {
     offset_s: f64,
+    first_s: Option<f64>,
     last_s: Option<f64>,
     waiting_s: Option<f64>,
     boot_hint: bool,
@@ -40,6 +41,11 @@ impl Clock {
         &self.boots_s
     }
 
+    /// The first believed time.
+    pub(crate) fn first_s(&self) -> Option<f64> {
+        self.first_s
+    }
+
     /// The latest believed time, on the clock that goes on over boots.
     pub(crate) fn now_s(&self) -> Option<f64> {
         self.last_s.map(|last| last + self.offset_s)
@@ -52,6 +58,7 @@ impl Clock {
                 None => Placed::Wait,
                 Some(first_s) if near(first_s, t_s) => {
                     self.waiting_s = None;
+                    self.first_s = Some(first_s);
                     self.last_s = Some(t_s);
                     Placed::Confirmed(first_s, t_s)
                 }

@@ -79,7 +79,7 @@ impl Gap {
 
 impl Flight {
     /// Everything this log does not hold, the gravest first; empty for a log that can
-    /// answer every question.
+    /// answer every question. For a vehicle that is no multirotor, that is the one answer.
     ///
     /// ```
     /// let log = "t_s,motor1\n0,0.5\n1,0.4\n2,0.4\n";
@@ -92,16 +92,17 @@ impl Flight {
     /// # Ok::<(), flightlog::ReadError>(())
     /// ```
     pub fn gaps(&self) -> Vec<Gap> {
-        let mut gaps = Vec::new();
         if !matches!(
             self.vehicle.kind,
             VehicleKind::Multirotor | VehicleKind::Unknown
         ) {
-            gaps.push(Gap::NotAMultirotor {
+            // The other questions are about multirotors.
+            return vec![Gap::NotAMultirotor {
                 kind: self.vehicle.kind,
                 from: self.vehicle.source.clone(),
-            });
+            }];
         }
+        let mut gaps = Vec::new();
         if self.motors.is_empty() {
             gaps.push(Gap::NoMotors);
         } else if self.commands.is_empty() {

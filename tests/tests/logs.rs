@@ -3,20 +3,12 @@
 
 use std::collections::HashMap;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use flagred_tests::shared_data;
 use flate2::read::GzDecoder;
 use flightlog::{Flight, Options, Range, Statistics};
 use serde_json::Value;
-
-/// The folder of reference data, or `None` where there is none.
-fn data() -> Option<PathBuf> {
-    let shared = std::env::var_os("FLAGRED_SHARED");
-    if shared.is_none() {
-        eprintln!("skipped: FLAGRED_SHARED is not set");
-    }
-    Some(Path::new(&shared?).join("data"))
-}
 
 fn open(path: &Path) -> Flight {
     flightlog::open(path, &Options::default()).unwrap()
@@ -207,7 +199,7 @@ fn compare(folder: &Path, log: &str) {
 
 #[test]
 fn simulated_flights_are_as_in_their_reference() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared_data() else { return };
     for log in [
         "hover_calm.BIN",
         "steady.BIN",
@@ -222,7 +214,7 @@ fn simulated_flights_are_as_in_their_reference() {
 
 #[test]
 fn public_logs_are_as_in_their_reference() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared_data() else { return };
     for log in [
         "ap_beast_mechfail36.bin",
         "ap_beast_sample.bin",
@@ -235,7 +227,7 @@ fn public_logs_are_as_in_their_reference() {
 
 #[test]
 fn flight_csv_series_are_read_whole() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared_data() else { return };
     let flight = open(&data.join("sitl2/timeseries/f000.csv.gz"));
     assert!(flight.report.is_clean(), "{:?}", flight.report);
     assert_eq!(flight.motors.len(), 8);

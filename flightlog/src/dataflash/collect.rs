@@ -358,11 +358,15 @@ impl<'o> Collector<'o> {
         flight.range = ardupilot::pwm_range(&self.parameters);
         flight.effective = ardupilot::effective_range(&self.parameters);
         flight.commands = self.outputs.commands(&flight.motors);
-        let last_s = self.clock.now_s().unwrap_or_default();
+        let span_s = self.clock.first_s().zip(self.clock.now_s());
         let (armed, in_air) = match self.events.is_empty() {
             true => ardupilot::air_from_commands(&flight),
             false => {
-                let (armed, in_air) = air_from_events(&self.events, self.clock.boots_s(), last_s);
+                let (armed, in_air) = air_from_events(
+                    &self.events,
+                    self.clock.boots_s(),
+                    span_s.unwrap_or_default(),
+                );
                 (Some(armed), Some(in_air))
             }
         };
@@ -471,7 +475,7 @@ fn gps_utc_s(format: &Format, cells: &Cells<'_>) -> Option<f64> {
 fn air_from_events(
     events: &[(f64, Landing)],
     boots_s: &[f64],
-    last_s: f64,
+    (first_s, last_s): (f64, f64),
 ) -> (Intervals, Intervals) {
     let changes = |yes: Landing, no: &[Landing]| -> Vec<(f64, bool)> {
         let mut changes: Vec<(f64, bool)> = events
@@ -491,14 +495,14 @@ fn air_from_events(
         &changes(Landing::Armed, &[Landing::Disarmed]),
         // A log whose first word is of flying or its end was already armed before.
         first.is_some_and(|event| event != Landing::Armed),
-        0.0,
+        first_s,
         last_s,
         "EV 10 (armed) to EV 11 (disarmed), and ARM",
     );
     let in_air = Intervals::from_changes(
         &changes(Landing::Left, &[Landing::Landed, Landing::Disarmed]),
         first == Some(Landing::Landed),
-        0.0,
+        first_s,
         last_s,
         "EV 28 (not landed) to EV 18 (land complete) or disarmed",
     );

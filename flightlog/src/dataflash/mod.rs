@@ -126,6 +126,9 @@ impl<'o> Scanner<'o> {
     /// What is at the start of `bytes`.
     fn record<'a>(&self, bytes: &'a [u8]) -> Found<'a> {
         let length = self.length(bytes);
+        if bytes.len() < 3 && HEAD.starts_with(&bytes[..bytes.len().min(2)]) {
+            return Found::Cut;
+        }
         if length == 0 {
             return Found::Damage {
                 skip: self.next_head(bytes, 1, bytes.len()),

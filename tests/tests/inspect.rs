@@ -1,0 +1,108 @@
+//! `flagred inspect` as its users meet it.
+
+use std::io::Write;
+use std::process::Stdio;
+
+use flagred_tests::flagred;
+use serde_json::Value;
+
+const LOG: &str = "\
+# vehicle: test quad
+# pwm_low_us: 1000
+# pwm_high_us: 2000
+# effective_low: 0.15
+# effective_high: 0.95
+t_s,pwm1,pwm2,in_air,roll_deg
+0.00,1000,1000,0,0.0
+0.04,1550,1550,1,0.5
+0.08,1950,1150,1,0.6
+0.12,1550,1550,0,0.7
+";
+
+fn inspect(arguments: &[&str], log: &str) -> (Option<i32>, String, String) {
+    let mut running = flagred()
+        .arg("inspect")
+        .args(arguments)
+        .arg("-")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = running.stdin.take().unwrap();
+    stdin.write_all(log.as_bytes()).unwrap();
+    drop(stdin);
+    let output = running.wait_with_output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (
+        output.status.code(),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
+}
+
+#[test]
+fn the_document_tells_values_and_where_they_came_from() {
+    let (code, stdout, _) = inspect(&["--json"], LOG);
+    assert_eq!(code, Some(0));
+    let document: Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!(document["vehicle"]["frame"], "test quad");
+    assert_eq!(document["motors"][1]["source"], "column `pwm2`");
+    assert_eq!(
+        document["range"]["source"],
+        "header pwm_low_us, pwm_high_us"
+    );
+    assert_eq!(document["in_air"]["spans_s"][0][0], 0.04);
+    assert_eq!(document["signals"][0]["unit"], "deg");
+    assert_eq!(document["read"]["messages"], 4);
+    // In the air the commands on the effective range are 0.5, 0.5, 1 and 0.
+    let statistics = &document["statistics"];
+    for (name, expected) in [
+        ("margin_mean", 0.25),
+        ("margin_min", 0.0),
+        ("margin_std", 0.25),
+        ("margin_mean_of_min", 0.25),
+        ("command_mean", 0.5),
+        ("command_std", 0.125_f64.sqrt()),
+    ] {
+        let value = statistics[name].as_f64().unwrap();
+        assert!((value - expected).abs() < 1e-12, "{name}: {value}");
+    }
+}
+
+#[test]
+fn what_is_missing_is_said_with_its_reason() {
+    let (code, stdout, _) = inspect(&[], "t_s,pwm1\n0,1500\n1,1500\n");
+    assert_eq!(code, Some(0));
+    assert!(
+        stdout.contains("NA: the range of the motor commands is not in the log"),
+        "{stdout}"
+    );
+    assert!(
+        stdout.contains("at 1.0 Hz, too slow for a spread"),
+        "{stdout}"
+    );
+}
+
+#[test]
+fn what_is_no_log_is_3() {
+    for (log, said) in [
+        ("", "`standard input` is empty"),
+        ("hello\n", "is a text file, not a flight log"),
+        ("t_s,pwm2\n0,1500\n", "no `pwm1`"),
+    ] {
+        let (code, stdout, stderr) = inspect(&[], log);
+        assert_eq!(code, Some(3), "{log}");
+        assert!(stdout.is_empty() && stderr.contains(said), "{stderr}");
+    }
+}
+
+#[test]
+fn a_plane_is_shown_and_is_3() {
+    let (code, stdout, _) = inspect(&[], &format!("# vehicle_kind: plane\n{LOG}"));
+    assert_eq!(code, Some(3));
+    assert!(
+        stdout.contains("the vehicle is a plane, not a multirotor"),
+        "{stdout}"
+    );
+}
