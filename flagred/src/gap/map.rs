@@ -58,7 +58,13 @@ impl FilledMap {
             .map(|cell| map.value(cell).unwrap_or(f64::NAN))
             .collect();
         let shape: Vec<usize> = map.grid().axes().iter().map(|axis| axis.points).collect();
-        let distances = fill(&Lattice::new(&shape), &covered, &mut values, method);
+        let distances = fill(
+            &Lattice::new(&shape),
+            &covered,
+            &mut values,
+            map.range(),
+            method,
+        );
         for (value, distance) in values.iter_mut().zip(&distances) {
             if distance.is_infinite() {
                 *value = f64::NAN;
@@ -123,18 +129,35 @@ mod tests {
     }
 
     #[test]
-    fn the_papers_corner_is_the_gap_and_a_saturated_drone_reads_high_in_it() {
+    fn the_papers_corner_is_the_gap() {
         let model = crate::shipped::rule_set("flagred-paper").unwrap().unwrap();
-        for method in [GapMethod::Nearest, GapMethod::INVERSE_DISTANCE] {
+        for method in GapMethod::ALL {
             let map = filled(&model, method);
             for cell in 0..51 * 51 {
                 let point = map.map().grid().point(cell);
                 let in_corner = point[0] < 0.15 - 1e-9 && point[1] < 0.05 - 1e-9;
                 assert_eq!(map.is_filled(cell), in_corner, "{point:?}");
             }
-            let saturated = map.read(&[0.0, 0.0]).unwrap();
-            assert!(saturated.value >= 75.0, "{method:?} {}", saturated.value);
-            assert!(saturated.distance > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_saturated_drone_reads_high_in_the_papers_corner() {
+        let model = crate::shipped::rule_set("flagred-paper").unwrap().unwrap();
+        let read = |method, point: [f64; 2]| filled(&model, method).read(&point).unwrap().value;
+        for method in [GapMethod::default(), GapMethod::INVERSE_DISTANCE] {
+            for point in [[0.0, 0.0], [0.02, 0.01]] {
+                let value = read(method, point);
+                assert!(value >= 75.0, "{method:?} at {point:?}: {value}");
+            }
+        }
+        // scipy 1.17.1: RBFInterpolator(covered cells, their values, neighbors=16, kernel="thin_plate_spline").
+        approx::assert_abs_diff_eq!(read(GapMethod::ThinPlate, [0.0, 0.0]), 91.528, epsilon = 0.01);
+        approx::assert_abs_diff_eq!(read(GapMethod::ThinPlate, [0.02, 0.01]), 77.308, epsilon = 0.01);
+        approx::assert_abs_diff_eq!(read(GapMethod::Nearest, [0.0, 0.0]), 90.278, epsilon = 0.001);
+        // These two only know what is next to the gap, which is milder.
+        approx::assert_abs_diff_eq!(read(GapMethod::Nearest, [0.02, 0.01]), 70.5, epsilon = 0.1);
+        approx::assert_abs_diff_eq!(read(GapMethod::Harmonic, [0.0, 0.0]), 69.4, epsilon = 0.1);
         }
     }
 

@@ -7,9 +7,12 @@
 
 use fuzzy::{Model, model::Conjunction};
 
+mod harmonic;
 mod inverse_distance;
 mod map;
 mod nearest;
+mod neighbours;
+mod thin_plate;
 
 pub use map::{FilledMap, Reading};
 
@@ -17,7 +20,6 @@ pub use map::{FilledMap, Reading};
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum GapMethod {
     /// The value of the nearest covered cell.
-    #[default]
     Nearest,
     /// `sum(v / d^power) / sum(1 / d^power)` over the nearest covered cells at the edge of the gap.
     ///
@@ -29,9 +31,24 @@ pub enum GapMethod {
         /// How many cells count, at least 1.
         neighbours: usize,
     },
+    /// The thin-plate spline through the covered cells nearest to each place: it continues slopes, and can overshoot;
+    /// kept within the range of the output.
+    #[default]
+    ThinPlate,
+    /// The solution of Laplace's equation: every filled value is the mean of its neighbours, so it is smooth and
+    /// cannot overshoot.
+    Harmonic,
 }
 
 impl GapMethod {
+    /// Every method, those with settings as they are when nothing else is said.
+    pub const ALL: [GapMethod; 4] = [
+        GapMethod::Nearest,
+        GapMethod::INVERSE_DISTANCE,
+        GapMethod::ThinPlate,
+        GapMethod::Harmonic,
+    ];
+
     /// Inverse distance as it is when nothing else is said: power 2, 4 neighbours.
     pub const INVERSE_DISTANCE: GapMethod = GapMethod::InverseDistance {
         power: 2.0,
@@ -108,6 +125,22 @@ impl Lattice {
             .collect()
     }
 
+    /// Reads values at the nodes linearly along each axis from `axis` on.
+    fn read(&self, values: &[f64], point: &[f64], axis: usize, node: usize) -> f64 {
+        let Some(x) = point.get(axis) else {
+            return values[node];
+        };
+        let last = self.shape[axis] - 1;
+        let place = x * last as f64;
+        let below = (place as usize).min(last.saturating_sub(1));
+        let share = place - below as f64;
+        let at = |place| self.read(values, point, axis + 1, node + place * self.strides[axis]);
+        if share == 0.0 {
+            return at(below);
+        }
+        (1.0 - share) * at(below) + share * at(below + 1)
+    }
+
     /// The nodes next to a node, along every axis.
     pub(crate) fn neighbours(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
         (0..self.shape.len()).flat_map(move |axis| {
@@ -120,30 +153,90 @@ impl Lattice {
 }
 
 /// Fills every value whose node is not covered; gives each node's distance to the nearest covered node (0 for a
-/// covered one), in shares of the ranges.
+/// covered one), in shares of the ranges. Values stay within the `range` of the output.
 ///
 /// Where nothing is covered nothing can be filled: the distances are infinite and the values stay.
 pub(crate) fn fill(
     lattice: &Lattice,
     covered: &[bool],
     values: &mut [f64],
+    range: (f64, f64),
     method: GapMethod,
 ) -> Vec<f32> {
     let nearest = nearest::nearest(lattice, covered);
+    let deepest = nearest.iter().map(|n| n.distance()).fold(0.0, f64::max);
     let distances = nearest.iter().map(|n| n.distance() as f32).collect();
-    match method {
-        GapMethod::Nearest => {
-            for node in 0..values.len() {
-                if let (false, Some(from)) = (covered[node], nearest[node].node()) {
-                    values[node] = values[from];
-                }
-            }
-        }
-        GapMethod::InverseDistance { power, neighbours } => {
-            inverse_distance::fill(lattice, covered, values, power, neighbours);
+    if deepest == 0.0 || deepest.is_infinite() {
+        return distances;
+    }
+    for (node, nearest) in nearest.iter().enumerate() {
+        if let Some(from) = nearest.node() {
+            values[node] = values[from];
         }
     }
+    // From here on the values in the gap are those of the nearest covered cells.
+    drop(nearest);
+    match method {
+        GapMethod::Nearest => {}
+        GapMethod::InverseDistance { power, neighbours } => {
+            on_knots(lattice, covered, values, |lattice, covered, values| {
+                inverse_distance::fill(lattice, covered, values, power, neighbours);
+            });
+        }
+        GapMethod::ThinPlate => {
+            on_knots(lattice, covered, values, |lattice, covered, values| {
+                thin_plate::fill(lattice, covered, values, range);
+            });
+        }
+        GapMethod::Harmonic => harmonic::fill(lattice, covered, values, deepest),
+    }
     distances
+}
+
+/// The methods that look for neighbours do so on at most this many nodes along each axis and in all: what counts as
+/// near then does not depend on how finely a map is drawn, and the cost has a bound in any number of dimensions.
+const MOST_KNOTS_ALONG: usize = 51;
+const MOST_KNOTS: f64 = 40_000.0;
+
+/// Fills a coarser grid, its knots the nodes nearest to even places, and reads the gap linearly between its knots.
+fn on_knots(
+    lattice: &Lattice,
+    covered: &[bool],
+    values: &mut [f64],
+    fill: impl Fn(&Lattice, &[bool], &mut [f64]),
+) {
+    let even = libm::pow(MOST_KNOTS, 1.0 / lattice.shape.len() as f64) as usize;
+    let along = even.clamp(3, MOST_KNOTS_ALONG);
+    if lattice.shape.iter().all(|n| *n <= along) {
+        fill(lattice, covered, values);
+        return;
+    }
+    let knots = Lattice::new(
+        &lattice
+            .shape
+            .iter()
+            .map(|n| along.min(*n))
+            .collect::<Vec<_>>(),
+    );
+    let count = knots.shape.iter().product();
+    let nodes: Vec<usize> = (0..count)
+        .map(|knot| {
+            let point = knots.point(knot);
+            let places = point.iter().enumerate().map(|(axis, x)| {
+                let last = (lattice.shape[axis] - 1) as f64;
+                libm::round(x * last) as usize * lattice.strides[axis]
+            });
+            places.sum()
+        })
+        .collect();
+    let known: Vec<bool> = nodes.iter().map(|node| covered[*node]).collect();
+    let mut filled: Vec<f64> = nodes.iter().map(|node| values[*node]).collect();
+    if known.iter().any(|known| *known) {
+        fill(&knots, &known, &mut filled);
+    }
+    for node in (0..covered.len()).filter(|node| !covered[*node]) {
+        values[node] = knots.read(&filled, &lattice.point(node), 0, 0);
+    }
 }
 
 #[cfg(test)]
@@ -151,7 +244,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const METHODS: [GapMethod; 2] = [GapMethod::Nearest, GapMethod::INVERSE_DISTANCE];
+    const RANGE: (f64, f64) = (0.0, 100.0);
 
     #[test]
     fn neighbours_stop_at_the_edge() {
@@ -163,9 +256,9 @@ mod tests {
 
     #[test]
     fn where_nothing_is_covered_nothing_is_filled() {
-        for method in METHODS {
+        for method in GapMethod::ALL {
             let mut values = [1.0, 2.0, 3.0];
-            let distances = fill(&Lattice::new(&[3]), &[false; 3], &mut values, method);
+            let distances = fill(&Lattice::new(&[3]), &[false; 3], &mut values, RANGE, method);
             assert_eq!(values, [1.0, 2.0, 3.0]);
             assert!(distances.iter().all(|d| d.is_infinite()));
         }
@@ -176,15 +269,18 @@ mod tests {
         let filled = |method| {
             let mut values = [0.0, -1.0, -1.0, -1.0, 100.0];
             let covered = [true, false, false, false, true];
-            let distances = fill(&Lattice::new(&[5]), &covered, &mut values, method);
+            let distances = fill(&Lattice::new(&[5]), &covered, &mut values, RANGE, method);
             assert_eq!(distances, [0.0, 0.25, 0.5, 0.25, 0.0]);
             values
         };
-        assert_eq!(filled(METHODS[0])[1], 0.0);
-        assert_eq!(filled(METHODS[0])[3], 100.0);
+        assert_eq!(filled(GapMethod::Nearest)[1], 0.0);
+        assert_eq!(filled(GapMethod::Nearest)[3], 100.0);
         // 100 (1/0.75^2) / (1/0.25^2 + 1/0.75^2) = 10
-        approx::assert_abs_diff_eq!(filled(METHODS[1])[1], 10.0, epsilon = 1e-9);
-        approx::assert_abs_diff_eq!(filled(METHODS[1])[2], 50.0, epsilon = 1e-9);
+        approx::assert_abs_diff_eq!(filled(GapMethod::INVERSE_DISTANCE)[1], 10.0, epsilon = 1e-9);
+        approx::assert_abs_diff_eq!(filled(GapMethod::INVERSE_DISTANCE)[2], 50.0, epsilon = 1e-9);
+        for (i, expected) in [0.0, 25.0, 50.0, 75.0, 100.0].into_iter().enumerate() {
+            approx::assert_abs_diff_eq!(filled(GapMethod::Harmonic)[i], expected, epsilon = 1e-4);
+        }
     }
 
     proptest! {
@@ -200,13 +296,15 @@ mod tests {
             prop_assume!(covered.iter().any(|c| *c));
             let known = || (0..60).filter(|i| covered[*i]).map(|i| original[i]);
             let (low, high) = (known().fold(f64::MAX, f64::min), known().fold(f64::MIN, f64::max));
-            for method in METHODS {
+            for method in GapMethod::ALL {
                 let mut values = original.clone();
-                let distances = fill(&lattice, &covered, &mut values, method);
+                let distances = fill(&lattice, &covered, &mut values, RANGE, method);
                 for i in 0..60 {
                     prop_assert_eq!(distances[i] == 0.0, covered[i]);
                     if covered[i] {
                         prop_assert_eq!(values[i], original[i]);
+                    } else if method == GapMethod::ThinPlate {
+                        prop_assert!((0.0..=100.0).contains(&values[i]));
                     } else {
                         prop_assert!(values[i] >= low - 1e-9 && values[i] <= high + 1e-9);
                     }

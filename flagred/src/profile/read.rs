@@ -284,6 +284,8 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
     let words = [
         ("nearest", GapMethod::Nearest),
         ("inverse_distance", GapMethod::INVERSE_DISTANCE),
+        ("thin_plate", GapMethod::ThinPlate),
+        ("harmonic", GapMethod::Harmonic),
     ];
     let Value::Mapping(_) = node.value else {
         return node.choice("the gap method", &words, found);

@@ -1,0 +1,181 @@
+//! The thin-plate spline: the smoothest surface through the covered cells around a place (Duchon 1977).
+//!
+//! `f(x) = a + b x + sum_i w_i phi(|x - c_i|)`, `phi(r) = r^2 ln r`, with the weights such that f takes the known
+//! values at the centres c_i and `sum w_i = 0`, `sum w_i c_i = 0`. The centres of each filled cell are the
+//! [`NEIGHBOURS`] covered cells nearest to it: over all of them the far side of the map would bend the corner of the
+//! gap. The surface follows slopes beyond what is known, so it can overshoot; values are kept within the range of the
+//! output.
+
+use super::{Lattice, neighbours::Tree};
+
+/// How many covered cells shape the surface at a place, in two dimensions; twice as many in each further one.
+const NEIGHBOURS: usize = 16;
+
+/// Where the neighbours lie in one plane they say nothing of the slope across it: a slope costs this much, so that it
+/// is 0 there. Elsewhere it changes nothing that could be seen.
+const COST_OF_SLOPE: f64 = 1e-7;
+
+/// Fills the nodes that are not covered, within `range`.
+pub(super) fn fill(lattice: &Lattice, covered: &[bool], values: &mut [f64], range: (f64, f64)) {
+    let known: Vec<usize> = (0..covered.len()).filter(|node| covered[*node]).collect();
+    let dimensions = lattice.shape.len();
+    let points = known.iter().flat_map(|node| lattice.point(*node)).collect();
+    let mut tree = Tree::new(dimensions, points);
+    let k = NEIGHBOURS << dimensions.saturating_sub(2).min(3);
+    let gap: Vec<usize> = (0..covered.len()).filter(|node| !covered[*node]).collect();
+    for node in gap {
+        let point = lattice.point(node);
+        let neighbours: Vec<usize> = tree
+            .nearest(&point, k)
+            .iter()
+            .filter_map(|(_, index)| known.get(*index).copied())
+            .collect();
+        // Seen from the place itself, so that the constant is the value there.
+        let centres: Vec<Vec<f64>> = neighbours
+            .iter()
+            .map(|n| {
+                let centre = lattice.point(*n);
+                centre.iter().zip(&point).map(|(c, x)| c - x).collect()
+            })
+            .collect();
+        let known: Vec<f64> = neighbours.iter().map(|n| values[*n]).collect();
+        if let Some(value) = value_at_origin(&centres, &known) {
+            values[node] = value.clamp(range.0, range.1);
+        }
+    }
+}
+
+/// The spline through `known` values at `centres`, read at the origin.
+fn value_at_origin(centres: &[Vec<f64>], known: &[f64]) -> Option<f64> {
+    let dimensions = centres.first()?.len();
+    let n = centres.len();
+    let size = n + dimensions + 1;
+    let mut rows = vec![vec![0.0; size + 1]; size];
+    for (i, centre) in centres.iter().enumerate() {
+        for (j, other) in centres.iter().enumerate() {
+            rows[i][j] = phi(centre.iter().zip(other).map(|(a, b)| a - b));
+        }
+        rows[i][n] = 1.0;
+        rows[n][i] = 1.0;
+        for (d, x) in centre.iter().enumerate() {
+            rows[i][n + 1 + d] = *x;
+            rows[n + 1 + d][i] = *x;
+        }
+        rows[i][size] = known[i];
+    }
+    for row in n + 1..size {
+        rows[row][row] = -COST_OF_SLOPE;
+    }
+    let solution = solve(rows)?;
+    let (weights, plane) = solution.split_at(n);
+    let bumps = weights
+        .iter()
+        .zip(centres)
+        .map(|(w, c)| w * phi(c.iter().copied()));
+    Some(plane.first()? + bumps.sum::<f64>())
+}
+
+/// `r^2 ln r = r^2 ln(r^2) / 2` of a difference of places.
+fn phi(difference: impl Iterator<Item = f64>) -> f64 {
+    let square: f64 = difference.map(|x| x * x).sum();
+    if square > 0.0 {
+        0.5 * square * libm::log(square)
+    } else {
+        0.0
+    }
+}
+
+/// Solves linear equations, given as rows with the right side behind, by elimination with partial pivoting; `None`
+/// where they determine nothing.
+fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+    let n = rows.len();
+    for column in 0..n {
+        let size = |row: &usize| rows[*row][column].abs();
+        let pivot = (column..n).max_by(|a, b| size(a).total_cmp(&size(b)).then(b.cmp(a)))?;
+        rows.swap(column, pivot);
+        let (above, below) = rows.split_at_mut(column + 1);
+        let lead = &above[column];
+        for row in below {
+            let factor = row[column] / lead[column];
+            if factor != 0.0 {
+                for (x, l) in row[column..].iter_mut().zip(&lead[column..]) {
+                    *x -= factor * l;
+                }
+            }
+        }
+    }
+    let mut solution = vec![0.0; n];
+    for i in (0..n).rev() {
+        let done: f64 = (i + 1..n).map(|j| rows[i][j] * solution[j]).sum();
+        solution[i] = (rows[i][n] - done) / rows[i][i];
+    }
+    solution.iter().all(|x| x.is_finite()).then_some(solution)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(centres: &[[f64; 2]], known: &[f64], point: [f64; 2]) -> f64 {
+        let centres: Vec<Vec<f64>> = centres
+            .iter()
+            .map(|c| vec![c[0] - point[0], c[1] - point[1]])
+            .collect();
+        value_at_origin(&centres, known).unwrap()
+    }
+
+    #[test]
+    fn it_goes_through_its_centres_and_keeps_a_plane_a_plane() {
+        let centres: Vec<[f64; 2]> = (0..12)
+            .map(|i| [f64::from(i % 4) / 3.0, f64::from(i / 4) / 2.0])
+            .collect();
+        let plane = |c: [f64; 2]| 20.0 + 30.0 * c[0] - 10.0 * c[1];
+        let known: Vec<f64> = centres.iter().map(|c| plane(*c)).collect();
+        let beyond = [2.0, -1.0];
+        approx::assert_abs_diff_eq!(at(&centres, &known, beyond), plane(beyond), epsilon = 1e-4);
+
+        let bumpy: Vec<f64> = (0..12).map(|i| f64::from(i * i % 7)).collect();
+        for (centre, value) in centres.iter().zip(&bumpy) {
+            approx::assert_abs_diff_eq!(at(&centres, &bumpy, *centre), value, epsilon = 1e-4);
+        }
+    }
+
+    const SCIPY_CENTRES: [[f64; 2]; 9] = [
+        [0.09, 0.24],
+        [0.8, 0.58],
+        [0.09, 0.43],
+        [0.48, 0.16],
+        [0.73, 0.11],
+        [0.39, 0.52],
+        [0.43, 0.59],
+        [0.74, 0.96],
+        [0.28, 0.65],
+    ];
+    const SCIPY_KNOWN: [f64; 9] = [69.6, 29.3, 0.1, 97.3, 29.8, 31.4, 89.2, 58.5, 47.1];
+    const SCIPY_POINTS: [([f64; 2], f64); 4] = [
+        ([0.88, -0.16], 21.134210381),
+        ([0.79, 0.32], 15.466102392),
+        ([-0.07, 0.72], 8.507749443),
+        ([1.1, 0.09], -37.796746890),
+    ];
+
+    // Computed with scipy 1.17.1: RBFInterpolator(centres, known, kernel="thin_plate_spline")(points).
+    #[test]
+    fn it_is_the_spline_that_scipy_computes() {
+        for (point, expected) in SCIPY_POINTS {
+            approx::assert_abs_diff_eq!(
+                at(&SCIPY_CENTRES, &SCIPY_KNOWN, point),
+                expected,
+                epsilon = 1e-4
+            );
+        }
+    }
+
+    #[test]
+    fn across_a_plane_of_centres_it_is_level() {
+        let line: Vec<[f64; 2]> = (0..6).map(|i| [f64::from(i) / 5.0, 0.5]).collect();
+        let known: Vec<f64> = (0..6).map(|i| 10.0 * f64::from(i)).collect();
+        approx::assert_abs_diff_eq!(at(&line, &known, [0.4, 0.5]), 20.0, epsilon = 1e-4);
+        approx::assert_abs_diff_eq!(at(&line, &known, [0.4, 0.45]), 20.0, epsilon = 1.0);
+    }
+}
