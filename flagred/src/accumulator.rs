@@ -31,11 +31,11 @@ pub struct AccumulatorSettings {
 impl Default for AccumulatorSettings {
     fn default() -> Self {
         AccumulatorSettings {
-            window_s: 2.0,
-            high_pct: 70.0,
-            low_pct: 40.0,
-            rise_pct_per_s: 25.0,
-            fall_pct_per_s: 10.0,
+            window_s: 10.0,
+            high_pct: 50.0,
+            low_pct: 20.0,
+            rise_pct_per_s: 2.0,
+            fall_pct_per_s: 3.0,
         }
     }
 }
@@ -86,7 +86,7 @@ impl Accumulator {
     /// Adds the risk at `t_s`, which stood for the `held_s` seconds before; gives the elevated risk in %.
     pub fn push(&mut self, t_s: f64, held_s: f64, risk_pct: f64) -> f64 {
         let last_risk = self.last.map_or(risk_pct, |(risk, _)| risk);
-        let between = Moments::of((last_risk + risk_pct) / 2.0, held_s);
+        let between = Moments::between(last_risk, risk_pct, held_s);
         self.risks.push(t_s, held_s, &between);
         let total = self.risks.total();
         if let (Some(mean), Some(std)) = (total.mean(), total.std()) {

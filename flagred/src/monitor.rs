@@ -240,8 +240,8 @@ impl<'a> Monitor<'a> {
             return self.unknown(t_s, reason, step);
         };
         self.last_known_s = Some(t_s);
+        let elevated = self.accumulator.push(t_s, held_s, estimate.risk_pct);
         if t_s - in_air_since_s >= self.estimator.profile().verdict.quiet_after_take_off_s {
-            let elevated = self.accumulator.push(t_s, held_s, estimate.risk_pct);
             let judged = self
                 .alert
                 .push(t_s, estimate.risk_pct, elevated, &self.motors);

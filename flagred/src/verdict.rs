@@ -1,7 +1,7 @@
 //! From risk to words: levels with hysteresis, a minimum duration and silence where alarms mean nothing.
 //!
-//! Pilots switch off warnings that cry too often, so a level is raised only after it has been exceeded for a
-//! while, falls only after it has been clearly undercut for a while, and no level is raised just after take-off.
+//! Pilots switch off warnings that cry too often, so a level is raised only after its threshold has been reached for
+//! a while, is lowered only after a lower one has not been reached for a while, and is not raised just after take-off.
 
 use alloc::{vec, vec::Vec};
 
@@ -27,65 +27,89 @@ pub enum Measure {
     ElevatedRisk,
 }
 
-/// From where on a level is exceeded; either quantity is enough.
+/// A limit on each quantity; reaching either is enough.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Threshold {
-    /// The risk in % at or above which the level is exceeded.
+    /// On the risk, in %.
     pub risk_pct: Option<f64>,
-    /// The elevated risk in % at or above which the level is exceeded.
+    /// On the elevated risk, in %.
     pub elevated_risk_pct: Option<f64>,
 }
 
 impl Threshold {
-    /// What exceeds the threshold lowered by `relief_pct`, and the threshold itself.
-    fn exceeded(
-        &self,
-        risk_pct: f64,
-        elevated_pct: f64,
-        relief_pct: f64,
-    ) -> Option<(Measure, f64)> {
-        let by = |limit: Option<f64>, value: f64| limit.filter(|limit| value >= limit - relief_pct);
-        by(self.elevated_risk_pct, elevated_pct)
-            .map(|limit| (Measure::ElevatedRisk, limit))
-            .or_else(|| by(self.risk_pct, risk_pct).map(|limit| (Measure::Risk, limit)))
+    /// What reaches its limit, and the limit.
+    fn reached(&self, risk_pct: f64, elevated_pct: f64) -> Option<(Measure, f64)> {
+        let by = |limit: Option<f64>, value: f64| limit.filter(|limit| value >= *limit);
+        by(self.risk_pct, risk_pct)
+            .map(|limit| (Measure::Risk, limit))
+            .or_else(|| {
+                by(self.elevated_risk_pct, elevated_pct).map(|limit| (Measure::ElevatedRisk, limit))
+            })
     }
+}
+
+/// When a level is raised and until when it is held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelSettings {
+    /// The level is raised when this is reached ...
+    pub raise: Threshold,
+    /// ... for this long without a break, in seconds.
+    pub after_s: f64,
+    /// Once raised, the level is held while this, which is lower, is reached.
+    pub until: Threshold,
 }
 
 /// When levels are raised and lowered.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VerdictSettings {
     /// When to warn.
-    pub warn: Threshold,
+    pub warn: LevelSettings,
     /// When it fails.
-    pub fail: Threshold,
-    /// A level is lowered only below its threshold less this, in %.
-    pub hysteresis_pct: f64,
-    /// A level is raised when it has been exceeded for this long, in seconds.
-    pub raise_after_s: f64,
-    /// A level is lowered when it has been undercut for this long, in seconds.
+    pub fail: LevelSettings,
+    /// A level is lowered when nothing has held it for this long, in seconds.
     pub clear_after_s: f64,
-    /// In the first seconds in the air the elevated risk rests and no level is raised.
+    /// In the first seconds in the air no level is raised.
     pub quiet_after_take_off_s: f64,
     /// What is raised in the last seconds before touching down is taken back.
     pub quiet_before_landing_s: f64,
+    /// Where the motors idle, as when touching down, the risk says little.
+    pub idle: Idle,
+}
+
+/// How a risk counts while the motors idle: near their lower limit all at once, they hold nothing in the air.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Idle {
+    /// The motors idle while their mean effective command is below this.
+    pub command_below: f64,
+    /// The risk then counts as this at most, in %.
+    pub risk_at_most_pct: f64,
 }
 
 impl Default for VerdictSettings {
+    /// Calibrated on simulated flights.
     fn default() -> Self {
+        let threshold = |risk, elevated| Threshold {
+            risk_pct: Some(risk),
+            elevated_risk_pct: Some(elevated),
+        };
         VerdictSettings {
-            warn: Threshold {
-                risk_pct: None,
-                elevated_risk_pct: Some(50.0),
+            warn: LevelSettings {
+                raise: threshold(67.0, 50.0),
+                after_s: 0.2,
+                until: threshold(25.0, 30.0),
             },
-            fail: Threshold {
-                risk_pct: None,
-                elevated_risk_pct: Some(90.0),
+            fail: LevelSettings {
+                raise: threshold(85.0, 90.0),
+                after_s: 0.4,
+                until: threshold(67.0, 70.0),
             },
-            hysteresis_pct: 20.0,
-            raise_after_s: 0.5,
-            clear_after_s: 3.0,
-            quiet_after_take_off_s: 4.0,
-            quiet_before_landing_s: 2.0,
+            clear_after_s: 10.0,
+            quiet_after_take_off_s: 5.0,
+            quiet_before_landing_s: 1.0,
+            idle: Idle {
+                command_below: 0.1,
+                risk_at_most_pct: 60.0,
+            },
         }
     }
 }
@@ -95,13 +119,13 @@ impl Default for VerdictSettings {
 pub struct Finding {
     /// The highest level reached.
     pub level: Level,
-    /// Since when it was exceeded, in seconds.
+    /// Since when the first level was reached, in seconds.
     pub from_s: f64,
-    /// When it was raised: `raise_after_s` later.
+    /// When it was raised: its `after_s` later.
     pub raised_s: f64,
-    /// Until when it was exceeded; the last sample where the flight ended before.
+    /// When a level was last reached. The level itself is held for a while longer.
     pub to_s: f64,
-    /// What exceeded the highest level reached.
+    /// What reached the highest level.
     pub measure: Measure,
     /// The threshold of that level in %.
     pub threshold_pct: f64,
@@ -129,10 +153,10 @@ pub struct MotorFinding {
 pub(crate) struct Alert {
     settings: VerdictSettings,
     level: Level,
-    /// Since when warn and fail are exceeded.
-    exceeded_since: [Option<f64>; 2],
-    /// When the level was last exceeded, give or take the hysteresis.
-    last_exceeded_s: f64,
+    /// Since when warn and fail are reached.
+    reached_since: [Option<f64>; 2],
+    /// When the level was last held.
+    last_held_s: f64,
     finding: Option<Finding>,
     motors: Vec<MotorRecord>,
 }
@@ -144,6 +168,9 @@ struct MotorRecord {
     least_margin: f64,
     side: Side,
 }
+
+/// Sums of time steps are off by less than this.
+const ROUNDING_S: f64 = 1e-6;
 
 const NO_RECORD: MotorRecord = MotorRecord {
     samples: 0,
@@ -166,8 +193,8 @@ impl Alert {
         Alert {
             settings,
             level: Level::Good,
-            exceeded_since: [None; 2],
-            last_exceeded_s: 0.0,
+            reached_since: [None; 2],
+            last_held_s: 0.0,
             finding: None,
             motors: vec![NO_RECORD; motors],
         }
@@ -194,36 +221,39 @@ impl Alert {
         motors: &[f64],
     ) -> Step {
         let settings = self.settings;
-        let was_idle = self.exceeded_since == [None; 2] && self.finding.is_none();
-        let thresholds = [
-            (Level::Warn, settings.warn, 0),
-            (Level::Fail, settings.fail, 1),
-        ];
+        let risk_pct = if idles(motors, &settings.idle) {
+            risk_pct.min(settings.idle.risk_at_most_pct)
+        } else {
+            risk_pct
+        };
         let mut step = Step::default();
+        let levels = [(Level::Warn, settings.warn), (Level::Fail, settings.fail)];
+        let was_idle = self.reached_since == [None; 2] && self.finding.is_none();
+        for (since, (_, level)) in self.reached_since.iter_mut().zip(&levels) {
+            let reached = level.raise.reached(risk_pct, elevated_pct);
+            *since = reached.map(|_| since.unwrap_or(t_s));
+        }
+        let reached = self.reached_since != [None; 2];
+        if reached {
+            if was_idle {
+                self.motors.fill(NO_RECORD);
+            }
+            self.record_motors(motors);
+        }
         let mut held = Level::Good;
-        for (level, threshold, i) in thresholds {
-            // What is raised already is held down to the hysteresis.
-            let relief = if self.level >= level {
-                settings.hysteresis_pct
-            } else {
-                0.0
-            };
-            let Some((measure, threshold_pct)) = threshold.exceeded(risk_pct, elevated_pct, relief)
-            else {
-                self.exceeded_since[i] = None;
-                continue;
-            };
-            let since_s = *self.exceeded_since[i].get_or_insert(t_s);
-            held = level;
-            if level > self.level && t_s - since_s >= settings.raise_after_s {
+        for (since, (level, settings)) in self.reached_since.into_iter().zip(levels) {
+            let due = since.filter(|since| t_s - since >= settings.after_s - ROUNDING_S);
+            if let Some(since_s) = due
+                && level > self.level
+                && let Some((measure, threshold_pct)) =
+                    settings.raise.reached(risk_pct, elevated_pct)
+            {
                 self.level = level;
                 step.change = Some(level);
-                let from_s = self.finding.map_or(since_s, |finding| finding.from_s);
-                let raised_s = self.finding.map_or(t_s, |finding| finding.raised_s);
                 self.finding = Some(Finding {
                     level,
-                    from_s,
-                    raised_s,
+                    from_s: self.finding.map_or(since_s, |finding| finding.from_s),
+                    raised_s: self.finding.map_or(t_s, |finding| finding.raised_s),
                     to_s: t_s,
                     measure,
                     threshold_pct,
@@ -231,13 +261,10 @@ impl Alert {
                     motor: None,
                 });
             }
-        }
-        let idle = self.exceeded_since == [None; 2] && self.finding.is_none();
-        if was_idle && !idle {
-            self.motors.fill(NO_RECORD);
-        }
-        if held > Level::Good {
-            self.record_motors(motors);
+            let holding = settings.until.reached(risk_pct, elevated_pct);
+            if since.is_some() || holding.is_some() {
+                held = level.min(self.level);
+            }
         }
         if let Some(finding) = &mut self.finding {
             let value = match finding.measure {
@@ -245,15 +272,15 @@ impl Alert {
                 Measure::ElevatedRisk => elevated_pct,
             };
             finding.peak_pct = finding.peak_pct.max(value);
-            if held > Level::Good {
+            if reached {
                 finding.to_s = t_s;
             }
         }
         if held >= self.level {
-            self.last_exceeded_s = t_s;
-        } else if t_s - self.last_exceeded_s >= settings.clear_after_s {
+            self.last_held_s = t_s;
+        } else if t_s - self.last_held_s >= settings.clear_after_s - ROUNDING_S {
             self.level = held;
-            self.last_exceeded_s = t_s;
+            self.last_held_s = t_s;
             step.change = Some(held);
             if held == Level::Good {
                 step.ended = self.open();
@@ -276,7 +303,7 @@ impl Alert {
             .filter(|finding| !landed || t_s - finding.raised_s >= quiet_s);
         let change = (self.level > Level::Good).then_some(Level::Good);
         self.level = Level::Good;
-        self.exceeded_since = [None; 2];
+        self.reached_since = [None; 2];
         self.finding = None;
         Step { change, ended }
     }
@@ -311,24 +338,41 @@ impl Alert {
     }
 }
 
+fn idles(motors: &[f64], idle: &Idle) -> bool {
+    let known = motors.iter().filter(|e| e.is_finite());
+    let (sum, count) = known.fold((0.0, 0.0), |(sum, count), e| (sum + e, count + 1.0));
+    count > 0.0 && sum < idle.command_below * count
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const fn threshold(risk_pct: Option<f64>, elevated_risk_pct: Option<f64>) -> Threshold {
+        Threshold {
+            risk_pct,
+            elevated_risk_pct,
+        }
+    }
+
     const SETTINGS: VerdictSettings = VerdictSettings {
-        warn: Threshold {
-            risk_pct: None,
-            elevated_risk_pct: Some(50.0),
+        warn: LevelSettings {
+            raise: threshold(None, Some(50.0)),
+            after_s: 0.5,
+            until: threshold(None, Some(40.0)),
         },
-        fail: Threshold {
-            risk_pct: Some(95.0),
-            elevated_risk_pct: Some(80.0),
+        fail: LevelSettings {
+            raise: threshold(Some(95.0), Some(80.0)),
+            after_s: 0.5,
+            until: threshold(Some(85.0), Some(70.0)),
         },
-        hysteresis_pct: 10.0,
-        raise_after_s: 0.5,
         clear_after_s: 2.0,
         quiet_after_take_off_s: 0.0,
         quiet_before_landing_s: 2.0,
+        idle: Idle {
+            command_below: 0.1,
+            risk_at_most_pct: 60.0,
+        },
     };
 
     /// Runs (seconds, risk, elevated risk) at 10 Hz; gives what changed when, and the findings.
@@ -365,7 +409,7 @@ mod tests {
         let (changes, findings, _) = run(&[
             (1.0, 0.0, 0.0),
             (2.0, 0.0, 60.0),
-            // Within the hysteresis, then below it for less than clear_after_s.
+            // Held, then not held for less than clear_after_s.
             (5.0, 0.0, 45.0),
             (1.0, 0.0, 0.0),
             (1.0, 0.0, 90.0),
@@ -394,6 +438,21 @@ mod tests {
         let (changes, _, alert) = run(&[(2.0, 99.0, 0.0)]);
         assert_eq!(changes, [(0.5, Level::Fail)]);
         assert_eq!(alert.open().map(|f| f.measure), Some(Measure::Risk));
+    }
+
+    #[test]
+    fn a_risk_at_idle_counts_for_less() {
+        for (e, level) in [
+            (0.05, Level::Good),
+            (0.15, Level::Fail),
+            (f64::NAN, Level::Fail),
+        ] {
+            let mut alert = Alert::new(SETTINGS, 2);
+            for i in 0..10 {
+                alert.push(f64::from(i) / 10.0, 100.0, 0.0, &[e, e]);
+            }
+            assert_eq!(alert.level(), level, "{e}");
+        }
     }
 
     #[test]

@@ -58,6 +58,17 @@ impl Moments {
         }
     }
 
+    /// Of a finite value that moves evenly from one end to the other, with a weight over 0.
+    pub fn between(from: f64, to: f64, weight: f64) -> Moments {
+        Moments {
+            weight,
+            mean: (from + to) / 2.0,
+            squares: weight * (to - from) * (to - from) / 12.0,
+            min: from.min(to),
+            max: from.max(to),
+        }
+    }
+
     /// Adds the values behind `other`.
     pub fn merge(&mut self, other: &Moments) {
         if other.weight <= 0.0 {

@@ -152,13 +152,24 @@ mod tests {
             }
         }
         // scipy 1.17.1: RBFInterpolator(covered cells, their values, neighbors=16, kernel="thin_plate_spline").
-        approx::assert_abs_diff_eq!(read(GapMethod::ThinPlate, [0.0, 0.0]), 91.528, epsilon = 0.01);
-        approx::assert_abs_diff_eq!(read(GapMethod::ThinPlate, [0.02, 0.01]), 77.308, epsilon = 0.01);
-        approx::assert_abs_diff_eq!(read(GapMethod::Nearest, [0.0, 0.0]), 90.278, epsilon = 0.001);
+        approx::assert_abs_diff_eq!(
+            read(GapMethod::ThinPlate, [0.0, 0.0]),
+            91.528,
+            epsilon = 0.01
+        );
+        approx::assert_abs_diff_eq!(
+            read(GapMethod::ThinPlate, [0.02, 0.01]),
+            77.308,
+            epsilon = 0.01
+        );
+        approx::assert_abs_diff_eq!(
+            read(GapMethod::Nearest, [0.0, 0.0]),
+            90.278,
+            epsilon = 0.001
+        );
         // These two only know what is next to the gap, which is milder.
         approx::assert_abs_diff_eq!(read(GapMethod::Nearest, [0.02, 0.01]), 70.5, epsilon = 0.1);
         approx::assert_abs_diff_eq!(read(GapMethod::Harmonic, [0.0, 0.0]), 69.4, epsilon = 0.1);
-        }
     }
 
     #[test]

@@ -63,8 +63,8 @@ fn value_at_origin(centres: &[Vec<f64>], known: &[f64]) -> Option<f64> {
         }
         rows[i][size] = known[i];
     }
-    for row in n + 1..size {
-        rows[row][row] = -COST_OF_SLOPE;
+    for (i, row) in rows.iter_mut().enumerate().skip(n + 1) {
+        row[i] = -COST_OF_SLOPE;
     }
     let solution = solve(rows)?;
     let (weights, plane) = solution.split_at(n);

@@ -10,7 +10,7 @@ use crate::{
     gap::GapSettings,
     profile::{ProfileInput, Sampling},
     source::{Motors, Signal, Source, Statistic},
-    verdict::{Threshold, VerdictSettings},
+    verdict::VerdictSettings,
 };
 
 /// The risk falls from 100 % at a mean margin of 0 to 0 % at 0.5, by two rules; `without_low` leaves out the first.
@@ -78,13 +78,7 @@ fn profile() -> Profile {
         sampling: Sampling::default(),
         gap: GapSettings::default(),
         elevated_risk: AccumulatorSettings::default(),
-        verdict: VerdictSettings {
-            warn: Threshold {
-                risk_pct: None,
-                elevated_risk_pct: Some(50.0),
-            },
-            ..VerdictSettings::default()
-        },
+        verdict: VerdictSettings::default(),
     }
 }
 
@@ -158,7 +152,6 @@ fn the_first_seconds_in_the_air_raise_nothing() {
     let flight = fly(&mut monitor, 25.0, &[(1.0, 0.0, false), (4.0, 1.0, true)]);
     let last = flight.last().unwrap();
     assert!(last.risk.unwrap().risk_pct > 80.0);
-    assert_eq!(last.elevated_risk_pct, Some(0.0));
     assert_eq!(last.level, Some(Level::Good));
 }
 

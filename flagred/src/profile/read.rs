@@ -13,7 +13,7 @@ use crate::{
     accumulator::AccumulatorSettings,
     gap::{GapMethod, GapSettings},
     source::{Motors, Signal, Source, Statistic},
-    verdict::{Threshold, VerdictSettings},
+    verdict::{Idle, LevelSettings, Threshold, VerdictSettings},
 };
 
 /// The version of the format.
@@ -354,11 +354,10 @@ fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
     let keys = [
         "warn",
         "fail",
-        "hysteresis",
-        "raise_after_s",
         "clear_after_s",
         "quiet_after_take_off_s",
         "quiet_before_landing_s",
+        "idle",
     ];
     let Some(fields) = fields
         .get("verdict")
@@ -368,28 +367,65 @@ fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
     };
     let mut seconds = |key, default| number(&fields, key, default, Least::From0, found);
     let settings = VerdictSettings {
-        hysteresis_pct: seconds("hysteresis", default.hysteresis_pct),
-        raise_after_s: seconds("raise_after_s", default.raise_after_s),
         clear_after_s: seconds("clear_after_s", default.clear_after_s),
         quiet_after_take_off_s: seconds("quiet_after_take_off_s", default.quiet_after_take_off_s),
         quiet_before_landing_s: seconds("quiet_before_landing_s", default.quiet_before_landing_s),
         ..default
     };
     VerdictSettings {
-        warn: threshold(&fields, "warn", default.warn, found),
-        fail: threshold(&fields, "fail", default.fail, found),
+        warn: level(&fields, "warn", default.warn, found),
+        fail: level(&fields, "fail", default.fail, found),
+        idle: idle(&fields, default.idle, found),
         ..settings
     }
 }
 
-fn threshold(fields: &Fields, key: &str, default: Threshold, found: &mut Found) -> Threshold {
+fn level(fields: &Fields, key: &str, default: LevelSettings, found: &mut Found) -> LevelSettings {
     let what = format!("`{key}`");
+    let keys = ["risk", "elevated_risk", "after_s", "until"];
     let Some(node) = fields.get(key) else {
         return default;
     };
-    let Some(fields) = node.fields(&what, &["risk", "elevated_risk"], found) else {
+    let Some(fields) = node.fields(&what, &keys, found) else {
         return default;
     };
+    let raise = threshold(&fields, &what, found);
+    if raise == Threshold::default() && found.is_empty() {
+        let message = format!("{what} has no threshold");
+        found.push(
+            Diagnostic::error("missing-key", node.span.clone(), message)
+                .help("write `risk`, `elevated_risk` or both, in %"),
+        );
+    }
+    let after_s = number(&fields, "after_s", default.after_s, Least::From0, found);
+    let mut until = raise;
+    if let Some(node) = fields.get("until")
+        && let Some(fields) = node.fields("`until`", &["risk", "elevated_risk"], found)
+    {
+        until = threshold(&fields, "`until`", found);
+        for (lower, upper) in [
+            (until.risk_pct, raise.risk_pct),
+            (until.elevated_risk_pct, raise.elevated_risk_pct),
+        ] {
+            if let (Some(lower), Some(upper)) = (lower, upper)
+                && lower > upper
+            {
+                let message = format!("{what} is held until {lower}, which is above {upper}");
+                found.push(
+                    Diagnostic::error("order", node.span.clone(), message)
+                        .help("a level is held down to a lower value than it is raised at"),
+                );
+            }
+        }
+    }
+    LevelSettings {
+        raise,
+        after_s,
+        until,
+    }
+}
+
+fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {
     let mut limit = |key: &str| {
         let node = fields.get(key)?;
         let value = node.finite(&format!("`{key}`"), found)?;
@@ -402,18 +438,25 @@ fn threshold(fields: &Fields, key: &str, default: Threshold, found: &mut Found) 
         }
         Some(value)
     };
-    let threshold = Threshold {
+    Threshold {
         risk_pct: limit("risk"),
         elevated_risk_pct: limit("elevated_risk"),
-    };
-    if threshold == Threshold::default() && found.is_empty() {
-        let message = format!("{what} has no threshold");
-        found.push(
-            Diagnostic::error("missing-key", node.span.clone(), message)
-                .help("write `risk`, `elevated_risk` or both, in %"),
-        );
     }
-    threshold
+}
+
+fn idle(fields: &Fields, default: Idle, found: &mut Found) -> Idle {
+    let keys = ["command_below", "risk_at_most"];
+    let Some(fields) = fields
+        .get("idle")
+        .and_then(|node| node.fields("`idle`", &keys, found))
+    else {
+        return default;
+    };
+    let mut value = |key, default| number(&fields, key, default, Least::From0, found);
+    Idle {
+        command_below: value("command_below", default.command_below),
+        risk_at_most_pct: value("risk_at_most", default.risk_at_most_pct),
+    }
 }
 
 /// The least that a number may be.

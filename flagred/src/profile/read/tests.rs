@@ -36,13 +36,12 @@ inputs:
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
-  warn: {risk: 60, elevated_risk: 40}
-  fail: {risk: 95}
-  hysteresis: 5
-  raise_after_s: 1
+  warn: {risk: 60, elevated_risk: 40, after_s: 1, until: {risk: 50}}
+  fail: {risk: 95, after_s: 2}
   clear_after_s: 2
   quiet_after_take_off_s: 3
   quiet_before_landing_s: 4
+  idle: {command_below: 0.2, risk_at_most: 30}
 ",
     )
     .unwrap();
@@ -106,13 +105,23 @@ verdict:
     assert_eq!(
         profile.verdict,
         VerdictSettings {
-            warn: threshold(Some(60.0), Some(40.0)),
-            fail: threshold(Some(95.0), None),
-            hysteresis_pct: 5.0,
-            raise_after_s: 1.0,
+            warn: LevelSettings {
+                raise: threshold(Some(60.0), Some(40.0)),
+                after_s: 1.0,
+                until: threshold(Some(50.0), None),
+            },
+            fail: LevelSettings {
+                raise: threshold(Some(95.0), None),
+                after_s: 2.0,
+                until: threshold(Some(95.0), None),
+            },
             clear_after_s: 2.0,
             quiet_after_take_off_s: 3.0,
             quiet_before_landing_s: 4.0,
+            idle: Idle {
+                command_below: 0.2,
+                risk_at_most_pct: 30.0,
+            },
         }
     );
 }
@@ -134,7 +143,7 @@ inputs:
   mean: {mean: motor_margin}
 gap: {method: neerest, coverage_below: -1}
 elevated_risk: {high: 20, low: 80, rise_per_s: fast}
-verdict: {warn: {}, fail: {risk: 150}, hysteresis: .nan}
+verdict: {warn: {risk: 50, until: {risk: 60}}, fail: {risk: 150}, clear_after_s: .nan}
 ";
     let findings = Profile::from_yaml(text).unwrap_err();
     insta::assert_snapshot!(findings);
