@@ -1,6 +1,10 @@
 //! Findings in a text, drawn as a compiler draws them, or as JSON.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    io::{self, Read},
+    path::Path,
+};
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use fuzzy::diagnostic::{Diagnostic, Severity};
@@ -54,10 +58,16 @@ fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Grou
     vec![group]
 }
 
-/// Reads a text file; one that is none is the user's to know about, with the place.
+/// Reads a text file, or standard input for `-`.
 pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     let shown = path.display();
-    let bytes = fs::read(path).map_err(|error| {
+    let bytes = if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        fs::read(path)
+    };
+    let bytes = bytes.map_err(|error| {
         Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
     })?;
     String::from_utf8(bytes).map_err(|error| {

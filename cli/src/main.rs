@@ -3,7 +3,7 @@
 //! One file per command; this one only reads the command line and dispatches.
 
 mod assess;
-#[allow(dead_code, reason = "the commands that use it come next")]
+mod check;
 mod diagnostics;
 #[allow(dead_code, reason = "the commands that use all of it come next")]
 mod failure;
@@ -28,6 +28,8 @@ struct Arguments {
 enum Command {
     /// Say how risky a flight was: verdict, findings, risk over time
     Assess(assess::Arguments),
+    /// Say what is wrong with a rule set, and what its author should know about it
+    Check(check::Arguments),
     /// Show what is in a flight log, and where each value came from
     Inspect(inspect::Arguments),
 }
@@ -36,6 +38,7 @@ impl Command {
     fn run(self) -> Result<Exit, Failure> {
         match self {
             Command::Assess(arguments) => assess::run(&arguments),
+            Command::Check(arguments) => check::run(&arguments),
             Command::Inspect(arguments) => inspect::run(&arguments),
         }
     }

@@ -1,3 +1,203 @@
-//! What is wrong with a model, and what its author should know about it.
+//! What an author should know about a rule set: static analysis.
+//!
+//! [`names`] is what reading a file checks: whether the rules mean something at all. [`check`] asks what they amount to:
+//! which inputs no rule covers, which rules contradict each other or add nothing, which terms are never used or never
+//! reached, how far the outputs reach, where they jump, and where they go against what the author says of them.
 
+use alloc::{string::String, vec::Vec};
+
+use serde::Serialize;
+
+use crate::{
+    Engine,
+    diagnostic::{Diagnostic, suggest},
+    format::Places,
+    model::{Aggregation, Model},
+};
+
+mod axis;
+mod behaviour;
+mod coverage;
+mod findings;
+mod logic;
 pub mod names;
+mod rules;
+mod terms;
+#[cfg(test)]
+mod tests;
+mod trend;
+
+pub use behaviour::{Coordinate, Counterexample, Direction, Jump, Monotone, Reach};
+pub use coverage::{Antecedent, Side, Uncovered};
+pub use rules::{Contradiction, Subsumed};
+pub use terms::{Hole, TermOf};
+pub use trend::AgainstTrend;
+
+/// What to hold a rule set against.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// The degree that some rule should reach everywhere; with terms that sum to 1 and the minimum as AND, one half
+    /// means that the condition that dominates has a rule.
+    pub coverage: f64,
+    /// What the author says of the outputs.
+    pub monotone: Vec<Monotone>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            coverage: 0.5,
+            monotone: Vec::new(),
+        }
+    }
+}
+
+/// All that was found. Rules count from 0, as in the model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Boxes of the input space without a rule.
+    pub uncovered: Vec<Uncovered>,
+    /// Whether these are all boxes; in a large rule set the search for more is given up.
+    pub uncovered_complete: bool,
+    /// Rules of one condition and different conclusions.
+    pub contradictions: Vec<Contradiction>,
+    /// Rules that add nothing to a wider one.
+    pub subsumed: Vec<Subsumed>,
+    /// Rules that fire nowhere.
+    pub never_firing: Vec<usize>,
+    /// Variables and terms that stand in no rule.
+    pub unused: Vec<TermOf>,
+    /// Terms that no value reaches.
+    pub unreachable: Vec<TermOf>,
+    /// Parts of an input's range in which every term is 0.
+    pub holes: Vec<Hole>,
+    /// The values each output takes.
+    pub reach: Vec<Reach>,
+    /// Rules against the trend of their neighbours.
+    pub against_trend: Vec<AgainstTrend>,
+    /// Places at which an output does not do what the author says.
+    pub counterexamples: Vec<Counterexample>,
+    /// Places at which an output jumps.
+    pub jumps: Vec<Jump>,
+}
+
+/// Analyses a model.
+///
+/// # Errors
+/// A claim of `options` about an input or output that the model does not have, without a place.
+///
+/// # Example: a rule is missing
+/// ```
+/// use fuzzy::{Engine, check};
+///
+/// let document = fuzzy::yaml::parse("
+/// fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 1], partition: [low, medium, high]}}
+/// outputs: {fan: {range: [0, 1], partition: [slow, fast]}}
+/// rules: [IF heat IS low THEN fan IS slow, IF heat IS high THEN fan IS fast]
+/// ")?;
+/// let engine = Engine::new(&document.model)?;
+/// let report = check::check(&document.model, &engine, &check::Options::default())?;
+/// let hole = &report.uncovered[0];
+/// assert_eq!((hole.sides[0].low, hole.sides[0].high), (0.25, 0.75));
+/// assert_eq!(hole.missing[0][0].term, "medium");
+///
+/// let findings = report.findings(&document.model, &document.places);
+/// assert!(findings.iter().any(|f| f.code == "uncovered"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn check(
+    model: &Model,
+    engine: &Engine,
+    options: &Options,
+) -> Result<Report, alloc::boxed::Box<Diagnostic>> {
+    for claim in &options.monotone {
+        known(model, claim)?;
+    }
+    let never_firing = rules::never_firing(model);
+    let (uncovered, uncovered_complete) = all_uncovered(model, options.coverage);
+    let mut probe = behaviour::Probe::new(model, engine);
+    let claims = options.monotone.iter();
+    let counterexamples = claims
+        .flat_map(|claim| probe.counterexamples(claim))
+        .collect();
+    // With another aggregation a rule adds to the result even where a wider one fires.
+    let merging = model.operators.aggregation == Aggregation::Maximum;
+    Ok(Report {
+        uncovered,
+        uncovered_complete,
+        contradictions: rules::contradictions(model),
+        subsumed: if merging {
+            rules::subsumed(model)
+        } else {
+            Vec::new()
+        },
+        unused: terms::unused(model),
+        unreachable: terms::unreachable(model, &never_firing),
+        never_firing,
+        holes: model.inputs.iter().flat_map(terms::holes).collect(),
+        reach: probe.reach(),
+        against_trend: trend::against(model),
+        counterexamples,
+        jumps: probe.jumps(),
+    })
+}
+
+/// The uncovered boxes of all outputs: those where no rule fires at all, then those where none reaches the coverage.
+/// Outputs with the same boxes are told once.
+fn all_uncovered(model: &Model, coverage: f64) -> (Vec<Uncovered>, bool) {
+    let mut found: Vec<Uncovered> = Vec::new();
+    let mut complete = true;
+    for level in [None, Some(coverage)] {
+        for output in &model.outputs {
+            let boxes = coverage::uncovered(model, &output.variable.name, level);
+            complete &= boxes.complete;
+            let new = boxes.found.into_iter().filter(|one| {
+                // What is silent is uncovered too.
+                one.silent
+                    || !found
+                        .iter()
+                        .any(|f| f.silent && f.output == one.output && f.sides == one.sides)
+            });
+            found.extend(new.collect::<Vec<_>>());
+        }
+    }
+    (found, complete)
+}
+
+fn known(model: &Model, claim: &Monotone) -> Result<(), alloc::boxed::Box<Diagnostic>> {
+    let unknown = |kind: &str, name: &str, names: Vec<&str>| {
+        let message = alloc::format!("there is no {kind} `{name}`");
+        let mut finding = Diagnostic::error("unknown-variable", 0..0, message);
+        finding.help = suggest(name, names);
+        Err(alloc::boxed::Box::new(finding))
+    };
+    let inputs: Vec<&str> = model.inputs.iter().map(|v| v.name.as_str()).collect();
+    if !inputs.contains(&claim.input.as_str()) {
+        return unknown("input", &claim.input, inputs);
+    }
+    let outputs = model.outputs.iter().map(|o| o.variable.name.as_str());
+    let outputs: Vec<&str> = outputs.collect();
+    match &claim.output {
+        Some(output) if !outputs.contains(&output.as_str()) => unknown("output", output, outputs),
+        _ => Ok(()),
+    }
+}
+
+impl Report {
+    /// What was found, in words, the parts of the model at their places.
+    #[must_use]
+    pub fn findings(&self, model: &Model, places: &Places) -> Vec<Diagnostic> {
+        findings::of(self, model, places)
+    }
+}
+
+/// Numbers in messages: six digits, without noughts behind them.
+fn shown(x: f64) -> String {
+    if x == 0.0 {
+        return "0".into();
+    }
+    let digits = alloc::format!("{x:.5e}").parse().unwrap_or(x);
+    alloc::format!("{digits}")
+}

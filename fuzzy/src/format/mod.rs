@@ -25,6 +25,8 @@ mod variables;
 mod words;
 mod write;
 
+pub(crate) use shapes::parameters as shape_parameters;
+
 /// The version of the format this library reads and writes.
 pub const VERSION: u64 = 1;
 

@@ -194,6 +194,13 @@ fn parts(shape: &Shape) -> Option<(&'static str, Vec<f64>)> {
     Some((name, parameters.to_vec()))
 }
 
+/// The parameters of a shape, where it has a fixed number of them.
+pub(crate) fn parameters(shape: &Shape) -> Vec<f64> {
+    parts(shape)
+        .map(|(_, parameters)| parameters)
+        .unwrap_or_default()
+}
+
 /// Reads the shape out of a term `{triangle: [0, 1, 2], height: 1}`; `term` names it in messages.
 pub(super) fn read(
     term: &str,
@@ -224,7 +231,7 @@ pub(super) fn read(
         "piecewise" => points(term, shape.value, findings),
         "linear" => linear(shape.value, findings),
         name => match FORMS.iter().find(|form| form.name == name) {
-            Some(form) => parameters(form, shape.value, findings),
+            Some(form) => by_form(form, shape.value, findings),
             None => {
                 let known = FORMS.iter().map(|form| form.name);
                 let message = format!("there is no shape `{name}`");
@@ -238,7 +245,7 @@ pub(super) fn read(
     }
 }
 
-fn parameters(form: &Form, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Shape> {
+fn by_form(form: &Form, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Shape> {
     let name = form.name;
     let mut spans: Vec<Range<usize>> = Vec::new();
     let mut values = Vec::new();

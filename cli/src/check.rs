@@ -1,0 +1,157 @@
+//! `flagred check`: what is wrong with a rule set, and what its author should know about it.
+
+use std::{io::Write, path::PathBuf};
+
+use fuzzy::{
+    Engine, check,
+    diagnostic::{Diagnostic, Findings, Severity},
+    format::Document,
+};
+use serde::Serialize;
+
+use crate::{
+    diagnostics::{draw, read_text},
+    failure::{Exit, Failure},
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Rule sets in YAML; `-` is standard input
+    #[arg(required = true, value_name = "MODEL")]
+    models: Vec<PathBuf>,
+    /// Print one JSON document per rule set instead of text
+    #[arg(long)]
+    json: bool,
+    /// What an output does when an input rises, to be checked: INPUT:increasing or INPUT:decreasing, with :OUTPUT
+    /// behind it for one of several
+    #[arg(long, value_name = "CLAIM", num_args = 1..)]
+    monotone: Vec<check::Monotone>,
+    /// The degree that some rule should reach everywhere
+    #[arg(long, default_value_t = 0.5, value_parser = degree)]
+    coverage: f64,
+    /// What makes the exit code 1, besides errors
+    #[arg(long, value_name = "SEVERITY")]
+    deny: Option<Deny>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Deny {
+    /// Warnings too
+    Warnings,
+    /// Warnings and notes too
+    Notes,
+}
+
+fn degree(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(degree) if degree > 0.0 && degree <= 1.0 => Ok(degree),
+        _ => Err("write a number over 0, up to 1".into()),
+    }
+}
+
+/// The document of `--json`.
+#[derive(Serialize)]
+struct Json<'a> {
+    schema: &'static str,
+    file: &'a str,
+    /// Absent where the rule set has errors.
+    model: Option<&'a str>,
+    findings: &'a [Diagnostic],
+    report: Option<&'a check::Report>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let worst_allowed = match arguments.deny {
+        None => Severity::Warning,
+        Some(Deny::Warnings) => Severity::Note,
+        Some(Deny::Notes) => return check_all(arguments, None),
+    };
+    check_all(arguments, Some(worst_allowed))
+}
+
+fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<Exit, Failure> {
+    let mut exit = Exit::Clean;
+    for path in &arguments.models {
+        let text = read_text(path)?;
+        let file = path.display().to_string();
+        let (findings, analysed) = examine(&text, arguments)?;
+        let mut out = anstream::stdout().lock();
+        if arguments.json {
+            let json = Json {
+                schema: "flagred-check-1",
+                file: &file,
+                model: analysed
+                    .as_ref()
+                    .map(|(document, _)| document.model.name.as_str()),
+                findings: &findings.0,
+                report: analysed.as_ref().map(|(_, report)| report),
+            };
+            serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
+            writeln!(out)?;
+        } else {
+            write!(out, "{}", draw(&findings.0, &file, &text, true))?;
+            writeln!(out, "{file}: {}", summary(&findings))?;
+        }
+        let worst = findings.0.iter().map(|finding| finding.severity).max();
+        if worst > worst_allowed {
+            exit = Exit::Findings;
+        }
+    }
+    Ok(exit)
+}
+
+/// All findings, and the analysis where the rule set can be analysed.
+fn examine(
+    text: &str,
+    arguments: &Arguments,
+) -> Result<(Findings, Option<(Document, check::Report)>), Failure> {
+    let document = match fuzzy::yaml::parse(text) {
+        Ok(document) => document,
+        Err(findings) => return Ok((findings, None)),
+    };
+    let engine = match Engine::new(&document.model) {
+        Ok(engine) => engine,
+        Err(error) => return Ok((Findings(not_compiled(&error)), None)),
+    };
+    let options = check::Options {
+        coverage: arguments.coverage,
+        monotone: arguments.monotone.clone(),
+    };
+    let report = check::check(&document.model, &engine, &options).map_err(|finding| {
+        let failure = Failure::usage(format!("--monotone: {}", finding.message));
+        match finding.help {
+            Some(help) => failure.help(help),
+            None => failure,
+        }
+    })?;
+    let mut findings = document.warnings.0.clone();
+    findings.extend(report.findings(&document.model, &document.places));
+    Ok((Findings::locate(findings, text), Some((document, report))))
+}
+
+/// What the engine cannot take although it reads well. It knows no places.
+pub(crate) fn not_compiled(error: &fuzzy::engine::CompileError) -> Vec<Diagnostic> {
+    let finding = |problem: &fuzzy::engine::Problem| {
+        Diagnostic::error("not-compiled", 0..0, problem.to_string())
+    };
+    error.problems.iter().map(finding).collect()
+}
+
+fn summary(findings: &Findings) -> String {
+    let count = |severity: Severity, word: &str| {
+        let count = findings.0.iter().filter(|f| f.severity == severity).count();
+        let plural = if count == 1 { "" } else { "s" };
+        (count > 0).then(|| format!("{count} {word}{plural}"))
+    };
+    let counts = [
+        count(Severity::Error, "error"),
+        count(Severity::Warning, "warning"),
+        count(Severity::Note, "note"),
+    ];
+    let counts: Vec<String> = counts.into_iter().flatten().collect();
+    if counts.is_empty() {
+        "nothing found".into()
+    } else {
+        counts.join(", ")
+    }
+}

@@ -1,0 +1,277 @@
+//! Which inputs does no rule cover?
+
+use alloc::{string::String, vec::Vec};
+
+use serde::Serialize;
+
+use super::logic::{Cells, Level, Logic, halves};
+use crate::model::{Model, Variable};
+
+/// A box of the input space in which no rule of an output holds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Uncovered {
+    /// The output.
+    pub output: String,
+    /// The degree no rule reaches; where `silent`, no rule fires at all.
+    pub coverage: f64,
+    /// Whether no rule fires at all, so that the output has no value.
+    pub silent: bool,
+    /// The sides of the box. Of an input that is not named the whole range is meant.
+    pub sides: Vec<Side>,
+    /// The part of the input space it takes up.
+    pub share: f64,
+    /// The conditions of rules that would cover it, as terms of the inputs named in `sides`.
+    pub missing: Vec<Vec<Antecedent>>,
+    /// How many more of them there are than are listed.
+    pub more_missing: usize,
+    /// Inputs whose terms all stay below the degree in a part of the box: no rule could reach it there.
+    pub weak: Vec<String>,
+}
+
+/// One side of a box.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Side {
+    /// The input.
+    pub input: String,
+    /// From this value.
+    pub low: f64,
+    /// Up to this value.
+    pub high: f64,
+}
+
+/// `input IS term`
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Antecedent {
+    /// The input.
+    pub input: String,
+    /// The term.
+    pub term: String,
+}
+
+/// Uncovered boxes, and whether they are all there are.
+pub(super) struct Boxes {
+    pub(super) found: Vec<Uncovered>,
+    pub(super) complete: bool,
+}
+
+/// More boxes than this no author reads; the largest are kept.
+const MOST_BOXES: usize = 200;
+const MOST_MISSING: usize = 16;
+/// How many formulas are looked at before the search is given up.
+const MOST_LOOKS: usize = 400_000;
+
+/// The boxes in which no rule of `output` reaches `coverage`, or fires at all where that is `None`.
+pub(super) fn uncovered(model: &Model, output: &str, coverage: Option<f64>) -> Boxes {
+    let level = Level {
+        value: coverage.unwrap_or(0.0),
+        strict: coverage.is_none(),
+    };
+    let concludes = |rule: &&crate::model::Rule| {
+        rule.rule.weight > 0.0
+            && rule
+                .rule
+                .consequents
+                .iter()
+                .any(|c| c.output.text == output)
+    };
+    let conditions = model.rules.iter().filter(concludes);
+    let logic = Logic::new(model, conditions.map(|rule| &rule.rule.condition), level);
+    let (boxes, complete) = search(&logic);
+    let boxes = merged(boxes);
+    let mut found: Vec<Uncovered> = boxes
+        .iter()
+        .map(|cells| describe(model, &logic, cells, output, coverage))
+        .collect();
+    found.sort_by(|a, b| b.share.total_cmp(&a.share));
+    Boxes { found, complete }
+}
+
+/// The boxes in which no formula is true, and whether they are all.
+fn search(logic: &Logic) -> (Vec<Cells>, bool) {
+    let all: Vec<usize> = (0..logic.formulas.len()).collect();
+    let mut boxes = Vec::new();
+    let mut looks = 0;
+    // What is left to look at: a box, and the formulas that are not false in all of it.
+    let mut left = Vec::from([(logic.everywhere(), all)]);
+    while let Some((cells, formulas)) = left.pop() {
+        looks += formulas.len() + 1;
+        if looks > MOST_LOOKS || boxes.len() >= MOST_BOXES {
+            return (boxes, false);
+        }
+        let Some(open) = undecided(logic, &cells, &formulas) else {
+            continue;
+        };
+        let formula = open.first().and_then(|&index| logic.formulas.get(index));
+        let Some(formula) = formula else {
+            boxes.push(cells);
+            continue;
+        };
+        let Some((input, cut)) = logic.split(formula, &cells) else {
+            continue;
+        };
+        left.extend(halves(cells, input, cut).map(|half| (half, open.clone())));
+    }
+    (boxes, true)
+}
+
+/// The formulas that are true in a part of the box; `None` where one is true in all of it.
+fn undecided(logic: &Logic, cells: &Cells, formulas: &[usize]) -> Option<Vec<usize>> {
+    let mut open = Vec::new();
+    for &index in formulas {
+        match logic.holds(logic.formulas.get(index)?, cells) {
+            Some(true) => return None,
+            Some(false) => {}
+            None => open.push(index),
+        }
+    }
+    Some(open)
+}
+
+/// Joins boxes that are one box together.
+fn merged(mut boxes: Vec<Cells>) -> Vec<Cells> {
+    let mut i = 0;
+    while i < boxes.len() {
+        let joined = (i + 1..boxes.len()).find_map(|k| {
+            let whole = together(boxes.get(i)?, boxes.get(k)?)?;
+            Some((k, whole))
+        });
+        match joined {
+            Some((k, whole)) => {
+                boxes.swap_remove(k);
+                if let Some(place) = boxes.get_mut(i) {
+                    *place = whole;
+                }
+                // The larger box may now join with an earlier one.
+                i = 0;
+            }
+            None => i += 1,
+        }
+    }
+    boxes
+}
+
+/// The two as one box, if they differ in one input and touch there.
+fn together(a: &Cells, b: &Cells) -> Option<Cells> {
+    let mut differing = a.iter().zip(b).enumerate().filter(|(_, (a, b))| a != b);
+    let (input, (&(from, to), &(other_from, other_to))) = differing.next()?;
+    if differing.next().is_some() || (to != other_from && other_to != from) {
+        return None;
+    }
+    let mut whole = a.clone();
+    *whole.get_mut(input)? = (from.min(other_from), to.max(other_to));
+    Some(whole)
+}
+
+fn describe(
+    model: &Model,
+    logic: &Logic,
+    cells: &Cells,
+    output: &str,
+    coverage: Option<f64>,
+) -> Uncovered {
+    /// A thinner box is the rounding of a single value.
+    const THIN: f64 = 1e-9;
+    let mut sides = Vec::new();
+    let mut share = 1.0;
+    let mut choices: Vec<Vec<Antecedent>> = Vec::new();
+    let mut weak = Vec::new();
+    for ((variable, cuts), &(from, to)) in model.inputs.iter().zip(&logic.cuts).zip(cells) {
+        let (Some(&low), Some(&high)) = (cuts.get(from), cuts.get(to)) else {
+            continue;
+        };
+        let range = variable.high - variable.low;
+        if low == variable.low && high == variable.high {
+            continue;
+        }
+        let input = variable.name.clone();
+        let dominating =
+            Dominating::of(variable, cuts.get(from..=to).unwrap_or_default(), coverage);
+        let term = |term: &str| Antecedent {
+            input: input.clone(),
+            term: term.into(),
+        };
+        choices.push(dominating.terms.into_iter().map(term).collect());
+        if dominating.weak {
+            weak.push(input.clone());
+        }
+        let high = if high - low > THIN * range { high } else { low };
+        share *= (high - low) / range;
+        sides.push(Side { input, low, high });
+    }
+    let count = choices
+        .iter()
+        .map(Vec::len)
+        .fold(1usize, usize::saturating_mul);
+    let missing = combinations(&choices, MOST_MISSING);
+    Uncovered {
+        output: output.into(),
+        coverage: coverage.unwrap_or(0.0),
+        silent: coverage.is_none(),
+        sides,
+        share,
+        more_missing: if missing.is_empty() {
+            0
+        } else {
+            count - missing.len()
+        },
+        missing,
+        weak,
+    }
+}
+
+/// The terms that are the highest somewhere, in the order in which they are.
+struct Dominating<'v> {
+    /// Those that reach the coverage there.
+    terms: Vec<&'v str>,
+    /// Whether none reaches it somewhere.
+    weak: bool,
+}
+
+impl<'v> Dominating<'v> {
+    fn of(variable: &'v Variable, cuts: &[f64], coverage: Option<f64>) -> Self {
+        const LOOKS_IN_A_CELL: usize = 8;
+        let mut found = Dominating {
+            terms: Vec::new(),
+            weak: false,
+        };
+        for cell in cuts.windows(2) {
+            let &[low, high] = cell else { continue };
+            for i in 0..LOOKS_IN_A_CELL {
+                let x = low + (high - low) * (i as f64 + 0.5) / LOOKS_IN_A_CELL as f64;
+                let mut best: (f64, &str) = (0.0, "");
+                for term in &variable.terms {
+                    let degree = term.membership(x);
+                    if degree > best.0 {
+                        best = (degree, &term.name);
+                    }
+                }
+                if best.0 == 0.0 || coverage.is_some_and(|least| best.0 < least) {
+                    found.weak = true;
+                } else if !found.terms.contains(&best.1) {
+                    found.terms.push(best.1);
+                }
+            }
+        }
+        found
+    }
+}
+
+/// One of each, in all combinations, up to `most`.
+fn combinations(choices: &[Vec<Antecedent>], most: usize) -> Vec<Vec<Antecedent>> {
+    if choices.is_empty() || choices.iter().any(Vec::is_empty) {
+        return Vec::new();
+    }
+    let mut all: Vec<Vec<Antecedent>> = Vec::from([Vec::new()]);
+    for choice in choices {
+        let mut longer = Vec::new();
+        for start in &all {
+            for next in choice.iter().take(most - longer.len().min(most)) {
+                let mut one = start.clone();
+                one.push(next.clone());
+                longer.push(one);
+            }
+        }
+        all = longer;
+    }
+    all
+}

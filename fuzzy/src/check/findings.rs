@@ -1,0 +1,376 @@
+//! A report in words.
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::ops::Range;
+
+use super::{
+    AgainstTrend, Coordinate, Counterexample, Direction, Hole, Jump, Reach, Report, TermOf,
+    Uncovered, shown,
+};
+use crate::{
+    diagnostic::{Diagnostic, listed},
+    format::{Places, VariablePlaces},
+    model::{Model, NoRuleFires},
+    rule::{Condition, Consequent, Name, Rule},
+};
+
+/// More boxes than this are counted, not told one by one.
+const MOST_BOXES_TOLD: usize = 10;
+
+/// The report of a model, with the places at which its parts stand.
+pub(super) fn of(report: &Report, model: &Model, places: &Places) -> Vec<Diagnostic> {
+    let at = At { model, places };
+    let mut found = Vec::new();
+    for (i, one) in report.uncovered.iter().enumerate() {
+        if i == MOST_BOXES_TOLD {
+            found.push(at.more_uncovered(report));
+            break;
+        }
+        found.push(at.uncovered(one));
+    }
+    for one in &report.contradictions {
+        let message = format!(
+            "rule {} concludes `{}` IS `{}` where rule {} concludes `{}`",
+            one.second + 1,
+            one.output,
+            one.second_term,
+            one.first + 1,
+            one.first_term
+        );
+        found.push(
+            Diagnostic::warning("contradiction", at.rule(one.second), message)
+                .related(at.rule(one.first), "the other rule")
+                .help("keep one of them, or tell them apart by another input"),
+        );
+    }
+    for one in &report.subsumed {
+        let message = format!("rule {} adds nothing to rule {}", one.rule + 1, one.by + 1);
+        found.push(
+            Diagnostic::warning("subsumed-rule", at.rule(one.rule), message)
+                .related(
+                    at.rule(one.by),
+                    "holds wherever the other does, and concludes the same",
+                )
+                .help("remove the narrower rule, or change what it concludes"),
+        );
+    }
+    for &rule in &report.never_firing {
+        let message = format!("rule {} never fires", rule + 1);
+        found.push(
+            Diagnostic::warning("never-fires", at.rule(rule), message)
+                .help("no value of the inputs meets all it asks for, or its weight is 0"),
+        );
+    }
+    found.extend(report.unused.iter().map(|one| at.unused(one)));
+    found.extend(report.unreachable.iter().map(|one| at.unreachable(one)));
+    found.extend(report.holes.iter().map(|one| at.hole(one)));
+    found.extend(report.reach.iter().filter_map(|one| at.reach(one)));
+    found.extend(report.against_trend.iter().map(|one| at.against_trend(one)));
+    found.extend(
+        report
+            .counterexamples
+            .iter()
+            .map(|one| at.counterexample(one)),
+    );
+    found.extend(report.jumps.iter().map(|one| at.jump(one)));
+    found
+}
+
+/// Where things stand.
+struct At<'a> {
+    model: &'a Model,
+    places: &'a Places,
+}
+
+impl At<'_> {
+    fn rule(&self, index: usize) -> Range<usize> {
+        self.places.rules.get(index).cloned().unwrap_or(0..0)
+    }
+
+    fn variable(&self, name: &str) -> Option<(&VariablePlaces, &crate::model::Variable)> {
+        let inputs = self.model.inputs.iter().zip(&self.places.inputs);
+        let outputs = self.model.outputs.iter().map(|output| &output.variable);
+        let mut all = inputs.chain(outputs.zip(&self.places.outputs));
+        all.find(|(variable, _)| variable.name == name)
+            .map(|(variable, places)| (places, variable))
+    }
+
+    fn name(&self, variable: &str) -> Range<usize> {
+        self.variable(variable)
+            .map_or(0..0, |(places, _)| places.name.clone())
+    }
+
+    fn term(&self, one: &TermOf) -> Range<usize> {
+        let term = self.variable(&one.variable).and_then(|(places, variable)| {
+            let index = variable
+                .terms
+                .iter()
+                .position(|t| Some(&t.name) == one.term.as_ref())?;
+            places.terms.get(index).cloned()
+        });
+        term.unwrap_or_else(|| self.name(&one.variable))
+    }
+
+    fn uncovered(&self, one: &Uncovered) -> Diagnostic {
+        let output = &one.output;
+        let place = match one.sides.as_slice() {
+            [] => String::from("anywhere"),
+            sides => {
+                let sides = sides.iter().map(|side| self.side(side));
+                format!("where {}", sides.collect::<Vec<_>>().join(" and "))
+            }
+        };
+        let share = match one.share {
+            0.0 => String::new(),
+            share => format!(
+                ": {} % of the input space",
+                shown((1000.0 * share).round() / 10.0)
+            ),
+        };
+        let place_of_rules = self.places.rules_key.clone();
+        let mut finding = if one.silent {
+            let message = format!("no rule for `{output}` fires {place}{share}");
+            let chosen = self.model.outputs.iter().any(|o| {
+                o.variable.name == *output && matches!(o.when_no_rule_fires, NoRuleFires::Value(_))
+            });
+            if chosen {
+                Diagnostic::note("no-rule-fires", place_of_rules, message)
+            } else {
+                Diagnostic::warning("no-rule-fires", place_of_rules, message)
+            }
+        } else {
+            let level = shown(one.coverage);
+            let message = format!("no rule for `{output}` reaches {level} {place}{share}");
+            Diagnostic::warning("uncovered", place_of_rules, message)
+        };
+        let rules: Vec<String> = one
+            .missing
+            .iter()
+            .map(|all| missing_rule(all, output))
+            .collect();
+        let more = match one.more_missing {
+            0 => String::new(),
+            more => format!(", and {more} more"),
+        };
+        let weak: Vec<&str> = one.weak.iter().map(String::as_str).collect();
+        finding.help = match rules.as_slice() {
+            [] if weak.is_empty() => None,
+            [] => Some(format!(
+                "no term of {} reaches that there; let the terms overlap more",
+                listed(&weak)
+            )),
+            [one] => Some(format!("the rule is missing: {one}{more}")),
+            several => Some(format!(
+                "the rules are missing: {}{more}",
+                several.join(", ")
+            )),
+        };
+        finding
+    }
+
+    fn side(&self, side: &super::Side) -> String {
+        let input = self
+            .model
+            .inputs
+            .iter()
+            .find(|input| input.name == side.input);
+        let (low, high) = input.map_or((f64::NAN, f64::NAN), |input| (input.low, input.high));
+        let name = &side.input;
+        if side.low == side.high {
+            format!("{name} = {}", shown(side.low))
+        } else if side.low == low {
+            format!("{name} < {}", shown(side.high))
+        } else if side.high == high {
+            format!("{name} > {}", shown(side.low))
+        } else {
+            format!("{} < {name} < {}", shown(side.low), shown(side.high))
+        }
+    }
+
+    fn more_uncovered(&self, report: &Report) -> Diagnostic {
+        let more = report.uncovered.len() - MOST_BOXES_TOLD;
+        let least = if report.uncovered_complete {
+            ""
+        } else {
+            "at least "
+        };
+        let message = format!("{least}{more} more regions have no rule; the largest are told");
+        Diagnostic::warning("uncovered", self.places.rules_key.clone(), message)
+            .help("`--json` lists them")
+    }
+
+    fn unused(&self, one: &TermOf) -> Diagnostic {
+        let message = match &one.term {
+            Some(term) => format!("no rule uses the term `{term}` of `{}`", one.variable),
+            None => format!("no rule uses `{}`", one.variable),
+        };
+        Diagnostic::warning("unused", self.term(one), message)
+            .help("write a rule for it, or take it out")
+    }
+
+    fn unreachable(&self, one: &TermOf) -> Diagnostic {
+        let term = one.term.as_deref().unwrap_or("");
+        let message = format!("the term `{term}` of `{}` is never reached", one.variable);
+        let is_input = self
+            .model
+            .inputs
+            .iter()
+            .any(|input| input.name == one.variable);
+        let help = if is_input {
+            "it is 0 on the whole range; widen the range or move the term"
+        } else {
+            "every rule that concludes it never fires, or it lies outside the range"
+        };
+        Diagnostic::warning("unreachable-term", self.term(one), message).help(help)
+    }
+
+    fn hole(&self, one: &Hole) -> Diagnostic {
+        let input = &one.input;
+        let place = if one.low == one.high {
+            format!("at {}", shown(one.low))
+        } else {
+            format!("from {} to {}", shown(one.low), shown(one.high))
+        };
+        Diagnostic::warning(
+            "hole",
+            self.name(input),
+            format!("`{input}` has no term {place}"),
+        )
+        .help("let the terms beside it overlap, or add one between them")
+    }
+
+    /// Only where the output does not come near the ends of its range.
+    fn reach(&self, one: &Reach) -> Option<Diagnostic> {
+        const NEAR: f64 = 0.01;
+        let [low, high] = one.range;
+        let near = NEAR * (high - low);
+        if one.low - low <= near && high - one.high <= near {
+            return None;
+        }
+        let message = format!(
+            "`{}` stays within [{}, {}] of its range [{}, {}]",
+            one.output,
+            shown(one.low),
+            shown(one.high),
+            shown(low),
+            shown(high)
+        );
+        let help = "the centroid of a term lies inside the range; terms that reach beyond the range, or another \
+                    defuzzifier, reach its ends";
+        Some(Diagnostic::note("narrow-reach", self.name(&one.output), message).help(help))
+    }
+
+    fn against_trend(&self, one: &AgainstTrend) -> Diagnostic {
+        let (rises, falls) = match one.trend {
+            Direction::Increasing => ("raises", "lowers"),
+            Direction::Decreasing => ("lowers", "raises"),
+        };
+        let message = format!(
+            "more `{}` {falls} `{}` from `{}` (rule {}) to `{}` (rule {})",
+            one.input,
+            one.output,
+            one.from_term,
+            one.from_rule + 1,
+            one.to_term,
+            one.to_rule + 1
+        );
+        let steps = if one.following == 1 { "step" } else { "steps" };
+        let trend = format!(
+            "in {} other {steps} between neighbouring rules more `{}` {rises} it; check whether this one is meant",
+            one.following, one.input
+        );
+        Diagnostic::warning("against-trend", self.rule(one.to_rule), message)
+            .related(self.rule(one.from_rule), "the rule at the next lower term")
+            .help(trend)
+    }
+
+    fn counterexample(&self, one: &Counterexample) -> Diagnostic {
+        let claim = &one.claim;
+        let output = claim.output.as_deref().unwrap_or("");
+        let does = match claim.direction {
+            Direction::Increasing => "falls",
+            Direction::Decreasing => "rises",
+        };
+        let from = one
+            .at
+            .iter()
+            .find(|c| c.input == claim.input)
+            .map_or(0.0, |c| c.value);
+        let others: Vec<Coordinate> = one
+            .at
+            .iter()
+            .filter(|c| c.input != claim.input)
+            .cloned()
+            .collect();
+        let held = match others.as_slice() {
+            [] => String::new(),
+            others => format!(" at {}", coordinates(others)),
+        };
+        let message = format!(
+            "`{output}` {does} from {} to {} as `{}` rises from {} to {}{held}",
+            shown(one.from_value),
+            shown(one.to_value),
+            claim.input,
+            shown(from),
+            shown(one.to)
+        );
+        Diagnostic::warning("not-monotone", self.name(output), message).help(format!(
+            "it was said that it never {does}; look at the rules that fire there with `flagred explain`"
+        ))
+    }
+
+    fn jump(&self, one: &Jump) -> Diagnostic {
+        let message = format!(
+            "`{}` jumps from {} to {} along `{}` at {}",
+            one.output,
+            shown(one.below),
+            shown(one.above),
+            one.input,
+            coordinates(&one.at)
+        );
+        Diagnostic::warning("jump", self.name(&one.output), message).help(
+            "a term with a vertical edge, or a place where one rule takes over from another, makes it jump; let terms overlap",
+        )
+    }
+}
+
+fn coordinates(at: &[Coordinate]) -> String {
+    /// Of very many inputs the first ones are told.
+    const MOST: usize = 6;
+    let all = at
+        .iter()
+        .take(MOST)
+        .map(|c| format!("{} = {}", c.input, shown(c.value)));
+    let mut text = all.collect::<Vec<_>>().join(", ");
+    if at.len() > MOST {
+        text.push_str(", ...");
+    }
+    text
+}
+
+/// `IF a IS low AND b IS high THEN output IS ...`
+fn missing_rule(antecedents: &[super::Antecedent], output: &str) -> String {
+    let is = |one: &super::Antecedent| Condition::is(&one.input, &one.term);
+    let mut parts: Vec<Condition> = antecedents.iter().map(is).collect();
+    let condition = match parts.pop() {
+        Some(only) if parts.is_empty() => only,
+        last => {
+            parts.extend(last);
+            Condition::And(parts)
+        }
+    };
+    let consequent = Consequent {
+        output: Name::from(output),
+        term: Name::from("?"),
+    };
+    let rule = Rule {
+        condition,
+        consequents: Vec::from([consequent]),
+        weight: 1.0,
+    };
+    format!("`{}`", rule.to_string().replace("\"?\"", "..."))
+}

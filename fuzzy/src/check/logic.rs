@@ -1,0 +1,289 @@
+//! Conditions as logic: whether a rule holds in a box of the input space.
+//!
+//! A degree is at least a level, or it is not. With minimum, maximum and one minus x, a condition reaches a level exactly
+//! where a formula of "this term reaches that level" is true, and each of those is true on some intervals of one input.
+//! So all inputs are cut where one of them changes, and in the cells between no formula changes: what is true of every
+//! point is found by looking at cells. Other operators are read as minimum and maximum here, and weights do not count:
+//! the question is whether a rule speaks of a place, not how loud.
+
+use alloc::{boxed::Box, collections::BTreeMap, vec, vec::Vec};
+
+use super::axis;
+use crate::{
+    model::{Model, Variable},
+    rule::{Condition, Hedge, Proposition},
+};
+
+/// A degree to be reached: `degree > value` where strict, else `degree >= value`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Level {
+    pub(super) value: f64,
+    pub(super) strict: bool,
+}
+
+/// The conditions of some rules over the cut inputs.
+pub(super) struct Logic {
+    /// The cuts of each input, its ends included.
+    pub(super) cuts: Vec<Vec<f64>>,
+    literals: Vec<Literal>,
+    /// A formula for each condition.
+    pub(super) formulas: Vec<Formula>,
+}
+
+/// A hedged term that reaches a level.
+struct Literal {
+    input: usize,
+    /// In how many of the cells before this one it holds.
+    holds_before: Vec<usize>,
+}
+
+pub(super) enum Formula {
+    Always,
+    Literal(usize),
+    Not(Box<Formula>),
+    And(Vec<Formula>),
+    Or(Vec<Formula>),
+}
+
+/// Cells `from..to` of each input.
+pub(super) type Cells = Vec<(usize, usize)>;
+
+/// What a literal is made of, to find equal ones.
+#[derive(PartialEq, Eq, PartialOrd, Ord, Clone)]
+struct Key {
+    input: usize,
+    term: usize,
+    hedges: Vec<u8>,
+    value: u64,
+    strict: bool,
+}
+
+impl Logic {
+    /// The formulas of conditions that reach a level.
+    pub(super) fn new<'m>(
+        model: &'m Model,
+        conditions: impl Iterator<Item = &'m Condition>,
+        level: Level,
+    ) -> Self {
+        let mut reader = Reader {
+            model,
+            inputs: names(model),
+            keys: BTreeMap::new(),
+            found: Vec::new(),
+        };
+        let formulas = conditions.map(|c| reader.formula(c, level)).collect();
+        let found = reader.found;
+        let mut cuts: Vec<Vec<f64>> = Vec::with_capacity(model.inputs.len());
+        let places: Vec<Vec<f64>> = model.inputs.iter().map(axis::places).collect();
+        for variable in &model.inputs {
+            cuts.push(vec![variable.low, variable.high]);
+        }
+        for key in &found {
+            if let (Some(input), Some(places), Some(cuts)) = (
+                model.inputs.get(key.input),
+                places.get(key.input),
+                cuts.get_mut(key.input),
+            ) {
+                cuts.extend(axis::changes(places, |x| key.holds(input, x)));
+            }
+        }
+        for (cuts, variable) in cuts.iter_mut().zip(&model.inputs) {
+            cuts.retain(|cut| (variable.low..=variable.high).contains(cut));
+            cuts.sort_by(f64::total_cmp);
+            cuts.dedup();
+        }
+        let literal = |key: &Key| {
+            let mut holds_before = vec![0];
+            if let (Some(input), Some(cuts)) = (model.inputs.get(key.input), cuts.get(key.input)) {
+                let mut sum = 0;
+                for cell in cuts.windows(2) {
+                    let middle = 0.5 * cell.iter().sum::<f64>();
+                    sum += usize::from(key.holds(input, middle));
+                    holds_before.push(sum);
+                }
+            }
+            Literal {
+                input: key.input,
+                holds_before,
+            }
+        };
+        let literals = found.iter().map(literal).collect();
+        Logic {
+            cuts,
+            literals,
+            formulas,
+        }
+    }
+
+    /// All cells of all inputs.
+    pub(super) fn everywhere(&self) -> Cells {
+        let cells = self
+            .cuts
+            .iter()
+            .map(|cuts| (0, cuts.len().saturating_sub(1)));
+        cells.collect()
+    }
+
+    /// Whether a formula is true or false in all cells of a box; `None` where it is true in some.
+    pub(super) fn holds(&self, formula: &Formula, cells: &Cells) -> Option<bool> {
+        match formula {
+            Formula::Always => Some(true),
+            Formula::Literal(literal) => {
+                let literal = self.literals.get(*literal)?;
+                let &(from, to) = cells.get(literal.input)?;
+                let count = literal.holds_before.get(to)? - literal.holds_before.get(from)?;
+                match count {
+                    0 => Some(false),
+                    all if all == to - from => Some(true),
+                    _ => None,
+                }
+            }
+            Formula::Not(inner) => self.holds(inner, cells).map(|holds| !holds),
+            Formula::And(parts) => self.joined(parts, cells, false),
+            Formula::Or(parts) => self.joined(parts, cells, true),
+        }
+    }
+
+    /// `decisive` decides; all others together are the opposite.
+    fn joined(&self, parts: &[Formula], cells: &Cells, decisive: bool) -> Option<bool> {
+        let mut all = Some(!decisive);
+        for part in parts {
+            match self.holds(part, cells) {
+                Some(truth) if truth == decisive => return Some(decisive),
+                Some(_) => {}
+                None => all = None,
+            }
+        }
+        all
+    }
+
+    /// Whether a formula is true in some cell. Where that takes too long to find out, it is.
+    pub(super) fn holds_somewhere(&self, formula: &Formula) -> bool {
+        const MOST_LOOKS: usize = 2_000;
+        let mut left = vec![self.everywhere()];
+        for _ in 0..MOST_LOOKS {
+            let Some(cells) = left.pop() else {
+                return false;
+            };
+            match self.holds(formula, &cells) {
+                Some(true) => return true,
+                Some(false) => {}
+                None => {
+                    if let Some((input, cut)) = self.split(formula, &cells) {
+                        left.extend(halves(cells, input, cut));
+                    }
+                }
+            }
+        }
+        true
+    }
+
+    /// The input and the cell at which to cut a box in two, so that something of the formula is decided in each half.
+    pub(super) fn split(&self, formula: &Formula, cells: &Cells) -> Option<(usize, usize)> {
+        match formula {
+            Formula::Always => None,
+            Formula::Literal(index) => {
+                let literal = self.literals.get(*index)?;
+                if self.holds(formula, cells).is_some() {
+                    return None;
+                }
+                let &(from, to) = cells.get(literal.input)?;
+                let holds = |cell: usize| {
+                    let before = &literal.holds_before;
+                    Some(before.get(cell + 1)? > before.get(cell)?)
+                };
+                let middle = from + (to - from) / 2;
+                let cut = (from + 1..to)
+                    .filter(|&cell| holds(cell) != holds(cell - 1))
+                    .min_by_key(|cell| cell.abs_diff(middle))?;
+                Some((literal.input, cut))
+            }
+            Formula::Not(inner) => self.split(inner, cells),
+            Formula::And(parts) | Formula::Or(parts) => {
+                parts.iter().find_map(|part| self.split(part, cells))
+            }
+        }
+    }
+}
+
+/// A box cut in two at a cell of an input.
+pub(super) fn halves(cells: Cells, input: usize, cut: usize) -> [Cells; 2] {
+    let (mut below, mut above) = (cells.clone(), cells);
+    if let (Some(below), Some(above)) = (below.get_mut(input), above.get_mut(input)) {
+        below.1 = cut;
+        above.0 = cut;
+    }
+    [above, below]
+}
+
+fn names(model: &Model) -> BTreeMap<&str, usize> {
+    let names = model.inputs.iter().enumerate();
+    names.map(|(i, input)| (input.name.as_str(), i)).collect()
+}
+
+struct Reader<'m> {
+    model: &'m Model,
+    inputs: BTreeMap<&'m str, usize>,
+    keys: BTreeMap<Key, usize>,
+    found: Vec<Key>,
+}
+
+impl Reader<'_> {
+    fn formula(&mut self, condition: &Condition, level: Level) -> Formula {
+        let mut parts =
+            |parts: &[Condition]| parts.iter().map(|p| self.formula(p, level)).collect();
+        match condition {
+            Condition::Is(proposition) => self.literal(proposition, level),
+            Condition::And(all) => Formula::And(parts(all)),
+            Condition::Or(any) => Formula::Or(parts(any)),
+            // 1 - d >= v where not d > 1 - v.
+            Condition::Not(inner) => {
+                let level = Level {
+                    value: 1.0 - level.value,
+                    strict: !level.strict,
+                };
+                Formula::Not(Box::new(self.formula(inner, level)))
+            }
+        }
+    }
+
+    fn literal(&mut self, proposition: &Proposition, level: Level) -> Formula {
+        let input = self.inputs.get(proposition.variable.text.as_str()).copied();
+        let term = input.and_then(|i| self.model.inputs.get(i)).and_then(|v| {
+            let name = proposition.term.as_ref()?;
+            v.terms.iter().position(|term| term.name == name.text)
+        });
+        // A name that is not known has its finding; `any` alone holds everywhere.
+        let (Some(input), Some(term)) = (input, term) else {
+            return Formula::Always;
+        };
+        let key = Key {
+            input,
+            term,
+            hedges: proposition.hedges.iter().map(|h| *h as u8).collect(),
+            value: level.value.to_bits(),
+            strict: level.strict,
+        };
+        let next = self.found.len();
+        let index = *self.keys.entry(key.clone()).or_insert(next);
+        if index == next {
+            self.found.push(key);
+        }
+        Formula::Literal(index)
+    }
+}
+
+impl Key {
+    fn holds(&self, input: &Variable, x: f64) -> bool {
+        let membership = input.terms.get(self.term).map_or(0.0, |t| t.membership(x));
+        let hedges = self.hedges.iter().rev();
+        let hedges = hedges.filter_map(|&h| Hedge::ALL.into_iter().find(|hedge| *hedge as u8 == h));
+        let degree = hedges.fold(membership, |degree, hedge| hedge.of(degree));
+        let value = f64::from_bits(self.value);
+        if self.strict {
+            degree > value
+        } else {
+            degree >= value
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Rules against each other: contradictory, subsumed, and such as can never fire.
+
+use alloc::{
+    collections::BTreeMap,
+    string::{String, ToString},
+    vec::Vec,
+};
+
+use serde::Serialize;
+
+use super::logic::{Level, Logic};
+use crate::{
+    model::Model,
+    rule::{Condition, Rule},
+};
+
+/// Two rules of one condition that conclude different terms of one output. Rules count from 0.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Contradiction {
+    /// The earlier rule.
+    pub first: usize,
+    /// The later rule.
+    pub second: usize,
+    /// The output they disagree about.
+    pub output: String,
+    /// What the earlier rule concludes.
+    pub first_term: String,
+    /// What the later rule concludes.
+    pub second_term: String,
+}
+
+/// A rule that never adds anything: whenever it holds, another one of the same conclusion holds as strongly.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Subsumed {
+    /// The rule that adds nothing.
+    pub rule: usize,
+    /// The wider rule.
+    pub by: usize,
+}
+
+/// A condition as the set of its parts, in one order, so that equal conditions are equal.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+enum Parts {
+    All(Vec<usize>),
+    Any(Vec<usize>),
+}
+
+/// Numbers for the parts of conditions, so that they compare fast.
+#[derive(Default)]
+struct Numbers(BTreeMap<String, usize>);
+
+impl Numbers {
+    fn of(&mut self, condition: &Condition) -> usize {
+        let text = canonical(condition);
+        let next = self.0.len();
+        *self.0.entry(text).or_insert(next)
+    }
+
+    fn parts(&mut self, condition: &Condition) -> Parts {
+        let mut sorted = |parts: &[Condition]| {
+            let mut numbers: Vec<usize> = parts.iter().map(|part| self.of(part)).collect();
+            numbers.sort_unstable();
+            numbers.dedup();
+            numbers
+        };
+        match condition {
+            Condition::And(parts) => Parts::All(sorted(parts)),
+            Condition::Or(parts) => Parts::Any(sorted(parts)),
+            // One part alone is both; as a set of all it meets the conjunctions, which are the rule.
+            one => Parts::All(sorted(core::slice::from_ref(one))),
+        }
+    }
+}
+
+/// The condition as text that does not depend on the order of what AND and OR join.
+fn canonical(condition: &Condition) -> String {
+    let joined = |parts: &[Condition], word: &str| {
+        let mut texts: Vec<String> = parts.iter().map(canonical).collect();
+        texts.sort_unstable();
+        texts.dedup();
+        alloc::format!("({})", texts.join(word))
+    };
+    match condition {
+        Condition::Is(proposition) => proposition.to_string(),
+        Condition::Not(inner) => alloc::format!("NOT {}", canonical(inner)),
+        Condition::And(parts) => joined(parts, " AND "),
+        Condition::Or(parts) => joined(parts, " OR "),
+    }
+}
+
+/// Pairs of rules of one condition and different conclusions.
+pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
+    let mut numbers = Numbers::default();
+    let mut by_parts: BTreeMap<Parts, Vec<usize>> = BTreeMap::new();
+    for (i, rule) in model.rules.iter().enumerate() {
+        let parts = numbers.parts(&rule.rule.condition);
+        by_parts.entry(parts).or_default().push(i);
+    }
+    let mut found = Vec::new();
+    for rules in by_parts.values() {
+        for (k, &second) in rules.iter().enumerate() {
+            for &first in rules.get(..k).unwrap_or_default() {
+                found.extend(disagreement(model, first, second));
+            }
+        }
+    }
+    found.sort_by_key(|c| (c.second, c.first));
+    found
+}
+
+fn disagreement(model: &Model, first: usize, second: usize) -> Option<Contradiction> {
+    let (a, b) = (
+        &model.rules.get(first)?.rule,
+        &model.rules.get(second)?.rule,
+    );
+    a.consequents.iter().find_map(|one| {
+        let other = b.consequents.iter().find(|c| c.output == one.output)?;
+        (one.term != other.term).then(|| Contradiction {
+            first,
+            second,
+            output: one.output.text.clone(),
+            first_term: one.term.text.clone(),
+            second_term: other.term.text.clone(),
+        })
+    })
+}
+
+/// Rules that add nothing to a wider one of the same conclusion. Equal rules are told elsewhere.
+pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
+    let mut numbers = Numbers::default();
+    let mut groups: BTreeMap<String, Vec<Member>> = BTreeMap::new();
+    for (index, rule) in model.rules.iter().enumerate() {
+        let parts = numbers.parts(&rule.rule.condition);
+        let weight = rule.rule.weight;
+        let signature = match &parts {
+            Parts::All(parts) | Parts::Any(parts) => parts
+                .iter()
+                .fold(0u64, |bits, part| bits | 1 << (part % 64)),
+        };
+        groups
+            .entry(conclusion(&rule.rule))
+            .or_default()
+            .push(Member {
+                index,
+                parts,
+                signature,
+                weight,
+            });
+    }
+    let mut found = Vec::new();
+    for group in groups.values() {
+        for narrow in group {
+            let wider = group.iter().find(|wide| {
+                wide.index != narrow.index && wide.weight >= narrow.weight && wide.includes(narrow)
+            });
+            found.extend(wider.map(|wide| Subsumed {
+                rule: narrow.index,
+                by: wide.index,
+            }));
+        }
+    }
+    found.sort_by_key(|s| s.rule);
+    found
+}
+
+struct Member {
+    index: usize,
+    parts: Parts,
+    /// A bit for each part, so that most sets are told apart at once.
+    signature: u64,
+    weight: f64,
+}
+
+impl Member {
+    /// Whether this condition holds wherever the narrower one does, and the two are not equal.
+    fn includes(&self, narrow: &Member) -> bool {
+        let subset = |a: &[usize], b: &[usize]| {
+            a.len() < b.len() && a.iter().all(|part| b.binary_search(part).is_ok())
+        };
+        match (&self.parts, &narrow.parts) {
+            // Fewer conditions to meet.
+            (Parts::All(wide), Parts::All(all)) => {
+                self.signature & !narrow.signature == 0 && subset(wide, all)
+            }
+            // More ways to hold.
+            (Parts::Any(wide), Parts::Any(any)) => {
+                narrow.signature & !self.signature == 0 && subset(any, wide)
+            }
+            (Parts::Any(wide), Parts::All(all)) => {
+                all.iter().any(|part| wide.binary_search(part).is_ok())
+            }
+            (Parts::All(_), Parts::Any(_)) => false,
+        }
+    }
+}
+
+fn conclusion(rule: &Rule) -> String {
+    let mut texts: Vec<String> = rule.consequents.iter().map(ToString::to_string).collect();
+    texts.sort_unstable();
+    texts.join(" AND ")
+}
+
+/// The rules that fire nowhere: what they ask for excludes itself, or their weight is 0.
+pub(super) fn never_firing(model: &Model) -> Vec<usize> {
+    let level = Level {
+        value: 0.0,
+        strict: true,
+    };
+    let conditions = model.rules.iter().map(|rule| &rule.rule.condition);
+    let logic = Logic::new(model, conditions, level);
+    let rules = model.rules.iter().zip(&logic.formulas).enumerate();
+    let dead = rules
+        .filter(|(_, (rule, formula))| rule.rule.weight <= 0.0 || !logic.holds_somewhere(formula));
+    dead.map(|(i, _)| i).collect()
+}

@@ -1,0 +1,148 @@
+//! Terms that no rule uses or no value reaches, and ranges that the terms leave open.
+
+use alloc::{collections::BTreeSet, string::String, vec::Vec};
+
+use serde::Serialize;
+
+use super::axis;
+use crate::model::{Model, Shape, Term, Variable};
+
+/// A term of a variable.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct TermOf {
+    /// The input or output.
+    pub variable: String,
+    /// The term; none where no term of the variable is used.
+    pub term: Option<String>,
+}
+
+/// A part of a variable's range in which every term is 0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Hole {
+    /// The input.
+    pub input: String,
+    /// From this value.
+    pub low: f64,
+    /// Up to this value; the same where it is a single one.
+    pub high: f64,
+}
+
+/// Terms that stand in no rule, and variables none of whose terms does.
+pub(super) fn unused(model: &Model) -> Vec<TermOf> {
+    let mut used: BTreeSet<(&str, &str)> = BTreeSet::new();
+    let mut named: BTreeSet<&str> = BTreeSet::new();
+    for rule in &model.rules {
+        rule.rule.condition.visit(&mut |proposition| {
+            named.insert(&proposition.variable.text);
+            if let Some(term) = &proposition.term {
+                used.insert((&proposition.variable.text, &term.text));
+            }
+        });
+        for consequent in &rule.rule.consequents {
+            named.insert(&consequent.output.text);
+            used.insert((&consequent.output.text, &consequent.term.text));
+        }
+    }
+    let mut found = Vec::new();
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    for variable in model.inputs.iter().chain(outputs) {
+        if !named.contains(variable.name.as_str()) {
+            found.push(TermOf {
+                variable: variable.name.clone(),
+                term: None,
+            });
+            continue;
+        }
+        for term in &variable.terms {
+            if !used.contains(&(variable.name.as_str(), term.name.as_str())) {
+                found.push(term_of(variable, term));
+            }
+        }
+    }
+    found
+}
+
+fn term_of(variable: &Variable, term: &Term) -> TermOf {
+    TermOf {
+        variable: variable.name.clone(),
+        term: Some(term.name.clone()),
+    }
+}
+
+/// Terms that are 0 on the whole range of their variable, and output terms whose every rule never fires.
+pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> {
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    let mut found = Vec::new();
+    for variable in model.inputs.iter().chain(outputs) {
+        let places = axis::places(variable);
+        // A linear or constant function of a weighted output is no fuzzy set.
+        let sets = variable.terms.iter().filter(|term| is_set(&term.shape));
+        for term in sets {
+            if places.iter().all(|&x| term.membership(x) == 0.0) {
+                found.push(term_of(variable, term));
+            }
+        }
+    }
+    // The rules that never fire are sorted.
+    let mut alive: BTreeSet<(&str, &str)> = BTreeSet::new();
+    let mut dead: BTreeSet<(&str, &str)> = BTreeSet::new();
+    for (i, rule) in model.rules.iter().enumerate() {
+        let group = if never_firing.binary_search(&i).is_ok() {
+            &mut dead
+        } else {
+            &mut alive
+        };
+        let consequents = rule.rule.consequents.iter();
+        group.extend(consequents.map(|c| (c.output.text.as_str(), c.term.text.as_str())));
+    }
+    for (output, term) in dead.difference(&alive) {
+        let one = TermOf {
+            variable: String::from(*output),
+            term: Some(String::from(*term)),
+        };
+        if !found.contains(&one) {
+            found.push(one);
+        }
+    }
+    found
+}
+
+fn is_set(shape: &Shape) -> bool {
+    !matches!(shape, Shape::Linear { .. } | Shape::Constant { .. })
+}
+
+/// Where every term of an input is 0: no rule without NOT speaks of those values.
+pub(super) fn holes(input: &Variable) -> Vec<Hole> {
+    let covered = |x: f64| input.terms.iter().any(|term| term.membership(x) > 0.0);
+    let places = axis::places(input);
+    let mut found: Vec<Hole> = Vec::new();
+    let mut start: Option<f64> = None;
+    let mut before: Option<f64> = None;
+    for &x in &places {
+        match (covered(x), start, before) {
+            (false, None, None) => start = Some(x),
+            (false, None, Some(last)) => {
+                start = Some(axis::rounded(axis::bisect(last, x, covered)))
+            }
+            (true, Some(low), Some(last)) => {
+                let high = axis::rounded(axis::bisect(last, x, |x| !covered(x)));
+                found.push(hole(input, low, high));
+                start = None;
+            }
+            _ => {}
+        }
+        before = Some(x);
+    }
+    if let Some(low) = start {
+        found.push(hole(input, low, input.high));
+    }
+    found
+}
+
+fn hole(input: &Variable, low: f64, high: f64) -> Hole {
+    Hole {
+        input: input.name.clone(),
+        low,
+        high,
+    }
+}

@@ -1,0 +1,265 @@
+use alloc::{format, string::ToString, vec::Vec};
+
+use super::*;
+use crate::yaml;
+
+const INPUTS: &str = "inputs: {x: {range: [0, 1], partition: [low, medium, high]}, \
+                      y: {range: [0, 1], partition: [low, high]}}";
+const OUTPUTS: &str = "outputs: {z: {range: [0, 1], partition: [low, medium, high]}}";
+
+fn report_of(text: &str, options: &Options) -> (Report, Vec<Diagnostic>) {
+    let document = yaml::parse(text).unwrap_or_else(|f| panic!("{text}\n{f}"));
+    let engine = Engine::new(&document.model).unwrap();
+    let report = check(&document.model, &engine, options).unwrap();
+    let findings = report.findings(&document.model, &document.places);
+    (report, findings)
+}
+
+fn with_rules(rules: &[&str]) -> Report {
+    let rules: Vec<_> = rules.iter().map(|rule| format!("  - {rule}\n")).collect();
+    let text = format!(
+        "fuzzy: 1\nname: a\n{INPUTS}\n{OUTPUTS}\nrules:\n{}",
+        rules.concat()
+    );
+    report_of(&text, &Options::default()).0
+}
+
+fn paper() -> &'static str {
+    include_str!("../../../rules/flagred-paper.yaml")
+}
+
+#[test]
+fn the_papers_rules_are_seen_through() {
+    let (report, findings) = report_of(paper(), &Options::default());
+    let boxes: Vec<&Uncovered> = report.uncovered.iter().filter(|one| !one.silent).collect();
+    assert_eq!(boxes.len(), 1);
+    let sides: Vec<_> = boxes[0]
+        .sides
+        .iter()
+        .map(|s| (s.input.as_str(), s.low, s.high))
+        .collect();
+    assert_eq!(sides, [("margin", 0.0, 0.15), ("spread", 0.0, 0.05)]);
+    let missing: Vec<Vec<&str>> = boxes[0]
+        .missing
+        .iter()
+        .map(|all| all.iter().map(|one| one.term.as_str()).collect())
+        .collect();
+    assert_eq!(missing, [["very_low", "low"], ["low", "low"]]);
+    // Only on the line spread = 0 does no rule fire at all.
+    let silent: Vec<&Uncovered> = report.uncovered.iter().filter(|one| one.silent).collect();
+    assert_eq!(silent.len(), 1);
+    assert_eq!(
+        (silent[0].sides[1].low, silent[0].sides[1].high),
+        (0.0, 0.0)
+    );
+
+    let reach = &report.reach[0];
+    // The centroid of a shoulder of width 25 lies at a third of it.
+    assert!((reach.low - 25.0 / 3.0).abs() < 1e-9, "{reach:?}");
+    assert!(
+        (reach.high - (100.0 - 25.0 / 3.0)).abs() < 1e-9,
+        "{reach:?}"
+    );
+
+    assert_eq!(report.against_trend.len(), 1);
+    let step = &report.against_trend[0];
+    assert_eq!(
+        (step.input.as_str(), step.trend),
+        ("spread", Direction::Increasing)
+    );
+    assert_eq!(
+        (step.from_term.as_str(), step.to_term.as_str()),
+        ("low", "very_low")
+    );
+    // IF margin IS medium AND spread IS high.
+    assert_eq!(step.to_rule, 3);
+
+    let told: Vec<String> = findings.iter().map(ToString::to_string).collect();
+    insta::assert_snapshot!(told.join("\n"));
+}
+
+#[test]
+fn what_the_author_says_is_held_against_the_engine() {
+    let claim = |text: &str| text.parse::<Monotone>().unwrap();
+    let options = Options {
+        monotone: Vec::from([claim("spread:increasing"), claim("margin:decreasing:risk")]),
+        ..Options::default()
+    };
+    let (report, _) = report_of(paper(), &options);
+    let engine = Engine::new(&yaml::parse(paper()).unwrap().model).unwrap();
+    let risk = |margin: f64, spread: f64| engine.evaluate(&[margin, spread]).unwrap()[0].value();
+    let worst = &report.counterexamples[0];
+    assert_eq!(worst.claim.output.as_deref(), Some("risk"));
+    // It is what the engine does, and at least as bad as what the paper's table shows at medium margin.
+    let at = |name: &str| worst.at.iter().find(|c| c.input == name).unwrap().value;
+    assert_eq!(risk(at("margin"), at("spread")), Some(worst.from_value));
+    assert_eq!(risk(at("margin"), worst.to), Some(worst.to_value));
+    assert!(
+        worst.from_value - worst.to_value >= 25.0 - 25.0 / 3.0 - 1e-9,
+        "{worst:?}"
+    );
+    assert!((at("margin") - 0.2).abs() < 0.06, "{worst:?}");
+    assert!("margin".parse::<Monotone>().is_err());
+    assert!("margin:down".parse::<Monotone>().is_err());
+}
+
+#[test]
+fn claims_about_unknown_variables_are_refused() {
+    let document = yaml::parse(paper()).unwrap();
+    let engine = Engine::new(&document.model).unwrap();
+    for (text, help) in [
+        ("margn:increasing", "did you mean `margin`?"),
+        ("margin:increasing:rsk", "did you mean `risk`?"),
+    ] {
+        let options = Options {
+            monotone: Vec::from([text.parse().unwrap()]),
+            ..Options::default()
+        };
+        let found = check(&document.model, &engine, &options).unwrap_err();
+        assert_eq!(found.help.as_deref(), Some(help));
+    }
+}
+
+#[test]
+fn uncovered_boxes_agree_with_the_engine() {
+    // With the minimum, the maximum and no weights, covered is what the engine says it is.
+    for rules in [
+        &["IF x IS low AND y IS high THEN z IS low"][..],
+        &[
+            "IF NOT (x IS low OR y IS high) THEN z IS low",
+            "IF x IS very high THEN z IS high",
+        ],
+        &[
+            "IF x IS somewhat medium THEN z IS low",
+            "IF y IS NOT seldom low THEN z IS high",
+        ],
+        &["IF x IS any THEN z IS low"],
+        &["IF x IS extremely high OR (y IS low AND NOT x IS low) THEN z IS low"],
+    ] {
+        let text: Vec<_> = rules.iter().map(|rule| format!("  - {rule}\n")).collect();
+        let text = format!(
+            "fuzzy: 1\nname: a\n{INPUTS}\n{OUTPUTS}\nrules:\n{}",
+            text.concat()
+        );
+        let document = yaml::parse(&text).unwrap();
+        let engine = Engine::new(&document.model).unwrap();
+        let report = check(&document.model, &engine, &Options::default()).unwrap();
+        assert!(report.uncovered_complete);
+        let inside = |point: [f64; 2], silent: bool| {
+            report
+                .uncovered
+                .iter()
+                .filter(|one| one.silent == silent || one.silent)
+                .any(|one| {
+                    one.sides.iter().all(|side| {
+                        let i = usize::from(side.input == "y");
+                        (side.low..=side.high).contains(&point[i])
+                    })
+                })
+        };
+        for i in 0..40 {
+            for k in 0..40 {
+                let point = [(f64::from(i) + 0.513) / 40.0, (f64::from(k) + 0.487) / 40.0];
+                let coverage = engine.evaluate(&point).unwrap()[0].coverage;
+                assert_eq!(
+                    inside(point, false),
+                    coverage < 0.5,
+                    "{rules:?} {point:?} {coverage}"
+                );
+                assert_eq!(
+                    inside(point, true),
+                    coverage == 0.0,
+                    "{rules:?} {point:?} {coverage}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn rules_are_held_against_each_other() {
+    let report = with_rules(&[
+        "IF x IS low AND y IS low THEN z IS low",
+        "IF y IS low AND x IS low THEN z IS high",
+        "IF x IS low THEN z IS low",
+        "IF x IS high OR y IS high THEN z IS high",
+        "IF x IS high THEN z IS high",
+        "IF x IS medium AND y IS low THEN z IS medium WITH 0.9",
+        "IF y IS low THEN z IS medium WITH 0.5",
+    ]);
+    let pairs: Vec<_> = report
+        .contradictions
+        .iter()
+        .map(|c| (c.first, c.second))
+        .collect();
+    assert_eq!(pairs, [(0, 1)]);
+    let pairs: Vec<_> = report.subsumed.iter().map(|s| (s.rule, s.by)).collect();
+    // The last rule is wider than the one before it, but weaker.
+    assert_eq!(pairs, [(0, 2), (4, 3)]);
+}
+
+#[test]
+fn rules_that_cannot_fire_and_terms_that_none_reaches_are_found() {
+    let report = with_rules(&[
+        "IF x IS low AND x IS high THEN z IS low",
+        "IF NOT x IS any THEN z IS medium",
+        "IF x IS medium THEN z IS high WITH 0",
+        "IF y IS low OR y IS high THEN z IS high",
+    ]);
+    assert_eq!(report.never_firing, [0, 1, 2]);
+    let names = |terms: &[TermOf]| {
+        let all = terms
+            .iter()
+            .map(|t| format!("{} {}", t.variable, t.term.as_deref().unwrap_or("*")));
+        all.collect::<Vec<_>>()
+    };
+    assert_eq!(names(&report.unreachable), ["z low", "z medium"]);
+    assert_eq!(names(&report.unused), Vec::<String>::new());
+
+    let report = with_rules(&["IF x IS low THEN z IS high"]);
+    assert_eq!(
+        names(&report.unused),
+        ["x medium", "x high", "y *", "z low", "z medium"]
+    );
+}
+
+#[test]
+fn holes_and_single_values_without_a_term_are_found() {
+    let text = format!(
+        "fuzzy: 1\nname: a\ninputs: {{x: {{range: [0, 10], terms: {{a: {{triangle: [1, 2, 3]}}, \
+         b: {{triangle: [3, 4, 5]}}, c: {{rectangle: [6, 7]}}, d: {{gaussian: {{mean: 20, sd: 0.1}}}}}}}}}}\n\
+         {OUTPUTS}\nrules: [IF x IS a OR x IS b OR x IS c OR x IS d THEN z IS low]\n"
+    );
+    let (report, _) = report_of(&text, &Options::default());
+    let holes: Vec<_> = report
+        .holes
+        .iter()
+        .map(|hole| (hole.low, hole.high))
+        .collect();
+    assert_eq!(holes, [(0.0, 1.0), (3.0, 3.0), (5.0, 6.0), (7.0, 10.0)]);
+    assert_eq!(report.unreachable[0].term.as_deref(), Some("d"));
+}
+
+#[test]
+fn jumps_are_found_where_they_are() {
+    let text = format!(
+        "fuzzy: 1\nname: a\ninputs: {{x: {{range: [0, 1], terms: {{a: {{rectangle: [0, 0.3]}}, \
+         b: {{rectangle: [0.3, 1]}}}}}}}}\n{OUTPUTS}\n\
+         rules: [IF x IS a THEN z IS low, IF x IS b THEN z IS high]\n"
+    );
+    let (report, _) = report_of(&text, &Options::default());
+    assert_eq!(report.jumps.len(), 1);
+    assert!(
+        (report.jumps[0].at[0].value - 0.3).abs() < 1e-9,
+        "{:?}",
+        report.jumps
+    );
+    assert!(
+        with_rules(&[
+            "IF x IS low THEN z IS low",
+            "IF NOT x IS low THEN z IS high"
+        ])
+        .jumps
+        .is_empty()
+    );
+}

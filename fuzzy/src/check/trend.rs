@@ -1,0 +1,204 @@
+//! Rules against the trend: where most rules say that more of an input means more of an output, and some say less.
+//!
+//! Two rules are neighbours when their conditions differ in one input only, by one step in the order of its terms. What
+//! the output does from one to the other is compared with what it does for most other neighbours along that input.
+
+use alloc::{collections::BTreeMap, string::String, vec::Vec};
+
+use serde::Serialize;
+
+use super::{axis, behaviour::Direction};
+use crate::{
+    model::{Model, Shape, Term, Variable},
+    rule::{Condition, Proposition},
+};
+
+/// A rule that goes against what most rules say of an input and an output.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct AgainstTrend {
+    /// The input.
+    pub input: String,
+    /// The output.
+    pub output: String,
+    /// What the output does along the input, by most rules.
+    pub trend: Direction,
+    /// The number of steps between neighbouring rules that follow the trend.
+    pub following: usize,
+    /// The rule at the lower term of the input.
+    pub from_rule: usize,
+    /// Its conclusion.
+    pub from_term: String,
+    /// The rule at the next term up.
+    pub to_rule: usize,
+    /// Its conclusion, on the other side.
+    pub to_term: String,
+}
+
+/// Steps against the trend, where at least twice as many follow it.
+pub(super) fn against(model: &Model) -> Vec<AgainstTrend> {
+    let mut found = Vec::new();
+    for output in &model.outputs {
+        let Some(table) = Table::new(model, &output.variable) else {
+            continue;
+        };
+        table.against(model, &output.variable, &mut found);
+    }
+    found
+}
+
+/// The rules of an output that are plain conjunctions: the term of each input, and the conclusion's place.
+struct Table {
+    /// By input and rank of its term, rising.
+    rows: BTreeMap<Vec<(usize, usize)>, Row>,
+}
+
+struct Row {
+    rule: usize,
+    term: String,
+    place: f64,
+}
+
+impl Table {
+    fn new(model: &Model, output: &Variable) -> Option<Self> {
+        // Terms stand in the order of their middles, whatever the order in which they were written.
+        let order: Vec<Vec<usize>> = model.inputs.iter().map(ranks).collect();
+        let names: BTreeMap<&str, usize> = model
+            .inputs
+            .iter()
+            .enumerate()
+            .map(|(i, v)| (v.name.as_str(), i))
+            .collect();
+        let mut rows = BTreeMap::new();
+        for (rule, written) in model.rules.iter().enumerate() {
+            let consequents = &written.rule.consequents;
+            let Some(consequent) = consequents.iter().find(|c| c.output.text == output.name) else {
+                continue;
+            };
+            let term = output
+                .terms
+                .iter()
+                .find(|t| t.name == consequent.term.text)?;
+            let Some(place) = middle(term, output) else {
+                continue;
+            };
+            if let Some(key) = key(model, &names, &order, &written.rule.condition) {
+                let term = term.name.clone();
+                rows.insert(key, Row { rule, term, place });
+            }
+        }
+        Some(Table { rows })
+    }
+
+    fn against(&self, model: &Model, output: &Variable, found: &mut Vec<AgainstTrend>) {
+        let mut steps: BTreeMap<usize, Steps<'_>> = BTreeMap::new();
+        for (key, row) in &self.rows {
+            for (i, &(input, _)) in key.iter().enumerate() {
+                let mut next = key.clone();
+                if let Some((_, rank)) = next.get_mut(i) {
+                    *rank += 1;
+                }
+                let Some(other) = self.rows.get(&next) else {
+                    continue;
+                };
+                let steps = steps.entry(input).or_default();
+                if other.place > row.place {
+                    steps.rising.push((row, other));
+                } else if other.place < row.place {
+                    steps.falling.push((row, other));
+                }
+            }
+        }
+        for (input, Steps { rising, falling }) in steps {
+            let (trend, most, few) = if rising.len() >= 2 * falling.len() {
+                (Direction::Increasing, rising.len(), falling)
+            } else if falling.len() >= 2 * rising.len() {
+                (Direction::Decreasing, falling.len(), rising)
+            } else {
+                continue;
+            };
+            let Some(input) = model.inputs.get(input) else {
+                continue;
+            };
+            found.extend(few.into_iter().map(|(from, to)| AgainstTrend {
+                input: input.name.clone(),
+                output: output.name.clone(),
+                trend,
+                following: most,
+                from_rule: from.rule,
+                from_term: from.term.clone(),
+                to_rule: to.rule,
+                to_term: to.term.clone(),
+            }));
+        }
+    }
+}
+
+/// Neighbours along an input between which the output rises or falls.
+#[derive(Default)]
+struct Steps<'t> {
+    rising: Vec<(&'t Row, &'t Row)>,
+    falling: Vec<(&'t Row, &'t Row)>,
+}
+
+/// The rank of each input's term that a plain conjunction of unhedged propositions asks for.
+fn key(
+    model: &Model,
+    names: &BTreeMap<&str, usize>,
+    order: &[Vec<usize>],
+    condition: &Condition,
+) -> Option<Vec<(usize, usize)>> {
+    let mut key = BTreeMap::new();
+    let mut take = |proposition: &Proposition| {
+        let input = *names.get(proposition.variable.text.as_str())?;
+        let name = &proposition.term.as_ref()?.text;
+        let terms = &model.inputs.get(input)?.terms;
+        let term = terms.iter().position(|term| term.name == *name)?;
+        let rank = order.get(input)?.get(term)?;
+        let is_plain = proposition.hedges.is_empty();
+        (is_plain && key.insert(input, *rank).is_none()).then_some(())
+    };
+    match condition {
+        Condition::Is(proposition) => take(proposition)?,
+        Condition::And(parts) => {
+            for part in parts {
+                match part {
+                    Condition::Is(proposition) => take(proposition)?,
+                    _ => return None,
+                }
+            }
+        }
+        _ => return None,
+    }
+    Some(key.into_iter().collect())
+}
+
+/// The rank of each term by its middle.
+fn ranks(variable: &Variable) -> Vec<usize> {
+    let middles: Vec<f64> = variable
+        .terms
+        .iter()
+        .map(|term| middle(term, variable).unwrap_or(f64::NAN))
+        .collect();
+    middles
+        .iter()
+        .map(|middle| middles.iter().filter(|other| *other < middle).count())
+        .collect()
+}
+
+/// The middle of the values at which a term is highest; of a constant, its value.
+fn middle(term: &Term, variable: &Variable) -> Option<f64> {
+    match term.shape {
+        Shape::Constant { value } => return Some(value),
+        Shape::Linear { .. } => return None,
+        _ => {}
+    }
+    let places = axis::places(variable);
+    let highest = places
+        .iter()
+        .map(|&x| term.membership(x))
+        .fold(0.0, f64::max);
+    let mut top = places.iter().filter(|&&x| term.membership(x) == highest);
+    let first = *top.next()?;
+    let last = top.next_back().copied().unwrap_or(first);
+    Some(0.5 * (first + last))
+}
