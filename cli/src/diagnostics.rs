@@ -2,12 +2,12 @@
 
 use std::{
     fs,
-    io::{self, Read},
+    io::{self, Read, Write},
     path::Path,
 };
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use fuzzy::diagnostic::{Diagnostic, Severity};
+use fuzzy::diagnostic::{Diagnostic, Findings, Severity};
 
 use crate::failure::Failure;
 
@@ -56,6 +56,14 @@ fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Grou
         group = group.element(Level::HELP.message(help.as_str()));
     }
     vec![group]
+}
+
+/// Draws the findings that keep a file from being used, on standard error; what is left is the exit code.
+pub(crate) fn refuse(findings: &Findings, file: &str, text: &str) -> Failure {
+    let mut err = anstream::stderr().lock();
+    // Nothing is left to tell a user whose standard error is closed.
+    let _ = write!(err, "{}", draw(&findings.0, file, text, true));
+    Failure::shown(3)
 }
 
 /// Reads a text file, or standard input for `-`.

@@ -3,7 +3,7 @@
 use std::{fmt, io, io::Write, process::ExitCode};
 
 /// How a command that ran to its end ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Exit {
     /// Nothing to report: 0.
     Clean,

@@ -5,9 +5,9 @@
 mod assess;
 mod check;
 mod diagnostics;
-#[allow(dead_code, reason = "the commands that use all of it come next")]
 mod failure;
 mod inspect;
+mod profile;
 
 use std::process::ExitCode;
 

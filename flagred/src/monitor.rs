@@ -6,7 +6,7 @@ use crate::{
     accumulator::Accumulator,
     estimator::{Estimate, Estimator, Memory},
     profile::Profile,
-    source::{Observer, Values},
+    source::{Motors, Observer, Signal, Source, Statistic, Values},
     verdict::{Alert, Finding, Level, Step},
 };
 
@@ -176,11 +176,22 @@ impl<'a> Monitor<'a> {
             return Err(MonitorError::NoMotors);
         }
         let profile = estimator.profile();
-        let observer = Observer::new(profile.inputs.iter().map(|i| &i.source), signals)
+        let always = [
+            (Statistic::Mean, Signal::MotorMargin),
+            (Statistic::Std, Signal::MotorCommand),
+        ]
+        .map(|(statistic, signal)| Source {
+            statistic,
+            motors: Motors::Pooled,
+            signal,
+            window_s: profile.window_s,
+        });
+        let sources = profile.inputs.iter().map(|input| &input.source);
+        let observer = Observer::new(sources.chain(&always), signals)
             .map_err(|signal| MonitorError::NoSignal { signal })?;
         Ok(Monitor {
             memory: Memory::of(estimator),
-            inputs: vec![f64::NAN; observer.len()],
+            inputs: vec![f64::NAN; profile.inputs.len()],
             motors: vec![f64::NAN; motors],
             observer,
             accumulator: Accumulator::new(profile.elevated_risk),
@@ -271,25 +282,26 @@ impl<'a> Monitor<'a> {
         self.forget(last_s, false).ended
     }
 
+    /// The mean margin over all motors and the profile's window: the paper's first input, whatever the rules look at.
+    pub fn margin(&self) -> Option<f64> {
+        self.reading(self.inputs.len()).ok()
+    }
+
+    /// The standard deviation of the effective commands over all motors and the profile's window: the paper's second
+    /// input, whatever the rules look at.
+    pub fn spread(&self) -> Option<f64> {
+        self.reading(self.inputs.len() + 1).ok()
+    }
+
     fn estimate(&mut self) -> Result<Estimate, Unknown> {
-        let sampling = self.estimator.profile().sampling;
         let mut reason = None;
-        for (input, value) in self.inputs.iter_mut().enumerate() {
-            *value = f64::NAN;
-            let Some(observation) = self.observer.value(input) else {
-                reason = reason.or(Some(Unknown::NoValue { input }));
-                continue;
-            };
-            // A window that is full to a sample's time or so is full.
-            let needed_s = sampling.warm_up_s.min(observation.window_s) * 0.99;
-            match observation.samples {
-                Some(_) if observation.covered_s < needed_s => {
-                    reason = reason.or(Some(Unknown::WarmingUp { input }));
-                }
-                Some(samples) if samples < sampling.min_samples => {
-                    reason = reason.or(Some(Unknown::TooFewSamples { input, samples }));
-                }
-                _ => *value = observation.value,
+        for input in 0..self.inputs.len() {
+            let value = self.reading(input).unwrap_or_else(|unknown| {
+                reason.get_or_insert(unknown);
+                f64::NAN
+            });
+            if let Some(kept) = self.inputs.get_mut(input) {
+                *kept = value;
             }
         }
         match reason {
@@ -298,6 +310,24 @@ impl<'a> Monitor<'a> {
                 .estimator
                 .estimate(&self.inputs, &mut self.memory)
                 .ok_or(Unknown::NoRule),
+        }
+    }
+
+    /// The value of an input, where enough is known of its window.
+    fn reading(&self, input: usize) -> Result<f64, Unknown> {
+        let sampling = self.estimator.profile().sampling;
+        let observation = self
+            .observer
+            .value(input)
+            .ok_or(Unknown::NoValue { input })?;
+        // A window that is full to a sample's time or so is full.
+        let needed_s = sampling.warm_up_s.min(observation.window_s) * 0.99;
+        match observation.samples {
+            Some(_) if observation.covered_s < needed_s => Err(Unknown::WarmingUp { input }),
+            Some(samples) if samples < sampling.min_samples => {
+                Err(Unknown::TooFewSamples { input, samples })
+            }
+            _ => Ok(observation.value),
         }
     }
 

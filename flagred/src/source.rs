@@ -225,11 +225,6 @@ impl Observer {
         }
     }
 
-    /// The number of inputs.
-    pub(crate) fn len(&self) -> usize {
-        self.inputs.len()
-    }
-
     /// The value of an input, and how much of its window is behind it; `None` where nothing is known.
     pub(crate) fn value(&self, input: usize) -> Option<Observation> {
         let Input { channel, statistic } = *self.inputs.get(input)?;
@@ -336,7 +331,7 @@ mod tests {
                 },
             );
         }
-        (0..observer.len())
+        (0..observer.inputs.len())
             .map(|i| observer.value(i).map(|o| o.value))
             .collect()
     }

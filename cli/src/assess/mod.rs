@@ -1,25 +1,145 @@
 //! `flagred assess`: how risky was this flight?
 
-#[allow(dead_code, reason = "the text of an assessment comes next")]
+mod document;
+mod follow;
 mod picture;
+mod words;
 
-use std::path::PathBuf;
+use std::io::Write;
 
-use crate::failure::{Exit, Failure};
+use clap::ValueEnum;
+use flagred::verdict::Level;
+
+use crate::{
+    failure::{Exit, Failure},
+    profile,
+};
+use follow::{Assessed, Verdict};
+
+/// How long a step of the shown risk is where nothing else is asked for, in seconds.
+const STEP_S: f64 = 0.1;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Flight logs; `-` is standard input
+    /// Flight logs (ArduPilot, PX4, MAVLink, flight CSV; plain or gzipped); `-` is standard input
     #[arg(required = true, value_name = "LOG")]
-    logs: Vec<PathBuf>,
+    logs: Vec<String>,
+
+    /// What the motors mean to the rules and the risk to the pilot: a shipped profile's name, or a file
+    #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
+    profile: String,
+
+    /// One JSON document instead of words
+    #[arg(long, conflicts_with = "csv")]
+    json: bool,
+
+    /// A table of the steps instead of words
+    #[arg(long)]
+    csv: bool,
+
+    /// Exit with 1 from this verdict on
+    #[arg(long, value_enum, value_name = "VERDICT", default_value = "warn")]
+    fail_on: FailOn,
+
+    /// Seconds between the steps shown; every motor sample is assessed in any case
+    #[arg(long, value_name = "SECONDS", default_value_t = STEP_S, value_parser = step)]
+    step: f64,
 }
 
-/// Assesses every log in turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum FailOn {
+    Warn,
+    Fail,
+    Never,
+}
+
+fn step(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(step_s) if step_s >= 0.0 && step_s.is_finite() => Ok(step_s),
+        _ => Err("a step is a number of seconds, 0 or more".to_owned()),
+    }
+}
+
+/// Assesses every log in turn; one that cannot be read is told of and does not stop the others.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let log = arguments
-        .logs
-        .first()
-        .map(|p| p.display().to_string())
-        .unwrap_or_default();
-    Err(Failure::unreadable(format!("`{log}` cannot be read yet")))
+    let estimator = profile::load(&arguments.profile)?;
+    let several = arguments.logs.len() > 1;
+    if arguments.logs.iter().filter(|log| *log == "-").count() > 1 {
+        return Err(Failure::usage("standard input can be read only once").help("name `-` once"));
+    }
+    let mut out = anstream::stdout().lock();
+    let mut exit = Exit::Clean;
+    let mut documents = Vec::new();
+    let mut head = true;
+    for log in &arguments.logs {
+        let flight = match flightlog::open(log, &options(&estimator)) {
+            Ok(flight) => flight,
+            Err(error) => {
+                Failure::from(error).report();
+                exit = Exit::Unreadable;
+                continue;
+            }
+        };
+        let assessed = follow::follow(&flight, &estimator, arguments.step);
+        exit = exit.max(exit_of(&assessed, arguments.fail_on));
+        if arguments.json {
+            documents.push(document::document(log, &flight, &estimator, &assessed));
+        } else if arguments.csv {
+            document::write_csv(
+                &mut out,
+                several.then_some(log.as_str()),
+                head,
+                &estimator,
+                &assessed,
+            )?;
+            head = false;
+            if let Verdict::NotAvailable { reason, help } = &assessed.verdict {
+                let failure = Failure::unreadable(format!("`{log}`: no answer: {reason}"));
+                help.iter()
+                    .fold(failure, |failure, help| failure.help(help))
+                    .report();
+            }
+        } else {
+            words::write(&mut out, log, &flight, &estimator.profile().name, &assessed)?;
+        }
+    }
+    if arguments.json {
+        match (documents.as_slice(), several) {
+            ([], _) => {}
+            ([document], false) => write_json(&mut out, document)?,
+            (documents, _) => write_json(&mut out, &documents)?,
+        }
+    }
+    out.flush()?;
+    Ok(exit)
+}
+
+/// Only what is looked at is decoded.
+fn options(estimator: &flagred::estimator::Estimator) -> flightlog::Options {
+    let mut signals: Vec<String> = estimator
+        .profile()
+        .signals()
+        .into_iter()
+        .map(str::to_owned)
+        .collect();
+    signals.sort_unstable();
+    flightlog::Options {
+        signals: Some(signals),
+    }
+}
+
+fn write_json(out: &mut impl Write, document: &impl serde::Serialize) -> Result<(), Failure> {
+    serde_json::to_writer_pretty(&mut *out, document).map_err(std::io::Error::from)?;
+    writeln!(out)?;
+    Ok(())
+}
+
+/// No answer is no clean bill: whoever gates on the exit code must not take it for one.
+fn exit_of(assessed: &Assessed, fail_on: FailOn) -> Exit {
+    match (&assessed.verdict, fail_on) {
+        (Verdict::NotAvailable { .. }, _) => Exit::Unreadable,
+        (Verdict::Known(Level::Fail), FailOn::Warn | FailOn::Fail) => Exit::Findings,
+        (Verdict::Known(Level::Warn), FailOn::Warn) => Exit::Findings,
+        _ => Exit::Clean,
+    }
 }

@@ -70,6 +70,7 @@ fn profile() -> Profile {
         name: "test".into(),
         description: None,
         rules: "test".into(),
+        window_s: 1.0,
         inputs: vec![ProfileInput {
             name: "margin".into(),
             source: source("motor_margin"),

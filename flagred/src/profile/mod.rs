@@ -41,6 +41,8 @@ pub struct Profile {
     pub description: Option<String>,
     /// The rule set: the name of a shipped one ([`crate::shipped`]), or a file beside the profile.
     pub rules: String,
+    /// Over how many seconds an input is taken that names no window of its own.
+    pub window_s: f64,
     /// Where each input of the rule set comes from.
     pub inputs: Vec<ProfileInput>,
     /// The output of the rule set that is the risk, in %.

@@ -116,6 +116,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         gap: gap(&fields, found),
         elevated_risk: elevated_risk(&fields, found),
         verdict: verdict(&fields, found),
+        window_s,
         inputs,
     };
     Some(profile)

@@ -1,0 +1,218 @@
+//! A flight's assessment in words, for the terminal.
+
+use std::io::{self, Write};
+
+use anstyle::{AnsiColor, Style};
+use flagred::{
+    margin::Side,
+    verdict::{Finding, Level, Measure},
+};
+use flightlog::Flight;
+
+use super::{
+    follow::{Assessed, Summary, Verdict, word},
+    picture,
+};
+
+/// Columns of the picture of risk over time.
+const PICTURE_COLUMNS: usize = 64;
+
+/// Writes the assessment of one flight.
+pub(crate) fn write(
+    out: &mut impl Write,
+    name: &str,
+    flight: &Flight,
+    profile: &str,
+    assessed: &Assessed,
+) -> io::Result<()> {
+    let style = style(&assessed.verdict);
+    writeln!(out, "{style}{:<4}{style:#} {name}", assessed.verdict.word())?;
+    writeln!(out, "     {}", vehicle(flight))?;
+    if let Verdict::NotAvailable { reason, help } = &assessed.verdict {
+        writeln!(out, "     no answer: {reason}")?;
+        if let Some(help) = help {
+            writeln!(out, "     help: {help}")?;
+        }
+    }
+    if !flight.report.is_clean() {
+        writeln!(out, "     {}", damage(&flight.report))?;
+    }
+    if let Some(spans) = &flight.in_air
+        && assessed.summary.in_air_s > 0.0
+    {
+        let when: Vec<String> = spans
+            .spans
+            .iter()
+            .map(|s| format!("{:.1} to {:.1} s", s.start_s, s.end_s))
+            .collect();
+        let rate = flight.command_rate_hz().unwrap_or(0.0);
+        writeln!(
+            out,
+            "     in the air {:.1} s ({}), motors at {rate:.1} Hz; profile {profile}",
+            spans.duration_s(),
+            when.join(", "),
+        )?;
+    }
+    if assessed.summary.assessed_s > 0.0 {
+        writeln!(out, "     {}", summary(&assessed.summary))?;
+    }
+    writeln!(out)?;
+    for finding in &assessed.findings {
+        let style = level_style(finding.level);
+        writeln!(
+            out,
+            "{style}{:<4}{style:#} {}",
+            word(finding.level),
+            describe(finding, flight)
+        )?;
+    }
+    if !assessed.findings.is_empty() {
+        writeln!(out)?;
+    }
+    let points: Vec<(f64, Option<f64>)> = assessed
+        .steps
+        .iter()
+        .map(|s| (s.t_s, s.estimate.map(|e| e.risk_pct)))
+        .collect();
+    if points.iter().any(|(_, risk)| risk.is_some()) {
+        writeln!(out, "risk over time")?;
+        writeln!(out, "{}", picture::over_time(&points, PICTURE_COLUMNS))?;
+    }
+    Ok(())
+}
+
+/// The vehicle in a line: firmware, frame, motors and ranges.
+fn vehicle(flight: &Flight) -> String {
+    let mut parts = vec![flight.format.to_string()];
+    parts.extend(flight.vehicle.firmware.clone());
+    parts.extend(flight.vehicle.frame.clone());
+    if let (Some(first), Some(last)) = (flight.motors.first(), flight.motors.last()) {
+        parts.push(match flight.motors.len() {
+            1 => format!("1 motor ({})", first.output),
+            n => format!("{n} motors ({}..{})", first.output, last.output),
+        });
+    }
+    if let Some(range) = &flight.range {
+        parts.push(format!("{} to {} {}", range.low, range.high, range.unit));
+        parts.push(format!(
+            "flown between {} and {} of it",
+            flight.effective.low, flight.effective.high
+        ));
+    }
+    parts.join(", ")
+}
+
+/// A last message is rarely this long; most logs are cut off inside one when the power goes.
+const ONE_MESSAGE_BYTES: u64 = 256;
+
+/// What is wrong with the log, and that it was read all the same.
+fn damage(report: &flightlog::Report) -> String {
+    if report.truncated && report.bad_messages == 0 && report.skipped_bytes <= ONE_MESSAGE_BYTES {
+        return format!(
+            "the log ends inside a message: its last {} bytes are left out",
+            report.skipped_bytes
+        );
+    }
+    let mut parts = Vec::new();
+    if report.bad_messages > 0 {
+        parts.push(format!("{} bad messages", report.bad_messages));
+    }
+    if report.skipped_bytes > 0 {
+        parts.push(format!(
+            "{} of {} bytes skipped",
+            report.skipped_bytes, report.bytes
+        ));
+    }
+    if report.truncated {
+        parts.push("cut off at its end".to_owned());
+    }
+    let reason = report
+        .reason
+        .as_ref()
+        .map(|r| format!(" ({r})"))
+        .unwrap_or_default();
+    format!(
+        "damaged log, read as far as it goes: {}{reason}",
+        parts.join(", ")
+    )
+}
+
+fn summary(summary: &Summary) -> String {
+    let at = |peak: Option<(f64, f64)>| {
+        peak.map_or("unknown".to_owned(), |(t_s, value)| {
+            format!("{value:.0} % at {t_s:.1} s")
+        })
+    };
+    let share = |part: f64| 100.0 * part / summary.in_air_s;
+    let mut text = format!(
+        "risk: mean {}, highest {}; elevated risk: highest {}",
+        summary
+            .risk_mean_pct
+            .map_or("unknown".to_owned(), |mean| format!("{mean:.0} %")),
+        at(summary.risk_max),
+        at(summary.elevated_risk_max),
+    );
+    if summary.filled_s > 0.0 {
+        text += &format!(
+            "; {:.0} % of the time filled in from beside the rules",
+            share(summary.filled_s)
+        );
+    }
+    if share(summary.assessed_s) < 95.0 {
+        text += &format!(
+            "; risk unknown for {:.0} % of the time",
+            100.0 - share(summary.assessed_s)
+        );
+    }
+    text
+}
+
+/// A finding in words: when, what, against which threshold, and which motor.
+pub(crate) fn describe(finding: &Finding, flight: &Flight) -> String {
+    let what = match finding.measure {
+        Measure::Risk => "risk",
+        Measure::ElevatedRisk => "elevated risk",
+    };
+    let mut text = format!(
+        "{:.1} to {:.1} s: {what} up to {:.0} % (threshold {:.0} %)",
+        finding.from_s, finding.to_s, finding.peak_pct, finding.threshold_pct
+    );
+    if let Some(weakest) = &finding.motor
+        && let Some(motor) = flight.motors.get(weakest.motor)
+    {
+        text += &format!(
+            "; motor {}, output {}, nearest to its {} limit: margin {:.2} on average, {:.2} at least",
+            motor.number,
+            motor.output,
+            side(weakest.side),
+            weakest.mean_margin,
+            weakest.least_margin
+        );
+    }
+    text
+}
+
+/// The word for the limit a motor was nearest to.
+pub(crate) fn side(side: Side) -> &'static str {
+    match side {
+        Side::Low => "lower",
+        Side::High => "upper",
+    }
+}
+
+fn style(verdict: &Verdict) -> Style {
+    match verdict {
+        Verdict::Known(level) => level_style(*level),
+        Verdict::NotAvailable { .. } => Style::new().bold(),
+    }
+}
+
+fn level_style(level: Level) -> Style {
+    match level {
+        Level::Good => AnsiColor::Green,
+        Level::Warn => AnsiColor::Yellow,
+        Level::Fail => AnsiColor::Red,
+    }
+    .on_default()
+    .bold()
+}

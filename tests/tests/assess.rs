@@ -1,0 +1,267 @@
+//! `flagred assess` as its users meet it: on the shipped flight, on what is no log, on damaged logs.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Output,
+};
+
+use flagred_tests::{flagred, shared_data};
+use serde_json::Value;
+
+const FLIGHT: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../examples/flights/steady.BIN"
+);
+
+fn assess(arguments: &[&str]) -> Output {
+    flagred().arg("assess").args(arguments).output().unwrap()
+}
+
+fn json(log: &Path) -> (Option<i32>, Value) {
+    let output = assess(&["--json", log.to_str().unwrap()]);
+    let document = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
+    (output.status.code(), document)
+}
+
+/// A file of this test's own, gone when the test is.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str, bytes: &[u8]) -> Self {
+        let path = std::env::temp_dir().join(format!("flagred-{}-{name}", std::process::id()));
+        fs::write(&path, bytes).unwrap();
+        Scratch(path)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+#[test]
+fn the_shipped_flight_in_words() {
+    let output = assess(&[FLIGHT]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert!(text.starts_with("GOOD "), "{text}");
+    assert!(text.contains("4 motors (C1..C4)"), "{text}");
+    assert!(text.contains("risk over time"), "{text}");
+}
+
+#[test]
+fn the_shipped_flight_as_json() {
+    let (code, document) = json(Path::new(FLIGHT));
+    assert_eq!(code, Some(0));
+    for key in [
+        "schema", "log", "vehicle", "read", "verdict", "findings", "summary", "steps",
+    ] {
+        assert!(!document[key].is_null(), "`{key}` is missing");
+    }
+    assert_eq!(document["verdict"], "GOOD");
+    assert_eq!(document["vehicle"]["motors"][2]["output"], "C3");
+    let steps = document["steps"].as_array().unwrap();
+    // 129 s in the air, a step every 0.1 s, and the log's samples are 0.04 s apart.
+    assert!((1250..1300).contains(&steps.len()), "{}", steps.len());
+    let step = &steps[600];
+    for key in [
+        "t_s",
+        "margin",
+        "spread",
+        "coverage",
+        "filled",
+        "risk",
+        "elevated_risk",
+    ] {
+        assert!(!step[key].is_null(), "`{key}` of {step}");
+    }
+}
+
+#[test]
+fn csv_has_a_row_for_each_step_of_the_json() {
+    let output = assess(&["--csv", FLIGHT]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let (head, rows) = text.split_once('\n').unwrap();
+    assert!(
+        head.starts_with("t_s,margin,spread,coverage,filled,risk,elevated_risk"),
+        "{head}"
+    );
+    let (_, document) = json(Path::new(FLIGHT));
+    let steps = document["steps"].as_array().unwrap();
+    assert_eq!(rows.lines().count(), steps.len());
+    for (row, step) in rows.lines().zip(steps) {
+        let risk = row.split(',').nth(5).unwrap();
+        // The last digit is JSON's to round.
+        match (risk.parse::<f64>().ok(), step["risk"].as_f64()) {
+            (Some(a), Some(b)) => assert!((a - b).abs() < 1e-12, "{row}"),
+            (a, b) => assert_eq!(a, b, "{row}"),
+        }
+    }
+}
+
+#[test]
+fn several_logs_are_told_apart_and_one_that_fails_stops_no_other() {
+    let output = assess(&["--csv", FLIGHT, "/nowhere.BIN", FLIGHT]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert!(text.starts_with("log,t_s,"));
+    assert_eq!(text.matches("t_s").count(), 1, "one head");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("`/nowhere.BIN`"));
+}
+
+#[test]
+fn standard_input_is_read_like_a_file() {
+    let mut child = flagred()
+        .args(["assess", "--json", "-"])
+        .stdin(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    std::io::Write::write_all(&mut stdin, &fs::read(FLIGHT).unwrap()).unwrap();
+    drop(stdin);
+    let document: Value =
+        serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
+    assert_eq!(document["steps"], json(Path::new(FLIGHT)).1["steps"]);
+}
+
+#[test]
+fn what_is_no_log_is_named_for_what_it_is() {
+    let picture = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR and so on";
+    for (name, bytes, said) in [
+        ("empty.bin", &b""[..], "is empty"),
+        (
+            "notes.txt",
+            b"took off at noon, landed at one\n",
+            "is a text file, not a flight log",
+        ),
+        ("picture.png", picture, "is a PNG picture, not a flight log"),
+    ] {
+        let file = Scratch::new(name, bytes);
+        let output = assess(&[file.0.to_str().unwrap()]);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(3), "{name}");
+        assert!(told.contains(said) && told.contains("help:"), "{told}");
+        assert!(output.stdout.is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn a_log_cut_in_the_middle_is_assessed_as_far_as_it_goes() {
+    let bytes = fs::read(FLIGHT).unwrap();
+    let cut = Scratch::new("cut.bin", &bytes[..bytes.len() / 2]);
+    let (code, document) = json(&cut.0);
+    assert_eq!(code, Some(0));
+    assert_eq!(document["read"]["truncated"], true);
+    let steps = document["steps"].as_array().unwrap();
+    assert!((400..1000).contains(&steps.len()), "{}", steps.len());
+}
+
+/// Overwriting may hit what defines the messages: then there is no answer, and the reason. Where it does not, the
+/// flight is assessed from the messages that are left.
+#[test]
+fn a_log_with_one_byte_in_a_hundred_overwritten_is_assessed_as_far_as_it_goes_or_says_why_not() {
+    let intact = fs::read(FLIGHT).unwrap();
+    let mut assessed = 0;
+    for seed in 1..=6_u64 {
+        let mut bytes = intact.clone();
+        let mut random = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        for _ in 0..bytes.len() / 100 {
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            let at = (random >> 16) as usize % bytes.len();
+            bytes[at] = random as u8;
+        }
+        let damaged = Scratch::new(&format!("damaged{seed}.bin"), &bytes);
+        let (code, document) = json(&damaged.0);
+        assert!(
+            document["read"]["skipped_bytes"].as_u64().unwrap() > 1000,
+            "seed {seed}"
+        );
+        if document["verdict"] == "NA" {
+            assert_eq!(code, Some(3), "seed {seed}");
+            assert!(
+                !document["reason"].as_str().unwrap().is_empty(),
+                "seed {seed}"
+            );
+            continue;
+        }
+        assert!(matches!(code, Some(0 | 1)), "seed {seed}: {code:?}");
+        let steps = document["steps"].as_array().unwrap();
+        let known = steps.iter().filter(|s| s["risk"].is_number()).count();
+        assert!(known > 300, "seed {seed}: {known} steps");
+        let words = assess(&[damaged.0.to_str().unwrap()]);
+        let text = String::from_utf8(words.stdout).unwrap();
+        assert!(
+            text.contains("damaged log, read as far as it goes"),
+            "{text}"
+        );
+        assessed += 1;
+    }
+    assert!(assessed > 0);
+}
+
+#[test]
+fn a_rate_too_low_for_a_spread_is_no_answer_and_no_good() {
+    let mut rows = String::from("t_s,motor1,motor2,motor3,motor4\n");
+    for t in 0..120 {
+        rows += &format!("{t},0.4,0.41,0.42,0.4\n");
+    }
+    let slow = Scratch::new("slow.csv", rows.as_bytes());
+    let output = assess(&[slow.0.to_str().unwrap()]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert!(text.starts_with("NA ") && text.contains("help:"), "{text}");
+}
+
+#[test]
+fn a_signal_that_the_profile_needs_and_the_log_lacks_is_no_answer() {
+    let folder = std::env::temp_dir();
+    let profile = Scratch::new(
+        "wind.yaml",
+        b"flagred: 1\nname: wind\nrules: wind-rules.yaml\ninputs: {wind: {mean: anemometer_m_s}}\n",
+    );
+    fs::write(
+        folder.join("wind-rules.yaml"),
+        "fuzzy: 1\nname: wind\ninputs: {wind: {range: [0, 20], partition: [calm, storm]}}\n\
+         outputs: {risk: {range: [0, 100], partition: [low, high]}}\n\
+         rules: [IF wind IS calm THEN risk IS low, IF wind IS storm THEN risk IS high]\n",
+    )
+    .unwrap();
+    let output = assess(&["--profile", profile.0.to_str().unwrap(), FLIGHT]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(
+        output.status.code(),
+        Some(3),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(text.contains("`anemometer_m_s`"), "{text}");
+}
+
+/// Every flight that comes with a record of what happened in it.
+#[test]
+fn the_simulated_flights_are_all_assessed() {
+    let Some(data) = shared_data() else { return };
+    let folder = data.join("flights");
+    for name in [
+        "hover_calm",
+        "steady",
+        "intermittent",
+        "payload",
+        "octoquad",
+        "octoquad_crash",
+    ] {
+        let (code, document) = json(&folder.join(format!("{name}.BIN")));
+        assert!(matches!(code, Some(0 | 1)), "{name}: {code:?}");
+        let in_air_s = document["summary"]["in_air_s"].as_f64().unwrap();
+        let assessed_s = document["summary"]["assessed_s"].as_f64().unwrap();
+        assert!(
+            in_air_s > 100.0 && assessed_s > in_air_s - 3.0,
+            "{name}: {assessed_s} of {in_air_s} s"
+        );
+    }
+}
