@@ -2,17 +2,20 @@
 
 use alloc::vec::Vec;
 
+use crate::engine::operators::{larger, smaller};
 use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Sampling};
 use curves::Curves;
 use maxima::{Highest, Maxima};
 use piece::{Integrals, Piece};
 use polyline::{Polylines, Room};
+use ramps::Ramps;
 use weighted::Consequence;
 
 mod curves;
 mod maxima;
 mod piece;
 pub(crate) mod polyline;
+mod ramps;
 mod sampled;
 pub(crate) mod weighted;
 
@@ -65,6 +68,8 @@ pub(crate) struct Defuzzify {
 #[derive(Debug, Clone)]
 enum Set {
     Lines(Polylines),
+    /// The centroid of minimum and maximum over a partition.
+    Ramps(Ramps),
     Curves(Curves),
     Sampled(Sampling, Curves),
     /// Sum of products: the area and moment of each term at full height.
@@ -116,12 +121,18 @@ impl Defuzzify {
             },
             set,
         };
-        if output.defuzzifier == Defuzzifier::Centroid
-            && output.samples.is_none()
-            && operators.implication == Implication::Product
-            && operators.aggregation == Aggregation::Sum
-        {
-            compiled.set = Set::Moments(compiled.moments(variable.terms.len()));
+        if output.defuzzifier == Defuzzifier::Centroid && output.samples.is_none() {
+            let terms = variable.terms.len();
+            let closed = match (&compiled.set, operators.implication, operators.aggregation) {
+                (_, Implication::Product, Aggregation::Sum) => {
+                    Some(Set::Moments(compiled.moments(terms)))
+                }
+                (Set::Lines(lines), Implication::Minimum, Aggregation::Maximum) => {
+                    Ramps::new(lines, terms, compiled.middle()).map(Set::Ramps)
+                }
+                _ => None,
+            };
+            compiled.set = closed.unwrap_or(compiled.set);
         }
         compiled
     }
@@ -171,6 +182,7 @@ impl Defuzzify {
         match &self.set {
             Set::Lines(lines) => lines.is_empty(term),
             Set::Curves(curves) | Set::Sampled(_, curves) => curves.is_empty(term),
+            Set::Ramps(ramps) => ramps.is_empty(term),
             Set::Moments(moments) => moments.get(term).is_none_or(|(area, _)| *area <= 0.0),
             Set::Weighted(_) => false,
         }
@@ -182,6 +194,7 @@ impl Defuzzify {
     }
 
     /// The number; `None` where no rule fired. `inputs` are those of Takagi-Sugeno consequents.
+    #[inline(always)]
     pub(crate) fn value(
         &self,
         heights: Heights<'_>,
@@ -193,6 +206,7 @@ impl Defuzzify {
             Set::Weighted(consequences) => {
                 return weighted::value(consequences, heights.heights, inputs, self.defuzzifier);
             }
+            Set::Ramps(ramps) => ramps.integrals(heights.heights, self.middle()).centroid(),
             Set::Moments(moments) => {
                 let mut integrals = self.integrals();
                 for ((area, moment), height) in moments.iter().zip(heights.heights) {
@@ -208,7 +222,7 @@ impl Defuzzify {
             }
             Set::Lines(_) | Set::Curves(_) => self.exact(heights, room),
         }?;
-        Some(value.max(self.low).min(self.high))
+        Some(larger(self.low, smaller(self.high, value)))
     }
 
     fn exact(&self, heights: Heights<'_>, room: &mut Room) -> Option<f64> {
@@ -247,15 +261,19 @@ impl Defuzzify {
         }
     }
 
+    fn middle(&self) -> f64 {
+        self.low + 0.5 * (self.high - self.low)
+    }
+
     fn integrals(&self) -> Integrals {
-        Integrals::about(self.low + 0.5 * (self.high - self.low))
+        Integrals::about(self.middle())
     }
 
     fn pieces(&self, heights: Heights<'_>, room: &mut Room, visit: &mut dyn FnMut(&Piece<'_>)) {
         match &self.set {
             Set::Lines(lines) => lines.pieces(heights, self.joint, room, visit),
             Set::Curves(curves) => curves.pieces(heights, self.joint, room, visit),
-            Set::Sampled(..) | Set::Moments(_) | Set::Weighted(_) => {}
+            Set::Ramps(_) | Set::Sampled(..) | Set::Moments(_) | Set::Weighted(_) => {}
         }
     }
 }

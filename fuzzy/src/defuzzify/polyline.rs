@@ -29,10 +29,10 @@ struct Interval {
 
 /// A term on an interval: its degrees just inside the interval's ends.
 #[derive(Debug, Clone)]
-struct Line {
-    term: usize,
-    left: f64,
-    right: f64,
+pub(super) struct Line {
+    pub(super) term: usize,
+    pub(super) left: f64,
+    pub(super) right: f64,
 }
 
 /// A straight line over a stretch.
@@ -110,6 +110,14 @@ impl Polylines {
         Some(polylines)
     }
 
+    /// The intervals between cuts, each with the lines alive on it.
+    pub(super) fn intervals(&self) -> impl Iterator<Item = (f64, f64, &[Line])> {
+        self.intervals.iter().map(|interval| {
+            let lines = self.lines.get(interval.first_line..interval.end_line);
+            (interval.from, interval.to, lines.unwrap_or_default())
+        })
+    }
+
     /// Whether a term is 0 on the whole range.
     pub(crate) fn is_empty(&self, term: usize) -> bool {
         self.lines.iter().all(|line| line.term != term)
@@ -124,12 +132,11 @@ impl Polylines {
         room: &mut Room,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
-        for interval in &self.intervals {
-            let lines = self.lines.get(interval.first_line..interval.end_line);
+        for (from, to, lines) in self.intervals() {
             room.active.clear();
             room.cuts.clear();
             room.cuts.push(0.0);
-            for line in lines.unwrap_or_default() {
+            for line in lines {
                 for &height in heights.of(line.term) {
                     if height > 0.0 {
                         room.active.push(Activated {
@@ -153,7 +160,7 @@ impl Polylines {
             }
             room.cuts.push(1.0);
             room.cuts.sort_unstable_by(f64::total_cmp);
-            let width = interval.to - interval.from;
+            let width = to - from;
             for (&start, &end) in room.cuts.iter().zip(room.cuts.iter().skip(1)) {
                 if start >= end {
                     continue;
@@ -162,18 +169,15 @@ impl Polylines {
                 for active in &room.active {
                     room.segments.push(active.on(start, end, joint.implication));
                 }
-                let stretch = Stretch {
+                let at = |t: f64| match t {
                     // The ends themselves, so that neighbouring pieces meet exactly.
-                    from: if start == 0.0 {
-                        interval.from
-                    } else {
-                        interval.from + width * start
-                    },
-                    to: if end == 1.0 {
-                        interval.to
-                    } else {
-                        interval.from + width * end
-                    },
+                    0.0 => from,
+                    1.0 => to,
+                    _ => from + width * t,
+                };
+                let stretch = Stretch {
+                    from: at(start),
+                    to: at(end),
                 };
                 join(&room.segments, stretch, joint.aggregation, visit);
             }
@@ -193,6 +197,13 @@ impl Activated {
                 self.left + (self.right - self.left) * t
             }
         };
+        if implication == Implication::Minimum && at(0.5 * (start + end)) >= self.height {
+            // The plateau itself: read off the line, a low plateau would lose digits at its end.
+            return Segment {
+                left: self.height,
+                right: self.height,
+            };
+        }
         Segment {
             left: implication.of(self.height, at(start)),
             right: implication.of(self.height, at(end)),
