@@ -1,1 +1,158 @@
-//! Systems and data shared by the benches.
+//! The systems that are timed here and in `benches/peers`, made in code.
+
+use fuzzy::model::{Model, Output, Shape, Variable};
+use fuzzy::rule::{Condition, Rule};
+
+fn triangle(left: f64, peak: f64, right: f64) -> Shape {
+    Shape::Triangle { left, peak, right }
+}
+
+/// (a): the tipper, 2 inputs, 3 rules, gaussian and trapezoid inputs.
+pub fn tipper() -> Model {
+    let gaussian = |mean| Shape::Gaussian { mean, sd: 1.5 };
+    let trapezoid = |left, left_top, right_top, right| Shape::Trapezoid {
+        left,
+        left_top,
+        right_top,
+        right,
+    };
+    let poor = Condition::is("service", "poor").or(Condition::is("food", "rancid"));
+    let excellent = Condition::is("service", "excellent").or(Condition::is("food", "delicious"));
+    Model::builder("tipper")
+        .input(
+            Variable::new("service", 0.0, 10.0)
+                .term("poor", gaussian(0.0))
+                .term("good", gaussian(5.0))
+                .term("excellent", gaussian(10.0)),
+        )
+        .input(
+            Variable::new("food", 0.0, 10.0)
+                .term("rancid", trapezoid(-1.0, 0.0, 1.0, 3.0))
+                .term("delicious", trapezoid(7.0, 9.0, 10.0, 11.0)),
+        )
+        .output(Output::new(
+            Variable::new("tip", 0.0, 30.0)
+                .term("cheap", triangle(0.0, 5.0, 10.0))
+                .term("average", triangle(10.0, 15.0, 20.0))
+                .term("generous", triangle(20.0, 25.0, 30.0)),
+        ))
+        .rule(Rule::new(poor, "tip", "cheap"))
+        .rule(Rule::new(
+            Condition::is("service", "good"),
+            "tip",
+            "average",
+        ))
+        .rule(Rule::new(excellent, "tip", "generous"))
+        .build()
+}
+
+/// (bw) and (b): the ten rules of the published method, with their degrees as weights or without.
+pub fn published(weighted: bool) -> Model {
+    let mut model = Model::builder("published")
+        .input(
+            Variable::new("margin", 0.0, 0.5)
+                .term("very_low", triangle(-0.1, 0.0, 0.1))
+                .term("low", triangle(0.0, 0.1, 0.2))
+                .term("medium", triangle(0.1, 0.2, 0.3))
+                .term(
+                    "high",
+                    Shape::RightShoulder {
+                        foot: 0.2,
+                        top: 0.3,
+                    },
+                ),
+        )
+        .input(
+            Variable::new("spread", 0.0, 0.5)
+                .term("low", triangle(-0.1, 0.0, 0.1))
+                .term("medium", triangle(0.0, 0.1, 0.2))
+                .term(
+                    "high",
+                    Shape::RightShoulder {
+                        foot: 0.1,
+                        top: 0.2,
+                    },
+                ),
+        )
+        .output(Output::new(
+            Variable::new("risk", 0.0, 100.0)
+                .unit("%")
+                .term("very_low", triangle(-25.0, 0.0, 25.0))
+                .term("low", triangle(0.0, 25.0, 50.0))
+                .term("medium", triangle(25.0, 50.0, 75.0))
+                .term("high", triangle(50.0, 75.0, 100.0))
+                .term("very_high", triangle(75.0, 100.0, 125.0)),
+        ))
+        .build();
+    for (margin, spread, risk, degree) in [
+        ("high", "high", "very_low", 0.23),
+        ("high", "low", "very_low", 0.88),
+        ("high", "medium", "very_low", 0.76),
+        ("medium", "high", "very_low", 0.63),
+        ("medium", "low", "very_low", 0.41),
+        ("medium", "medium", "low", 0.73),
+        ("low", "high", "very_high", 0.84),
+        ("low", "medium", "medium", 0.64),
+        ("very_low", "high", "very_high", 1.0),
+        ("very_low", "medium", "very_high", 0.35),
+    ] {
+        let condition = Condition::is("margin", margin).and(Condition::is("spread", spread));
+        let rule = Rule::new(condition, "risk", risk).with(if weighted { degree } else { 1.0 });
+        model.rules.push(rule.into());
+    }
+    model
+}
+
+/// (c): 4 inputs of 5 terms and all 625 rules; the consequent is the rounded mean of the antecedents.
+pub fn four_inputs() -> Model {
+    let terms = ["t0", "t1", "t2", "t3", "t4"];
+    let five = |name: &str, high: f64| {
+        let step = high / 4.0;
+        terms
+            .iter()
+            .zip(0..)
+            .fold(Variable::new(name, 0.0, high), |variable, (term, i)| {
+                let peak = f64::from(i) * step;
+                variable.term(*term, triangle(peak - step, peak, peak + step))
+            })
+    };
+    let names = ["x0", "x1", "x2", "x3"];
+    let mut builder = Model::builder("four inputs").output(Output::new(five("y", 100.0)));
+    for name in names {
+        builder = builder.input(five(name, 1.0));
+    }
+    let mut model = builder.build();
+    for number in 0..625usize {
+        let digits = [number / 125, number / 25 % 5, number / 5 % 5, number % 5];
+        let condition = names
+            .iter()
+            .zip(digits)
+            .map(|(name, digit)| Condition::is(name, terms[digit]))
+            .reduce(Condition::and);
+        let mean = (digits.iter().sum::<usize>() + 2) / 4;
+        if let Some(condition) = condition {
+            model
+                .rules
+                .push(Rule::new(condition, "y", terms[mean]).into());
+        }
+    }
+    model
+}
+
+/// Points spread over the inputs' ranges, the same on every machine: a Weyl sequence.
+pub fn points(model: &Model, count: usize) -> Vec<Vec<f64>> {
+    const STEPS: [f64; 4] = [
+        0.618_033_988_749_894_8,
+        0.414_213_562_373_095_1,
+        0.732_050_807_568_877_2,
+        0.236_067_977_499_789_7,
+    ];
+    (1..=count)
+        .map(|i| {
+            let inputs = model.inputs.iter().zip(STEPS);
+            inputs
+                .map(|(v, step)| v.low + (v.high - v.low) * (i as f64 * step).fract())
+                .collect()
+        })
+        .collect()
+}

@@ -169,6 +169,15 @@ impl Defuzzify {
         moments
     }
 
+    /// How many heights the output has, and the place of each term's; `None` where they stand as
+    /// [`Heights`] says.
+    pub(crate) fn ranks(&self) -> Option<(usize, &[usize])> {
+        match &self.set {
+            Set::Ramps(ramps) => Some((ramps.places(), ramps.ranks())),
+            _ => None,
+        }
+    }
+
     /// How many cuts an evaluation can need beside those of its activations.
     pub(crate) fn cuts(&self) -> usize {
         match &self.set {

@@ -16,67 +16,87 @@ use crate::engine::operators::smaller;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Ramps {
-    terms: Vec<Polynomials>,
-    overlaps: Vec<Overlap>,
+    /// Terms from left to right, made up to an even number.
+    pairs: Vec<Pair>,
+    /// The rank of each term from left to right.
+    ranks: Vec<usize>,
 }
 
-/// `area = area[0] h + area[1] h^2`, `moment = moment[0] h + moment[1] h^2 + moment[2] h^3`.
+/// The coefficients of two neighbouring terms, and of the overlap of each with the term to its right.
+/// Two at a time, because that is how many every processor computes at once.
 #[derive(Debug, Clone, Copy, Default)]
-struct Polynomials {
-    area: [f64; 2],
-    moment: [f64; 3],
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Overlap {
-    falling: u32,
-    rising: u32,
-    width: f64,
-    /// The middle of the overlap, from the middle of the range.
-    middle: f64,
+struct Pair {
+    /// `area = area[0] h + area[1] h^2`.
+    area: [[f64; 2]; 2],
+    /// `moment = moment[0] h + moment[1] h^2 + moment[2] h^3`.
+    moment: [[f64; 2]; 3],
+    /// The width of the overlap; 0 without one.
+    width: [f64; 2],
+    /// The overlap's middle, from the middle of the range.
+    middle: [f64; 2],
 }
 
 impl Ramps {
     /// `None` where the terms are no partition.
     pub(crate) fn new(lines: &Polylines, terms: usize, origin: f64) -> Option<Self> {
+        // Without a part in the range a term has no place, and stands behind all others.
+        let mut places = vec![f64::INFINITY; terms];
+        for (from, to, alive) in lines.intervals() {
+            for line in alive {
+                // The middle of its highest interval, or the end of the range next to its top.
+                let x = 0.5 * (from + to) + 0.5 * (to - from) * (line.right - line.left);
+                let place = places.get_mut(line.term)?;
+                *place = if place.is_finite() {
+                    0.5 * (*place + x)
+                } else {
+                    x
+                };
+            }
+        }
+        let mut order: Vec<usize> = (0..terms).collect();
+        order.sort_by(|a, b| f64::total_cmp(&places[*a], &places[*b]));
+        let mut ranks = vec![0; terms];
+        for (rank, term) in order.into_iter().enumerate() {
+            ranks[term] = rank;
+        }
         let mut ramps = Ramps {
-            terms: vec![Polynomials::default(); terms],
-            overlaps: Vec::new(),
+            pairs: vec![Pair::default(); terms.div_ceil(2)],
+            ranks,
         };
         for (from, to, alive) in lines.intervals() {
             let (w, m) = (to - from, from + 0.5 * (to - from) - origin);
             let (mut falling, mut rising) = (None, None);
             for line in alive {
-                let Polynomials { area, moment } = ramps.terms.get_mut(line.term)?;
+                let rank = ramps.ranks[line.term];
+                let Pair { area, moment, .. } = &mut ramps.pairs[rank / 2];
+                let lane = rank % 2;
                 let side = match (line.left, line.right) {
                     (0.0, 1.0) => {
-                        rising = Some(line.term as u32);
+                        rising = Some(rank);
                         1.0
                     }
                     (1.0, 0.0) => {
-                        falling = Some(line.term as u32);
+                        falling = Some(rank);
                         -1.0
                     }
                     (1.0, 1.0) if alive.len() == 1 => {
-                        area[0] += w;
-                        moment[0] += m * w;
+                        area[0][lane] += w;
+                        moment[0][lane] += m * w;
                         continue;
                     }
                     _ => return None,
                 };
-                area[0] += w;
-                area[1] -= 0.5 * w;
-                moment[0] += m * w;
-                moment[1] += w * (0.25 * side * w - 0.5 * m);
-                moment[2] -= side * w * w / 6.0;
+                area[0][lane] += w;
+                area[1][lane] -= 0.5 * w;
+                moment[0][lane] += m * w;
+                moment[1][lane] += w * (0.25 * side * w - 0.5 * m);
+                moment[2][lane] -= side * w * w / 6.0;
             }
             match (falling, rising, alive.len()) {
-                (Some(falling), Some(rising), 2) => ramps.overlaps.push(Overlap {
-                    falling,
-                    rising,
-                    width: w,
-                    middle: m,
-                }),
+                (Some(left), Some(right), 2) if right == left + 1 => {
+                    ramps.pairs[left / 2].width[left % 2] = w;
+                    ramps.pairs[left / 2].middle[left % 2] = m;
+                }
                 (_, _, 0 | 1) => {}
                 _ => return None,
             }
@@ -84,32 +104,41 @@ impl Ramps {
         Some(ramps)
     }
 
-    /// Whether a term is 0 on the whole range.
-    pub(crate) fn is_empty(&self, term: usize) -> bool {
-        self.terms.get(term).is_none_or(|term| term.area[0] <= 0.0)
+    /// The place of each term's height: heights stand from left to right.
+    pub(crate) fn ranks(&self) -> &[usize] {
+        &self.ranks
     }
 
-    /// Area and moment of the aggregated set; `heights` has one for each term.
+    /// How many heights are read, the last ones always 0.
+    pub(crate) fn places(&self) -> usize {
+        2 * self.pairs.len() + 1
+    }
+
+    /// Whether a term is 0 on the whole range.
+    pub(crate) fn is_empty(&self, term: usize) -> bool {
+        let area = |rank: usize| self.pairs[rank / 2].area[0][rank % 2];
+        self.ranks.get(term).is_none_or(|rank| area(*rank) <= 0.0)
+    }
+
+    /// Area and moment of the aggregated set.
     #[inline(always)]
     pub(crate) fn integrals(&self, heights: &[f64], origin: f64) -> Integrals {
-        let (mut area, mut moment) = (0.0, 0.0);
-        for (term, &h) in self.terms.iter().zip(heights) {
-            area += h * (term.area[0] + h * term.area[1]);
-            moment += h * (term.moment[0] + h * (term.moment[1] + h * term.moment[2]));
-        }
-        for overlap in &self.overlaps {
-            let (a, b) = (
-                heights[overlap.falling as usize],
-                heights[overlap.rising as usize],
-            );
-            let v = smaller(smaller(a, b), 0.5);
-            let common = overlap.width * (v * (1.0 - v));
-            area -= common;
-            moment -= overlap.middle * common;
+        let (mut area, mut moment) = ([0.0; 2], [0.0; 2]);
+        for (pair, i) in self.pairs.iter().zip((0..).step_by(2)) {
+            let heights: &[f64] = &heights[i..i + 3];
+            for lane in 0..2 {
+                let (h, right) = (heights[lane], heights[lane + 1]);
+                let v = smaller(smaller(h, right), 0.5);
+                let common = pair.width[lane] * (v * (1.0 - v));
+                area[lane] += h * (pair.area[0][lane] + h * pair.area[1][lane]) - common;
+                let cubic = pair.moment[1][lane] + h * pair.moment[2][lane];
+                let alone = h * (pair.moment[0][lane] + h * cubic);
+                moment[lane] += alone - pair.middle[lane] * common;
+            }
         }
         Integrals {
-            area,
-            moment,
+            area: area[0] + area[1],
+            moment: moment[0] + moment[1],
             origin,
         }
     }
@@ -129,9 +158,9 @@ mod tests {
         vec![
             Variable::new("risk", 0.0, 100.0)
                 .term("very_low", triangle(-25.0, 0.0, 25.0))
-                .term("low", triangle(0.0, 25.0, 50.0))
-                .term("medium", triangle(25.0, 50.0, 75.0))
                 .term("high", triangle(50.0, 75.0, 100.0))
+                .term("medium", triangle(25.0, 50.0, 75.0))
+                .term("low", triangle(0.0, 25.0, 50.0))
                 .term("very_high", triangle(75.0, 100.0, 125.0)),
             Variable::new("uneven", -3.0, 8.0)
                 .term(
@@ -183,7 +212,12 @@ mod tests {
             let count = variable.terms.len();
             let origin = 0.5 * (variable.low + variable.high);
             let heights = &heights[..count];
-            let fast = Ramps::new(&lines, count, origin).unwrap().integrals(heights, origin);
+            let ramps = Ramps::new(&lines, count, origin).unwrap();
+            let mut ranked = vec![0.0; ramps.places()];
+            for (height, rank) in heights.iter().zip(ramps.ranks()) {
+                ranked[*rank] = *height;
+            }
+            let fast = ramps.integrals(&ranked, origin);
             let places: Vec<usize> = (0..=count).collect();
             let mut slow = Integrals::about(origin);
             let joint = Joint {

@@ -310,7 +310,7 @@ impl Compiler<'_> {
         let mut first_place = 0;
         for (index, output) in model.outputs.iter().enumerate() {
             let compiled = self.output(index, output, first_place, &mut drafts);
-            first_place += compiled.places.last().copied().unwrap_or(0);
+            first_place = compiled.heights.end;
             outputs.push(compiled);
         }
         let mut by_input = vec![Vec::new(); model.inputs.len()];
@@ -340,7 +340,7 @@ impl Compiler<'_> {
         }
         let operators = model.operators;
         Engine {
-            rules: Rules::new(operators.and, operators.or, &drafts, &literals),
+            rules: Rules::new(operators.and, operators.or, &drafts, &literals, first_place),
             inputs,
             literals,
             literal_count: first as usize,
@@ -367,6 +367,7 @@ impl Compiler<'_> {
             counts[action.place as usize] += 1;
         }
         let used: Vec<bool> = counts.iter().map(|count| *count > 0).collect();
+        let defuzzify = self.defuzzify(output, &used);
         if merging != Merging::Apart {
             counts.fill(1);
         }
@@ -374,7 +375,10 @@ impl Compiler<'_> {
         for count in counts {
             places.push(places.last().copied().unwrap_or(0) + count);
         }
-        let mut next = places.clone();
+        let mut next = match defuzzify.ranks() {
+            Some((_, ranks)) => ranks.to_vec(),
+            None => places.clone(),
+        };
         for action in drafts.iter_mut().flat_map(|draft| &mut draft.actions) {
             if action.output as usize == index {
                 let term = action.place as usize;
@@ -385,14 +389,16 @@ impl Compiler<'_> {
                 }
             }
         }
+        let last = places.last().copied().unwrap_or(0);
+        let count = defuzzify.ranks().map_or(last, |(count, _)| count);
         CompiledOutput {
             name: Arc::from(variable.name.as_str()),
             low: variable.low,
             high: variable.high,
             when_no_rule_fires: output.when_no_rule_fires,
-            first_place,
+            heights: first_place..first_place + count,
             places,
-            defuzzify: self.defuzzify(output, &used),
+            defuzzify,
         }
     }
 

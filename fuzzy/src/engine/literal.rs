@@ -47,6 +47,17 @@ pub(super) struct Line {
 }
 
 impl Line {
+    /// The same degree everywhere.
+    pub(super) fn flat(literal: u32, degree: f64) -> Self {
+        Line {
+            literal,
+            foot: 0.0,
+            run: f64::INFINITY,
+            base: degree,
+            rise: 0.0,
+        }
+    }
+
     /// Measured from the lower end of a slope: exactly 0 at its foot, exactly 1 at its top, and as exact
     /// as the value itself near the foot.
     #[inline(always)]
@@ -96,6 +107,16 @@ impl Literals {
         table
     }
 
+    /// The lines alive on each interval.
+    pub(super) fn intervals(&self) -> impl Iterator<Item = &[Line]> {
+        let ends = self.starts.iter().zip(self.starts.iter().skip(1));
+        ends.map(|(start, end)| &self.lines[*start as usize..*end as usize])
+    }
+
+    pub(super) fn has_curved(&self) -> bool {
+        !self.curved.is_empty()
+    }
+
     /// The interval in which a value of the range lies.
     #[inline(always)]
     fn interval(&self, x: f64) -> usize {
@@ -122,9 +143,8 @@ impl Literals {
 
     /// The most literals that can be alive at once.
     pub(super) fn most_alive(&self) -> usize {
-        let ends = self.starts.iter().zip(self.starts.iter().skip(1));
-        let most = ends.map(|(start, end)| end - start).max().unwrap_or(0);
-        most as usize + self.curved.len()
+        let most = self.intervals().map(<[Line]>::len).max();
+        most.unwrap_or(0) + self.curved.len()
     }
 }
 
@@ -136,25 +156,18 @@ pub(super) fn lines(literal: &Literal) -> Option<Vec<(f64, Line)>> {
     }
     let shape = &literal.term.shape;
     let corners = shape.corners()?;
-    let flat = |degree: f64| Line {
-        literal: 0,
-        foot: 0.0,
-        run: f64::INFINITY,
-        base: degree,
-        rise: 0.0,
-    };
     let mut lines = Vec::new();
     let mut before: Option<(f64, f64)> = None;
     for &(x, y) in &corners {
         match before {
-            None => lines.push((f64::NEG_INFINITY, flat(y))),
-            Some(left) if left.0 < x => after(&mut lines, shape, left, Some((x, y)), flat),
+            None => lines.push((f64::NEG_INFINITY, Line::flat(0, y))),
+            Some(left) if left.0 < x => after(&mut lines, shape, left, Some((x, y))),
             Some(_) => {}
         }
         before = Some((x, y));
     }
     if let Some(last) = before {
-        after(&mut lines, shape, last, None, flat);
+        after(&mut lines, shape, last, None);
     }
     Some(lines)
 }
@@ -166,14 +179,13 @@ fn after(
     shape: &Shape,
     corner: (f64, f64),
     next: Option<(f64, f64)>,
-    flat: impl Fn(f64) -> Line,
 ) {
     let (x, y) = corner;
     let at_corner = shape.membership(x);
     let start = if at_corner == y {
         x
     } else {
-        lines.push((x, flat(at_corner)));
+        lines.push((x, Line::flat(0, at_corner)));
         x.next_up()
     };
     let line = match next {
@@ -191,7 +203,7 @@ fn after(
                 rise: high.1 - low.1,
             }
         }
-        _ => flat(y),
+        _ => Line::flat(0, y),
     };
     lines.push((start, line));
 }

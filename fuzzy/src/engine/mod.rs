@@ -1,6 +1,7 @@
 //! The compiled model: immutable, evaluated without allocation.
 
 use alloc::{sync::Arc, vec, vec::Vec};
+use core::ops::Range;
 
 use crate::defuzzify::polyline::Room;
 use crate::defuzzify::{Defuzzify, Heights};
@@ -16,6 +17,7 @@ pub(crate) mod operators;
 mod outcome;
 mod problem;
 mod rules;
+mod uniform;
 
 pub use outcome::{EvaluateError, Outcome, State};
 pub use problem::{CompileError, Problem};
@@ -45,9 +47,9 @@ struct CompiledOutput {
     low: f64,
     high: f64,
     when_no_rule_fires: NoRuleFires,
-    /// Where the heights of this output begin.
-    first_place: usize,
-    /// Where, after `first_place`, the heights of each term begin, and where the last one's end.
+    /// Where the heights of this output stand.
+    heights: Range<usize>,
+    /// Where, in these, the heights of each term begin, and where the last one's end.
     places: Vec<usize>,
     defuzzify: Defuzzify,
 }
@@ -101,7 +103,7 @@ impl Engine {
             values: vec![0.0; self.inputs.len()],
             degrees: vec![0.0; self.literal_count],
             firing: self.rules.room(&self.literals),
-            heights: vec![0.0; self.places],
+            heights: vec![0.0; self.places + 1],
             strongest: vec![Strongest::NONE; self.outputs.len()],
             room: Room::new(self.places, self.places + cuts.max().unwrap_or(0)),
         }
@@ -156,12 +158,11 @@ impl Engine {
         }
         self.fire(scratch);
         for (index, (output, outcome)) in self.outputs.iter().zip(outcomes).enumerate() {
-            let strongest = scratch.strongest[index];
-            let fired = strongest.strength > 0.0;
+            let (coverage, dominant) = scratch.strongest[index].rule();
             *outcome = Outcome {
-                state: self.state(output, strongest.strength, scratch)?,
-                coverage: strongest.strength,
-                dominant: fired.then_some(strongest.rule as usize),
+                state: self.state(output, coverage, scratch)?,
+                coverage,
+                dominant,
                 clamped,
             };
         }
@@ -199,8 +200,7 @@ impl Engine {
         scratch: &mut Scratch,
     ) -> Result<State, EvaluateError> {
         if strongest > 0.0 {
-            let end = output.first_place + output.places[output.places.len() - 1];
-            let heights = &mut scratch.heights[output.first_place..end];
+            let heights = &mut scratch.heights[output.heights.clone()];
             if strongest < TINY && output.defuzzify.is_fuzzy() {
                 for height in heights.iter_mut() {
                     *height *= FROM_TINY;

@@ -7,7 +7,8 @@ use alloc::{vec, vec::Vec};
 
 use super::condition::{self, Step};
 use super::literal::Literals;
-use super::operators::{larger, smaller};
+use super::operators::smaller;
+use super::uniform::Uniform;
 use crate::model::{Conjunction, Disjunction};
 
 /// What a rule does with its degree for one consequent.
@@ -23,18 +24,28 @@ pub(super) struct Action {
     pub(super) sums: bool,
 }
 
-/// The strongest rule of an output.
+/// The strongest rule of an output: the bits of its strength above those of `u32::MAX` less the rule. For
+/// numbers that are not negative, bits order as the numbers do, so the largest of these is the strongest
+/// rule, of several as strong the first in the model, whatever the order of firing; found without a branch.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Strongest {
-    pub(super) strength: f64,
-    pub(super) rule: u32,
-}
+pub(super) struct Strongest(u128);
 
 impl Strongest {
-    pub(super) const NONE: Strongest = Strongest {
-        strength: 0.0,
-        rule: u32::MAX,
-    };
+    pub(super) const NONE: Strongest = Strongest(0);
+
+    #[inline(always)]
+    pub(super) fn or(self, strength: f64, rule: u32) -> Self {
+        let bits = u128::from(strength.to_bits()) << 32 | u128::from(u32::MAX - rule);
+        Strongest(if bits > self.0 { bits } else { self.0 })
+    }
+
+    /// The strength, and the rule where it is over 0.
+    #[inline(always)]
+    pub(super) fn rule(self) -> (f64, Option<usize>) {
+        let strength = f64::from_bits((self.0 >> 32) as u64);
+        let rule = u32::MAX - self.0 as u32;
+        (strength, (strength > 0.0).then_some(rule as usize))
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -52,25 +63,26 @@ pub(super) struct Rules {
 /// The rules that are plain ANDs of literals of different inputs.
 #[derive(Debug, Clone)]
 enum Conjunctions {
+    Uniform(Uniform),
     Dense(Dense),
     Trie(Trie),
 }
 
 /// A cell for each combination of literals, one an input.
 #[derive(Debug, Clone)]
-struct Dense {
-    dimensions: Vec<Dimension>,
+pub(super) struct Dense {
+    pub(super) dimensions: Vec<Dimension>,
     /// The actions of a cell are `starts[cell]..starts[cell + 1]`.
-    starts: Vec<u32>,
+    pub(super) starts: Vec<u32>,
     most_partial: usize,
 }
 
 #[derive(Debug, Clone)]
-struct Dimension {
-    input: usize,
-    stride: u32,
+pub(super) struct Dimension {
+    pub(super) input: usize,
+    pub(super) stride: u32,
     /// The coordinate of rules that say nothing of this input.
-    any: Option<u32>,
+    pub(super) any: Option<u32>,
 }
 
 /// Rules as paths of literals in ascending order.
@@ -121,12 +133,14 @@ const MOST_CELLS: usize = 1 << 16;
 const MOST_CELLS_A_RULE: usize = 32;
 
 impl Rules {
-    /// `drafts` in an order that does not depend on the order of the model's rules.
+    /// `drafts` in an order that does not depend on the order of the model's rules; `nowhere` is the height
+    /// that belongs to no term.
     pub(super) fn new(
         and: Conjunction,
         or: Disjunction,
         drafts: &[Draft],
         inputs: &[Literals],
+        nowhere: usize,
     ) -> Self {
         let mut rules = Rules {
             and,
@@ -153,7 +167,10 @@ impl Rules {
             .filter_map(|draft| Some((draft.literals.as_deref()?, &*draft.actions)))
             .collect();
         rules.conjunctions = match Dense::new(&plain, inputs, &mut rules.actions) {
-            Some(dense) => Conjunctions::Dense(dense),
+            Some(dense) => match Uniform::new(&dense, &rules.actions, inputs, nowhere) {
+                Some(uniform) => Conjunctions::Uniform(uniform),
+                None => Conjunctions::Dense(dense),
+            },
             None => Conjunctions::Trie(Trie::new(&plain, &mut rules.actions)),
         };
         rules.needs_degrees =
@@ -162,27 +179,24 @@ impl Rules {
     }
 
     pub(super) fn room(&self, inputs: &[Literals]) -> FiringRoom {
-        let most = match &self.conjunctions {
-            Conjunctions::Dense(dense) => dense.most_partial,
-            Conjunctions::Trie(_) => 0,
-        };
-        let edges = match &self.conjunctions {
-            Conjunctions::Trie(trie) => trie.edges.len(),
-            Conjunctions::Dense(_) => 0,
+        let (partial, edges) = match &self.conjunctions {
+            Conjunctions::Uniform(uniform) => (uniform.visited(), 0),
+            Conjunctions::Dense(dense) => (dense.most_partial, 0),
+            Conjunctions::Trie(trie) => (0, trie.edges.len()),
         };
         let alive = inputs.iter().map(Literals::most_alive).max().unwrap_or(0);
         FiringRoom {
             alive: vec![(0.0, 0); alive + 2],
-            partial: vec![(0.0, 0); most + 1],
-            next: vec![(0.0, 0); most + 1],
+            partial: vec![(0.0, 0); partial + 1],
+            next: vec![(0.0, 0); partial + 1],
             stack: Vec::with_capacity(self.steps.len() + 1),
             path: Vec::with_capacity(edges + 1),
         }
     }
 
-    /// Fires all rules into `heights` and `strongest`, which hold zeros before. `degrees` holds those of all
-    /// literals where they are needed.
-    #[inline]
+    /// Fires all rules into `heights` and `strongest`, which hold zeros before; the last height belongs to no
+    /// place. `degrees` holds those of all literals where they are needed.
+    #[inline(always)]
     pub(super) fn fire(
         &self,
         inputs: &[Literals],
@@ -192,36 +206,50 @@ impl Rules {
         heights: &mut [f64],
         strongest: &mut [Strongest],
     ) {
+        // The usual operators without a choice inside the loops.
+        match self.and {
+            Conjunction::Minimum => {
+                self.fire_with(smaller, inputs, values, degrees, room, heights, strongest);
+            }
+            Conjunction::Product => {
+                let and = |a, b| a * b;
+                self.fire_with(and, inputs, values, degrees, room, heights, strongest);
+            }
+            and => {
+                let and = |a, b| and.of(a, b);
+                self.fire_with(and, inputs, values, degrees, room, heights, strongest);
+            }
+        }
+    }
+
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    fn fire_with(
+        &self,
+        and: impl Fn(f64, f64) -> f64,
+        inputs: &[Literals],
+        values: &[f64],
+        degrees: &[f64],
+        room: &mut FiringRoom,
+        heights: &mut [f64],
+        strongest: &mut [Strongest],
+    ) {
         let mut firing = Firing { heights, strongest };
         match &self.conjunctions {
-            Conjunctions::Dense(dense) => match self.and {
-                // The usual operators without a choice inside the loop.
-                Conjunction::Minimum => {
-                    dense.fire(&self.actions, inputs, values, room, smaller, &mut firing);
-                }
-                Conjunction::Product => {
-                    dense.fire(
-                        &self.actions,
-                        inputs,
-                        values,
-                        room,
-                        |a, b| a * b,
-                        &mut firing,
-                    );
-                }
-                and => {
-                    let and = |a, b| and.of(a, b);
-                    dense.fire(&self.actions, inputs, values, room, and, &mut firing);
-                }
-            },
-            Conjunctions::Trie(trie) => {
-                trie.fire(
-                    &self.actions,
-                    degrees,
-                    self.and,
-                    &mut room.path,
-                    &mut firing,
+            Conjunctions::Uniform(uniform) => {
+                uniform.fire(
+                    values,
+                    &mut room.partial,
+                    and,
+                    firing.heights,
+                    firing.strongest,
                 );
+            }
+            Conjunctions::Dense(dense) => {
+                dense.fire(&self.actions, inputs, values, room, and, &mut firing);
+            }
+            Conjunctions::Trie(trie) => {
+                trie.fire(&self.actions, degrees, and, &mut room.path, &mut firing);
             }
         }
         for program in &self.programs {
@@ -244,22 +272,8 @@ impl Firing<'_> {
     #[inline(always)]
     fn act(&mut self, actions: &[Action], degree: f64) {
         for action in actions {
-            let strength = action.weight * degree;
-            let height = &mut self.heights[action.place as usize];
-            *height = if action.sums {
-                *height + strength
-            } else {
-                larger(*height, strength)
-            };
             let strongest = &mut self.strongest[action.output as usize];
-            // Of several as strong, the first in the model, whatever the order of firing.
-            let first = strength == strongest.strength && action.rule < strongest.rule;
-            if strength > strongest.strength || (first && strength > 0.0) {
-                *strongest = Strongest {
-                    strength,
-                    rule: action.rule,
-                };
-            }
+            *strongest = action.act::<true>(degree, self.heights, *strongest);
         }
     }
 }
@@ -436,7 +450,7 @@ impl Trie {
         &self,
         actions: &[Action],
         degrees: &[f64],
-        and: Conjunction,
+        and: impl Fn(f64, f64) -> f64,
         path: &mut Vec<(f64, u32)>,
         firing: &mut Firing<'_>,
     ) {
@@ -447,7 +461,7 @@ impl Trie {
             let range = node.first_action as usize..node.end_action as usize;
             firing.act(&actions[range], strength);
             for &(literal, child) in &self.edges[node.first_edge as usize..node.end_edge as usize] {
-                let both = and.of(strength, degrees[literal as usize]);
+                let both = and(strength, degrees[literal as usize]);
                 if both > 0.0 {
                     path.push((both, child));
                 }

@@ -1,0 +1,61 @@
+//! Time and allocations of single evaluations, batches, maps and tables.
+
+use divan::{Bencher, black_box, counter::ItemsCount};
+use flagred_benches::{four_inputs, points, published, tipper};
+use fuzzy::engine::{Engine, Outcome};
+use fuzzy::map::{DecisionMap, Grid};
+use fuzzy::model::Model;
+
+#[global_allocator]
+static ALLOCATOR: divan::AllocProfiler = divan::AllocProfiler::system();
+
+fn main() {
+    divan::main();
+}
+
+const POINTS: usize = 1024;
+
+/// One call for each of 1024 points; the times are those of all, the throughput counts evaluations.
+fn single(bencher: Bencher<'_, '_>, model: &Model) {
+    let engine = Engine::new(model).unwrap();
+    let mut scratch = engine.scratch();
+    let points = points(model, POINTS);
+    let mut outcomes = vec![Outcome::default(); engine.output_names().len()];
+    bencher.counter(ItemsCount::new(POINTS)).bench_local(|| {
+        for point in &points {
+            engine
+                .evaluate_with(&mut scratch, black_box(point), &mut outcomes)
+                .unwrap();
+            black_box(&outcomes);
+        }
+    });
+}
+
+#[divan::bench]
+fn single_a_tipper(bencher: Bencher<'_, '_>) {
+    single(bencher, &tipper());
+}
+
+#[divan::bench]
+fn single_b_published(bencher: Bencher<'_, '_>) {
+    single(bencher, &published(false));
+}
+
+#[divan::bench]
+fn single_bw_published_weighted(bencher: Bencher<'_, '_>) {
+    single(bencher, &published(true));
+}
+
+#[divan::bench]
+fn single_c_four_inputs(bencher: Bencher<'_, '_>) {
+    single(bencher, &four_inputs());
+}
+
+#[divan::bench]
+fn map_501_by_501(bencher: Bencher<'_, '_>) {
+    let engine = Engine::new(&published(true)).unwrap();
+    let grid = Grid::new(&engine, 501).unwrap();
+    bencher
+        .counter(ItemsCount::new(grid.cells()))
+        .bench_local(|| DecisionMap::new(&engine, grid.clone(), 0).unwrap());
+}

@@ -1,0 +1,113 @@
+//! Our results against those of other programs and of a closed form, where the reference files are at hand.
+
+use std::path::PathBuf;
+
+use flagred_tests::shared_data;
+use fuzzy::model::{Model, Output, Shape, Variable};
+use fuzzy::rule::{Condition, Rule};
+use fuzzy::{Engine, engine::State};
+
+/// Reads the reference systems' plain description: `input`, `term`, `output` and `rule` lines.
+fn system(text: &str) -> Model {
+    let mut model = Model::builder("system").build();
+    for line in text.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let number = |i: usize| words[i].parse::<f64>().unwrap();
+        match words[0] {
+            "input" => model
+                .inputs
+                .push(Variable::new(words[1], number(2), number(3))),
+            "output" => {
+                let variable = Variable::new(words[1], number(2), number(3));
+                model.outputs.push(Output::new(variable));
+            }
+            "term" => {
+                let shape = match words[2] {
+                    "gaussian" => Shape::Gaussian {
+                        mean: number(3),
+                        sd: number(4),
+                    },
+                    "triangle" => Shape::Triangle {
+                        left: number(3),
+                        peak: number(4),
+                        right: number(5),
+                    },
+                    "trapezoid" => Shape::Trapezoid {
+                        left: number(3),
+                        left_top: number(4),
+                        right_top: number(5),
+                        right: number(6),
+                    },
+                    other => panic!("unknown shape {other}"),
+                };
+                let variable = match model.outputs.last_mut() {
+                    Some(output) => &mut output.variable,
+                    None => model.inputs.last_mut().unwrap(),
+                };
+                *variable = variable.clone().term(words[1], shape);
+            }
+            "rule" => {
+                let condition = words[3]
+                    .split(',')
+                    .map(|proposition| proposition.split_once('=').unwrap())
+                    .map(|(variable, term)| Condition::is(variable, term))
+                    .reduce(|all, one| match words[2] {
+                        "and" => all.and(one),
+                        _ => all.or(one),
+                    })
+                    .unwrap();
+                let output = model.outputs[0].variable.name.clone();
+                let rule = Rule::new(condition, &output, words[4]).with(number(1));
+                model.rules.push(rule.into());
+            }
+            other => panic!("unknown line {other}"),
+        }
+    }
+    model
+}
+
+fn parity() -> Option<PathBuf> {
+    Some(shared_data()?.join("parity"))
+}
+
+/// Rows of numbers; `nan` where no rule fires.
+fn rows(folder: &std::path::Path, name: &str) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(folder.join(name)).unwrap();
+    text.lines()
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect()
+}
+
+fn compare(engine: &Engine, inputs: &[f64], expected: f64, tolerance: f64) {
+    let outcome = engine.evaluate(inputs).unwrap()[0];
+    match outcome.state {
+        State::Defined(value) => assert!(
+            (value - expected).abs() <= tolerance,
+            "at {inputs:?}: {value} instead of {expected}"
+        ),
+        State::NoRuleFired => assert!(expected.is_nan(), "at {inputs:?}: no rule fired"),
+        other => panic!("at {inputs:?}: {other:?}"),
+    }
+}
+
+#[test]
+fn centroids_equal_the_closed_form() {
+    let Some(folder) = parity() else { return };
+    for name in ["a", "b", "bw"] {
+        let text = std::fs::read_to_string(folder.join(format!("{name}.sys"))).unwrap();
+        let engine = Engine::new(&system(&text)).unwrap();
+        let rows = rows(&folder, &format!("{name}.exact.csv"));
+        assert_eq!(rows.len(), 51 * 51);
+        for row in rows {
+            compare(&engine, &row[..2], row[2], 1e-10);
+        }
+    }
+    let text = std::fs::read_to_string(folder.join("c.sys")).unwrap();
+    let engine = Engine::new(&system(&text)).unwrap();
+    let points = rows(&folder, "c.points.csv");
+    let exact = rows(&folder, "c.exact.csv");
+    assert_eq!((points.len(), exact.len()), (1024, 1024));
+    for (point, exact) in points.iter().zip(&exact) {
+        compare(&engine, point, exact[0], 1e-10);
+    }
+}
