@@ -18,11 +18,18 @@ pub struct Shipped {
 }
 
 /// The rule sets.
-pub const RULE_SETS: [Shipped; 1] = [Shipped {
-    name: "flagred-paper",
-    file: "flagred-paper.yaml",
-    text: include_str!("../rules/flagred-paper.yaml"),
-}];
+pub const RULE_SETS: [Shipped; 2] = [
+    Shipped {
+        name: "flagred",
+        file: "flagred.yaml",
+        text: include_str!("../rules/flagred.yaml"),
+    },
+    Shipped {
+        name: "flagred-paper",
+        file: "flagred-paper.yaml",
+        text: include_str!("../rules/flagred-paper.yaml"),
+    },
+];
 
 /// The profiles; the first one is for flying.
 pub const PROFILES: [Shipped; 2] = [
