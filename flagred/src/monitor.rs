@@ -7,7 +7,7 @@ use crate::{
     estimator::{Estimate, Estimator, Memory},
     profile::Profile,
     source::{Motors, Observer, Signal, Source, Statistic, Values},
-    verdict::{Alert, Finding, Level, Step},
+    verdict::{Alert, Ended, Level, Step},
 };
 
 /// A moment of a flight.
@@ -36,8 +36,8 @@ pub struct Assessment {
     pub level: Option<Level>,
     /// The new level where this sample changed it.
     pub change: Option<Level>,
-    /// The finding that ended with this sample.
-    pub ended: Option<Finding>,
+    /// The findings that ended with this sample.
+    pub ended: Ended,
 }
 
 /// Why a risk is unknown.
@@ -141,7 +141,8 @@ pub enum MonitorError {
 ///     level = assessment.level.max(level);
 /// }
 /// assert_eq!(level, Some(Level::Fail));
-/// let finding = monitor.finish().ok_or("no finding")?;
+/// let [warn, fail] = monitor.finish();
+/// let finding = warn.or(fail).ok_or("no finding")?;
 /// assert!(finding.from_s > 10.0 && finding.from_s < 15.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -258,7 +259,12 @@ impl<'a> Monitor<'a> {
                 .push(t_s, estimate.risk_pct, elevated, &self.motors);
             step = Step {
                 change: judged.change.or(step.change),
-                ended: judged.ended.or(step.ended),
+                // Both at once cannot be: what was just forgotten takes a while to be raised again.
+                ended: if step.ended == [None; 2] {
+                    judged.ended
+                } else {
+                    step.ended
+                },
             };
         }
         Assessment {
@@ -276,10 +282,10 @@ impl<'a> Monitor<'a> {
         &self.inputs
     }
 
-    /// Ends the flight: the finding that was still open, if any.
-    pub fn finish(&mut self) -> Option<Finding> {
-        let last_s = self.last_s?;
-        self.forget(last_s, false).ended
+    /// Ends the flight: the findings that were still open.
+    pub fn finish(&mut self) -> Ended {
+        self.last_s
+            .map_or([None; 2], |last_s| self.forget(last_s, false).ended)
     }
 
     /// The mean margin over all motors and the profile's window: the paper's first input, whatever the rules look at.

@@ -114,20 +114,20 @@ impl Default for VerdictSettings {
     }
 }
 
-/// A time during which the level was above [`Level::Good`].
+/// A time at or above a level: what is FAIL for a while is one finding of that while, within one of WARN.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
-    /// The highest level reached.
+    /// The level.
     pub level: Level,
-    /// Since when the first level was reached, in seconds.
+    /// Since when the level was reached, in seconds.
     pub from_s: f64,
     /// When it was raised: its `after_s` later.
     pub raised_s: f64,
-    /// When a level was last reached. The level itself is held for a while longer.
+    /// When the level was last reached. It is held for a while longer.
     pub to_s: f64,
-    /// What reached the highest level.
+    /// What reached the level first.
     pub measure: Measure,
-    /// The threshold of that level in %.
+    /// The threshold of the level in %.
     pub threshold_pct: f64,
     /// The largest value of the measure in that time, in %.
     pub peak_pct: f64,
@@ -148,16 +148,28 @@ pub struct MotorFinding {
     pub least_margin: f64,
 }
 
+/// The findings that end at one time: of WARN, of FAIL.
+pub type Ended = [Option<Finding>; 2];
+
 /// Keeps the level over time.
 #[derive(Debug, Clone)]
 pub(crate) struct Alert {
     settings: VerdictSettings,
     level: Level,
-    /// Since when warn and fail are reached.
-    reached_since: [Option<f64>; 2],
     /// When the level was last held.
     last_held_s: f64,
+    /// Of WARN, of FAIL.
+    watches: [Watch; 2],
+}
+
+/// What is known of one level.
+#[derive(Debug, Clone)]
+struct Watch {
+    level: Level,
+    /// Since when the level is reached.
+    reached_since_s: Option<f64>,
     finding: Option<Finding>,
+    /// The motors while the level was reached, since it was first.
     motors: Vec<MotorRecord>,
 }
 
@@ -184,32 +196,28 @@ const NO_RECORD: MotorRecord = MotorRecord {
 pub(crate) struct Step {
     /// The new level, where it changed.
     pub(crate) change: Option<Level>,
-    /// The finding that ended.
-    pub(crate) ended: Option<Finding>,
+    /// The findings that ended.
+    pub(crate) ended: Ended,
 }
 
 impl Alert {
     pub(crate) fn new(settings: VerdictSettings, motors: usize) -> Alert {
+        let watch = |level| Watch {
+            level,
+            reached_since_s: None,
+            finding: None,
+            motors: vec![NO_RECORD; motors],
+        };
         Alert {
             settings,
             level: Level::Good,
-            reached_since: [None; 2],
             last_held_s: 0.0,
-            finding: None,
-            motors: vec![NO_RECORD; motors],
+            watches: [watch(Level::Warn), watch(Level::Fail)],
         }
     }
 
     pub(crate) fn level(&self) -> Level {
         self.level
-    }
-
-    /// The finding that has not ended yet, as it stands.
-    pub(crate) fn open(&self) -> Option<Finding> {
-        self.finding.map(|finding| Finding {
-            motor: self.weakest_motor(),
-            ..finding
-        })
     }
 
     /// Adds a moment of known risk.
@@ -227,45 +235,86 @@ impl Alert {
             risk_pct
         };
         let mut step = Step::default();
-        let levels = [(Level::Warn, settings.warn), (Level::Fail, settings.fail)];
-        let was_idle = self.reached_since == [None; 2] && self.finding.is_none();
-        for (since, (_, level)) in self.reached_since.iter_mut().zip(&levels) {
-            let reached = level.raise.reached(risk_pct, elevated_pct);
-            *since = reached.map(|_| since.unwrap_or(t_s));
-        }
-        let reached = self.reached_since != [None; 2];
-        if reached {
-            if was_idle {
-                self.motors.fill(NO_RECORD);
-            }
-            self.record_motors(motors);
-        }
         let mut held = Level::Good;
-        for (since, (level, settings)) in self.reached_since.into_iter().zip(levels) {
-            let due = since.filter(|since| t_s - since >= settings.after_s - ROUNDING_S);
-            if let Some(since_s) = due
-                && level > self.level
-                && let Some((measure, threshold_pct)) =
-                    settings.raise.reached(risk_pct, elevated_pct)
-            {
-                self.level = level;
-                step.change = Some(level);
-                self.finding = Some(Finding {
-                    level,
-                    from_s: self.finding.map_or(since_s, |finding| finding.from_s),
-                    raised_s: self.finding.map_or(t_s, |finding| finding.raised_s),
-                    to_s: t_s,
-                    measure,
-                    threshold_pct,
-                    peak_pct: f64::NEG_INFINITY,
-                    motor: None,
-                });
+        for (watch, settings) in self.watches.iter_mut().zip([settings.warn, settings.fail]) {
+            let reached = settings.raise.reached(risk_pct, elevated_pct);
+            if let Some(raised) = watch.push(t_s, reached, settings.after_s, self.level, motors) {
+                self.level = raised;
+                step.change = Some(raised);
             }
-            let holding = settings.until.reached(risk_pct, elevated_pct);
-            if since.is_some() || holding.is_some() {
-                held = level.min(self.level);
+            watch.follow(t_s, risk_pct, elevated_pct, reached.is_some());
+            if reached.is_some() || settings.until.reached(risk_pct, elevated_pct).is_some() {
+                held = watch.level.min(self.level);
             }
         }
+        if held >= self.level {
+            self.last_held_s = t_s;
+        } else if t_s - self.last_held_s >= settings.clear_after_s - ROUNDING_S {
+            self.level = held;
+            self.last_held_s = t_s;
+            step.change = Some(held);
+            step.ended = self.watches.each_mut().map(|watch| {
+                let is_over = watch.level > held;
+                is_over.then(|| watch.end()).flatten()
+            });
+        }
+        step
+    }
+
+    /// Ends it all: the flight, or the knowledge of it, is over. What was raised too shortly before a landing
+    /// is taken back.
+    pub(crate) fn end(&mut self, t_s: f64, landed: bool) -> Step {
+        let change = (self.level > Level::Good).then_some(Level::Good);
+        self.level = Level::Good;
+        let quiet_s = self.settings.quiet_before_landing_s;
+        let ended = self.watches.each_mut().map(|watch| {
+            watch.reached_since_s = None;
+            let finding = watch.end();
+            finding.filter(|finding| !landed || t_s - finding.raised_s >= quiet_s)
+        });
+        Step { change, ended }
+    }
+}
+
+impl Watch {
+    /// Takes in whether the level is reached, by what and over which threshold; gives the level where that raises it.
+    fn push(
+        &mut self,
+        t_s: f64,
+        reached: Option<(Measure, f64)>,
+        after_s: f64,
+        now: Level,
+        motors: &[f64],
+    ) -> Option<Level> {
+        let Some((measure, threshold_pct)) = reached else {
+            self.reached_since_s = None;
+            return None;
+        };
+        if self.reached_since_s.is_none() && self.finding.is_none() {
+            self.motors.fill(NO_RECORD);
+        }
+        let from_s = *self.reached_since_s.get_or_insert(t_s);
+        for (record, e) in self.motors.iter_mut().zip(motors) {
+            record.add(*e);
+        }
+        if self.level <= now || t_s - from_s < after_s - ROUNDING_S {
+            return None;
+        }
+        self.finding = Some(Finding {
+            level: self.level,
+            from_s,
+            raised_s: t_s,
+            to_s: t_s,
+            measure,
+            threshold_pct,
+            peak_pct: f64::NEG_INFINITY,
+            motor: None,
+        });
+        Some(self.level)
+    }
+
+    /// Keeps the finding that is open up to date.
+    fn follow(&mut self, t_s: f64, risk_pct: f64, elevated_pct: f64, reached: bool) {
         if let Some(finding) = &mut self.finding {
             let value = match finding.measure {
                 Measure::Risk => risk_pct,
@@ -276,50 +325,13 @@ impl Alert {
                 finding.to_s = t_s;
             }
         }
-        if held >= self.level {
-            self.last_held_s = t_s;
-        } else if t_s - self.last_held_s >= settings.clear_after_s - ROUNDING_S {
-            self.level = held;
-            self.last_held_s = t_s;
-            step.change = Some(held);
-            if held == Level::Good {
-                step.ended = self.open();
-                self.finding = None;
-            }
-        }
-        step
     }
 
-    /// Ends it all: the flight, or the knowledge of it, is over. What was raised too shortly before a landing
-    /// is taken back.
-    pub(crate) fn end(&mut self, t_s: f64, landed: bool) -> Step {
-        let quiet_s = if landed {
-            self.settings.quiet_before_landing_s
-        } else {
-            0.0
-        };
-        let ended = self
-            .open()
-            .filter(|finding| !landed || t_s - finding.raised_s >= quiet_s);
-        let change = (self.level > Level::Good).then_some(Level::Good);
-        self.level = Level::Good;
-        self.reached_since = [None; 2];
-        self.finding = None;
-        Step { change, ended }
-    }
-
-    fn record_motors(&mut self, motors: &[f64]) {
-        for (record, e) in self.motors.iter_mut().zip(motors) {
-            if e.is_finite() {
-                let margin = margin(*e);
-                record.samples += 1;
-                record.mean_margin += (margin - record.mean_margin) / f64::from(record.samples);
-                if margin < record.least_margin {
-                    record.least_margin = margin;
-                    record.side = Side::of(*e);
-                }
-            }
-        }
+    fn end(&mut self) -> Option<Finding> {
+        let motor = self.weakest_motor();
+        self.finding
+            .take()
+            .map(|finding| Finding { motor, ..finding })
     }
 
     fn weakest_motor(&self) -> Option<MotorFinding> {
@@ -335,6 +347,21 @@ impl Alert {
             mean_margin: record.mean_margin,
             least_margin: record.least_margin,
         })
+    }
+}
+
+impl MotorRecord {
+    fn add(&mut self, e: f64) {
+        if !e.is_finite() {
+            return;
+        }
+        let margin = margin(e);
+        self.samples += 1;
+        self.mean_margin += (margin - self.mean_margin) / f64::from(self.samples);
+        if margin < self.least_margin {
+            self.least_margin = margin;
+            self.side = Side::of(e);
+        }
     }
 }
 
@@ -384,7 +411,7 @@ mod tests {
                 let t_s = f64::from(i) / 10.0;
                 let step = alert.push(t_s, *risk, *elevated, &[0.4, 0.95]);
                 changes.extend(step.change.map(|level| (t_s, level)));
-                findings.extend(step.ended);
+                findings.extend(step.ended.into_iter().flatten());
                 i += 1;
             }
         }
@@ -401,11 +428,11 @@ mod tests {
             (1.0, 0.0, 0.0),
         ]);
         assert_eq!((changes, findings), (vec![], vec![]));
-        assert_eq!(alert.open(), None);
+        assert_eq!(alert.level(), Level::Good);
     }
 
     #[test]
-    fn one_episode_is_one_finding_whatever_its_ups_and_downs() {
+    fn one_episode_is_one_finding_of_each_level_whatever_its_ups_and_downs() {
         let (changes, findings, _) = run(&[
             (1.0, 0.0, 0.0),
             (2.0, 0.0, 60.0),
@@ -419,25 +446,26 @@ mod tests {
             changes,
             [(1.5, Level::Warn), (9.5, Level::Fail), (11.9, Level::Good)]
         );
-        assert_eq!(findings.len(), 1);
-        let finding = findings[0];
-        assert_eq!(finding.level, Level::Fail);
-        assert_eq!(
-            (finding.from_s, finding.raised_s, finding.to_s),
-            (1.0, 1.5, 9.9)
-        );
-        assert_eq!(finding.measure, Measure::ElevatedRisk);
-        assert_eq!((finding.threshold_pct, finding.peak_pct), (80.0, 90.0));
-        let motor = finding.motor.unwrap();
+        let [warn, fail] = findings.as_slice() else {
+            panic!("{findings:?}")
+        };
+        assert_eq!((warn.level, fail.level), (Level::Warn, Level::Fail));
+        assert_eq!((warn.from_s, warn.raised_s, warn.to_s), (1.0, 1.5, 9.9));
+        assert_eq!((fail.from_s, fail.raised_s, fail.to_s), (9.0, 9.5, 9.9));
+        assert_eq!(fail.measure, Measure::ElevatedRisk);
+        assert_eq!((fail.threshold_pct, fail.peak_pct), (80.0, 90.0));
+        let motor = fail.motor.unwrap();
         assert_eq!((motor.motor, motor.side), (1, Side::High));
         approx::assert_abs_diff_eq!(motor.mean_margin, 0.05, epsilon = 1e-12);
     }
 
     #[test]
     fn either_quantity_is_enough() {
-        let (changes, _, alert) = run(&[(2.0, 99.0, 0.0)]);
+        let (changes, _, mut alert) = run(&[(2.0, 99.0, 0.0)]);
         assert_eq!(changes, [(0.5, Level::Fail)]);
-        assert_eq!(alert.open().map(|f| f.measure), Some(Measure::Risk));
+        let [warn, fail] = alert.end(2.0, false).ended;
+        assert_eq!(warn, None);
+        assert_eq!(fail.map(|f| f.measure), Some(Measure::Risk));
     }
 
     #[test]
@@ -459,18 +487,21 @@ mod tests {
     fn what_is_raised_just_before_landing_is_taken_back() {
         let (_, _, mut alert) = run(&[(2.0, 0.0, 90.0)]);
         let mut later = alert.clone();
-        assert_eq!(alert.end(2.0, true).ended, None);
-        assert!(later.end(3.0, true).ended.is_some());
+        assert_eq!(alert.end(2.0, true).ended, [None; 2]);
+        assert!(later.end(3.0, true).ended.iter().all(Option::is_some));
         // A link that is lost is no landing.
         let (_, _, mut alert) = run(&[(2.0, 0.0, 90.0)]);
-        assert!(alert.end(2.0, false).ended.is_some());
+        assert!(alert.end(2.0, false).ended.iter().all(Option::is_some));
     }
 
     #[test]
-    fn falling_from_fail_to_warn_keeps_the_finding_open() {
-        let (changes, findings, alert) = run(&[(2.0, 0.0, 90.0), (4.0, 0.0, 60.0)]);
+    fn falling_from_fail_to_warn_ends_the_one_finding_and_keeps_the_other_open() {
+        let (changes, findings, mut alert) = run(&[(2.0, 0.0, 90.0), (4.0, 0.0, 60.0)]);
         assert_eq!(changes, [(0.5, Level::Fail), (3.9, Level::Warn)]);
-        assert_eq!(findings, []);
-        assert_eq!(alert.open().map(|f| f.level), Some(Level::Fail));
+        let levels: Vec<Level> = findings.iter().map(|f| f.level).collect();
+        assert_eq!(levels, [Level::Fail]);
+        let [warn, fail] = alert.end(6.0, false).ended;
+        assert_eq!(warn.map(|f| f.to_s), Some(5.9));
+        assert_eq!(fail, None);
     }
 }

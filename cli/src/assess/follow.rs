@@ -55,6 +55,8 @@ pub(crate) struct Step {
     pub(crate) inputs: Vec<f64>,
     pub(crate) estimate: Option<Estimate>,
     pub(crate) elevated_risk_pct: Option<f64>,
+    /// Whether it is one of flight, and not of taking off or touching down.
+    pub(crate) judged: bool,
 }
 
 /// The flight in a few numbers. Times are sums over the motor samples in the air.
@@ -127,13 +129,10 @@ pub(crate) fn follow(flight: &Flight, estimator: &Estimator, step_s: f64) -> Ass
             in_air,
             signals: &signals,
         });
-        findings.extend(assessment.ended);
+        findings.extend(assessment.ended.into_iter().flatten());
+        let judged = is_judged(flight, &estimator.profile().verdict, t_s);
         if in_air {
-            tally.add(
-                &assessment,
-                is_judged(flight, &estimator.profile().verdict, t_s),
-                &motors,
-            );
+            tally.add(&assessment, judged, &motors);
         }
         if in_air && t_s >= next_step_s {
             // On a grid of `step_s`; every sample where they are rarer.
@@ -145,10 +144,11 @@ pub(crate) fn follow(flight: &Flight, estimator: &Estimator, step_s: f64) -> Ass
                 inputs: monitor.inputs().to_vec(),
                 estimate: assessment.risk.ok(),
                 elevated_risk_pct: assessment.elevated_risk_pct,
+                judged,
             });
         }
     }
-    findings.extend(monitor.finish());
+    findings.extend(monitor.finish().into_iter().flatten());
     findings.sort_by(|a, b| b.level.cmp(&a.level).then(a.from_s.total_cmp(&b.from_s)));
 
     let worst = findings

@@ -69,10 +69,9 @@ pub(crate) fn write(
     if !assessed.findings.is_empty() {
         writeln!(out)?;
     }
-    let points: Vec<(f64, Option<f64>)> = assessed
-        .steps
-        .iter()
-        .map(|s| (s.t_s, s.estimate.map(|e| e.risk_pct)))
+    let judged = assessed.steps.iter().filter(|step| step.judged);
+    let points: Vec<(f64, Option<f64>)> = judged
+        .map(|step| (step.t_s, step.estimate.map(|e| e.risk_pct)))
         .collect();
     if points.iter().any(|(_, risk)| risk.is_some()) {
         writeln!(out, "risk over time")?;
