@@ -80,11 +80,17 @@ pub(crate) fn motors(parameters: &Parameters, vehicle: &Vehicle, label: &str) ->
     let Some(frame) = &vehicle.frame else {
         return Vec::new();
     };
-    (1..=motors_of_frame(frame).unwrap_or(0))
+    let source = format!("frame {frame} (the log has no SERVOn_FUNCTION)");
+    numbered_motors(motors_of_frame(frame).unwrap_or(0), label, &source)
+}
+
+/// Motors 1 to `motors`, on outputs of the same number.
+pub(crate) fn numbered_motors(motors: u16, label: &str, source: &str) -> Vec<Motor> {
+    (1..=motors)
         .map(|number| Motor {
             number,
             output: format!("{label}{number}"),
-            source: format!("frame {frame} (the log has no SERVOn_FUNCTION)"),
+            source: source.into(),
         })
         .collect()
 }

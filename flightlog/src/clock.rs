@@ -1,7 +1,9 @@
 //! The clock of a log: which time stamps to believe, and where it starts again.
 
-/// Steps between two messages that need no second witness, in seconds.
-const PLAIN_STEP_S: f64 = 1.0;
+/// Steps from one message to the next that need no second witness, in seconds.
+const PLAIN_STEP_S: std::ops::RangeInclusive<f64> = -1.0..=2.0;
+/// How far after a message that jumped the next one bears witness to it, in seconds.
+const WITNESS_STEP_S: std::ops::RangeInclusive<f64> = -1.0..=60.0;
 
 /// What to do with a message of some time.
 #[derive(Debug, PartialEq)]
@@ -56,7 +58,7 @@ impl Clock {
             // The very first time stamp has nothing to agree with but the second.
             return match self.waiting_s.replace(t_s) {
                 None => Placed::Wait,
-                Some(first_s) if near(first_s, t_s) => {
+                Some(first_s) if WITNESS_STEP_S.contains(&(t_s - first_s)) => {
                     self.waiting_s = None;
                     self.first_s = Some(first_s);
                     self.last_s = Some(t_s);
@@ -66,13 +68,13 @@ impl Clock {
             };
         };
         let hint = std::mem::take(&mut self.boot_hint);
-        if hint && t_s < last_s - PLAIN_STEP_S {
+        if hint && t_s - last_s < *PLAIN_STEP_S.start() {
             self.waiting_s = None;
             self.boot(last_s);
             self.last_s = Some(t_s);
             return Placed::At(t_s + self.offset_s);
         }
-        if near(last_s, t_s) {
+        if PLAIN_STEP_S.contains(&(t_s - last_s)) {
             self.last_s = Some(t_s);
             let t_s = t_s + self.offset_s;
             return match self.waiting_s.take() {
@@ -81,7 +83,7 @@ impl Clock {
             };
         }
         match self.waiting_s.replace(t_s) {
-            Some(first_s) if near(first_s, t_s) => {
+            Some(first_s) if WITNESS_STEP_S.contains(&(t_s - first_s)) => {
                 self.waiting_s = None;
                 if first_s < last_s {
                     self.boot(last_s);
@@ -98,10 +100,6 @@ impl Clock {
         self.offset_s += last_s;
         self.boots_s.push(self.offset_s);
     }
-}
-
-fn near(a_s: f64, b_s: f64) -> bool {
-    (a_s - b_s).abs() <= PLAIN_STEP_S
 }
 
 #[cfg(test)]

@@ -64,17 +64,6 @@ impl Outputs {
         }
     }
 
-    /// Every logged output as a motor of the same number.
-    pub(crate) fn motors_by_name(&self, label: &str, source: &str) -> Vec<Motor> {
-        (1..=self.columns.len() as u16)
-            .map(|number| Motor {
-                number,
-                output: format!("{label}{number}"),
-                source: source.into(),
-            })
-            .collect()
-    }
-
     /// The commands of these motors; their outputs are named by a label and the number.
     pub(crate) fn commands(self, motors: &[Motor]) -> Commands {
         let mut commands = Commands::new(motors.len());

@@ -81,6 +81,7 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
     let (start, _) = input.window().map_err(io_error)?;
     let mut flight = match sniff(start) {
         Content::DataFlash => dataflash::read(input, options).map_err(io_error)?,
+        Content::DataFlashText => dataflash::text::read(input, options).map_err(io_error)?,
         Content::Csv => csv::read(input, options)?,
         Content::Empty => {
             return Err(ReadError::Empty {
@@ -114,6 +115,7 @@ pub(crate) fn io_error(source: io::Error) -> ReadError {
 
 enum Content {
     DataFlash,
+    DataFlashText,
     Csv,
     Empty,
     Other(&'static str),
@@ -146,6 +148,9 @@ fn sniff(start: &[u8]) -> Content {
     }
     if dataflash::looks_like(start) {
         return Content::DataFlash;
+    }
+    if dataflash::text::looks_like(start) {
+        return Content::DataFlashText;
     }
     if csv::looks_like(start) {
         return Content::Csv;

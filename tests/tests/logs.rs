@@ -80,12 +80,23 @@ fn compare_range(log: &str, range: &Range, low: &Value, high: &Value) {
     );
 }
 
+/// Where rows have no time of their own, the reference gives them that of the GPS message
+/// before, in UTC; ours are spread up to the next one, on the clock since boot.
+fn has_times(log: &str) -> bool {
+    log != "aptxt_mechanical_fail.log"
+}
+
 /// Row by row: times and raw values.
 fn compare_rows(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
     assert_eq!(flight.commands.len(), truth["t_s"].len(), "{log}: rows");
+    let (zero_s, tolerance_s) = match has_times(log) {
+        true => (0.0, 1e-5),
+        false => (truth["t_s"][0].unwrap() - flight.commands.t_s()[0], 0.21),
+    };
     for (row, (t_s, raw)) in flight.commands.rows().enumerate() {
+        let theirs_s = truth["t_s"][row].unwrap() - zero_s;
         assert!(
-            (t_s - truth["t_s"][row].unwrap()).abs() < 1e-5,
+            (t_s - theirs_s).abs() < tolerance_s,
             "{log}, row {row}: {t_s}"
         );
         for (motor, &ours) in raw.iter().enumerate() {
@@ -110,7 +121,11 @@ fn compare_attitude(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Opti
             .unwrap_or_else(|| panic!("{log}: no {name}"));
         for (row, theirs) in theirs.iter().enumerate() {
             let t_s = truth["t_s"][row].unwrap();
-            match (signal.at(t_s + 1e-5), theirs) {
+            let ours = match has_times(log) {
+                true => signal.at(t_s + 1e-5),
+                false => Some(signal.values[row]),
+            };
+            match (ours, theirs) {
                 (Some(ours), Some(theirs)) => {
                     let off = (ours - theirs).abs();
                     assert!(off < 1e-3, "{log}, {name} at {t_s}: {ours} for {theirs}");
@@ -220,6 +235,7 @@ fn public_logs_are_as_in_their_reference() {
         "ap_beast_sample.bin",
         "ap_delorean183.bin",
         "ap_maik17.bin",
+        "aptxt_mechanical_fail.log",
     ] {
         compare(&data.join("logs"), log);
     }

@@ -2,6 +2,7 @@
 
 use super::format::{Cells, FMT, Format};
 use super::signals::{From, INSTANCE, SPECS, Spec};
+use super::untimed::{Kept, Untimed};
 use crate::ardupilot::{self, Parameters};
 use crate::clock::{Clock, Placed};
 use crate::outputs::Outputs;
@@ -46,18 +47,14 @@ struct Kind {
     series: usize,
 }
 
-/// A message whose time jumps, kept until the next one tells whether to believe it.
-enum Waiting {
-    Binary(u8, Vec<u8>),
-    Text(u8, Vec<String>),
-}
-
 pub(super) struct Collector<'o> {
     options: &'o Options,
     kinds: Vec<Option<Kind>>,
-    names_are_motors: bool,
+    /// Motors that have a column of their own in MOT messages (firmware before 3.2).
+    named_motors: u16,
     clock: Clock,
-    waiting: Option<Waiting>,
+    waiting: Option<Kept>,
+    untimed: Untimed,
     redefine: bool,
     pub(super) report: Report,
     parameters: Parameters,
@@ -67,6 +64,8 @@ pub(super) struct Collector<'o> {
     events: Vec<(f64, Landing)>,
     modes: Vec<Event>,
     texts: Vec<Event>,
+    /// Texts that stand above the messages of a text log.
+    pub(super) greetings: Vec<String>,
     utc_at_zero_s: Option<f64>,
 }
 
@@ -83,9 +82,10 @@ impl<'o> Collector<'o> {
         Self {
             options,
             kinds: vec![None; 256],
-            names_are_motors: false,
+            named_motors: 0,
             clock: Clock::default(),
             waiting: None,
+            untimed: Untimed::default(),
             redefine: true,
             report: Report::default(),
             parameters: Parameters::default(),
@@ -95,6 +95,7 @@ impl<'o> Collector<'o> {
             events: Vec::new(),
             modes: Vec::new(),
             texts: Vec::new(),
+            greetings: Vec::new(),
             utc_at_zero_s: None,
         }
     }
@@ -103,6 +104,12 @@ impl<'o> Collector<'o> {
     pub(super) fn wants(&self, type_id: u8) -> bool {
         self.kind(type_id)
             .is_some_and(|kind| !matches!(kind.role, Role::Nothing))
+    }
+
+    /// Number of fields of messages of this type.
+    pub(super) fn columns(&self, type_id: u8) -> usize {
+        self.kind(type_id)
+            .map_or(0, |kind| kind.format.columns.len())
     }
 
     fn kind(&self, type_id: u8) -> Option<&Kind> {
@@ -136,7 +143,13 @@ impl<'o> Collector<'o> {
     }
 
     fn plan(&mut self, format: Format) -> Kind {
-        let time = [("TimeUS", 1e-6), ("TimeMS", 1e-3)]
+        // TimeMS of a GPS message is the time in the GPS week; T is that since boot, and
+        // Time is all that firmware before 3.1 has.
+        let labels: &[(&str, f64)] = match format.name.as_str() {
+            "GPS" => &[("TimeUS", 1e-6), ("T", 1e-3), ("Time", 1e-3)],
+            _ => &[("TimeUS", 1e-6), ("TimeMS", 1e-3)],
+        };
+        let time = labels
             .iter()
             .find_map(|(label, unit)| Some((format.column(&[label])?, *unit)));
         let role = self.role(&format);
@@ -176,8 +189,8 @@ impl<'o> Collector<'o> {
                 Some(Role::Outputs(outputs.into_iter().map(|(_, c)| c).collect()))
             }
             "MOT" => {
-                self.names_are_motors = true;
                 let motors = numbered(format, &["Mot"]);
+                self.named_motors = motors.len() as u16;
                 Some(Role::Outputs(motors.into_iter().map(|(_, c)| c).collect()))
             }
             _ => None,
@@ -234,8 +247,12 @@ impl<'o> Collector<'o> {
             return;
         }
         let Some((column, unit)) = kind.time else {
-            if let Some(now_s) = self.clock.now_s() {
-                self.take(type_id, cells, now_s);
+            // An event without a time does not tell when: the commands tell more.
+            if !matches!(kind.role, Role::Event(_) | Role::Arm(_) | Role::Nothing)
+                && !self.untimed.keep(type_id, cells)
+            {
+                self.report.bad_messages += 1;
+                self.report.because(|| "messages without a time".into());
             }
             return;
         };
@@ -244,23 +261,39 @@ impl<'o> Collector<'o> {
             return;
         };
         match self.clock.place(t_s) {
-            Placed::At(t_s) => self.take(type_id, cells, t_s),
-            Placed::Wait => self.waiting = Some(Waiting::new(type_id, cells)),
+            Placed::At(t_s) => self.take_timed(type_id, cells, t_s),
+            Placed::Wait => self.wait(type_id, cells),
             Placed::Confirmed(first_s, t_s) => {
+                self.untimed.confirm_first(first_s);
                 if let Some(waiting) = self.waiting.take() {
                     waiting.give(|type_id, cells| self.take(type_id, cells, first_s));
                 }
-                self.take(type_id, cells, t_s);
+                self.take_timed(type_id, cells, t_s);
             }
             Placed::Refuted(t_s) => {
                 self.refute();
-                self.take(type_id, cells, t_s);
+                self.take_timed(type_id, cells, t_s);
             }
             Placed::RefutedWait => {
                 self.refute();
-                self.waiting = Some(Waiting::new(type_id, cells));
+                self.wait(type_id, cells);
             }
         }
+    }
+
+    fn wait(&mut self, type_id: u8, cells: Cells<'_>) {
+        self.waiting = Some(Kept::new(type_id, cells));
+        if self.clock.now_s().is_none() {
+            self.untimed.mark_first();
+        }
+    }
+
+    /// Takes a message whose time is its own, and those before it that had none.
+    fn take_timed(&mut self, type_id: u8, cells: Cells<'_>, t_s: f64) {
+        for (t_s, kept) in self.untimed.placed_before(t_s) {
+            kept.give(|type_id, cells| self.take(type_id, cells, t_s));
+        }
+        self.take(type_id, cells, t_s);
     }
 
     fn refute(&mut self) {
@@ -349,57 +382,42 @@ impl<'o> Collector<'o> {
         if self.waiting.take().is_some() {
             self.refute();
         }
-        let texts = self.texts.iter().map(|text| text.what.as_str());
+        if self.clock.now_s().is_none() && !self.untimed.is_empty() {
+            self.report.because(|| "no message has a time".into());
+        }
+        for (t_s, kept) in self.untimed.placed_at_end() {
+            kept.give(|type_id, cells| self.take(type_id, cells, t_s));
+        }
+        let said = self.texts.iter().map(|text| &text.what);
+        let texts = self.greetings.iter().chain(said).map(String::as_str);
         flight.vehicle = ardupilot::vehicle(texts, &self.parameters);
-        flight.motors = match self.names_are_motors {
-            true => self.outputs.motors_by_name("Mot", "MOT message"),
-            false => ardupilot::motors(&self.parameters, &flight.vehicle, self.label),
+        flight.motors = match self.named_motors {
+            0 => ardupilot::motors(&self.parameters, &flight.vehicle, self.label),
+            motors => ardupilot::numbered_motors(motors, "Mot", "MOT message"),
         };
         flight.range = ardupilot::pwm_range(&self.parameters);
         flight.effective = ardupilot::effective_range(&self.parameters);
         flight.commands = self.outputs.commands(&flight.motors);
         let span_s = self.clock.first_s().zip(self.clock.now_s());
-        let (armed, in_air) = match self.events.is_empty() {
-            true => ardupilot::air_from_commands(&flight),
-            false => {
-                let (armed, in_air) = air_from_events(
-                    &self.events,
-                    self.clock.boots_s(),
-                    span_s.unwrap_or_default(),
-                );
-                (Some(armed), Some(in_air))
+        (flight.armed, flight.in_air) = ardupilot::air_from_commands(&flight);
+        if !self.events.is_empty() {
+            let span_s = span_s.unwrap_or_default();
+            let (armed, in_air) = air_from_events(&self.events, self.clock.boots_s(), span_s);
+            flight.armed = Some(armed);
+            // Firmware before 3.1 tells of arming, but not of leaving the ground.
+            let tells = |event| matches!(event, Landing::Left | Landing::Landed);
+            if self.events.iter().any(|&(_, event)| tells(event)) {
+                flight.in_air = Some(in_air);
             }
-        };
-        flight.armed = armed;
-        flight.in_air = in_air;
+        }
         flight.series = order(self.series);
+        self.modes.sort_by_key(|mode| mode.t_us);
         flight.modes = self.modes;
         flight.messages = self.texts;
         flight.utc_at_zero_s = self.utc_at_zero_s;
         flight.boots_s = self.clock.boots_s().to_vec();
         flight.report = self.report;
         flight
-    }
-}
-
-impl Waiting {
-    fn new(type_id: u8, cells: Cells<'_>) -> Self {
-        match cells {
-            Cells::Binary(payload) => Self::Binary(type_id, payload.to_vec()),
-            Cells::Text(cells) => {
-                Self::Text(type_id, cells.iter().map(|&cell| cell.to_owned()).collect())
-            }
-        }
-    }
-
-    fn give(&self, take: impl FnOnce(u8, Cells<'_>)) {
-        match self {
-            Self::Binary(type_id, payload) => take(*type_id, Cells::Binary(payload)),
-            Self::Text(type_id, cells) => {
-                let cells: Vec<&str> = cells.iter().map(String::as_str).collect();
-                take(*type_id, Cells::Text(&cells));
-            }
-        }
     }
 }
 

@@ -132,8 +132,14 @@ impl Cells<'_> {
                 let text = bytes.split(|&byte| byte == 0).next()?;
                 Some(String::from_utf8_lossy(text).trim().to_owned())
             }
-            // A text may hold commas, and is always the last column.
-            Self::Text(cells) => Some(cells.get(column..)?.join(",").trim().to_owned()),
+            Self::Text(cells) => {
+                // A text may hold commas where it is the last column.
+                let to = match column + 1 == format.columns.len() {
+                    true => cells.len(),
+                    false => column + 1,
+                };
+                Some(cells.get(column..to)?.join(",").trim().to_owned())
+            }
         }
     }
 }

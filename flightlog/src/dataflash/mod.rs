@@ -1,4 +1,4 @@
-//! ArduPilot DataFlash logs.
+//! ArduPilot DataFlash logs, binary here and as text in [`text`].
 //!
 //! A binary log is a row of records: `A3 95`, a type, and as many bytes as the FMT record
 //! of that type said. Nothing protects a record, so it is only believed when another one
@@ -7,6 +7,8 @@
 mod collect;
 mod format;
 mod signals;
+pub(crate) mod text;
+mod untimed;
 
 use std::io;
 

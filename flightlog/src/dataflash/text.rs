@@ -1,0 +1,112 @@
+//! DataFlash logs as text (`.log`): a line a message, the name first.
+
+use std::collections::HashMap;
+use std::io::{self, BufRead, Read};
+
+use super::collect::Collector;
+use super::format::{Cells, FMT, Format};
+use crate::input::Input;
+use crate::{Flight, Options};
+
+/// No line of a log is longer; what is, is no log.
+const LONGEST_LINE: u64 = 4096;
+
+/// Lines above the definitions that are kept: the firmware's name is among them.
+const GREETINGS: usize = 20;
+
+/// Whether one of the first lines defines a message.
+pub(crate) fn looks_like(start: &[u8]) -> bool {
+    start
+        .split(|&byte| byte == b'\n')
+        .take(200)
+        .any(|line| line.starts_with(b"FMT,"))
+}
+
+pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Flight> {
+    let mut reader = Lines {
+        collector: Collector::new(options),
+        types: HashMap::new(),
+    };
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        let read = input.take(LONGEST_LINE).read_until(b'\n', &mut line)?;
+        if read == 0 {
+            break;
+        }
+        reader.line(&line);
+    }
+    Ok(reader
+        .collector
+        .finish(Flight::empty(crate::Format::DataFlashText)))
+}
+
+struct Lines<'o> {
+    collector: Collector<'o>,
+    /// Type of each message by its name.
+    types: HashMap<String, u8>,
+}
+
+impl Lines<'_> {
+    fn line(&mut self, bytes: &[u8]) {
+        let text = String::from_utf8_lossy(bytes);
+        let trimmed = text.trim();
+        if trimmed.is_empty() {
+            return;
+        }
+        if self.types.is_empty() && !trimmed.starts_with("FMT,") {
+            if self.collector.greetings.len() < GREETINGS {
+                self.collector.greetings.push(trimmed.to_owned());
+            }
+            return;
+        }
+        let mut cells = trimmed.split(',').map(str::trim);
+        let name = cells.next().unwrap_or_default();
+        let cells: Vec<&str> = cells.collect();
+        if name == "FMT" {
+            return self.define(&cells, bytes.len());
+        }
+        let Some(&type_id) = self.types.get(name) else {
+            self.collector.report.skipped_bytes += bytes.len() as u64;
+            let report = &mut self.collector.report;
+            report.because(|| "a line that no definition describes".into());
+            return;
+        };
+        if !text.ends_with('\n') && cells.len() < self.collector.columns(type_id) {
+            self.collector.report.truncated = true;
+        }
+        if cells.len() < self.collector.columns(type_id) {
+            self.collector.report.bad_messages += 1;
+            let report = &mut self.collector.report;
+            report.because(|| format!("a line of `{name}` with too few fields"));
+            return;
+        }
+        self.collector.report.messages += 1;
+        self.collector.message(type_id, Cells::Text(&cells));
+    }
+
+    /// `FMT, type, length, name, kinds, label, label, ...`
+    fn define(&mut self, cells: &[&str], bytes: usize) {
+        let format = match cells {
+            [type_id, length, name, kinds, labels @ ..] if !name.is_empty() => (type_id.parse())
+                .ok()
+                .zip(length.parse().ok())
+                .map(|(type_id, length)| {
+                    Format::new(type_id, length, name, kinds, &labels.join(","))
+                }),
+            _ => None,
+        };
+        let Some(format) = format else {
+            self.collector.report.bad_messages += 1;
+            self.collector.report.skipped_bytes += bytes as u64;
+            let report = &mut self.collector.report;
+            report.because(|| "a definition that makes no sense".into());
+            return;
+        };
+        self.collector.report.messages += 1;
+        let (type_id, name) = (format.type_id, format.name.clone());
+        if self.collector.define(format) && type_id != FMT {
+            self.types.insert(name, type_id);
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Messages without a time, as firmware before 3.2 logs them.
+
+use super::format::Cells;
+
+/// Messages kept at most: a log in which none has a time must not fill the memory.
+const MOST: usize = 1 << 16;
+
+/// A message set aside until more is known of its time.
+pub(super) enum Kept {
+    Binary(u8, Vec<u8>),
+    Text(u8, Vec<String>),
+}
+
+impl Kept {
+    pub(super) fn new(type_id: u8, cells: Cells<'_>) -> Self {
+        match cells {
+            Cells::Binary(payload) => Self::Binary(type_id, payload.to_vec()),
+            Cells::Text(cells) => {
+                Self::Text(type_id, cells.iter().map(|&cell| cell.to_owned()).collect())
+            }
+        }
+    }
+
+    pub(super) fn give(&self, take: impl FnOnce(u8, Cells<'_>)) {
+        match self {
+            Self::Binary(type_id, payload) => take(*type_id, Cells::Binary(payload)),
+            Self::Text(type_id, cells) => {
+                let cells: Vec<&str> = cells.iter().map(String::as_str).collect();
+                take(*type_id, Cells::Text(&cells));
+            }
+        }
+    }
+}
+
+/// Gives messages without a time one between those of the messages around them that have
+/// one (most often GPS, five times a second), evenly spread.
+#[derive(Default)]
+pub(super) struct Untimed {
+    kept: Vec<Kept>,
+    /// How many of them came before the first message that had a time.
+    before_first: usize,
+    /// Time of the last message that had one.
+    last_s: Option<f64>,
+    /// Time from one message to the next when last there were any to place.
+    step_s: f64,
+}
+
+impl Untimed {
+    /// Sets a message aside; `false` when there are too many already.
+    pub(super) fn keep(&mut self, type_id: u8, cells: Cells<'_>) -> bool {
+        let room = self.kept.len() < MOST;
+        if room {
+            self.kept.push(Kept::new(type_id, cells));
+        }
+        room
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.kept.is_empty()
+    }
+
+    /// The first message with a time has come, but still waits for a witness.
+    pub(super) fn mark_first(&mut self) {
+        self.before_first = self.kept.len();
+    }
+
+    /// That message was right, and its time is `first_s`.
+    pub(super) fn confirm_first(&mut self, first_s: f64) {
+        self.last_s.get_or_insert(first_s);
+    }
+
+    /// The messages set aside, with their times, now that one at `t_s` follows them. Those
+    /// before the first message with a time are spread as those after it.
+    pub(super) fn placed_before(&mut self, t_s: f64) -> impl Iterator<Item = (f64, Kept)> + use<> {
+        let from_s = self.last_s.replace(t_s).unwrap_or(t_s).min(t_s);
+        let before = std::mem::take(&mut self.before_first);
+        let after = self.kept.len().saturating_sub(before);
+        if after > 0 {
+            self.step_s = (t_s - from_s) / (after + 1) as f64;
+        }
+        self.spread(from_s, before)
+    }
+
+    /// The messages after the last one that had a time; none when no message had one.
+    pub(super) fn placed_at_end(&mut self) -> impl Iterator<Item = (f64, Kept)> + use<> {
+        if self.last_s.is_none() {
+            self.kept.clear();
+        }
+        self.spread(self.last_s.unwrap_or_default(), 0)
+    }
+
+    /// `from_s` is the time of the message that came after `before` of those set aside.
+    fn spread(&mut self, from_s: f64, before: usize) -> impl Iterator<Item = (f64, Kept)> + use<> {
+        let step_s = self.step_s;
+        std::mem::take(&mut self.kept)
+            .into_iter()
+            .enumerate()
+            .map(move |(index, kept)| {
+                let steps = match index < before {
+                    true => -((before - index) as f64),
+                    false => (index - before + 1) as f64,
+                };
+                (from_s + step_s * steps, kept)
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keep(untimed: &mut Untimed, count: usize) {
+        for _ in 0..count {
+            assert!(untimed.keep(1, Cells::Binary(&[])));
+        }
+    }
+
+    fn times(placed: impl Iterator<Item = (f64, Kept)>) -> Vec<f64> {
+        placed.map(|(t_s, _)| t_s).collect()
+    }
+
+    #[test]
+    fn messages_are_spread_between_those_with_a_time() {
+        let mut untimed = Untimed::default();
+        keep(&mut untimed, 2);
+        untimed.mark_first();
+        keep(&mut untimed, 1);
+        untimed.confirm_first(10.0);
+        assert_eq!(times(untimed.placed_before(12.0)), [8.0, 9.0, 11.0]);
+        keep(&mut untimed, 3);
+        assert_eq!(times(untimed.placed_before(14.0)), [12.5, 13.0, 13.5]);
+        keep(&mut untimed, 2);
+        assert_eq!(times(untimed.placed_at_end()), [14.5, 15.0]);
+    }
+
+    #[test]
+    fn without_any_time_nothing_is_placed() {
+        let mut untimed = Untimed::default();
+        keep(&mut untimed, 2);
+        assert!(times(untimed.placed_at_end()).is_empty());
+    }
+}
