@@ -1,30 +1,8 @@
 //! What ArduPilot's parameters and messages say about the vehicle: its kind, its motors,
 //! the range of their commands.
 
-use std::collections::BTreeMap;
-
+use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
-
-/// Parameters by name, each with the FIRST value that the log has of it: in flight,
-/// failure tests and learning change them.
-#[derive(Debug, Default)]
-pub(crate) struct Parameters(BTreeMap<String, f64>);
-
-impl Parameters {
-    pub(crate) fn insert(&mut self, name: &str, value: f64) {
-        if value.is_finite() && !self.0.contains_key(name) {
-            self.0.insert(name.to_owned(), value);
-        }
-    }
-
-    pub(crate) fn get(&self, name: &str) -> Option<f64> {
-        self.0.get(name).copied()
-    }
-
-    fn pair(&self, low: &str, high: &str) -> Option<(f64, f64)> {
-        Some((self.get(low)?, self.get(high)?)).filter(|(low, high)| high > low)
-    }
-}
 
 /// Outputs (from 1) that SERVOn_FUNCTION gives to motors, in order of the motor number.
 fn motor_outputs(parameters: &Parameters) -> Vec<(u16, u16)> {
@@ -159,13 +137,7 @@ pub(crate) fn copter_mode(number: i64) -> String {
         "AUTO_RTL",
         "TURTLE",
     ];
-    let name = usize::try_from(number)
-        .ok()
-        .and_then(|index| NAMES.get(index));
-    match name {
-        Some(name) if !name.is_empty() => (*name).into(),
-        _ => format!("mode {number}"),
-    }
+    name_of(NAMES, number, "mode")
 }
 
 /// Number of motors of a frame by the name or class that the log gives it.
@@ -320,11 +292,7 @@ mod tests {
     use super::*;
 
     fn parameters(pairs: &[(&str, f64)]) -> Parameters {
-        let mut parameters = Parameters::default();
-        for (name, value) in pairs {
-            parameters.insert(name, *value);
-        }
-        parameters
+        pairs.iter().copied().collect()
     }
 
     #[test]

@@ -7,7 +7,7 @@ use csv::{ByteRecord, ReaderBuilder};
 use crate::flight::whole_range;
 use crate::input::Input;
 use crate::read::io_error;
-use crate::signal::Label;
+use crate::signal::{Label, preferred};
 use crate::{
     Commands, Flight, Format, Intervals, Motor, Options, Range, ReadError, Report, Series,
     VehicleKind,
@@ -68,8 +68,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     flight.armed = None;
     flight.in_air = Some(rows.in_air());
     flight.commands = rows.commands;
-    flight.series = vec![rows.series];
-    flight.series.retain(|series| !series.is_empty());
+    flight.series = preferred(vec![rows.series]);
     apply_header(&mut flight, header, &layout)?;
     Ok(flight)
 }

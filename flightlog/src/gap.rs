@@ -112,13 +112,11 @@ impl Flight {
             gaps.push(Gap::NoRange);
         }
         let never = |intervals: &crate::Intervals| intervals.spans.is_empty();
-        if self.armed.as_ref().is_some_and(never) {
-            gaps.push(Gap::NeverArmed);
-        }
-        match &self.in_air {
-            None => gaps.push(Gap::AirUnknown),
-            Some(spans) if never(spans) => gaps.push(Gap::NeverInAir),
-            Some(_) => {}
+        match (&self.armed, &self.in_air) {
+            (Some(armed), _) if never(armed) => gaps.push(Gap::NeverArmed),
+            (_, Some(in_air)) if never(in_air) => gaps.push(Gap::NeverInAir),
+            (_, None) => gaps.push(Gap::AirUnknown),
+            _ => {}
         }
         let attitude = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
         if attitude.iter().any(|name| self.signal(name).is_none()) {

@@ -42,6 +42,19 @@ impl<'r> Input<'r> {
         Ok((&self.buffer[..self.end], self.at_end))
     }
 
+    /// Shows window after window to `scan`, which says how many bytes of each it is done
+    /// with: some of every window, and at the end of the log (`true`) all that it can use.
+    pub(crate) fn scan(&mut self, mut scan: impl FnMut(&[u8], bool) -> usize) -> io::Result<()> {
+        loop {
+            let (window, at_end) = self.window()?;
+            let used = scan(window, at_end);
+            self.consume(used);
+            if at_end || used == 0 {
+                return Ok(());
+            }
+        }
+    }
+
     fn read_more(&mut self) -> io::Result<()> {
         match self.source.read(&mut self.buffer[self.end..]) {
             Ok(0) => self.at_end = true,

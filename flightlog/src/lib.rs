@@ -33,11 +33,15 @@ mod flight;
 mod gap;
 mod input;
 mod interval;
+mod mav_type;
 mod outputs;
+mod parameters;
+mod px4;
 mod read;
 mod report;
 mod signal;
 mod statistics;
+mod ulog;
 mod utc;
 
 pub use error::ReadError;

@@ -1,5 +1,6 @@
 //! Servo outputs as ArduPilot logs them, before it is known which of them drive motors.
 
+use crate::signal::Order;
 use crate::{Commands, Motor};
 
 /// A pulse that is no pulse: the output was not logged in that row.
@@ -23,19 +24,13 @@ impl Outputs {
         first: bool,
         values: impl Iterator<Item = (u16, f64)>,
     ) -> bool {
-        let mut dropped = false;
+        let mut order = Order::Last;
         if first || self.t_s.is_empty() {
-            if self.t_s.last().is_some_and(|&last| t_s < last) {
-                dropped = true;
-                if self
-                    .t_s
-                    .len()
-                    .checked_sub(2)
-                    .is_some_and(|i| self.t_s[i] > t_s)
-                {
-                    return true;
-                }
-                self.pop();
+            order = Order::of(&self.t_s, t_s);
+            match order {
+                Order::Last => {}
+                Order::Replaces => self.pop(),
+                Order::Back => return true,
             }
             self.t_s.push(t_s);
         }
@@ -54,7 +49,7 @@ impl Outputs {
                 _ => MISSING,
             });
         }
-        dropped
+        order != Order::Last
     }
 
     fn pop(&mut self) {

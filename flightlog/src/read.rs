@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use crate::input::Input;
-use crate::{Flight, ReadError, csv, dataflash};
+use crate::{Flight, ReadError, csv, dataflash, ulog};
 
 /// What to read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -82,6 +82,7 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
     let mut flight = match sniff(start) {
         Content::DataFlash => dataflash::read(input, options).map_err(io_error)?,
         Content::DataFlashText => dataflash::text::read(input, options).map_err(io_error)?,
+        Content::ULog => ulog::read(input, options).map_err(io_error)?,
         Content::Csv => csv::read(input, options)?,
         Content::Empty => {
             return Err(ReadError::Empty {
@@ -116,6 +117,7 @@ pub(crate) fn io_error(source: io::Error) -> ReadError {
 enum Content {
     DataFlash,
     DataFlashText,
+    ULog,
     Csv,
     Empty,
     Other(&'static str),
@@ -148,6 +150,9 @@ fn sniff(start: &[u8]) -> Content {
     }
     if dataflash::looks_like(start) {
         return Content::DataFlash;
+    }
+    if ulog::looks_like(start) {
+        return Content::ULog;
     }
     if dataflash::text::looks_like(start) {
         return Content::DataFlashText;

@@ -32,31 +32,26 @@ impl Series {
         }
     }
 
-    /// Adds one row; `values` are in the order of the labels. Times never go back: where
-    /// this one does, either it or the row before is wrong, and that one is dropped, which
-    /// the answer `true` tells.
+    /// Adds one row; `values` are in the order of the labels. `true` tells that a row was
+    /// dropped, this or the last: see [`Order`].
     pub(crate) fn push(&mut self, t_s: f64, values: impl IntoIterator<Item = f64>) -> bool {
-        let mut dropped = false;
-        if let [.., last] = self.t_s[..]
-            && t_s < last
-        {
-            if let [.., before, _] = self.t_s[..]
-                && t_s < before
-            {
-                return true;
+        let order = Order::of(&self.t_s, t_s);
+        match order {
+            Order::Last => {}
+            Order::Replaces => {
+                self.t_s.pop();
+                for column in &mut self.columns {
+                    column.pop();
+                }
             }
-            self.t_s.pop();
-            for column in &mut self.columns {
-                column.pop();
-            }
-            dropped = true;
+            Order::Back => return true,
         }
         self.t_s.push(t_s);
         let mut values = values.into_iter();
         for column in &mut self.columns {
             column.push(values.next().unwrap_or(f64::NAN));
         }
-        dropped
+        order != Order::Last
     }
 
     /// Times of the rows, in seconds on the log's clock, never decreasing.
@@ -76,9 +71,25 @@ impl Series {
             })
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.t_s.is_empty()
+    /// Keeps the signals of which `keep` says so by their name.
+    fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
+        let labels = std::mem::take(&mut self.labels);
+        let columns = std::mem::take(&mut self.columns);
+        let kept = labels.into_iter().zip(columns);
+        (self.labels, self.columns) = kept.filter(|(label, _)| keep(&label.name)).unzip();
     }
+}
+
+/// Series in the order of preference for their signals: of signals with the same name the
+/// first stays, and series without rows or signals go.
+pub(crate) fn preferred(mut series: Vec<Series>) -> Vec<Series> {
+    let mut names = std::collections::BTreeSet::new();
+    series.retain(|series| !series.t_s.is_empty());
+    for series in &mut series {
+        series.retain(|name| names.insert(name.to_owned()));
+    }
+    series.retain(|series| !series.labels.is_empty());
+    series
 }
 
 /// One signal: what it is, when, and its values.
@@ -148,6 +159,28 @@ impl Hold<'_> {
         }
         let value = *self.values.get(self.after.checked_sub(1)?)?;
         value.is_finite().then_some(value)
+    }
+}
+
+/// How a row goes with the rows before it. Times never go back: where one does, either it
+/// or the last before it is damaged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Order {
+    /// It comes last.
+    Last,
+    /// It fits if the last row goes, which was too far ahead.
+    Replaces,
+    /// It goes back even so: it is to be dropped itself.
+    Back,
+}
+
+impl Order {
+    pub(crate) fn of(before_s: &[f64], t_s: f64) -> Self {
+        match before_s {
+            [.., before, last] if t_s < *last && t_s < *before => Self::Back,
+            [.., last] if t_s < *last => Self::Replaces,
+            _ => Self::Last,
+        }
     }
 }
 

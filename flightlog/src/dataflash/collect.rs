@@ -1,51 +1,16 @@
 //! From DataFlash messages, binary or text, to a `Flight`.
 
 use super::format::{Cells, FMT, Format};
-use super::signals::{From, INSTANCE, SPECS, Spec};
+use super::landing::{Landing, air_from_events};
+use super::plan::{Kind, MOTORS, Part, Role};
+use super::signals::SPECS;
 use super::untimed::{Kept, Untimed};
-use crate::ardupilot::{self, Parameters};
+use crate::ardupilot;
 use crate::clock::{Clock, Placed};
 use crate::outputs::Outputs;
-use crate::signal::Label;
-use crate::{Event, Flight, Intervals, Options, Report, Series, utc};
-
-/// What a kind of message is read for. Numbers are columns.
-#[derive(Debug, Clone)]
-enum Role {
-    Nothing,
-    Parameter {
-        name: usize,
-        value: usize,
-    },
-    Text(usize),
-    Event(usize),
-    Arm(usize),
-    Mode {
-        number: Option<usize>,
-        name: usize,
-    },
-    /// Output commands: column and output number, or motor number for MOT.
-    Outputs(Vec<(usize, u16)>),
-    Series(Vec<Part>),
-}
-
-/// One signal of a series.
-#[derive(Debug, Clone)]
-enum Part {
-    Field { column: usize, scale: f64 },
-    Length(usize, usize),
-}
-
-#[derive(Debug, Clone)]
-struct Kind {
-    format: Format,
-    role: Role,
-    /// Column of the time and its unit in seconds.
-    time: Option<(usize, f64)>,
-    instance: Option<usize>,
-    /// Index of its series.
-    series: usize,
-}
+use crate::parameters::Parameters;
+use crate::signal::{Label, preferred};
+use crate::{Event, Flight, Options, Report, Series, utc};
 
 pub(super) struct Collector<'o> {
     options: &'o Options,
@@ -69,19 +34,11 @@ pub(super) struct Collector<'o> {
     utc_at_zero_s: Option<f64>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Landing {
-    Armed,
-    Disarmed,
-    Left,
-    Landed,
-}
-
 impl<'o> Collector<'o> {
     pub(super) fn new(options: &'o Options) -> Self {
         Self {
             options,
-            kinds: vec![None; 256],
+            kinds: (0..256).map(|_| None).collect(),
             named_motors: 0,
             clock: Clock::default(),
             waiting: None,
@@ -135,92 +92,21 @@ impl<'o> Collector<'o> {
                 .because(|| format!("message `{}` is defined twice", format.name));
             return false;
         }
-        let kind = self.plan(format);
-        if let Some(slot) = self.kinds.get_mut(usize::from(kind.format.type_id)) {
+        let type_id = usize::from(format.type_id);
+        let known = &mut self.series;
+        let kind = Kind::new(format, self.options, |name, labels| {
+            series_of(known, name, labels)
+        });
+        if let Role::Outputs(label, columns) = &kind.role {
+            match kind.format.name.as_str() {
+                MOTORS => self.named_motors = columns.len() as u16,
+                _ => self.label = label,
+            }
+        }
+        if let Some(slot) = self.kinds.get_mut(type_id) {
             *slot = Some(kind);
         }
         true
-    }
-
-    fn plan(&mut self, format: Format) -> Kind {
-        // TimeMS of a GPS message is the time in the GPS week; T is that since boot, and
-        // Time is all that firmware before 3.1 has.
-        let labels: &[(&str, f64)] = match format.name.as_str() {
-            "GPS" => &[("TimeUS", 1e-6), ("T", 1e-3), ("Time", 1e-3)],
-            _ => &[("TimeUS", 1e-6), ("TimeMS", 1e-3)],
-        };
-        let time = labels
-            .iter()
-            .find_map(|(label, unit)| Some((format.column(&[label])?, *unit)));
-        let role = self.role(&format);
-        let mut series = 0;
-        if matches!(role, Role::Series(_)) {
-            series = self.series_of(&format);
-        }
-        Kind {
-            instance: match role {
-                Role::Series(_) => format.column(INSTANCE),
-                _ => None,
-            },
-            role,
-            time,
-            series,
-            format,
-        }
-    }
-
-    fn role(&mut self, format: &Format) -> Role {
-        let column = |label| format.column(&[label]);
-        let role = match format.name.as_str() {
-            "PARM" => (column("Name").zip(column("Value")))
-                .map(|(name, value)| Role::Parameter { name, value }),
-            "MSG" => column("Message").map(Role::Text),
-            "EV" => column("Id").map(Role::Event),
-            "ARM" => column("ArmState").map(Role::Arm),
-            "MODE" => column("Mode").map(|name| Role::Mode {
-                number: column("ModeNum"),
-                name,
-            }),
-            "RCOU" | "RCO2" | "RCO3" => {
-                let outputs = numbered(format, &["Chan", "Ch", "C"]);
-                if let Some((label, _)) = outputs.first() {
-                    self.label = label;
-                }
-                Some(Role::Outputs(outputs.into_iter().map(|(_, c)| c).collect()))
-            }
-            "MOT" => {
-                let motors = numbered(format, &["Mot"]);
-                self.named_motors = motors.len() as u16;
-                Some(Role::Outputs(motors.into_iter().map(|(_, c)| c).collect()))
-            }
-            _ => None,
-        };
-        role.or_else(|| {
-            let spec = SPECS.iter().find(|spec| spec.message == format.name)?;
-            let parts = parts(spec, format, self.options);
-            let useful = !parts.is_empty() || format.name == "GPS";
-            useful.then(|| Role::Series(parts.into_iter().map(|(part, _)| part).collect()))
-        })
-        .unwrap_or(Role::Nothing)
-    }
-
-    /// The series for this kind of message, the one of before where it fits.
-    fn series_of(&mut self, format: &Format) -> usize {
-        let Some(spec) = SPECS.iter().find(|spec| spec.message == format.name) else {
-            return 0;
-        };
-        let labels: Vec<Label> = parts(spec, format, self.options)
-            .into_iter()
-            .map(|(_, label)| label)
-            .collect();
-        let same = |(name, series): &(&str, Series)| {
-            *name == spec.message && series.signals().map(|s| s.label).eq(&labels)
-        };
-        if let Some(index) = self.series.iter().position(same) {
-            return index;
-        }
-        self.series.push((spec.message, Series::new(labels)));
-        self.series.len() - 1
     }
 
     /// Takes in a message.
@@ -322,14 +208,8 @@ impl<'o> Collector<'o> {
                 }
             }
             Role::Event(column) => {
-                let landing = match number(*column).map(|id| id as i64) {
-                    Some(10) => Landing::Armed,
-                    Some(11) => Landing::Disarmed,
-                    Some(28) => Landing::Left,
-                    Some(18) => Landing::Landed,
-                    _ => return,
-                };
-                self.events.push((t_s, landing));
+                let landing = number(*column).and_then(Landing::of);
+                self.events.extend(landing.map(|landing| (t_s, landing)));
             }
             Role::Arm(column) => {
                 let landing = match number(*column) {
@@ -347,14 +227,14 @@ impl<'o> Collector<'o> {
                 };
                 self.modes.push(Event::new(t_s, mode));
             }
-            Role::Outputs(columns) => {
+            Role::Outputs(_, columns) => {
                 let values = columns
                     .iter()
                     .filter_map(|(column, output)| Some((*output, number(*column)?)));
                 let first = columns.first().is_none_or(|(_, output)| *output == 1);
                 self.report.bad_messages += u64::from(self.outputs.add(t_s, first, values));
             }
-            Role::Series(parts) => {
+            Role::Series(index, parts) => {
                 if self.utc_at_zero_s.is_none() && format.name == "GPS" {
                     self.utc_at_zero_s = gps_utc_s(format, &cells).map(|utc_s| utc_s - t_s);
                 }
@@ -365,12 +245,12 @@ impl<'o> Collector<'o> {
                     Part::Field { column, scale } => {
                         number(*column).map_or(f64::NAN, |value| value * scale)
                     }
-                    Part::Length(a, b) => match number(*a).zip(number(*b)) {
-                        Some((a, b)) => a.hypot(b),
-                        None => f64::NAN,
-                    },
+                    Part::Length(columns) => {
+                        let squares = columns.iter().map(|&column| number(column).map(|x| x * x));
+                        squares.sum::<Option<f64>>().map_or(f64::NAN, f64::sqrt)
+                    }
                 });
-                if let Some((_, series)) = self.series.get_mut(kind.series) {
+                if let Some((_, series)) = self.series.get_mut(*index) {
                     self.report.bad_messages += u64::from(series.push(t_s, values));
                 }
             }
@@ -404,13 +284,12 @@ impl<'o> Collector<'o> {
             let span_s = span_s.unwrap_or_default();
             let (armed, in_air) = air_from_events(&self.events, self.clock.boots_s(), span_s);
             flight.armed = Some(armed);
-            // Firmware before 3.1 tells of arming, but not of leaving the ground.
-            let tells = |event| matches!(event, Landing::Left | Landing::Landed);
-            if self.events.iter().any(|&(_, event)| tells(event)) {
-                flight.in_air = Some(in_air);
-            }
+            flight.in_air = in_air.or(flight.in_air);
         }
-        flight.series = order(self.series);
+        self.series
+            .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.message == *name));
+        let series = self.series.into_iter().map(|(_, series)| series);
+        flight.series = preferred(series.collect());
         self.modes.sort_by_key(|mode| mode.t_us);
         flight.modes = self.modes;
         flight.messages = self.texts;
@@ -421,64 +300,16 @@ impl<'o> Collector<'o> {
     }
 }
 
-/// Columns labelled with one of `stems` and a number.
-fn numbered(format: &Format, stems: &[&'static str]) -> Vec<(&'static str, (usize, u16))> {
-    let number = |label: &str| {
-        stems.iter().find_map(|stem| {
-            let number: u16 = label.strip_prefix(stem)?.parse().ok()?;
-            (1..=32).contains(&number).then_some((*stem, number))
-        })
+/// The series with these signals of that message: where the definitions are repeated, the
+/// one of before.
+fn series_of(known: &mut Vec<(&str, Series)>, name: &'static str, labels: Vec<Label>) -> usize {
+    let same = |(of, series): &(&str, Series)| {
+        *of == name && series.signals().map(|signal| signal.label).eq(&labels)
     };
-    format
-        .columns
-        .iter()
-        .enumerate()
-        .filter_map(|(column, described)| {
-            let (stem, output) = number(&described.label)?;
-            Some((stem, (column, output)))
-        })
-        .collect()
-}
-
-/// The signals that a message of this format holds and that are asked for.
-fn parts(spec: &Spec, format: &Format, options: &Options) -> Vec<(Part, Label)> {
-    let integer = |column: usize| {
-        let kind = format.columns.get(column).map(|described| described.kind);
-        matches!(kind, Some(b'h' | b'H' | b'i' | b'I'))
-    };
-    spec.signals
-        .iter()
-        .filter(|(_, name, _)| options.wants(name))
-        .filter_map(|(from, name, unit)| {
-            let (part, fields) = match from {
-                From::Field(labels) => {
-                    let column = format.column(labels)?;
-                    (
-                        Part::Field { column, scale: 1.0 },
-                        format.columns.get(column)?.label.clone(),
-                    )
-                }
-                From::Hundredths(labels) => {
-                    let column = format.column(labels)?;
-                    let scale = if integer(column) { 0.01 } else { 1.0 };
-                    (
-                        Part::Field { column, scale },
-                        format.columns.get(column)?.label.clone(),
-                    )
-                }
-                From::Length(a, b) => (
-                    Part::Length(format.column(&[a])?, format.column(&[b])?),
-                    format!("{a}, {b}"),
-                ),
-            };
-            let label = Label {
-                name: (*name).into(),
-                unit: (*unit).into(),
-                source: format!("{}.{fields}", format.name),
-            };
-            Some((part, label))
-        })
-        .collect()
+    known.iter().position(same).unwrap_or_else(|| {
+        known.push((name, Series::new(labels)));
+        known.len() - 1
+    })
 }
 
 /// UTC of a GPS message with a fix, from its week and the time in it.
@@ -487,50 +318,4 @@ fn gps_utc_s(format: &Format, cells: &Cells<'_>) -> Option<f64> {
     let has_fix = number(&["Status"])? >= 3.0;
     let week = number(&["GWk", "Week"]).filter(|&week| has_fix && week > 0.0)?;
     Some(utc::from_gps_s(week, number(&["GMS", "TimeMS"])? * 1e-3))
-}
-
-/// Armed and in-air times from the events of the log. A boot ends both.
-fn air_from_events(
-    events: &[(f64, Landing)],
-    boots_s: &[f64],
-    (first_s, last_s): (f64, f64),
-) -> (Intervals, Intervals) {
-    let changes = |yes: Landing, no: &[Landing]| -> Vec<(f64, bool)> {
-        let mut changes: Vec<(f64, bool)> = events
-            .iter()
-            .filter_map(|&(t_s, event)| match event {
-                event if event == yes => Some((t_s, true)),
-                event if no.contains(&event) => Some((t_s, false)),
-                _ => None,
-            })
-            .chain(boots_s.iter().map(|&t_s| (t_s, false)))
-            .collect();
-        changes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        changes
-    };
-    let first = events.first().map(|&(_, event)| event);
-    let armed = Intervals::from_changes(
-        &changes(Landing::Armed, &[Landing::Disarmed]),
-        // A log whose first word is of flying or its end was already armed before.
-        first.is_some_and(|event| event != Landing::Armed),
-        first_s,
-        last_s,
-        "EV 10 (armed) to EV 11 (disarmed), and ARM",
-    );
-    let in_air = Intervals::from_changes(
-        &changes(Landing::Left, &[Landing::Landed, Landing::Disarmed]),
-        first == Some(Landing::Landed),
-        first_s,
-        last_s,
-        "EV 28 (not landed) to EV 18 (land complete) or disarmed",
-    );
-    (armed, in_air)
-}
-
-/// The series in the order of their table, so that the preferred source of a signal comes
-/// first; those without rows are left out.
-fn order(series: Vec<(&'static str, Series)>) -> Vec<Series> {
-    let mut series: Vec<_> = series.into_iter().filter(|(_, s)| !s.is_empty()).collect();
-    series.sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.message == *name));
-    series.into_iter().map(|(_, series)| series).collect()
 }

@@ -6,6 +6,8 @@
 
 mod collect;
 mod format;
+mod landing;
+mod plan;
 mod signals;
 pub(crate) mod text;
 mod untimed;
@@ -33,14 +35,7 @@ pub(crate) fn looks_like(start: &[u8]) -> bool {
 
 pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Flight> {
     let mut scanner = Scanner::new(options);
-    loop {
-        let (window, at_end) = input.window()?;
-        let used = scanner.scan(window, at_end);
-        io::BufRead::consume(input, used);
-        if at_end {
-            break;
-        }
-    }
+    input.scan(|window, at_end| scanner.scan(window, at_end))?;
     Ok(scanner
         .collector
         .finish(Flight::empty(crate::Format::DataFlash)))

@@ -6,8 +6,8 @@ pub(crate) enum From {
     Field(&'static [&'static str]),
     /// As `Field`; logged in hundredths where the field is an integer (firmware before 3.3).
     Hundredths(&'static [&'static str]),
-    /// Length of the vector of these two.
-    Length(&'static str, &'static str),
+    /// Length of the vector of these.
+    Length(&'static [&'static str]),
 }
 
 /// Signals of one kind of message: how made, name, unit.
@@ -24,7 +24,7 @@ use From::{Field, Hundredths, Length};
 const WIND: &[(From, &str, &str)] = &[
     (Field(&["VWN"]), "ekf_wind_north_m_s", "m/s"),
     (Field(&["VWE"]), "ekf_wind_east_m_s", "m/s"),
-    (Length("VWN", "VWE"), "ekf_wind_m_s", "m/s"),
+    (Length(&["VWN", "VWE"]), "ekf_wind_m_s", "m/s"),
 ];
 
 pub(crate) const SPECS: &[Spec] = &[
@@ -66,6 +66,11 @@ pub(crate) const SPECS: &[Spec] = &[
             (Field(&["VibeX"]), "vibration_x_m_s2", "m/s2"),
             (Field(&["VibeY"]), "vibration_y_m_s2", "m/s2"),
             (Field(&["VibeZ"]), "vibration_z_m_s2", "m/s2"),
+            (
+                Length(&["VibeX", "VibeY", "VibeZ"]),
+                "vibration_m_s2",
+                "m/s2",
+            ),
             (Field(&["Clip", "Clip0"]), "accelerometer_clips", ""),
         ],
     },
@@ -96,7 +101,7 @@ pub(crate) const SPECS: &[Spec] = &[
     Spec {
         message: "RSSI",
         signals: &[
-            (Field(&["RXRSSI"]), "rc_rssi", ""),
+            (Field(&["RXRSSI"]), "rc_rssi", "1"),
             (Field(&["RXLQ"]), "rc_link_quality_pct", "%"),
         ],
     },
@@ -115,7 +120,7 @@ pub(crate) const SPECS: &[Spec] = &[
     Spec {
         message: "SIMW",
         signals: &[
-            (Length("WN", "WE"), "wind_m_s", "m/s"),
+            (Length(&["WN", "WE"]), "wind_m_s", "m/s"),
             (Field(&["WD"]), "wind_down_m_s", "m/s"),
         ],
     },

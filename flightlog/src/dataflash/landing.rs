@@ -1,0 +1,68 @@
+//! When a vehicle was armed and in the air, by the events of a DataFlash log.
+
+use crate::Intervals;
+
+/// An event that changes one of the two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Landing {
+    Armed,
+    Disarmed,
+    /// Left the ground.
+    Left,
+    Landed,
+}
+
+impl Landing {
+    /// The event of that number in EV messages.
+    pub(super) fn of(id: f64) -> Option<Self> {
+        Some(match id as i64 {
+            10 => Self::Armed,
+            11 => Self::Disarmed,
+            28 => Self::Left,
+            18 => Self::Landed,
+            _ => return None,
+        })
+    }
+}
+
+/// Armed and in-air times from the events of the log, the latter only if any event tells.
+/// A boot ends both.
+pub(super) fn air_from_events(
+    events: &[(f64, Landing)],
+    boots_s: &[f64],
+    (first_s, last_s): (f64, f64),
+) -> (Intervals, Option<Intervals>) {
+    let changes = |yes: Landing, no: &[Landing]| -> Vec<(f64, bool)> {
+        let mut changes: Vec<(f64, bool)> = events
+            .iter()
+            .filter_map(|&(t_s, event)| match event {
+                event if event == yes => Some((t_s, true)),
+                event if no.contains(&event) => Some((t_s, false)),
+                _ => None,
+            })
+            .chain(boots_s.iter().map(|&t_s| (t_s, false)))
+            .collect();
+        changes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        changes
+    };
+    let first = events.first().map(|&(_, event)| event);
+    let armed = Intervals::from_changes(
+        &changes(Landing::Armed, &[Landing::Disarmed]),
+        // A log whose first word is of flying or its end was already armed before.
+        first.is_some_and(|event| event != Landing::Armed),
+        first_s,
+        last_s,
+        "EV 10 (armed) to EV 11 (disarmed), and ARM",
+    );
+    let in_air = Intervals::from_changes(
+        &changes(Landing::Left, &[Landing::Landed, Landing::Disarmed]),
+        first == Some(Landing::Landed),
+        first_s,
+        last_s,
+        "EV 28 (not landed) to EV 18 (land complete) or disarmed",
+    );
+    // Firmware before 3.1 tells of arming, but not of leaving the ground.
+    let tells = |event| matches!(event, Landing::Left | Landing::Landed);
+    let told = events.iter().any(|&(_, event)| tells(event));
+    (armed, told.then_some(in_air))
+}

@@ -1,0 +1,168 @@
+//! What is read from each kind of DataFlash message.
+
+use super::format::Format;
+use super::signals::{From, INSTANCE, SPECS, Spec};
+use crate::Options;
+use crate::signal::Label;
+
+/// What a kind of message is read for. Numbers are columns.
+#[derive(Debug)]
+pub(super) enum Role {
+    Nothing,
+    Parameter {
+        name: usize,
+        value: usize,
+    },
+    Text(usize),
+    Event(usize),
+    Arm(usize),
+    Mode {
+        number: Option<usize>,
+        name: usize,
+    },
+    /// Output commands: what their labels start with, column and number of each.
+    Outputs(&'static str, Vec<(usize, u16)>),
+    /// Index of the series, and how each of its signals is made.
+    Series(usize, Vec<Part>),
+}
+
+/// One signal of a series.
+#[derive(Debug)]
+pub(super) enum Part {
+    Field { column: usize, scale: f64 },
+    Length(Vec<usize>),
+}
+
+/// A kind of message and what it is read for.
+#[derive(Debug)]
+pub(super) struct Kind {
+    pub(super) format: Format,
+    pub(super) role: Role,
+    /// Column of the time and its unit in seconds.
+    pub(super) time: Option<(usize, f64)>,
+    pub(super) instance: Option<usize>,
+}
+
+impl Kind {
+    /// `series` gives the index of the series that has these signals, for the message
+    /// of that name.
+    pub(super) fn new(
+        format: Format,
+        options: &Options,
+        series: impl FnOnce(&'static str, Vec<Label>) -> usize,
+    ) -> Self {
+        // TimeMS of a GPS message is the time in the GPS week; T is that since boot, and
+        // Time is all that firmware before 3.1 has.
+        let labels: &[(&str, f64)] = match format.name.as_str() {
+            "GPS" => &[("TimeUS", 1e-6), ("T", 1e-3), ("Time", 1e-3)],
+            _ => &[("TimeUS", 1e-6), ("TimeMS", 1e-3)],
+        };
+        let time = labels
+            .iter()
+            .find_map(|(label, unit)| Some((format.column(&[label])?, *unit)));
+        let role = role(&format)
+            .or_else(|| {
+                let spec = SPECS.iter().find(|spec| spec.message == format.name)?;
+                let parts = parts(spec, &format, options);
+                // GPS messages tell UTC, too.
+                let useful = !parts.is_empty() || format.name == "GPS";
+                let (parts, labels) = parts.into_iter().unzip();
+                useful.then(|| Role::Series(series(spec.message, labels), parts))
+            })
+            .unwrap_or(Role::Nothing);
+        Self {
+            instance: match role {
+                Role::Series(..) => format.column(INSTANCE),
+                _ => None,
+            },
+            role,
+            time,
+            format,
+        }
+    }
+}
+
+/// The role of a message that holds no signals.
+fn role(format: &Format) -> Option<Role> {
+    let column = |label| format.column(&[label]);
+    match format.name.as_str() {
+        "PARM" => column("Name")
+            .zip(column("Value"))
+            .map(|(name, value)| Role::Parameter { name, value }),
+        "MSG" => column("Message").map(Role::Text),
+        "EV" => column("Id").map(Role::Event),
+        "ARM" => column("ArmState").map(Role::Arm),
+        "MODE" => column("Mode").map(|name| Role::Mode {
+            number: column("ModeNum"),
+            name,
+        }),
+        "RCOU" | "RCO2" | "RCO3" => outputs(format, &["Chan", "Ch", "C"]),
+        MOTORS => outputs(format, &["Mot"]),
+        _ => None,
+    }
+}
+
+/// Message of firmware before 3.2 that has a column for each motor.
+pub(super) const MOTORS: &str = "MOT";
+
+/// The columns labelled with one of `stems` and a number.
+fn outputs(format: &Format, stems: &[&'static str]) -> Option<Role> {
+    let number = |label: &str| {
+        stems.iter().find_map(|stem| {
+            let number: u16 = label.strip_prefix(stem)?.parse().ok()?;
+            (1..=32).contains(&number).then_some((*stem, number))
+        })
+    };
+    let columns = format.columns.iter().enumerate();
+    let (stems, columns): (Vec<_>, Vec<_>) = columns
+        .filter_map(|(column, described)| {
+            let (stem, output) = number(&described.label)?;
+            Some((stem, (column, output)))
+        })
+        .unzip();
+    Some(Role::Outputs(stems.first()?, columns))
+}
+
+/// The signals that a message of this format holds and that are asked for.
+fn parts(spec: &Spec, format: &Format, options: &Options) -> Vec<(Part, Label)> {
+    let integer = |column: usize| {
+        let kind = format.columns.get(column).map(|described| described.kind);
+        matches!(kind, Some(b'h' | b'H' | b'i' | b'I'))
+    };
+    spec.signals
+        .iter()
+        .filter(|(_, name, _)| options.wants(name))
+        .filter_map(|(from, name, unit)| {
+            let (part, fields) = match from {
+                From::Field(labels) => {
+                    let column = format.column(labels)?;
+                    (
+                        Part::Field { column, scale: 1.0 },
+                        format.columns.get(column)?.label.clone(),
+                    )
+                }
+                From::Hundredths(labels) => {
+                    let column = format.column(labels)?;
+                    let scale = if integer(column) { 0.01 } else { 1.0 };
+                    (
+                        Part::Field { column, scale },
+                        format.columns.get(column)?.label.clone(),
+                    )
+                }
+                From::Length(labels) => {
+                    let columns = labels.iter().map(|label| format.column(&[label]));
+                    (
+                        Part::Length(columns.collect::<Option<_>>()?),
+                        labels.join(", "),
+                    )
+                }
+            };
+            let label = Label {
+                name: (*name).into(),
+                unit: (*unit).into(),
+                source: format!("{}.{fields}", format.name),
+            };
+            Some((part, label))
+        })
+        .collect()
+}

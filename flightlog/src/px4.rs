@@ -1,0 +1,267 @@
+//! What PX4's parameters say about the vehicle: its kind, its motors, the range of their
+//! commands.
+
+use crate::mav_type::{MavType, mav_type};
+use crate::parameters::Parameters;
+use crate::{Motor, Range, Vehicle};
+
+/// Raw commands above this are no pulse widths in us but counts of a bus.
+const LONGEST_PULSE_US: f64 = 2200.0;
+/// Full command of an ESC on DroneCAN (UAVCAN), 13 bits
+/// (<https://dronecan.github.io/Specification/7._List_of_standard_data_types/#rawcommand>).
+const UAVCAN_FULL: f64 = 8191.0;
+
+/// The vehicle from MAV_TYPE (or the type in vehicle_status) and the build information.
+pub(crate) fn vehicle(
+    parameters: &Parameters,
+    system_type: Option<f64>,
+    firmware: Option<String>,
+) -> (Vehicle, Option<u16>) {
+    let of = |number: Option<f64>, source: &str| {
+        let number = number? as i64;
+        Some((mav_type(number)?, format!("{source} = {number}")))
+    };
+    let found = of(parameters.get("MAV_TYPE"), "MAV_TYPE")
+        .or_else(|| of(system_type, "vehicle_status.system_type"));
+    let mut vehicle = Vehicle {
+        firmware,
+        source: "the log has no MAV_TYPE".into(),
+        ..Vehicle::default()
+    };
+    let Some((MavType { kind, name, motors }, source)) = found else {
+        return (vehicle, None);
+    };
+    vehicle.kind = kind;
+    vehicle.source = source;
+    vehicle.frame = Some(match parameters.get("SYS_AUTOSTART") {
+        Some(airframe) => format!("{name}, airframe {airframe}"),
+        None => name.into(),
+    });
+    (vehicle, motors)
+}
+
+/// Version from `ver_sw_release`: major, minor, patch and kind, a byte each.
+pub(crate) fn firmware(release: u32) -> String {
+    let [major, minor, patch, kind] = release.to_be_bytes();
+    let kind = match kind {
+        255 => "",
+        192.. => " (RC)",
+        128.. => " (beta)",
+        64.. => " (alpha)",
+        _ => " (dev)",
+    };
+    format!("PX4 v{major}.{minor}.{patch}{kind}")
+}
+
+/// The motors of `actuator_motors`, and the range of its commands.
+pub(crate) fn actuator_motors(parameters: &Parameters, used: u16) -> (Vec<Motor>, Range) {
+    let (count, source) = match parameters.get("CA_ROTOR_COUNT") {
+        Some(count) if (1.0..=12.0).contains(&count) => {
+            (count as u16, format!("CA_ROTOR_COUNT = {count}"))
+        }
+        _ => (
+            used,
+            "controls in use (the log has no CA_ROTOR_COUNT)".into(),
+        ),
+    };
+    let motors = (1..=count)
+        .map(|number| Motor {
+            number,
+            output: format!("actuator_motors.control[{}]", number - 1),
+            source: source.clone(),
+        })
+        .collect();
+    let range = Range {
+        low: 0.0,
+        high: 1.0,
+        unit: "1",
+        source: "actuator_motors is a fraction".into(),
+    };
+    (motors, range)
+}
+
+/// The motors of an instance of `actuator_outputs`: those that PWM_MAIN_FUNCn or
+/// PWM_AUX_FUNCn name (1.13 on), else its first `count` outputs. Gives the index of the
+/// output of each motor, too.
+pub(crate) fn actuator_outputs(
+    parameters: &Parameters,
+    instance: u8,
+    count: Option<u16>,
+) -> Vec<(Motor, usize)> {
+    let motor = |number: u16, index: usize, source: String| {
+        let output = format!("actuator_outputs[{instance}].output[{index}]");
+        (
+            Motor {
+                number,
+                output,
+                source,
+            },
+            index,
+        )
+    };
+    let group = bank(instance);
+    let mut motors: Vec<_> = (0..16)
+        .filter_map(|index| {
+            let name = format!("PWM_{group}_FUNC{}", index + 1);
+            let function = parameters.get(&name)?;
+            let number = (101.0..=112.0)
+                .contains(&function)
+                .then_some(function - 100.0)?;
+            Some(motor(number as u16, index, format!("{name} = {function}")))
+        })
+        .collect();
+    if !motors.is_empty() {
+        motors.sort_by_key(|(motor, _)| motor.number);
+        return motors;
+    }
+    (1..=count.unwrap_or(0))
+        .map(|number| {
+            let source = "MAV_TYPE, the first outputs of the instance that drives motors";
+            motor(number, usize::from(number) - 1, source.into())
+        })
+        .collect()
+}
+
+/// Bank of outputs that an instance of `actuator_outputs` shows.
+fn bank(instance: u8) -> &'static str {
+    match instance {
+        0 => "MAIN",
+        _ => "AUX",
+    }
+}
+
+/// Range of `actuator_outputs`, from the build, the parameters of the bank and the largest
+/// command seen; `first` is the index of the output of a motor.
+pub(crate) fn output_range(
+    parameters: &Parameters,
+    instance: u8,
+    first: usize,
+    largest: f64,
+    hardware: &str,
+) -> Option<Range> {
+    let range = |low, high, unit, source: String| Range {
+        low,
+        high,
+        unit,
+        source,
+    };
+    if largest > LONGEST_PULSE_US {
+        let source = "raw commands of UAVCAN ESCs".into();
+        return Some(range(0.0, UAVCAN_FULL, "raw", source));
+    }
+    let bank = bank(instance);
+    let output = first + 1;
+    let of_output = |end: &str| {
+        let own = parameters.get(&format!("PWM_{bank}_{end}{output}"));
+        // -1 stands for the value of the whole bank.
+        own.filter(|&value| value > 0.0)
+            .or_else(|| parameters.get(&format!("PWM_{bank}_{end}")))
+            .or_else(|| parameters.get(&format!("PWM_{end}")))
+    };
+    if let (Some(low), Some(high)) = (of_output("MIN"), of_output("MAX"))
+        && high > low
+        && low > 0.0
+    {
+        let source = format!("PWM_{bank}_MIN/MAX of output {output}, or PWM_MIN/MAX");
+        return Some(range(low, high, "us", source));
+    }
+    match hardware {
+        // RPMMIN and RPMMAX of the driver of Yuneec's TAP ESCs, which has no parameters.
+        "TAP_V1" | "TAP_V2" => Some(range(1200.0, 1900.0, "us", "the TAP ESC driver".into())),
+        _ if hardware.contains("SITL") => Some(range(
+            1000.0,
+            2000.0,
+            "us",
+            "the simulator's outputs".into(),
+        )),
+        _ => None,
+    }
+}
+
+/// Name of a `nav_state` of vehicle_status.
+pub(crate) fn nav_state(number: i64) -> String {
+    const NAMES: &[&str] = &[
+        "MANUAL",
+        "ALTCTL",
+        "POSCTL",
+        "AUTO_MISSION",
+        "AUTO_LOITER",
+        "AUTO_RTL",
+        "",
+        "",
+        "",
+        "",
+        "ACRO",
+        "",
+        "DESCEND",
+        "TERMINATION",
+        "OFFBOARD",
+        "STAB",
+        "",
+        "AUTO_TAKEOFF",
+        "AUTO_LAND",
+        "AUTO_FOLLOW_TARGET",
+        "AUTO_PRECLAND",
+        "ORBIT",
+        "AUTO_VTOL_TAKEOFF",
+    ];
+    crate::parameters::name_of(NAMES, number, "state")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parameters(pairs: &[(&str, f64)]) -> Parameters {
+        pairs.iter().copied().collect()
+    }
+
+    #[test]
+    fn versions() {
+        assert_eq!(firmware(17_301_759), "PX4 v1.8.0");
+        assert_eq!(firmware(17_367_168), "PX4 v1.9.0 (beta)");
+        assert_eq!(firmware(17_760_256), "PX4 v1.15.0 (dev)");
+    }
+
+    #[test]
+    fn generations_of_range_parameters() {
+        let old = [("PWM_MIN", 1075.0), ("PWM_MAX", 1950.0)];
+        let bank = [
+            ("PWM_MAIN_MIN", 1000.0),
+            ("PWM_MAIN_MAX", 1900.0),
+            ("PWM_MAIN_MIN1", -1.0),
+        ];
+        let own = [("PWM_MAIN_MIN1", 1100.0), ("PWM_MAIN_MAX1", 1900.0)];
+        let aux = [("PWM_AUX_MIN3", 1050.0), ("PWM_AUX_MAX3", 1950.0)];
+        for (pairs, instance, first, low) in [
+            (&old[..], 0, 0, 1075.0),
+            (&bank[..], 0, 0, 1000.0),
+            (&own[..], 0, 0, 1100.0),
+            (&aux[..], 1, 2, 1050.0),
+        ] {
+            let range = output_range(&parameters(pairs), instance, first, 1800.0, "X").unwrap();
+            assert_eq!((range.low, range.unit), (low, "us"), "{}", range.source);
+        }
+        let none = parameters(&[]);
+        assert_eq!(output_range(&none, 0, 0, 1800.0, "PX4_FMU_V5"), None);
+        assert_eq!(
+            output_range(&none, 0, 0, 1800.0, "SITL").unwrap().high,
+            2000.0
+        );
+        assert_eq!(output_range(&none, 1, 0, 5200.0, "X").unwrap().high, 8191.0);
+    }
+
+    #[test]
+    fn functions_name_motors() {
+        let found = actuator_outputs(
+            &parameters(&[("PWM_AUX_FUNC1", 102.0), ("PWM_AUX_FUNC4", 101.0)]),
+            1,
+            Some(4),
+        );
+        let found: Vec<_> = found
+            .iter()
+            .map(|(motor, index)| (motor.number, *index))
+            .collect();
+        assert_eq!(found, [(1, 3), (2, 0)]);
+    }
+}

@@ -1,0 +1,369 @@
+//! From ULog messages to a `Flight`.
+
+use super::format::{Place, keyed_number};
+use super::outputs::Outputs;
+use super::plan::{Role, parts};
+use super::signals::SPECS;
+use super::topics::{Topics, key};
+use crate::parameters::Parameters;
+use crate::signal::preferred;
+use crate::{Event, Flight, Format, Intervals, Options, Report, Series, px4};
+
+/// A time this far ahead of all before it is damage, unless the next one agrees.
+const LONGEST_PAUSE_S: f64 = 60.0;
+/// Logged values of an outputs message.
+const OUTPUTS: usize = 16;
+
+pub(super) struct Collector<'o> {
+    options: &'o Options,
+    pub(super) report: Report,
+    pub(super) topics: Topics,
+    roles: Vec<Option<(Place, Role)>>,
+    latest_s: Option<f64>,
+    waiting_s: Option<f64>,
+    parameters: Parameters,
+    outputs: Vec<Outputs>,
+    series: Vec<(&'static str, Series)>,
+    armed: Vec<(f64, bool)>,
+    landed: Vec<(f64, bool)>,
+    modes: Vec<(f64, i64)>,
+    texts: Vec<Event>,
+    system_type: Option<f64>,
+    release: Option<u32>,
+    hardware: String,
+    utc_at_zero_s: Option<f64>,
+}
+
+impl<'o> Collector<'o> {
+    pub(super) fn new(options: &'o Options) -> Self {
+        Self {
+            options,
+            report: Report::default(),
+            topics: Topics::default(),
+            roles: Vec::new(),
+            latest_s: None,
+            waiting_s: None,
+            parameters: Parameters::default(),
+            outputs: Vec::new(),
+            series: Vec::new(),
+            armed: Vec::new(),
+            landed: Vec::new(),
+            modes: Vec::new(),
+            texts: Vec::new(),
+            system_type: None,
+            release: None,
+            hardware: String::new(),
+            utc_at_zero_s: None,
+        }
+    }
+
+    /// Time at which the log began.
+    pub(super) fn started(&mut self, start_us: u64) {
+        self.latest_s = Some(start_us as f64 * 1e-6);
+    }
+
+    /// Takes in a message without its head.
+    pub(super) fn message(&mut self, letter: u8, body: &[u8]) {
+        match letter {
+            b'D' => self.data(body),
+            b'F' => {
+                let text = String::from_utf8_lossy(body);
+                if self.topics.formats.define(&text).is_none() {
+                    self.bad("a definition that makes no sense");
+                }
+            }
+            b'A' => self.announce(body),
+            b'P' => {
+                let value = key(body).and_then(|(key, value)| keyed_number(key, value));
+                if let Some((name, value)) = value {
+                    self.parameters.insert(name, value);
+                }
+            }
+            b'I' => self.information(body),
+            b'L' => self.text(body.get(1..), 0),
+            b'C' => self.text(body.get(3..), 0),
+            b'O' => {
+                let lost_ms = body
+                    .first_chunk()
+                    .map_or(0, |bytes| u16::from_le_bytes(*bytes));
+                let t_s = self.latest_s.unwrap_or_default();
+                let what = format!("the logger lost {lost_ms} ms of data");
+                self.texts.push(Event::new(t_s, what));
+            }
+            _ => {}
+        }
+    }
+
+    fn bad(&mut self, why: &str) {
+        self.report.bad_messages += 1;
+        self.report.because(|| why.into());
+    }
+
+    fn text(&mut self, body: Option<&[u8]>, skip: usize) {
+        let Some((time, text)) = body.and_then(|body| body.get(skip..)?.split_first_chunk()) else {
+            return;
+        };
+        let t_s = u64::from_le_bytes(*time) as f64 * 1e-6;
+        let text = String::from_utf8_lossy(text).trim_end().to_owned();
+        self.texts.push(Event::new(t_s, text));
+    }
+
+    fn information(&mut self, body: &[u8]) {
+        let Some((key, value)) = key(body) else {
+            return;
+        };
+        match key.rsplit(' ').next() {
+            Some("ver_sw_release") => {
+                self.release = keyed_number(key, value).map(|(_, release)| release as u32);
+            }
+            Some("ver_hw") => self.hardware = String::from_utf8_lossy(value).into_owned(),
+            _ => {}
+        }
+    }
+
+    /// `A`: instance, number, name of a topic.
+    fn announce(&mut self, body: &[u8]) {
+        let Some((&[instance, low, high], name)) = body.split_first_chunk() else {
+            return;
+        };
+        let id = u16::from_le_bytes([low, high]);
+        let name = String::from_utf8_lossy(name);
+        self.topics.announce(id, &name);
+        let index = usize::from(id);
+        if self.roles.len() <= index {
+            self.roles.resize_with(index + 1, || None);
+        }
+        let time = self.topics.formats.place(&name, "timestamp");
+        let role = self.role(&name, instance);
+        if let Some(slot) = self.roles.get_mut(index) {
+            *slot = time.zip(Some(role));
+        }
+    }
+
+    fn role(&mut self, name: &str, instance: u8) -> Role {
+        let formats = &self.topics.formats;
+        let place = |field: &str| formats.place(name, field);
+        let commands = |topic: &'static str, field: &str| {
+            let fields = (0..OUTPUTS).map_while(|index| place(&format!("{field}[{index}]")));
+            (topic, fields.collect::<Vec<Place>>())
+        };
+        let (topic, places) = match name {
+            "actuator_motors" => commands("actuator_motors", "control"),
+            "actuator_outputs" => commands("actuator_outputs", "output"),
+            "vehicle_status" if instance == 0 => {
+                return Role::Status {
+                    arming: place("arming_state"),
+                    mode: place("nav_state"),
+                    system_type: place("system_type"),
+                };
+            }
+            "vehicle_land_detected" if instance == 0 => {
+                return place("landed").map_or(Role::Nothing, Role::Land);
+            }
+            _ if instance == 0 => {
+                let Some(spec) = SPECS.iter().find(|spec| spec.topic == name) else {
+                    return Role::Nothing;
+                };
+                let utc = place("time_utc_usec");
+                let parts = parts(spec, &place, self.options);
+                if parts.is_empty() && utc.is_none() {
+                    return Role::Nothing;
+                }
+                let (parts, labels): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+                self.series.push((spec.topic, Series::new(labels)));
+                return Role::Series(self.series.len() - 1, parts, utc);
+            }
+            _ => return Role::Nothing,
+        };
+        let known = |outputs: &Outputs| outputs.topic == topic && outputs.instance == instance;
+        let index = self.outputs.iter().position(known).unwrap_or_else(|| {
+            let width = places.len();
+            self.outputs.push(Outputs::new(topic, instance, width));
+            self.outputs.len() - 1
+        });
+        Role::Outputs(index, places)
+    }
+
+    /// `D`: number of the topic, then its fields.
+    fn data(&mut self, body: &[u8]) {
+        let Some((&id, body)) = body.split_first_chunk() else {
+            return;
+        };
+        let index = usize::from(u16::from_le_bytes(id));
+        let Some((time, role)) = self.roles.get(index).and_then(Option::as_ref) else {
+            return;
+        };
+        if matches!(role, Role::Nothing) {
+            return;
+        }
+        let Some(t_s) = time.number(body).map(|time_us| time_us * 1e-6) else {
+            return self.bad("a message without a time");
+        };
+        if !believe(&mut self.latest_s, &mut self.waiting_s, t_s) {
+            return self.bad("a message with a time that no other agrees with");
+        }
+        let flag = |place: &Place, yes: f64| Some((t_s, place.number(body)? == yes));
+        match role {
+            Role::Nothing => {}
+            Role::Outputs(index, places) => {
+                let values = places
+                    .iter()
+                    .map(|place| place.number(body).unwrap_or(f64::NAN) as f32);
+                let Some(outputs) = self.outputs.get_mut(*index) else {
+                    return;
+                };
+                self.report.bad_messages += u64::from(outputs.push(t_s, values));
+            }
+            Role::Status {
+                arming,
+                mode,
+                system_type,
+            } => {
+                self.armed
+                    .extend(arming.as_ref().and_then(|place| flag(place, 2.0)));
+                let mode = mode
+                    .and_then(|place| place.number(body))
+                    .map(|mode| mode as i64);
+                if let Some(mode) = mode
+                    && self.modes.last().is_none_or(|(_, last)| *last != mode)
+                {
+                    self.modes.push((t_s, mode));
+                }
+                let system_type = system_type.and_then(|place| place.number(body));
+                self.system_type = self.system_type.or(system_type);
+            }
+            Role::Land(place) => self.landed.extend(flag(place, 1.0)),
+            Role::Series(index, parts, utc) => {
+                if let (None, Some(place)) = (self.utc_at_zero_s, utc) {
+                    let utc_us = place.number(body).filter(|&utc_us| utc_us > 0.0);
+                    self.utc_at_zero_s = utc_us.map(|utc_us| utc_us * 1e-6 - t_s);
+                }
+                if let Some((_, series)) = self.series.get_mut(*index)
+                    && !parts.is_empty()
+                {
+                    let values = parts
+                        .iter()
+                        .map(|part| part.value(body).unwrap_or(f64::NAN));
+                    self.report.bad_messages += u64::from(series.push(t_s, values));
+                }
+            }
+        }
+    }
+
+    /// The flight, once the whole log has been read.
+    pub(super) fn finish(mut self) -> Flight {
+        let mut flight = Flight::empty(Format::ULog);
+        let firmware = self.release.map(px4::firmware);
+        let (vehicle, count) = px4::vehicle(&self.parameters, self.system_type, firmware);
+        flight.vehicle = vehicle;
+        self.take_commands(&mut flight, count);
+        self.series
+            .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.topic == *name));
+        let series = self.series.into_iter().map(|(_, series)| series);
+        flight.series = preferred(series.collect());
+        flight.modes = self
+            .modes
+            .into_iter()
+            .map(|(t_s, mode)| Event::new(t_s, px4::nav_state(mode)))
+            .collect();
+        flight.messages = self.texts;
+        flight.utc_at_zero_s = self.utc_at_zero_s;
+        flight.report = self.report;
+        let span_s = flight.time_span_s().unwrap_or_default();
+        if !self.armed.is_empty() {
+            let rule = "vehicle_status.arming_state = 2";
+            flight.armed = Some(intervals(&self.armed, span_s, rule));
+        }
+        if !self.landed.is_empty() {
+            let flying: Vec<(f64, bool)> =
+                self.landed.iter().map(|&(t, down)| (t, !down)).collect();
+            flight.in_air = Some(match self.armed.is_empty() {
+                true => intervals(&flying, span_s, "vehicle_land_detected.landed = 0"),
+                false => {
+                    let rule =
+                        "vehicle_land_detected.landed = 0 and vehicle_status.arming_state = 2";
+                    intervals(&both(&flying, &self.armed), span_s, rule)
+                }
+            });
+        }
+        flight
+    }
+
+    /// Motors, their commands and the range of these.
+    fn take_commands(&self, flight: &mut Flight, count: Option<u16>) {
+        let logged = |topic: &'static str| {
+            let of_topic = move |outputs: &&Outputs| outputs.topic == topic && !outputs.is_empty();
+            self.outputs.iter().filter(of_topic)
+        };
+        let topic = "actuator_motors";
+        if let Some(outputs) = logged(topic).find(|outputs| outputs.instance == 0) {
+            let (motors, range) = px4::actuator_motors(&self.parameters, outputs.in_use() as u16);
+            // A motor that is told to stop is NaN there.
+            flight.commands = outputs.commands(0..motors.len(), |value| {
+                if value.is_nan() { 0.0 } else { value.into() }
+            });
+            flight.motors = motors;
+            flight.range = Some(range);
+            return;
+        }
+        // The other instances drive gimbals and the like, or are all zero.
+        for outputs in logged("actuator_outputs") {
+            let instance = outputs.instance;
+            let found = px4::actuator_outputs(&self.parameters, instance, count);
+            let Some(&(_, first)) = found.first() else {
+                continue;
+            };
+            let largest = outputs.largest(found.iter().map(|(_, index)| *index));
+            if largest <= 0.0 {
+                continue;
+            }
+            let hardware = &self.hardware;
+            let indices = found.iter().map(|(_, index)| *index);
+            flight.commands = outputs.commands(indices, f64::from);
+            flight.range =
+                px4::output_range(&self.parameters, instance, first, largest.into(), hardware);
+            flight.motors = found.into_iter().map(|(motor, _)| motor).collect();
+            return;
+        }
+        let (motors, _) = px4::actuator_motors(&self.parameters, count.unwrap_or(0));
+        flight.motors = motors;
+    }
+}
+
+/// Whether to believe a time: topics may be late, but not far ahead of all others.
+fn believe(latest_s: &mut Option<f64>, waiting_s: &mut Option<f64>, t_s: f64) -> bool {
+    let agrees = |with_s: f64| t_s - with_s <= LONGEST_PAUSE_S;
+    let latest = *latest_s.get_or_insert(t_s);
+    let witness = waiting_s.is_some_and(|waiting| agrees(waiting) && t_s >= waiting);
+    if !agrees(latest) && !witness {
+        *waiting_s = Some(t_s);
+        return false;
+    }
+    *latest_s = Some(latest.max(t_s));
+    true
+}
+
+/// Where both states hold, from the changes of each; the first value of each holds before.
+fn both(a: &[(f64, bool)], b: &[(f64, bool)]) -> Vec<(f64, bool)> {
+    let mut times: Vec<f64> = a.iter().chain(b).map(|(t_s, _)| *t_s).collect();
+    times.sort_by(f64::total_cmp);
+    let at = |states: &[(f64, bool)], t_s: f64| {
+        let after = states.partition_point(|(since, _)| *since <= t_s);
+        let index = after.saturating_sub(1);
+        states.get(index).is_some_and(|(_, state)| *state)
+    };
+    times
+        .into_iter()
+        .map(|t_s| (t_s, at(a, t_s) && at(b, t_s)))
+        .collect()
+}
+
+/// The intervals of a state, whose first value holds before it, too.
+fn intervals(states: &[(f64, bool)], (first_s, last_s): (f64, f64), rule: &str) -> Intervals {
+    let before = states.first().is_some_and(|(_, state)| *state);
+    let within: Vec<(f64, bool)> = states
+        .iter()
+        .map(|&(t_s, state)| (t_s.max(first_s), state))
+        .collect();
+    Intervals::from_changes(&within, before, first_s, last_s, rule)
+}

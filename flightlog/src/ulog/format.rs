@@ -1,0 +1,217 @@
+//! ULog is self-describing: definitions say where the fields of a topic are.
+
+use std::collections::HashMap;
+
+/// Nested topics go no deeper than this; deeper ones are damage.
+const DEEPEST: usize = 8;
+/// No message is longer: its length has 16 bits.
+const LONGEST: usize = u16::MAX as usize;
+
+/// One field of a topic.
+#[derive(Debug, Clone, PartialEq)]
+struct Field {
+    kind: String,
+    count: usize,
+    name: String,
+}
+
+/// All definitions of a log.
+#[derive(Debug, Default)]
+pub(super) struct Formats(HashMap<String, Vec<Field>>);
+
+/// Where a number is in a message, and of what type.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    offset: usize,
+    kind: Kind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl Kind {
+    fn of(name: &str) -> Option<Self> {
+        Some(match name {
+            "int8_t" => Self::I8,
+            "uint8_t" | "bool" | "char" => Self::U8,
+            "int16_t" => Self::I16,
+            "uint16_t" => Self::U16,
+            "int32_t" => Self::I32,
+            "uint32_t" => Self::U32,
+            "int64_t" => Self::I64,
+            "uint64_t" => Self::U64,
+            "float" => Self::F32,
+            "double" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    fn width(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
+impl Place {
+    /// The number in `message`; `None` where the message is too short.
+    pub(super) fn number(self, message: &[u8]) -> Option<f64> {
+        let bytes = message.get(self.offset..)?;
+        Some(match self.kind {
+            Kind::I8 => f64::from(i8::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::U8 => f64::from(*bytes.first()?),
+            Kind::I16 => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::U16 => f64::from(u16::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::I32 => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::U32 => f64::from(u32::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::I64 => i64::from_le_bytes(*bytes.first_chunk()?) as f64,
+            Kind::U64 => u64::from_le_bytes(*bytes.first_chunk()?) as f64,
+            Kind::F32 => f64::from(f32::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::F64 => f64::from_le_bytes(*bytes.first_chunk()?),
+        })
+    }
+}
+
+/// A typed value: the number after a key such as `float MPC_THR_HOVER`, with its name.
+pub(super) fn keyed_number<'k>(key: &'k str, value: &[u8]) -> Option<(&'k str, f64)> {
+    let (kind, name) = key.split_once(' ')?;
+    let place = Place {
+        offset: 0,
+        kind: Kind::of(kind)?,
+    };
+    Some((name, place.number(value)?))
+}
+
+impl Formats {
+    /// Takes in a definition, `name:type field;type field;...`. The first of a name holds.
+    pub(super) fn define(&mut self, text: &str) -> Option<()> {
+        let (name, fields) = text.split_once(':')?;
+        let fields = fields
+            .split(';')
+            .filter(|field| !field.is_empty())
+            .map(field)
+            .collect::<Option<Vec<Field>>>()?;
+        self.0.entry(name.to_owned()).or_insert(fields);
+        Some(())
+    }
+
+    /// Bytes of a topic as it is logged: with its padding, but for that at the end.
+    pub(super) fn logged_size(&self, topic: &str) -> Option<usize> {
+        let fields = self.0.get(topic)?;
+        let padding = |field: &&Field| field.name.starts_with("_padding");
+        let end = fields.iter().rev().take_while(padding).count();
+        self.size_of(fields.get(..fields.len() - end)?, DEEPEST)
+    }
+
+    fn size_of(&self, fields: &[Field], depth: usize) -> Option<usize> {
+        fields.iter().try_fold(0_usize, |size, field| {
+            let one = self.field_size(field, depth)?;
+            let size = size.checked_add(one.checked_mul(field.count)?)?;
+            (size <= LONGEST).then_some(size)
+        })
+    }
+
+    /// Bytes of one element of a field.
+    fn field_size(&self, field: &Field, depth: usize) -> Option<usize> {
+        if let Some(kind) = Kind::of(&field.kind) {
+            return Some(kind.width());
+        }
+        self.size_of(self.0.get(&field.kind)?, depth.checked_sub(1)?)
+    }
+
+    /// Where the field called `name`, with its index as in `q[2]`, is in a topic.
+    pub(super) fn place(&self, topic: &str, name: &str) -> Option<Place> {
+        let (name, index) = match name.split_once('[') {
+            Some((name, index)) => (name, index.strip_suffix(']')?.parse().ok()?),
+            None => (name, 0_usize),
+        };
+        let mut offset = 0;
+        for field in self.0.get(topic)? {
+            let size = self.field_size(field, DEEPEST)?;
+            if field.name == name {
+                let kind = Kind::of(&field.kind)?;
+                return (index < field.count).then_some(Place {
+                    offset: offset + index * size,
+                    kind,
+                });
+            }
+            offset += size.checked_mul(field.count)?;
+        }
+        None
+    }
+}
+
+/// `type name` or `type[count] name`.
+fn field(text: &str) -> Option<Field> {
+    let (kind, name) = text.trim().split_once(' ')?;
+    let (kind, count) = match kind.split_once('[') {
+        Some((kind, count)) => (kind, count.strip_suffix(']')?.parse().ok()?),
+        None => (kind, 1),
+    };
+    Some(Field {
+        kind: kind.into(),
+        count,
+        name: name.trim().into(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn formats() -> Formats {
+        let mut formats = Formats::default();
+        for text in [
+            "esc:uint64_t timestamp;float rpm;uint8_t[4] _padding0",
+            "all:uint64_t timestamp;esc[2] esc;float[4] q;bool landed;uint8_t[7] _padding0;",
+        ] {
+            formats.define(text).unwrap();
+        }
+        formats
+    }
+
+    #[test]
+    fn fields_stand_behind_nested_topics() {
+        let formats = formats();
+        assert_eq!(formats.logged_size("all"), Some(8 + 2 * 16 + 16 + 1));
+        assert_eq!(formats.logged_size("esc"), Some(12));
+        let place = formats.place("all", "q[2]").unwrap();
+        assert_eq!(place.offset, 8 + 32 + 8);
+        let mut message = vec![0; 57];
+        message[48..52].copy_from_slice(&1.5_f32.to_le_bytes());
+        assert_eq!(place.number(&message), Some(1.5));
+        assert_eq!(place.number(&message[..50]), None);
+        assert_eq!(formats.place("all", "q[4]"), None);
+        assert_eq!(formats.place("all", "esc"), None);
+    }
+
+    #[test]
+    fn damaged_definitions_are_none() {
+        let mut formats = formats();
+        for text in ["no colon", "a:float", "a:float[x] b", "a:float[3 b"] {
+            assert_eq!(formats.define(text), None, "{text}");
+        }
+        formats.define("loop:loop inner").unwrap();
+        formats
+            .define("huge:float[9999999999999999999] x")
+            .unwrap_or_default();
+        formats.define("wide:double[1000000] x").unwrap();
+        for topic in ["loop", "wide", "unknown"] {
+            assert_eq!(formats.logged_size(topic), None, "{topic}");
+        }
+    }
+}

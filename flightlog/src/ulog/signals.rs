@@ -1,0 +1,193 @@
+//! Which ULog topics hold which signals.
+
+/// How a signal is made from the fields of a topic.
+pub(super) enum From {
+    /// A field, times a factor.
+    Field(&'static str, f64),
+    /// Length of the vector of these.
+    Length(&'static [&'static str]),
+    /// An angle of the attitude quaternion in the four elements of this field.
+    Angle(Angle, &'static str),
+}
+
+/// Angles of an attitude, in the order yaw, pitch, roll (ZYX).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Angle {
+    Roll,
+    Pitch,
+    Yaw,
+}
+
+impl Angle {
+    /// The angle in degrees of the quaternion `[w, x, y, z]`.
+    pub(super) fn of(self, [w, x, y, z]: [f64; 4]) -> f64 {
+        match self {
+            Self::Roll => (2.0 * (w * x + y * z)).atan2(1.0 - 2.0 * (x * x + y * y)),
+            Self::Pitch => (2.0 * (w * y - z * x)).clamp(-1.0, 1.0).asin(),
+            Self::Yaw => (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z)),
+        }
+        .to_degrees()
+    }
+}
+
+/// Signals of one topic: how made (the first way that the topic has), name, unit.
+pub(super) struct Spec {
+    pub(super) topic: &'static str,
+    pub(super) signals: &'static [(&'static [From], &'static str, &'static str)],
+}
+
+use From::{Field, Length};
+
+const DEG: f64 = 180.0 / std::f64::consts::PI;
+
+const WIND: &[(&[From], &str, &str)] = &[
+    (
+        &[Field("windspeed_north", 1.0)],
+        "ekf_wind_north_m_s",
+        "m/s",
+    ),
+    (&[Field("windspeed_east", 1.0)], "ekf_wind_east_m_s", "m/s"),
+    (
+        &[Length(&["windspeed_north", "windspeed_east"])],
+        "ekf_wind_m_s",
+        "m/s",
+    ),
+];
+
+const GPS: &[(&[From], &str, &str)] = &[
+    (&[Field("fix_type", 1.0)], "gps_fix", ""),
+    (&[Field("satellites_used", 1.0)], "gps_satellites", ""),
+    (&[Field("hdop", 1.0)], "gps_hdop", ""),
+    (&[Field("eph", 1.0)], "gps_horizontal_accuracy_m", "m"),
+    (&[Field("epv", 1.0)], "gps_vertical_accuracy_m", "m"),
+    (&[Field("vel_m_s", 1.0)], "ground_speed_m_s", "m/s"),
+];
+
+const RADIO: &[(&[From], &str, &str)] = &[
+    (&[Field("rssi", 1.0)], "radio_rssi", ""),
+    (
+        &[Field("remote_rssi", 1.0), Field("rssi_remote", 1.0)],
+        "radio_remote_rssi",
+        "",
+    ),
+    (&[Field("noise", 1.0)], "radio_noise", ""),
+];
+
+/// Where two topics hold the same signal, the first is preferred.
+pub(super) const SPECS: &[Spec] = &[
+    Spec {
+        topic: "vehicle_attitude",
+        signals: &[
+            (&[From::Angle(Angle::Roll, "q")], "roll_deg", "deg"),
+            (&[From::Angle(Angle::Pitch, "q")], "pitch_deg", "deg"),
+            (&[From::Angle(Angle::Yaw, "q")], "yaw_deg", "deg"),
+        ],
+    },
+    Spec {
+        topic: "vehicle_attitude_setpoint",
+        signals: &[
+            (
+                &[Field("roll_body", DEG), From::Angle(Angle::Roll, "q_d")],
+                "roll_des_deg",
+                "deg",
+            ),
+            (
+                &[Field("pitch_body", DEG), From::Angle(Angle::Pitch, "q_d")],
+                "pitch_des_deg",
+                "deg",
+            ),
+            (
+                &[Field("yaw_body", DEG), From::Angle(Angle::Yaw, "q_d")],
+                "yaw_des_deg",
+                "deg",
+            ),
+        ],
+    },
+    Spec {
+        topic: "battery_status",
+        signals: &[
+            (&[Field("voltage_v", 1.0)], "battery_v", "V"),
+            (&[Field("current_a", 1.0)], "battery_a", "A"),
+            (&[Field("discharged_mah", 1.0)], "battery_used_mah", "mAh"),
+            (&[Field("remaining", 100.0)], "battery_remaining_pct", "%"),
+        ],
+    },
+    Spec {
+        topic: "vehicle_local_position",
+        signals: &[
+            (&[Field("z", -1.0)], "altitude_m", "m"),
+            (&[Field("vz", -1.0)], "climb_m_s", "m/s"),
+        ],
+    },
+    Spec {
+        topic: "vehicle_imu_status",
+        signals: &[
+            (
+                &[Field("accel_vibration_metric", 1.0)],
+                "vibration_m_s2",
+                "m/s2",
+            ),
+            (&[Field("accel_clipping", 1.0)], "accelerometer_clips", ""),
+        ],
+    },
+    Spec {
+        topic: "estimator_status",
+        signals: &[(&[Field("vibe[2]", 1.0)], "vibration_m_s2", "m/s2")],
+    },
+    Spec {
+        topic: "vehicle_gps_position",
+        signals: GPS,
+    },
+    Spec {
+        topic: "sensor_gps",
+        signals: GPS,
+    },
+    Spec {
+        topic: "input_rc",
+        signals: &[(&[Field("rssi", 0.01)], "rc_rssi", "1")],
+    },
+    Spec {
+        topic: "radio_status",
+        signals: RADIO,
+    },
+    Spec {
+        topic: "telemetry_status",
+        signals: RADIO,
+    },
+    Spec {
+        topic: "wind",
+        signals: WIND,
+    },
+    Spec {
+        topic: "estimator_wind",
+        signals: WIND,
+    },
+    Spec {
+        topic: "wind_estimate",
+        signals: WIND,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_of_single_turns() {
+        let half = 15.0_f64.to_radians();
+        let (c, s) = (half.cos(), half.sin());
+        for (angle, turn) in [
+            (Angle::Roll, [c, s, 0.0, 0.0]),
+            (Angle::Pitch, [c, 0.0, s, 0.0]),
+            (Angle::Yaw, [c, 0.0, 0.0, s]),
+        ] {
+            for other in [Angle::Roll, Angle::Pitch, Angle::Yaw] {
+                let expected = if other == angle { 30.0 } else { 0.0 };
+                assert!(
+                    (other.of(turn) - expected).abs() < 1e-12,
+                    "{other:?} of {angle:?}"
+                );
+            }
+        }
+    }
+}
