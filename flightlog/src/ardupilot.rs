@@ -55,11 +55,9 @@ pub(crate) fn motors(parameters: &Parameters, vehicle: &Vehicle, label: &str) ->
     if has_functions(parameters) {
         return motors_by_function(parameters, label);
     }
-    let Some(frame) = &vehicle.frame else {
-        return Vec::new();
-    };
+    let frame = vehicle.frame.as_deref().unwrap_or_default();
     let source = format!("frame {frame} (the log has no SERVOn_FUNCTION)");
-    numbered_motors(motors_of_frame(frame).unwrap_or(0), label, &source)
+    numbered_motors(vehicle.motors.unwrap_or(0), label, &source)
 }
 
 /// Motors 1 to `motors`, on outputs of the same number.
@@ -248,6 +246,7 @@ pub(crate) fn vehicle<'a>(
     Vehicle {
         kind,
         source,
+        motors: frame.as_deref().and_then(motors_of_frame),
         frame,
         firmware: firmware.map(str::to_owned),
     }

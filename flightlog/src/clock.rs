@@ -1,9 +1,12 @@
 //! The clock of a log: which time stamps to believe, and where it starts again.
 
-/// Steps from one message to the next that need no second witness, in seconds.
-const PLAIN_STEP_S: std::ops::RangeInclusive<f64> = -1.0..=2.0;
+/// Steps from one message to the next that need no second witness, in seconds. Back must
+/// reach further than forward: the message before may be the damaged one.
+const PLAIN_STEP_S: std::ops::RangeInclusive<f64> = -2.5..=2.0;
 /// How far after a message that jumped the next one bears witness to it, in seconds.
 const WITNESS_STEP_S: std::ops::RangeInclusive<f64> = -1.0..=60.0;
+/// A clock that goes back by more than this, in seconds, started anew.
+const BOOT_STEP_S: f64 = -10.0;
 
 /// What to do with a message of some time.
 #[derive(Debug, PartialEq)]
@@ -85,7 +88,7 @@ impl Clock {
         match self.waiting_s.replace(t_s) {
             Some(first_s) if WITNESS_STEP_S.contains(&(t_s - first_s)) => {
                 self.waiting_s = None;
-                if first_s < last_s {
+                if first_s - last_s < BOOT_STEP_S {
                     self.boot(last_s);
                 }
                 self.last_s = Some(t_s);
@@ -139,8 +142,8 @@ mod tests {
             ("a pause", &[5.0, 5.1, 90.0, 90.1], &[5.0, 5.1, 90.0, 90.1]),
             (
                 "a boot",
-                &[5.0, 5.5, 2.0, 2.5, 3.0],
-                &[5.0, 5.5, 7.5, 8.0, 8.5],
+                &[25.0, 25.5, 2.0, 2.5, 3.0],
+                &[25.0, 25.5, 27.5, 28.0, 28.5],
             ),
         ];
         for (name, times, expected) in cases {

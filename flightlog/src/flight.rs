@@ -93,6 +93,8 @@ pub struct Vehicle {
     pub source: String,
     /// Frame or type name, such as `QUAD/X`.
     pub frame: Option<String>,
+    /// Number of motors, where the frame tells it.
+    pub motors: Option<u16>,
     /// Firmware with version.
     pub firmware: Option<String>,
 }

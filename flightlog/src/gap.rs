@@ -20,7 +20,15 @@ pub enum Gap {
     /// No output is known to drive a motor.
     #[error("the log does not say which outputs drive the motors")]
     NoMotors,
-    /// Motors are known, but their commands were not logged.
+    /// Some motors are known, but others are missing.
+    #[error("outputs are known for {found} of the {expected} motors only")]
+    MotorsMissing {
+        /// Motors whose outputs are known.
+        found: usize,
+        /// Motors that the vehicle has, by its frame and the numbers of the known ones.
+        expected: usize,
+    },
+    /// Motors are known, but their commands were not logged, or not while in the air.
     #[error("the commands of the motors are not in the log")]
     NoCommands,
     /// The range of the motor commands is unknown.
@@ -50,7 +58,10 @@ impl Gap {
     /// What the pilot can do so that the next log holds it.
     pub fn help(&self) -> Option<&'static str> {
         match self {
-            Self::NotAMultirotor { .. } | Self::NeverArmed | Self::NeverInAir => None,
+            Self::NotAMultirotor { .. }
+            | Self::MotorsMissing { .. }
+            | Self::NeverArmed
+            | Self::NeverInAir => None,
             Self::NoMotors => Some(
                 "ArduPilot: log from boot, so that the SERVOn_FUNCTION parameters are in it; CSV: name the columns pwm1.. or motor1..",
             ),
@@ -73,7 +84,10 @@ impl Gap {
     }
 
     pub(crate) fn stops_statistics(&self) -> bool {
-        !matches!(self, Self::NoAttitude | Self::TooSlow { .. })
+        !matches!(
+            self,
+            Self::NoAttitude | Self::TooSlow { .. } | Self::MotorsMissing { .. }
+        )
     }
 }
 
@@ -107,6 +121,12 @@ impl Flight {
             gaps.push(Gap::NoMotors);
         } else if self.commands.is_empty() {
             gaps.push(Gap::NoCommands);
+        }
+        let numbers = self.motors.iter().map(|motor| motor.number.into());
+        let expected = numbers.chain(self.vehicle.motors.map(usize::from)).max();
+        let found = self.motors.len();
+        if let Some(expected) = expected.filter(|&expected| expected > found && found > 0) {
+            gaps.push(Gap::MotorsMissing { found, expected });
         }
         if self.range.is_none() && !self.motors.is_empty() {
             gaps.push(Gap::NoRange);

@@ -3,8 +3,10 @@
 use crate::signal::Order;
 use crate::{Commands, Motor};
 
-/// A pulse that is no pulse: the output was not logged in that row.
+/// A pulse that is no pulse: the output was not logged in that row, or is damaged.
 const MISSING: u16 = u16::MAX;
+/// No output has longer pulses, in us; what has is damaged.
+const LONGEST_PULSE_US: f64 = 3000.0;
 
 /// Rows of pulse widths, a column an output.
 #[derive(Debug, Default)]
@@ -45,7 +47,7 @@ impl Outputs {
             };
             column.resize(row, MISSING);
             column.push(match value {
-                value if (0.0..f64::from(MISSING)).contains(&value) => value as u16,
+                value if (0.0..=LONGEST_PULSE_US).contains(&value) => value as u16,
                 _ => MISSING,
             });
         }

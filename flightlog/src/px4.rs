@@ -16,7 +16,7 @@ pub(crate) fn vehicle(
     parameters: &Parameters,
     system_type: Option<f64>,
     firmware: Option<String>,
-) -> (Vehicle, Option<u16>) {
+) -> Vehicle {
     let of = |number: Option<f64>, source: &str| {
         let number = number? as i64;
         Some((mav_type(number)?, format!("{source} = {number}")))
@@ -29,15 +29,16 @@ pub(crate) fn vehicle(
         ..Vehicle::default()
     };
     let Some((MavType { kind, name, motors }, source)) = found else {
-        return (vehicle, None);
+        return vehicle;
     };
     vehicle.kind = kind;
     vehicle.source = source;
+    vehicle.motors = motors;
     vehicle.frame = Some(match parameters.get("SYS_AUTOSTART") {
         Some(airframe) => format!("{name}, airframe {airframe}"),
         None => name.into(),
     });
-    (vehicle, motors)
+    vehicle
 }
 
 /// Version from `ver_sw_release`: major, minor, patch and kind, a byte each.

@@ -79,7 +79,7 @@ impl Flight {
             }
         }
         if samples == 0 {
-            return Err(Gap::NeverInAir);
+            return Err(Gap::NoCommands);
         }
         Ok(Statistics {
             samples,

@@ -254,9 +254,8 @@ impl<'o> Collector<'o> {
     pub(super) fn finish(mut self) -> Flight {
         let mut flight = Flight::empty(Format::ULog);
         let firmware = self.release.map(px4::firmware);
-        let (vehicle, count) = px4::vehicle(&self.parameters, self.system_type, firmware);
-        flight.vehicle = vehicle;
-        self.take_commands(&mut flight, count);
+        flight.vehicle = px4::vehicle(&self.parameters, self.system_type, firmware);
+        self.take_commands(&mut flight);
         self.series
             .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.topic == *name));
         let series = self.series.into_iter().map(|(_, series)| series);
@@ -290,7 +289,8 @@ impl<'o> Collector<'o> {
     }
 
     /// Motors, their commands and the range of these.
-    fn take_commands(&self, flight: &mut Flight, count: Option<u16>) {
+    fn take_commands(&self, flight: &mut Flight) {
+        let count = flight.vehicle.motors;
         let logged = |topic: &'static str| {
             let of_topic = move |outputs: &&Outputs| outputs.topic == topic && !outputs.is_empty();
             self.outputs.iter().filter(of_topic)
