@@ -1,10 +1,11 @@
 //! The clock of a log: which time stamps to believe, and where it starts again.
 
-/// Steps from one message to the next that need no second witness, in seconds. Back must
+/// Steps from one message to the next that are always believed, in seconds. Back must
 /// reach further than forward: the message before may be the damaged one.
-const PLAIN_STEP_S: std::ops::RangeInclusive<f64> = -2.5..=2.0;
-/// How far after a message that jumped the next one bears witness to it, in seconds.
-const WITNESS_STEP_S: std::ops::RangeInclusive<f64> = -1.0..=60.0;
+const BACK_S: f64 = -2.5;
+const FORWARD_S: f64 = 2.0;
+/// The longest step from one message to the next that is believed in slow logs.
+const SLOWEST_S: f64 = 60.0;
 /// A clock that goes back by more than this, in seconds, started anew.
 const BOOT_STEP_S: f64 = -10.0;
 
@@ -26,14 +27,30 @@ pub(crate) enum Placed {
 /// Sorts out damaged time stamps and boots. One message with a time that jumps is
 /// damage; two in a row that agree are a pause in the log or, when the time goes back,
 /// another boot: then the clock goes on from where the boot before ended.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Clock {
     offset_s: f64,
     first_s: Option<f64>,
     last_s: Option<f64>,
     waiting_s: Option<f64>,
+    /// The longest step that is believed now: some times the last one.
+    longest_s: f64,
     boot_hint: bool,
     boots_s: Vec<f64>,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self {
+            offset_s: 0.0,
+            first_s: None,
+            last_s: None,
+            waiting_s: None,
+            longest_s: SLOWEST_S,
+            boot_hint: false,
+            boots_s: Vec::new(),
+        }
+    }
 }
 
 impl Clock {
@@ -57,46 +74,49 @@ impl Clock {
     }
 
     pub(crate) fn place(&mut self, t_s: f64) -> Placed {
-        let Some(last_s) = self.last_s else {
-            // The very first time stamp has nothing to agree with but the second.
-            return match self.waiting_s.replace(t_s) {
-                None => Placed::Wait,
-                Some(first_s) if WITNESS_STEP_S.contains(&(t_s - first_s)) => {
-                    self.waiting_s = None;
-                    self.first_s = Some(first_s);
-                    self.last_s = Some(t_s);
-                    Placed::Confirmed(first_s, t_s)
-                }
-                Some(_) => Placed::RefutedWait,
-            };
-        };
         let hint = std::mem::take(&mut self.boot_hint);
-        if hint && t_s - last_s < *PLAIN_STEP_S.start() {
-            self.waiting_s = None;
-            self.boot(last_s);
-            self.last_s = Some(t_s);
-            return Placed::At(t_s + self.offset_s);
-        }
-        if PLAIN_STEP_S.contains(&(t_s - last_s)) {
-            self.last_s = Some(t_s);
-            let t_s = t_s + self.offset_s;
-            return match self.waiting_s.take() {
-                Some(_) => Placed::Refuted(t_s),
-                None => Placed::At(t_s),
-            };
+        let last_s = self.last_s;
+        if let Some(last_s) = last_s {
+            if hint && t_s < last_s + BACK_S {
+                self.waiting_s = None;
+                self.boot(last_s);
+                self.last_s = Some(t_s);
+                return Placed::At(t_s + self.offset_s);
+            }
+            if self.follows(last_s, t_s) {
+                let t_s = t_s + self.offset_s;
+                return match self.waiting_s.take() {
+                    Some(_) => Placed::Refuted(t_s),
+                    None => Placed::At(t_s),
+                };
+            }
         }
         match self.waiting_s.replace(t_s) {
-            Some(first_s) if WITNESS_STEP_S.contains(&(t_s - first_s)) => {
+            None => Placed::Wait,
+            Some(first_s) if self.follows(first_s, t_s) => {
                 self.waiting_s = None;
-                if first_s - last_s < BOOT_STEP_S {
+                self.first_s.get_or_insert(first_s);
+                if let Some(last_s) = last_s.filter(|last_s| first_s - last_s < BOOT_STEP_S) {
                     self.boot(last_s);
                 }
-                self.last_s = Some(t_s);
                 Placed::Confirmed(first_s + self.offset_s, t_s + self.offset_s)
             }
-            Some(_) => Placed::RefutedWait,
-            None => Placed::Wait,
+            Some(_) => {
+                self.longest_s = (2.0 * self.longest_s).min(SLOWEST_S);
+                Placed::RefutedWait
+            }
         }
+    }
+
+    /// Whether a message at `t_s` may follow one at `last_s`; if so, the clock goes on there.
+    fn follows(&mut self, last_s: f64, t_s: f64) -> bool {
+        let step_s = t_s - last_s;
+        let follows = (BACK_S..=self.longest_s).contains(&step_s);
+        if follows {
+            self.longest_s = (2.0 * step_s).clamp(FORWARD_S, SLOWEST_S);
+            self.last_s = Some(t_s);
+        }
+        follows
     }
 
     fn boot(&mut self, last_s: f64) {
@@ -154,11 +174,11 @@ mod tests {
     #[test]
     fn a_repeated_definition_announces_a_boot() {
         let mut clock = Clock::default();
-        clock.place(5.0);
-        clock.place(5.5);
+        clock.place(6.0);
+        clock.place(6.5);
         clock.expect_boot();
-        assert_eq!(clock.place(2.0), Placed::At(7.5));
-        assert_eq!(clock.boots_s(), [5.5]);
-        assert_eq!(clock.now_s(), Some(7.5));
+        assert_eq!(clock.place(2.0), Placed::At(8.5));
+        assert_eq!(clock.boots_s(), [6.5]);
+        assert_eq!(clock.now_s(), Some(8.5));
     }
 }

@@ -23,6 +23,8 @@ pub(crate) struct Format {
     pub(crate) length: usize,
     pub(crate) name: String,
     pub(crate) columns: Vec<Column>,
+    /// The fields do not fill the record, so some of them are not where they seem to be.
+    pub(crate) damaged: bool,
 }
 
 impl Format {
@@ -30,6 +32,8 @@ impl Format {
         let mut offset = 0;
         let columns = kinds
             .bytes()
+            // What stands behind a field of unknown type cannot be found.
+            .take_while(|kind| width(*kind) > 0)
             .zip(labels.split(','))
             .map(|(kind, label)| {
                 let column = Column {
@@ -46,6 +50,7 @@ impl Format {
             length,
             name: name.into(),
             columns,
+            damaged: false,
         }
     }
 
@@ -56,18 +61,24 @@ impl Format {
         let (name, rest) = rest.split_first_chunk::<4>()?;
         let (kinds, rest) = rest.split_first_chunk::<16>()?;
         let labels = rest.get(..64)?;
-        let format = Self::new(
+        let kinds = ascii(kinds)?;
+        let mut format = Self::new(
             type_id,
             length.into(),
             &ascii(name)?,
-            &ascii(kinds)?,
+            &kinds,
             &ascii(labels)?,
         );
-        let end = format
-            .columns
-            .last()
-            .map_or(0, |c| c.offset + width(c.kind));
-        (format.length >= 3 + end).then_some(format)
+        let filled = 3 + kinds.bytes().map(width).sum::<usize>();
+        let all_known = kinds.bytes().all(|kind| width(kind) > 0);
+        format.damaged = all_known && format.length != filled;
+        (format.length >= filled).then_some(format)
+    }
+
+    /// Whether a column is of one of these types.
+    pub(crate) fn has_kind(&self, column: usize, kinds: &[u8]) -> bool {
+        let described = self.columns.get(column);
+        described.is_some_and(|described| kinds.contains(&described.kind))
     }
 
     /// Index of the first of `labels` that this message has.
@@ -190,7 +201,13 @@ mod tests {
             payload.extend(text.bytes().chain(std::iter::repeat(0)).take(width));
         }
         assert_eq!(Format::from_payload(&payload), None);
-        payload[1] = 19;
-        assert_eq!(Format::from_payload(&payload).unwrap().columns.len(), 2);
+        for (length, damaged) in [(19, false), (20, true)] {
+            payload[1] = length;
+            let format = Format::from_payload(&payload).unwrap();
+            assert_eq!((format.columns.len(), format.damaged), (2, damaged));
+        }
+        payload[7] = b'?';
+        let format = Format::from_payload(&payload).unwrap();
+        assert_eq!((format.columns.len(), format.damaged), (1, false));
     }
 }

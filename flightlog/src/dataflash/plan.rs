@@ -60,22 +60,25 @@ impl Kind {
         let time = labels
             .iter()
             .find_map(|(label, unit)| Some((format.column(&[label])?, *unit)));
-        let role = role(&format)
-            .or_else(|| {
+        // Times are integers; where they are not, the definition is damaged.
+        let timed = time.is_none_or(|(column, _)| format.has_kind(column, b"QI"));
+        let role = match timed && !format.damaged {
+            true => role(&format).or_else(|| {
                 let spec = SPECS.iter().find(|spec| spec.message == format.name)?;
                 let parts = parts(spec, &format, options);
                 // GPS messages tell UTC, too.
                 let useful = !parts.is_empty() || format.name == "GPS";
                 let (parts, labels) = parts.into_iter().unzip();
                 useful.then(|| Role::Series(series(spec.message, labels), parts))
-            })
-            .unwrap_or(Role::Nothing);
+            }),
+            false => None,
+        };
         Self {
             instance: match role {
-                Role::Series(..) => format.column(INSTANCE),
+                Some(Role::Series(..)) => format.column(INSTANCE),
                 _ => None,
             },
-            role,
+            role: role.unwrap_or(Role::Nothing),
             time,
             format,
         }
@@ -117,6 +120,10 @@ fn outputs(format: &Format, stems: &[&'static str]) -> Option<Role> {
     let (stems, columns): (Vec<_>, Vec<_>) = columns
         .filter_map(|(column, described)| {
             let (stem, output) = number(&described.label)?;
+            // Pulses are integers of 16 bits; what is not, is damaged.
+            if !format.has_kind(column, b"Hh") {
+                return None;
+            }
             Some((stem, (column, output)))
         })
         .unzip();
@@ -125,10 +132,7 @@ fn outputs(format: &Format, stems: &[&'static str]) -> Option<Role> {
 
 /// The signals that a message of this format holds and that are asked for.
 fn parts(spec: &Spec, format: &Format, options: &Options) -> Vec<(Part, Label)> {
-    let integer = |column: usize| {
-        let kind = format.columns.get(column).map(|described| described.kind);
-        matches!(kind, Some(b'h' | b'H' | b'i' | b'I'))
-    };
+    let integer = |column: usize| format.has_kind(column, b"hHiI");
     spec.signals
         .iter()
         .filter(|(_, name, _)| options.wants(name))
