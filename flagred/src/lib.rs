@@ -4,6 +4,7 @@ extern crate alloc;
 pub mod accumulator;
 pub mod attitude;
 pub mod estimator;
+pub mod evaluation;
 pub mod gap;
 pub mod margin;
 pub mod monitor;

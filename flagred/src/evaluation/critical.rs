@@ -1,0 +1,197 @@
+//! When a flight was critical: the attitude error over a second, and how long it stayed over the limit.
+
+use alloc::vec::Vec;
+
+use super::Span;
+use crate::{
+    attitude::{Attitude, CRITICAL_ERROR_DEG},
+    window::{Moments, Window},
+};
+
+/// The attitude error counts as its root mean square over so many seconds: a shorter one is a twitch.
+const ERROR_WINDOW_S: f64 = 1.0;
+
+/// An episode is over the limit for at least so many seconds.
+const SHORTEST_EPISODE_S: f64 = 1.0;
+
+/// Time stamps are in microseconds.
+const ROUNDING_S: f64 = 1e-6;
+
+/// When the attitude error of a flight was known, and when it was critical.
+///
+/// # Example: three seconds of a lost attitude
+///
+/// ```
+/// use flagred::{attitude::Attitude, evaluation::ErrorRecord};
+///
+/// let attitudes = (0..500).map(|i| {
+///     let t_s = f64::from(i) * 0.04;
+///     let roll_deg = if (10.0..13.0).contains(&t_s) { 20.0 } else { 0.0 };
+///     (t_s, Attitude { roll_des_deg: 0.0, roll_deg, pitch_des_deg: 0.0, pitch_deg: 0.0 })
+/// });
+/// let record = ErrorRecord::new(attitudes);
+/// assert_eq!(record.critical_within(4.0, 5.0), Some(false));
+/// assert_eq!(record.critical_within(6.0, 5.0), Some(true));
+/// assert_eq!(record.critical_within(20.0, 5.0), None);
+/// let [episode] = record.episodes() else { return Err("one episode") };
+/// assert!(episode.from_s > 10.0 && episode.from_s < 10.2);
+/// # Ok::<(), &str>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct ErrorRecord {
+    known_s: Vec<f64>,
+    critical_s: Vec<f64>,
+    episodes: Vec<Span>,
+}
+
+impl ErrorRecord {
+    /// Takes in the attitudes of a flight with their times in seconds, in order; one that is not finite is unknown.
+    pub fn new(attitudes: impl IntoIterator<Item = (f64, Attitude)>) -> ErrorRecord {
+        let mut record = ErrorRecord::default();
+        let mut second = Window::new(ERROR_WINDOW_S);
+        let mut excursion: Option<Span> = None;
+        let mut last_s = None;
+        for (t_s, attitude) in attitudes {
+            let squared = attitude.squared_error_deg2();
+            if !squared.is_finite() {
+                continue;
+            }
+            let held_s = last_s.map_or(0.0, |last_s: f64| t_s - last_s);
+            last_s = Some(t_s);
+            if held_s > ERROR_WINDOW_S {
+                second.clear();
+                excursion = None;
+                continue;
+            }
+            second.push(t_s, held_s, &Moments::of(squared, held_s));
+            // A second that is full to a sample or so is full.
+            if second.total().weight() < ERROR_WINDOW_S - held_s / 2.0 - ROUNDING_S {
+                continue;
+            }
+            let Some(mean) = second.total().mean() else {
+                continue;
+            };
+            record.known_s.push(t_s);
+            let is_critical = libm::sqrt(mean) > CRITICAL_ERROR_DEG;
+            if is_critical {
+                record.critical_s.push(t_s);
+            }
+            let span = excursion.filter(|_| is_critical).unwrap_or(Span {
+                from_s: t_s,
+                to_s: t_s,
+            });
+            let span = Span { to_s: t_s, ..span };
+            excursion = is_critical.then_some(span);
+            // The first sample stands for the time before it, too.
+            if is_critical && span.length_s() + held_s >= SHORTEST_EPISODE_S - ROUNDING_S {
+                match record.episodes.last_mut() {
+                    Some(last) if last.from_s == span.from_s => *last = span,
+                    _ => record.episodes.push(span),
+                }
+            }
+        }
+        record
+    }
+
+    /// Whether the error becomes critical after `t_s` and within `horizon_s`; `None` where nothing is known of it then.
+    pub fn critical_within(&self, t_s: f64, horizon_s: f64) -> Option<bool> {
+        let any = |times: &[f64]| {
+            let next = times.partition_point(|time| *time <= t_s + ROUNDING_S);
+            let next = times.get(next);
+            next.is_some_and(|time| *time <= t_s + horizon_s + ROUNDING_S)
+        };
+        any(&self.known_s).then(|| any(&self.critical_s))
+    }
+
+    /// The times over the limit, each for a second at least.
+    pub fn episodes(&self) -> &[Span] {
+        &self.episodes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A flight at `rate` Hz with an error of 8 degrees in the given times.
+    fn record(rate: u32, spans: &[(f64, f64)]) -> ErrorRecord {
+        ErrorRecord::new((0..=60 * rate).map(|i| {
+            let t_s = f64::from(i) / f64::from(rate);
+            let inside = spans.iter().any(|(from, to)| (*from..*to).contains(&t_s));
+            let attitude = Attitude {
+                roll_des_deg: if inside { 8.0 } else { 0.0 },
+                roll_deg: 0.0,
+                pitch_des_deg: 0.0,
+                pitch_deg: 0.0,
+            };
+            (t_s, attitude)
+        }))
+    }
+
+    #[test]
+    fn an_episode_starts_when_the_error_of_a_second_is_over_the_limit_and_lasts_one() {
+        // 8 degrees for a share x of the second make 8 sqrt(x): over 5 from x = 0.39 on.
+        for rate in [10, 25, 100] {
+            let record = record(rate, &[(10.0, 11.0), (20.0, 21.5), (40.0, 45.0)]);
+            let spans: Vec<(f64, f64)> = record
+                .episodes()
+                .iter()
+                .map(|e| (e.from_s, e.to_s))
+                .collect();
+            assert_eq!(spans.len(), 3, "{rate} Hz: {spans:?}");
+            for ((from_s, to_s), (starts_s, ends_s)) in
+                spans
+                    .iter()
+                    .zip([(10.39, 11.61), (20.39, 22.11), (40.39, 45.61)])
+            {
+                let step_s = 2.1 / f64::from(rate);
+                assert!((from_s - starts_s).abs() < step_s, "{rate} Hz: {spans:?}");
+                assert!((to_s - ends_s).abs() < step_s, "{rate} Hz: {spans:?}");
+            }
+        }
+        // Over the limit, but for 0.7 s only.
+        assert_eq!(record(25, &[(10.0, 10.55)]).episodes(), []);
+        assert_eq!(
+            record(25, &[(10.0, 10.55)]).critical_within(9.0, 5.0),
+            Some(true)
+        );
+    }
+
+    #[test]
+    fn a_horizon_reaches_from_just_after_a_time_to_its_end() {
+        let record = record(25, &[(10.0, 30.0)]);
+        let first_s = record.episodes()[0].from_s;
+        for (t_s, critical) in [
+            (first_s - 5.04, false),
+            (first_s - 5.0, true),
+            (first_s - 0.04, true),
+            (29.0, true),
+            (31.0, false),
+        ] {
+            assert_eq!(record.critical_within(t_s, 5.0), Some(critical), "{t_s}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_known_across_a_gap() {
+        let level = Attitude {
+            roll_des_deg: 0.0,
+            roll_deg: 0.0,
+            pitch_des_deg: 0.0,
+            pitch_deg: 0.0,
+        };
+        let lost = Attitude {
+            roll_deg: f64::NAN,
+            ..level
+        };
+        let record = ErrorRecord::new((0..1000).map(|i| {
+            let t_s = f64::from(i) * 0.04;
+            let known = !(10.0..20.0).contains(&t_s);
+            (t_s, if known { level } else { lost })
+        }));
+        assert_eq!(record.critical_within(11.0, 5.0), None);
+        // A second must be known before its mean is.
+        assert_eq!(record.critical_within(19.5, 1.0), None);
+        assert_eq!(record.critical_within(19.5, 2.0), Some(false));
+    }
+}
