@@ -51,6 +51,39 @@ fn single_c_four_inputs(bencher: Bencher<'_, '_>) {
     single(bencher, &four_inputs());
 }
 
+/// 65536 rows in one call, on one thread.
+fn batch(bencher: Bencher<'_, '_>, model: &Model) {
+    const ROWS: usize = 65_536;
+    let engine = Engine::new(model).unwrap();
+    let points = points(model, ROWS);
+    let columns: Vec<Vec<f64>> = (0..model.inputs.len())
+        .map(|input| points.iter().map(|point| point[input]).collect())
+        .collect();
+    let columns: Vec<&[f64]> = columns.iter().map(|column| &**column).collect();
+    let mut outcomes = vec![Outcome::default(); ROWS];
+    bencher.counter(ItemsCount::new(ROWS)).bench_local(|| {
+        engine
+            .evaluate_batch_into(black_box(&columns), &mut outcomes)
+            .unwrap();
+        black_box(&outcomes);
+    });
+}
+
+#[divan::bench]
+fn batch_a_tipper(bencher: Bencher<'_, '_>) {
+    batch(bencher, &tipper());
+}
+
+#[divan::bench]
+fn batch_bw_published_weighted(bencher: Bencher<'_, '_>) {
+    batch(bencher, &published(true));
+}
+
+#[divan::bench]
+fn batch_c_four_inputs(bencher: Bencher<'_, '_>) {
+    batch(bencher, &four_inputs());
+}
+
 #[divan::bench]
 fn map_501_by_501(bencher: Bencher<'_, '_>) {
     let engine = Engine::new(&published(true)).unwrap();

@@ -8,7 +8,7 @@ use curves::Curves;
 use maxima::{Highest, Maxima};
 use piece::{Integrals, Piece};
 use polyline::{Polylines, Room};
-use ramps::Ramps;
+pub(crate) use ramps::Ramps;
 use weighted::Consequence;
 
 mod curves;
@@ -169,13 +169,18 @@ impl Defuzzify {
         moments
     }
 
+    /// The closed form of the centroid over a partition.
+    pub(crate) fn ramps(&self) -> Option<&Ramps> {
+        match &self.set {
+            Set::Ramps(ramps) => Some(ramps),
+            _ => None,
+        }
+    }
+
     /// How many heights the output has, and the place of each term's; `None` where they stand as
     /// [`Heights`] says.
     pub(crate) fn ranks(&self) -> Option<(usize, &[usize])> {
-        match &self.set {
-            Set::Ramps(ramps) => Some((ramps.places(), ramps.ranks())),
-            _ => None,
-        }
+        self.ramps().map(|ramps| (ramps.places(), ramps.ranks()))
     }
 
     /// How many cuts an evaluation can need beside those of its activations.
@@ -270,7 +275,8 @@ impl Defuzzify {
         }
     }
 
-    fn middle(&self) -> f64 {
+    /// The middle of the range.
+    pub(crate) fn middle(&self) -> f64 {
         self.low + 0.5 * (self.high - self.low)
     }
 

@@ -13,6 +13,7 @@ use alloc::{vec, vec::Vec};
 use super::piece::Integrals;
 use super::polyline::Polylines;
 use crate::engine::operators::smaller;
+use crate::engine::{FROM_TINY, TINY};
 
 #[derive(Debug, Clone)]
 pub(crate) struct Ramps {
@@ -126,14 +127,10 @@ impl Ramps {
         let (mut area, mut moment) = ([0.0; 2], [0.0; 2]);
         for (pair, i) in self.pairs.iter().zip((0..).step_by(2)) {
             let heights: &[f64] = &heights[i..i + 3];
-            for lane in 0..2 {
-                let (h, right) = (heights[lane], heights[lane + 1]);
-                let v = smaller(smaller(h, right), 0.5);
-                let common = pair.width[lane] * (v * (1.0 - v));
-                area[lane] += h * (pair.area[0][lane] + h * pair.area[1][lane]) - common;
-                let cubic = pair.moment[1][lane] + h * pair.moment[2][lane];
-                let alone = h * (pair.moment[0][lane] + h * cubic);
-                moment[lane] += alone - pair.middle[lane] * common;
+            for side in 0..2 {
+                let (a, m) = pair.add(side, heights[side], heights[side + 1]);
+                area[side] += a;
+                moment[side] += m;
             }
         }
         Integrals {
@@ -141,6 +138,60 @@ impl Ramps {
             moment: moment[0] + moment[1],
             origin,
         }
+    }
+
+    /// The centroids of several sets at once; `strongest` is the largest height of each. The same
+    /// operations in the same order as one at a time.
+    #[inline(always)]
+    pub(crate) fn centroids<const N: usize>(
+        &self,
+        heights: &[[f64; N]],
+        strongest: &[f64; N],
+        origin: f64,
+    ) -> [f64; N] {
+        let mut scale = [1.0; N];
+        for lane in 0..N {
+            scale[lane] = if strongest[lane] < TINY {
+                FROM_TINY
+            } else {
+                1.0
+            };
+        }
+        let (mut area, mut moment) = ([[0.0; N]; 2], [[0.0; N]; 2]);
+        for (pair, i) in self.pairs.iter().zip((0..).step_by(2)) {
+            let heights: &[[f64; N]] = &heights[i..i + 3];
+            for side in 0..2 {
+                let (here, right) = (&heights[side], &heights[side + 1]);
+                for lane in 0..N {
+                    let scale = scale[lane];
+                    let (a, m) = pair.add(side, here[lane] * scale, right[lane] * scale);
+                    area[side][lane] += a;
+                    moment[side][lane] += m;
+                }
+            }
+        }
+        let mut centroids = [0.0; N];
+        for lane in 0..N {
+            let (area, moment) = (
+                area[0][lane] + area[1][lane],
+                moment[0][lane] + moment[1][lane],
+            );
+            centroids[lane] = origin + moment / area;
+        }
+        centroids
+    }
+}
+
+impl Pair {
+    /// Area and moment that one of the two terms adds, at its height and the one to its right.
+    #[inline(always)]
+    fn add(&self, side: usize, h: f64, right: f64) -> (f64, f64) {
+        let v = smaller(smaller(h, right), 0.5);
+        let common = self.width[side] * (v * (1.0 - v));
+        let area = h * (self.area[0][side] + h * self.area[1][side]) - common;
+        let cubic = self.moment[1][side] + h * self.moment[2][side];
+        let alone = h * (self.moment[0][side] + h * cubic);
+        (area, alone - self.middle[side] * common)
     }
 }
 

@@ -10,6 +10,7 @@ use alloc::{
 };
 
 use super::condition::Step;
+use super::lanes::Lanes;
 use super::literal::{Literal, Literals};
 use super::problem::{CompileError, Problem};
 use super::rules::{Action, Draft, Rules};
@@ -328,9 +329,14 @@ impl Compiler<'_> {
         let mut first = 0;
         let mut inputs = Vec::new();
         let mut literals = Vec::new();
-        for (variable, of_input) in model.inputs.iter().zip(by_input) {
+        for (variable, of_input) in model.inputs.iter().zip(&by_input) {
             let count = of_input.len() as u32;
-            literals.push(Literals::new(first, of_input, variable.low, variable.high));
+            literals.push(Literals::new(
+                first,
+                of_input.clone(),
+                variable.low,
+                variable.high,
+            ));
             first += count;
             inputs.push(Input {
                 name: Arc::from(variable.name.as_str()),
@@ -340,6 +346,7 @@ impl Compiler<'_> {
         }
         let operators = model.operators;
         Engine {
+            lanes: Lanes::new(operators.and, &inputs, &by_input, &drafts, &outputs),
             rules: Rules::new(operators.and, operators.or, &drafts, &literals, first_place),
             inputs,
             literals,

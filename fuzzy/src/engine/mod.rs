@@ -6,12 +6,15 @@ use core::ops::Range;
 use crate::defuzzify::polyline::Room;
 use crate::defuzzify::{Defuzzify, Heights};
 use crate::model::NoRuleFires;
+use lanes::Lanes;
 use literal::Literals;
 use operators::{larger, smaller};
 use rules::{FiringRoom, Rules, Strongest};
 
+mod batch;
 mod compile;
 mod condition;
+mod lanes;
 mod literal;
 pub(crate) mod operators;
 mod outcome;
@@ -32,6 +35,8 @@ pub struct Engine {
     outputs: Vec<CompiledOutput>,
     /// How many heights there are over all outputs.
     places: usize,
+    /// The batch form of a common kind of model.
+    lanes: Option<Lanes>,
 }
 
 #[derive(Debug, Clone)]
@@ -144,6 +149,22 @@ impl Engine {
                 got: outcomes.len(),
             });
         }
+        self.outcomes(scratch, inputs, outcomes);
+        for (output, outcome) in self.outputs.iter().zip(outcomes) {
+            if output.when_no_rule_fires == NoRuleFires::Error
+                && outcome.state == State::NoRuleFired
+            {
+                return Err(EvaluateError::NoRuleFired {
+                    output: Arc::clone(&output.name),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Evaluates as many values as there are inputs into as many outcomes as there are outputs.
+    #[inline(always)]
+    fn outcomes(&self, scratch: &mut Scratch, inputs: &[f64], outcomes: &mut [Outcome]) {
         let mut clamped = false;
         for ((&value, input), place) in inputs.iter().zip(&self.inputs).zip(&mut scratch.values) {
             if !value.is_finite() {
@@ -151,7 +172,7 @@ impl Engine {
                     state: State::InputNotFinite,
                     ..Outcome::default()
                 });
-                return Ok(());
+                return;
             }
             *place = larger(input.low, smaller(input.high, value));
             clamped |= *place != value;
@@ -160,13 +181,12 @@ impl Engine {
         for (index, (output, outcome)) in self.outputs.iter().zip(outcomes).enumerate() {
             let (coverage, dominant) = scratch.strongest[index].rule();
             *outcome = Outcome {
-                state: self.state(output, coverage, scratch)?,
+                state: self.state(output, coverage, scratch),
                 coverage,
                 dominant,
                 clamped,
             };
         }
-        Ok(())
     }
 
     /// Fires all rules on the values in the scratch.
@@ -193,12 +213,7 @@ impl Engine {
     }
 
     #[inline(always)]
-    fn state(
-        &self,
-        output: &CompiledOutput,
-        strongest: f64,
-        scratch: &mut Scratch,
-    ) -> Result<State, EvaluateError> {
+    fn state(&self, output: &CompiledOutput, strongest: f64, scratch: &mut Scratch) -> State {
         if strongest > 0.0 {
             let heights = &mut scratch.heights[output.heights.clone()];
             if strongest < TINY && output.defuzzify.is_fuzzy() {
@@ -214,15 +229,12 @@ impl Engine {
                 .defuzzify
                 .value(heights, &scratch.values, &mut scratch.room);
             if let Some(value) = value {
-                return Ok(State::Defined(value));
+                return State::Defined(value);
             }
         }
         match output.when_no_rule_fires {
-            NoRuleFires::Undefined => Ok(State::NoRuleFired),
-            NoRuleFires::Value(value) => Ok(State::Default(value)),
-            NoRuleFires::Error => Err(EvaluateError::NoRuleFired {
-                output: Arc::clone(&output.name),
-            }),
+            NoRuleFires::Value(value) => State::Default(value),
+            NoRuleFires::Undefined | NoRuleFires::Error => State::NoRuleFired,
         }
     }
 }
@@ -230,9 +242,9 @@ impl Engine {
 /// Below this, areas would lose digits to underflow. Where all strengths are so small, only their ratios
 /// count: every set is cut so low that its slopes are vertical to the last digit, so all of them can be
 /// multiplied by [`FROM_TINY`].
-const TINY: f64 = 1e-200;
+pub(crate) const TINY: f64 = 1e-200;
 /// 2^500: multiplying by it rounds nothing.
-const FROM_TINY: f64 = 3.273_390_607_896_142e150;
+pub(crate) const FROM_TINY: f64 = 3.273_390_607_896_142e150;
 
 #[cfg(test)]
 mod tests;

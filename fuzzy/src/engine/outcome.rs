@@ -67,6 +67,14 @@ pub enum EvaluateError {
         /// How many places were given.
         got: usize,
     },
+    /// Columns of a batch that are not equally long.
+    #[error("a column has {other} values where the first has {first}")]
+    ColumnsOfDifferentLengths {
+        /// The length of the first column.
+        first: usize,
+        /// Another length.
+        other: usize,
+    },
     /// No rule of an output fired, and the model says that this is an error.
     #[error("no rule fired for output `{output}`")]
     NoRuleFired {

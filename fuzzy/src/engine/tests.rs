@@ -167,3 +167,185 @@ fn every_problem_of_a_model_at_once() {
     "
     );
 }
+
+/// A batch and single calls must agree in every bit; prints as bits so that -0.0 and 0.0 differ.
+fn same_bits(one: &Outcome, other: &Outcome) -> bool {
+    let bits = |outcome: &Outcome| {
+        let value = outcome.value().map(f64::to_bits);
+        (
+            value,
+            outcome.coverage.to_bits(),
+            outcome.dominant,
+            outcome.clamped,
+        )
+    };
+    bits(one) == bits(other)
+        && core::mem::discriminant(&one.state) == core::mem::discriminant(&other.state)
+}
+
+/// Rules of all kinds of terms that the batch computes for several rows at once.
+fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
+    let triangle = |left, peak, right| Shape::Triangle { left, peak, right };
+    let risk = Variable::new("z", -1.0, 3.0)
+        .term(
+            "large",
+            Shape::RightShoulder {
+                foot: 1.0,
+                top: 2.0,
+            },
+        )
+        .term(
+            "small",
+            Shape::LeftShoulder {
+                top: 0.0,
+                foot: 1.0,
+            },
+        )
+        .term("middle", triangle(0.0, 1.0, 2.0));
+    let and = |x, y| Condition::is("x", x).and(Condition::is("y", y));
+    Model::builder("slopes")
+        .input(
+            Variable::new("x", 0.0, 1.0)
+                .term("falls", triangle(0.0, 0.0, 0.5))
+                .term(
+                    "plateau",
+                    Shape::Trapezoid {
+                        left: 0.1,
+                        left_top: 0.3,
+                        right_top: 0.4,
+                        right: 0.9,
+                    },
+                )
+                .term(
+                    "rises",
+                    Shape::RightShoulder {
+                        foot: 0.3,
+                        top: 0.7,
+                    },
+                ),
+        )
+        .input(
+            Variable::new("y", 0.0, 1.0)
+                .term(
+                    "low",
+                    Shape::LeftShoulder {
+                        top: 0.2,
+                        foot: 0.6,
+                    },
+                )
+                .term("high", triangle(0.3, 1.0, 1.0)),
+        )
+        .output(Output::new(risk).when_no_rule_fires(when_no_rule_fires))
+        .rule(Rule::new(and("falls", "low"), "z", "small").with(0.7))
+        .rule(Rule::new(and("plateau", "low"), "z", "middle"))
+        .rule(Rule::new(and("rises", "high"), "z", "large"))
+        .rule(Rule::new(Condition::is("y", "high"), "z", "middle").with(0.3))
+        .build()
+}
+
+mod laws {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn value() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            4 => 0.0..=1.0f64,
+            2 => prop::sample::select(vec![0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.9, 1.0]),
+            1 => prop::sample::select(vec![-1.0, 2.0, f64::NAN, f64::INFINITY, 1e-300, 0.5 + 1e-16]),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_batch_has_the_bits_of_single_calls(
+            points in prop::collection::vec((value(), value()), 1..40),
+            default in any::<bool>(),
+        ) {
+            let when = if default { NoRuleFires::Value(0.5) } else { NoRuleFires::Undefined };
+            let engine = Engine::new(&slopes(when)).unwrap();
+            prop_assert!(engine.lanes.is_some());
+            let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+            let batch = engine.evaluate_batch(&[&x, &y]).unwrap();
+            for ((x, y), outcome) in points.iter().zip(&batch) {
+                let single = engine.evaluate(&[*x, *y]).unwrap()[0];
+                prop_assert!(same_bits(&single, outcome), "at {x}, {y}: {single:?}, {outcome:?}");
+            }
+        }
+
+        #[test]
+        fn the_order_of_rules_and_the_unit_change_nothing(
+            (x, y) in (0.0..=1.0f64, 0.0..=1.0f64),
+            rotation in 0..4usize,
+            scale in prop::sample::select(vec![1e-3, 0.5, 3.0, 1e6]),
+        ) {
+            let model = slopes(NoRuleFires::Undefined);
+            let expected = Engine::new(&model).unwrap().evaluate(&[x, y]).unwrap()[0];
+
+            let mut rotated = model.clone();
+            rotated.rules.rotate_left(rotation);
+            let outcome = Engine::new(&rotated).unwrap().evaluate(&[x, y]).unwrap()[0];
+            prop_assert_eq!(outcome.value().map(f64::to_bits), expected.value().map(f64::to_bits));
+            prop_assert_eq!(outcome.coverage, expected.coverage);
+
+            let mut scaled = model;
+            let output = &mut scaled.outputs[0].variable;
+            (output.low, output.high) = (scale * output.low, scale * output.high);
+            for term in &mut output.terms {
+                let corners = term.shape.corners().unwrap();
+                let points = corners.into_iter().map(|(x, y)| (scale * x, y)).collect();
+                term.shape = Shape::Piecewise { points };
+            }
+            let outcome = Engine::new(&scaled).unwrap().evaluate(&[x, y]).unwrap()[0];
+            match (outcome.value(), expected.value()) {
+                (Some(scaled), Some(value)) => {
+                    prop_assert!((scaled - scale * value).abs() <= 1e-12 * 4.0 * scale);
+                    prop_assert!((-1.0..=3.0).contains(&value));
+                }
+                (scaled, value) => prop_assert_eq!(scaled, value),
+            }
+        }
+
+        /// The mirror image of a model at the mirrored point gives the mirrored value.
+        #[test]
+        fn mirrored_models_give_mirrored_values((x, y) in (0.0..=1.0f64, 0.0..=1.0f64)) {
+            let model = slopes(NoRuleFires::Undefined);
+            let mut mirrored = model.clone();
+            let outputs = mirrored.outputs.iter_mut().map(|o| &mut o.variable);
+            for variable in mirrored.inputs.iter_mut().chain(outputs) {
+                (variable.low, variable.high) = (-variable.high, -variable.low);
+                for term in &mut variable.terms {
+                    let corners = term.shape.corners().unwrap();
+                    let points = corners.into_iter().rev().map(|(x, y)| (-x, y)).collect();
+                    term.shape = Shape::Piecewise { points };
+                }
+            }
+            let value = Engine::new(&model).unwrap().evaluate(&[x, y]).unwrap()[0].value();
+            let mirror = Engine::new(&mirrored).unwrap().evaluate(&[-x, -y]).unwrap()[0].value();
+            match (value, mirror) {
+                (Some(value), Some(mirror)) => prop_assert!((value + mirror).abs() <= 1e-12),
+                (value, mirror) => prop_assert_eq!(value, mirror),
+            }
+        }
+
+        /// One input, terms in order, consequents in the same order: the output follows the input.
+        #[test]
+        fn monotone_models_are_monotone(a in 0.0..=10.0f64, b in 0.0..=10.0f64) {
+            let three = |name| Variable::new(name, 0.0, 10.0)
+                .term("low", Shape::LeftShoulder { top: 0.0, foot: 5.0 })
+                .term("middle", Shape::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
+                .term("high", Shape::RightShoulder { foot: 5.0, top: 10.0 });
+            let mut model = Model::builder("follows")
+                .input(three("x"))
+                .output(Output::new(three("y")))
+                .build();
+            for term in ["low", "middle", "high"] {
+                model.rules.push(Rule::new(Condition::is("x", term), "y", term).into());
+            }
+            let engine = Engine::new(&model).unwrap();
+            let y = |x: f64| one(&engine, x).value().unwrap();
+            prop_assert!(y(a.min(b)) <= y(a.max(b)) + 1e-12);
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 
 use crate::Engine;
-use crate::engine::{EvaluateError, Outcome, State};
+use crate::engine::{EvaluateError, Outcome, Scratch, State};
 
 mod grid;
 mod picture;
@@ -47,6 +47,71 @@ pub struct DecisionMap {
 
 const NO_RULE: u32 = u32::MAX;
 
+/// Cells that are evaluated at a time: a batch that stays in the cache.
+const CELLS_A_TASK: usize = 512;
+
+/// What fills cells: the engine, and room for a batch.
+#[derive(Clone)]
+struct Worker<'a> {
+    engine: &'a Engine,
+    grid: &'a Grid,
+    output: usize,
+    scratch: Scratch,
+    /// One column of coordinates for each input.
+    columns: Vec<Vec<f64>>,
+    outcomes: Vec<Outcome>,
+}
+
+impl<'a> Worker<'a> {
+    fn new(engine: &'a Engine, grid: &'a Grid, output: usize) -> Self {
+        let mut columns = vec![vec![0.0; CELLS_A_TASK]; engine.input_names().len()];
+        for fixed in grid.fixed() {
+            if let Some(column) = columns.get_mut(fixed.input) {
+                column.fill(fixed.value);
+            }
+        }
+        Worker {
+            engine,
+            grid,
+            output,
+            scratch: engine.scratch(),
+            columns,
+            outcomes: vec![Outcome::default(); CELLS_A_TASK * engine.output_names().len()],
+        }
+    }
+
+    /// Evaluates the cells from `first` on.
+    fn fill(
+        &mut self,
+        first: usize,
+        values: &mut [f64],
+        coverage: &mut [f64],
+        dominant: &mut [u32],
+    ) {
+        let cells = values.len();
+        let mut stride = self.grid.cells();
+        for axis in self.grid.axes() {
+            stride /= axis.points;
+            if let Some(column) = self.columns.get_mut(axis.input) {
+                axis.coordinates(first, stride, column.get_mut(..cells).unwrap_or_default());
+            }
+        }
+        let outputs = self.engine.output_names().len();
+        let outcomes = self.outcomes.get_mut(..cells * outputs).unwrap_or_default();
+        self.engine
+            .evaluate_rows(&mut self.scratch, &self.columns, outcomes);
+        let cells = values.iter_mut().zip(coverage).zip(dominant);
+        for (((value, coverage), dominant), outcome) in
+            cells.zip(outcomes.iter().skip(self.output).step_by(outputs))
+        {
+            *value = outcome.value().unwrap_or(f64::NAN);
+            *coverage = outcome.coverage;
+            let rule = outcome.dominant.and_then(|rule| u32::try_from(rule).ok());
+            *dominant = rule.unwrap_or(NO_RULE);
+        }
+    }
+}
+
 impl DecisionMap {
     /// Evaluates one output on every cell of a grid.
     ///
@@ -70,37 +135,38 @@ impl DecisionMap {
                 got: output,
             });
         };
+        let cells = grid.cells();
         let mut map = DecisionMap {
             output: Arc::clone(name),
             range: (low, high),
-            values: Vec::with_capacity(grid.cells()),
-            coverage: Vec::with_capacity(grid.cells()),
-            dominant: Vec::with_capacity(grid.cells()),
+            values: vec![f64::NAN; cells],
+            coverage: vec![0.0; cells],
+            dominant: vec![NO_RULE; cells],
             grid,
         };
-        let mut scratch = engine.scratch();
-        let mut point = vec![0.0; inputs];
-        for fixed in map.grid.fixed() {
-            if let Some(value) = point.get_mut(fixed.input) {
-                *value = fixed.value;
-            }
+        let tasks = map
+            .values
+            .chunks_mut(CELLS_A_TASK)
+            .zip(map.coverage.chunks_mut(CELLS_A_TASK))
+            .zip(map.dominant.chunks_mut(CELLS_A_TASK));
+        let worker = Worker::new(engine, &map.grid, output);
+        #[cfg(feature = "parallel")]
+        {
+            use rayon::prelude::*;
+            let tasks: Vec<_> = tasks.enumerate().collect();
+            tasks.into_par_iter().for_each_init(
+                || worker.clone(),
+                |worker, (task, ((values, coverage), dominant))| {
+                    worker.fill(task * CELLS_A_TASK, values, coverage, dominant);
+                },
+            );
         }
-        let mut outcomes = vec![Outcome::default(); engine.output_names().len()];
-        for cell in 0..map.grid.cells() {
-            for (axis, i) in map.grid.axes().iter().zip(map.grid.indices(cell)) {
-                if let Some(value) = point.get_mut(axis.input) {
-                    *value = axis.coordinate(i);
-                }
+        #[cfg(not(feature = "parallel"))]
+        {
+            let mut worker = worker;
+            for (task, ((values, coverage), dominant)) in tasks.enumerate() {
+                worker.fill(task * CELLS_A_TASK, values, coverage, dominant);
             }
-            match engine.evaluate_with(&mut scratch, &point, &mut outcomes) {
-                Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
-                Err(error) => return Err(error),
-            }
-            let outcome = outcomes.get(output).copied().unwrap_or_default();
-            map.values.push(outcome.value().unwrap_or(f64::NAN));
-            map.coverage.push(outcome.coverage);
-            let rule = outcome.dominant.and_then(|rule| u32::try_from(rule).ok());
-            map.dominant.push(rule.unwrap_or(NO_RULE));
         }
         Ok(map)
     }
