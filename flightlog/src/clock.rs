@@ -125,6 +125,42 @@ impl Clock {
     }
 }
 
+/// The latest time of a log whose messages may be late, but not far ahead of all others.
+#[derive(Debug)]
+pub(crate) struct Latest {
+    latest_s: Option<f64>,
+    waiting_s: Option<f64>,
+    longest_pause_s: f64,
+}
+
+impl Latest {
+    pub(crate) fn new(longest_pause_s: f64) -> Self {
+        Self {
+            latest_s: None,
+            waiting_s: None,
+            longest_pause_s,
+        }
+    }
+
+    pub(crate) fn time_s(&self) -> Option<f64> {
+        self.latest_s
+    }
+
+    /// Whether to believe a time: one too far ahead of all before is damage, unless the
+    /// next such one agrees with it.
+    pub(crate) fn believe(&mut self, t_s: f64) -> bool {
+        let latest_s = *self.latest_s.get_or_insert(t_s);
+        let agrees = |with_s: f64| t_s - with_s <= self.longest_pause_s;
+        let witness = |waiting_s: f64| t_s >= waiting_s && agrees(waiting_s);
+        if !agrees(latest_s) && !self.waiting_s.is_some_and(witness) {
+            self.waiting_s = Some(t_s);
+            return false;
+        }
+        self.latest_s = Some(latest_s.max(t_s));
+        true
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -169,6 +205,16 @@ mod tests {
         for (name, times, expected) in cases {
             assert_eq!(places(times), *expected, "{name}");
         }
+    }
+
+    #[test]
+    fn late_is_believed_and_far_ahead_is_not() {
+        let mut latest = Latest::new(60.0);
+        let told: Vec<bool> = [100.0, 3.0, 1e6, 101.0, 5e6, 5.00001e6, 102.0]
+            .into_iter()
+            .map(|t_s| latest.believe(t_s))
+            .collect();
+        assert_eq!(told, [true, true, false, true, false, true, true]);
     }
 
     #[test]

@@ -54,6 +54,20 @@ impl Intervals {
         self.spans.iter().map(Interval::duration_s).sum()
     }
 
+    /// From a state that is told again and again; its first value holds before it, too.
+    pub(crate) fn from_states(
+        states: &[(f64, bool)],
+        (first_s, last_s): (f64, f64),
+        rule: &str,
+    ) -> Self {
+        let before = states.first().is_some_and(|(_, state)| *state);
+        let within: Vec<(f64, bool)> = states
+            .iter()
+            .map(|&(t_s, state)| (t_s.max(first_s), state))
+            .collect();
+        Self::from_changes(&within, before, first_s, last_s, rule)
+    }
+
     /// From changes of state: each is the time from which the state holds.
     /// `before` is the state ahead of the first change, from `first_s` on.
     pub(crate) fn from_changes(
@@ -93,6 +107,21 @@ impl Intervals {
             rule: rule.into(),
         }
     }
+}
+
+/// Where both states hold, from the changes of each; the first value of each holds before.
+pub(crate) fn both_hold(a: &[(f64, bool)], b: &[(f64, bool)]) -> Vec<(f64, bool)> {
+    let mut times: Vec<f64> = a.iter().chain(b).map(|(t_s, _)| *t_s).collect();
+    times.sort_by(f64::total_cmp);
+    let at = |states: &[(f64, bool)], t_s: f64| {
+        let after = states.partition_point(|(since, _)| *since <= t_s);
+        let index = after.saturating_sub(1);
+        states.get(index).is_some_and(|(_, state)| *state)
+    };
+    times
+        .into_iter()
+        .map(|t_s| (t_s, at(a, t_s) && at(b, t_s)))
+        .collect()
 }
 
 #[cfg(test)]

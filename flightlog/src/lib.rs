@@ -24,6 +24,7 @@
 //! # Ok::<(), flightlog::ReadError>(())
 //! ```
 
+mod angle;
 mod ardupilot;
 mod clock;
 mod csv;
@@ -36,6 +37,7 @@ mod interval;
 mod mav_type;
 mod outputs;
 mod parameters;
+mod place;
 mod px4;
 mod read;
 mod report;

@@ -9,6 +9,7 @@ use crate::ardupilot;
 use crate::clock::{Clock, Placed};
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
+use crate::place::vector_length;
 use crate::signal::{Label, preferred};
 use crate::{Event, Flight, Options, Report, Series, utc};
 
@@ -246,8 +247,8 @@ impl<'o> Collector<'o> {
                         number(*column).map_or(f64::NAN, |value| value * scale)
                     }
                     Part::Length(columns) => {
-                        let squares = columns.iter().map(|&column| number(column).map(|x| x * x));
-                        squares.sum::<Option<f64>>().map_or(f64::NAN, f64::sqrt)
+                        vector_length(columns.iter().map(|&column| number(column)))
+                            .unwrap_or(f64::NAN)
                     }
                 });
                 if let Some((_, series)) = self.series.get_mut(*index) {

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use crate::place::{Kind, Place};
+
 /// Type of the FMT records themselves.
 pub(crate) const FMT: u8 = 128;
 
@@ -11,8 +13,8 @@ pub(crate) struct Column {
     pub(crate) label: String,
     /// The letter that stands for its type.
     pub(crate) kind: u8,
-    /// Where it starts in the payload of a binary record.
-    offset: usize,
+    /// Where its number is in the payload of a binary record.
+    place: Place,
 }
 
 /// A kind of message, as its FMT record describes it.
@@ -39,7 +41,10 @@ impl Format {
                 let column = Column {
                     label: label.trim().into(),
                     kind,
-                    offset,
+                    place: Place {
+                        offset,
+                        kind: number_of(kind).0,
+                    },
                 };
                 offset += width(kind);
                 column
@@ -124,7 +129,9 @@ impl Cells<'_> {
         let described = format.columns.get(column)?;
         match self {
             Self::Binary(payload) => {
-                binary_number(payload.get(described.offset..)?, described.kind)
+                let is_number = !matches!(described.kind, b'n' | b'N' | b'Z' | b'a' | b'g');
+                let number = described.place.number(payload).filter(|_| is_number)?;
+                Some(number * number_of(described.kind).1)
             }
             Self::Text(cells) => cells.get(column)?.parse().ok(),
         }
@@ -138,8 +145,8 @@ impl Cells<'_> {
                 if !matches!(described.kind, b'n' | b'N' | b'Z') {
                     return None;
                 }
-                let end = described.offset + width(described.kind);
-                let bytes = payload.get(described.offset..end)?;
+                let end = described.place.offset + width(described.kind);
+                let bytes = payload.get(described.place.offset..end)?;
                 let text = bytes.split(|&byte| byte == 0).next()?;
                 Some(String::from_utf8_lossy(text).trim().to_owned())
             }
@@ -155,25 +162,26 @@ impl Cells<'_> {
     }
 }
 
-fn binary_number(bytes: &[u8], kind: u8) -> Option<f64> {
-    Some(match kind {
-        b'b' => f64::from(i8::from_le_bytes(*bytes.first_chunk()?)),
-        b'B' | b'M' => f64::from(*bytes.first()?),
-        b'h' => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)),
-        b'H' => f64::from(u16::from_le_bytes(*bytes.first_chunk()?)),
-        b'c' => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)) * 0.01,
-        b'C' => f64::from(u16::from_le_bytes(*bytes.first_chunk()?)) * 0.01,
-        b'i' => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)),
-        b'I' => f64::from(u32::from_le_bytes(*bytes.first_chunk()?)),
-        b'e' => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)) * 0.01,
-        b'E' => f64::from(u32::from_le_bytes(*bytes.first_chunk()?)) * 0.01,
-        b'L' => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)) * 1e-7,
-        b'f' => f64::from(f32::from_le_bytes(*bytes.first_chunk()?)),
-        b'd' => f64::from_le_bytes(*bytes.first_chunk()?),
-        b'q' => i64::from_le_bytes(*bytes.first_chunk()?) as f64,
-        b'Q' => u64::from_le_bytes(*bytes.first_chunk()?) as f64,
-        _ => return None,
-    })
+/// The type of number that a letter stands for, and its unit.
+fn number_of(kind: u8) -> (Kind, f64) {
+    match kind {
+        b'b' => (Kind::I8, 1.0),
+        b'h' => (Kind::I16, 1.0),
+        b'H' => (Kind::U16, 1.0),
+        b'c' => (Kind::I16, 0.01),
+        b'C' => (Kind::U16, 0.01),
+        b'i' => (Kind::I32, 1.0),
+        b'I' => (Kind::U32, 1.0),
+        b'e' => (Kind::I32, 0.01),
+        b'E' => (Kind::U32, 0.01),
+        b'L' => (Kind::I32, 1e-7),
+        b'f' => (Kind::F32, 1.0),
+        b'd' => (Kind::F64, 1.0),
+        b'q' => (Kind::I64, 1.0),
+        b'Q' => (Kind::U64, 1.0),
+        // B, M, and what is no number: see `Cells::number`.
+        _ => (Kind::U8, 1.0),
+    }
 }
 
 #[cfg(test)]

@@ -1,11 +1,14 @@
 //! From ULog messages to a `Flight`.
 
-use super::format::{Place, keyed_number};
+use super::format::keyed_number;
 use super::outputs::Outputs;
 use super::plan::{Role, parts};
 use super::signals::SPECS;
 use super::topics::{Topics, key};
+use crate::clock::Latest;
+use crate::interval::both_hold;
 use crate::parameters::Parameters;
+use crate::place::Place;
 use crate::signal::preferred;
 use crate::{Event, Flight, Format, Intervals, Options, Report, Series, px4};
 
@@ -19,8 +22,7 @@ pub(super) struct Collector<'o> {
     pub(super) report: Report,
     pub(super) topics: Topics,
     roles: Vec<Option<(Place, Role)>>,
-    latest_s: Option<f64>,
-    waiting_s: Option<f64>,
+    latest: Latest,
     parameters: Parameters,
     outputs: Vec<Outputs>,
     series: Vec<(&'static str, Series)>,
@@ -41,8 +43,7 @@ impl<'o> Collector<'o> {
             report: Report::default(),
             topics: Topics::default(),
             roles: Vec::new(),
-            latest_s: None,
-            waiting_s: None,
+            latest: Latest::new(LONGEST_PAUSE_S),
             parameters: Parameters::default(),
             outputs: Vec::new(),
             series: Vec::new(),
@@ -59,7 +60,7 @@ impl<'o> Collector<'o> {
 
     /// Time at which the log began.
     pub(super) fn started(&mut self, start_us: u64) {
-        self.latest_s = Some(start_us as f64 * 1e-6);
+        self.latest.believe(start_us as f64 * 1e-6);
     }
 
     /// Takes in a message without its head.
@@ -86,7 +87,7 @@ impl<'o> Collector<'o> {
                 let lost_ms = body
                     .first_chunk()
                     .map_or(0, |bytes| u16::from_le_bytes(*bytes));
-                let t_s = self.latest_s.unwrap_or_default();
+                let t_s = self.latest.time_s().unwrap_or_default();
                 let what = format!("the logger lost {lost_ms} ms of data");
                 self.texts.push(Event::new(t_s, what));
             }
@@ -199,7 +200,7 @@ impl<'o> Collector<'o> {
         let Some(t_s) = time.number(body).map(|time_us| time_us * 1e-6) else {
             return self.bad("a message without a time");
         };
-        if !believe(&mut self.latest_s, &mut self.waiting_s, t_s) {
+        if !self.latest.believe(t_s) {
             return self.bad("a message with a time that no other agrees with");
         }
         let flag = |place: &Place, yes: f64| Some((t_s, place.number(body)? == yes));
@@ -271,17 +272,17 @@ impl<'o> Collector<'o> {
         let span_s = flight.time_span_s().unwrap_or_default();
         if !self.armed.is_empty() {
             let rule = "vehicle_status.arming_state = 2";
-            flight.armed = Some(intervals(&self.armed, span_s, rule));
+            flight.armed = Some(Intervals::from_states(&self.armed, span_s, rule));
         }
         if !self.landed.is_empty() {
             let flying: Vec<(f64, bool)> =
                 self.landed.iter().map(|&(t, down)| (t, !down)).collect();
             flight.in_air = Some(match self.armed.is_empty() {
-                true => intervals(&flying, span_s, "vehicle_land_detected.landed = 0"),
+                true => Intervals::from_states(&flying, span_s, "vehicle_land_detected.landed = 0"),
                 false => {
                     let rule =
                         "vehicle_land_detected.landed = 0 and vehicle_status.arming_state = 2";
-                    intervals(&both(&flying, &self.armed), span_s, rule)
+                    Intervals::from_states(&both_hold(&flying, &self.armed), span_s, rule)
                 }
             });
         }
@@ -328,42 +329,4 @@ impl<'o> Collector<'o> {
         let (motors, _) = px4::actuator_motors(&self.parameters, count.unwrap_or(0));
         flight.motors = motors;
     }
-}
-
-/// Whether to believe a time: topics may be late, but not far ahead of all others.
-fn believe(latest_s: &mut Option<f64>, waiting_s: &mut Option<f64>, t_s: f64) -> bool {
-    let agrees = |with_s: f64| t_s - with_s <= LONGEST_PAUSE_S;
-    let latest = *latest_s.get_or_insert(t_s);
-    let witness = waiting_s.is_some_and(|waiting| agrees(waiting) && t_s >= waiting);
-    if !agrees(latest) && !witness {
-        *waiting_s = Some(t_s);
-        return false;
-    }
-    *latest_s = Some(latest.max(t_s));
-    true
-}
-
-/// Where both states hold, from the changes of each; the first value of each holds before.
-fn both(a: &[(f64, bool)], b: &[(f64, bool)]) -> Vec<(f64, bool)> {
-    let mut times: Vec<f64> = a.iter().chain(b).map(|(t_s, _)| *t_s).collect();
-    times.sort_by(f64::total_cmp);
-    let at = |states: &[(f64, bool)], t_s: f64| {
-        let after = states.partition_point(|(since, _)| *since <= t_s);
-        let index = after.saturating_sub(1);
-        states.get(index).is_some_and(|(_, state)| *state)
-    };
-    times
-        .into_iter()
-        .map(|t_s| (t_s, at(a, t_s) && at(b, t_s)))
-        .collect()
-}
-
-/// The intervals of a state, whose first value holds before it, too.
-fn intervals(states: &[(f64, bool)], (first_s, last_s): (f64, f64), rule: &str) -> Intervals {
-    let before = states.first().is_some_and(|(_, state)| *state);
-    let within: Vec<(f64, bool)> = states
-        .iter()
-        .map(|&(t_s, state)| (t_s.max(first_s), state))
-        .collect();
-    Intervals::from_changes(&within, before, first_s, last_s, rule)
 }

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use crate::place::{Kind, Place};
+
 /// Nested topics go no deeper than this; deeper ones are damage.
 const DEEPEST: usize = 8;
 /// No message is longer: its length has 16 bits.
@@ -19,71 +21,21 @@ struct Field {
 #[derive(Debug, Default)]
 pub(super) struct Formats(HashMap<String, Vec<Field>>);
 
-/// Where a number is in a message, and of what type.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
-    offset: usize,
-    kind: Kind,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
-}
-
-impl Kind {
-    fn of(name: &str) -> Option<Self> {
-        Some(match name {
-            "int8_t" => Self::I8,
-            "uint8_t" | "bool" | "char" => Self::U8,
-            "int16_t" => Self::I16,
-            "uint16_t" => Self::U16,
-            "int32_t" => Self::I32,
-            "uint32_t" => Self::U32,
-            "int64_t" => Self::I64,
-            "uint64_t" => Self::U64,
-            "float" => Self::F32,
-            "double" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    fn width(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
-    }
-}
-
-impl Place {
-    /// The number in `message`; `None` where the message is too short.
-    pub(super) fn number(self, message: &[u8]) -> Option<f64> {
-        let bytes = message.get(self.offset..)?;
-        Some(match self.kind {
-            Kind::I8 => f64::from(i8::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::U8 => f64::from(*bytes.first()?),
-            Kind::I16 => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::U16 => f64::from(u16::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::I32 => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::U32 => f64::from(u32::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::I64 => i64::from_le_bytes(*bytes.first_chunk()?) as f64,
-            Kind::U64 => u64::from_le_bytes(*bytes.first_chunk()?) as f64,
-            Kind::F32 => f64::from(f32::from_le_bytes(*bytes.first_chunk()?)),
-            Kind::F64 => f64::from_le_bytes(*bytes.first_chunk()?),
-        })
-    }
+/// The type of that name.
+fn kind_of(name: &str) -> Option<Kind> {
+    Some(match name {
+        "int8_t" => Kind::I8,
+        "uint8_t" | "bool" | "char" => Kind::U8,
+        "int16_t" => Kind::I16,
+        "uint16_t" => Kind::U16,
+        "int32_t" => Kind::I32,
+        "uint32_t" => Kind::U32,
+        "int64_t" => Kind::I64,
+        "uint64_t" => Kind::U64,
+        "float" => Kind::F32,
+        "double" => Kind::F64,
+        _ => return None,
+    })
 }
 
 /// A typed value: the number after a key such as `float MPC_THR_HOVER`, with its name.
@@ -91,7 +43,7 @@ pub(super) fn keyed_number<'k>(key: &'k str, value: &[u8]) -> Option<(&'k str, f
     let (kind, name) = key.split_once(' ')?;
     let place = Place {
         offset: 0,
-        kind: Kind::of(kind)?,
+        kind: kind_of(kind)?,
     };
     Some((name, place.number(value)?))
 }
@@ -127,7 +79,7 @@ impl Formats {
 
     /// Bytes of one element of a field.
     fn field_size(&self, field: &Field, depth: usize) -> Option<usize> {
-        if let Some(kind) = Kind::of(&field.kind) {
+        if let Some(kind) = kind_of(&field.kind) {
             return Some(kind.width());
         }
         self.size_of(self.0.get(&field.kind)?, depth.checked_sub(1)?)
@@ -143,7 +95,7 @@ impl Formats {
         for field in self.0.get(topic)? {
             let size = self.field_size(field, DEEPEST)?;
             if field.name == name {
-                let kind = Kind::of(&field.kind)?;
+                let kind = kind_of(&field.kind)?;
                 return (index < field.count).then_some(Place {
                     offset: offset + index * size,
                     kind,

@@ -1,8 +1,9 @@
 //! What is read from the messages of each ULog topic.
 
-use super::format::Place;
-use super::signals::{Angle, From, Spec};
+use super::signals::{From, Spec};
 use crate::Options;
+use crate::angle::Angle;
+use crate::place::{Place, vector_length};
 use crate::signal::Label;
 
 /// What the messages of one number are read for.
@@ -30,10 +31,7 @@ impl Part {
     pub(super) fn value(&self, body: &[u8]) -> Option<f64> {
         match self {
             Self::Field(place, scale) => Some(place.number(body)? * scale),
-            Self::Length(places) => {
-                let squares = places.iter().map(|place| place.number(body).map(|x| x * x));
-                squares.sum::<Option<f64>>().map(f64::sqrt)
-            }
+            Self::Length(places) => vector_length(places.iter().map(|place| place.number(body))),
             Self::Angle(angle, [w, x, y, z]) => {
                 let number = |place: &Place| place.number(body);
                 Some(angle.of([number(w)?, number(x)?, number(y)?, number(z)?]))

@@ -1,5 +1,7 @@
 //! Which ULog topics hold which signals.
 
+use crate::angle::Angle;
+
 /// How a signal is made from the fields of a topic.
 pub(super) enum From {
     /// A field, times a factor.
@@ -8,26 +10,6 @@ pub(super) enum From {
     Length(&'static [&'static str]),
     /// An angle of the attitude quaternion in the four elements of this field.
     Angle(Angle, &'static str),
-}
-
-/// Angles of an attitude, in the order yaw, pitch, roll (ZYX).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Angle {
-    Roll,
-    Pitch,
-    Yaw,
-}
-
-impl Angle {
-    /// The angle in degrees of the quaternion `[w, x, y, z]`.
-    pub(super) fn of(self, [w, x, y, z]: [f64; 4]) -> f64 {
-        match self {
-            Self::Roll => (2.0 * (w * x + y * z)).atan2(1.0 - 2.0 * (x * x + y * y)),
-            Self::Pitch => (2.0 * (w * y - z * x)).clamp(-1.0, 1.0).asin(),
-            Self::Yaw => (2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z)),
-        }
-        .to_degrees()
-    }
 }
 
 /// Signals of one topic: how made (the first way that the topic has), name, unit.
@@ -167,27 +149,3 @@ pub(super) const SPECS: &[Spec] = &[
         signals: WIND,
     },
 ];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn angles_of_single_turns() {
-        let half = 15.0_f64.to_radians();
-        let (c, s) = (half.cos(), half.sin());
-        for (angle, turn) in [
-            (Angle::Roll, [c, s, 0.0, 0.0]),
-            (Angle::Pitch, [c, 0.0, s, 0.0]),
-            (Angle::Yaw, [c, 0.0, 0.0, s]),
-        ] {
-            for other in [Angle::Roll, Angle::Pitch, Angle::Yaw] {
-                let expected = if other == angle { 30.0 } else { 0.0 };
-                assert!(
-                    (other.of(turn) - expected).abs() < 1e-12,
-                    "{other:?} of {angle:?}"
-                );
-            }
-        }
-    }
-}

@@ -1,0 +1,60 @@
+//! A number somewhere in a message: all formats here are little-endian.
+
+/// Where a number is in a message, and of what type.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) offset: usize,
+    pub(crate) kind: Kind,
+}
+
+/// Types of numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Kind {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl Kind {
+    /// Bytes it takes.
+    pub(crate) fn width(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
+impl Place {
+    /// The number in `message`; `None` where the message is too short.
+    pub(crate) fn number(self, message: &[u8]) -> Option<f64> {
+        let bytes = message.get(self.offset..)?;
+        Some(match self.kind {
+            Kind::I8 => f64::from(i8::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::U8 => f64::from(*bytes.first()?),
+            Kind::I16 => f64::from(i16::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::U16 => f64::from(u16::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::I32 => f64::from(i32::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::U32 => f64::from(u32::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::I64 => i64::from_le_bytes(*bytes.first_chunk()?) as f64,
+            Kind::U64 => u64::from_le_bytes(*bytes.first_chunk()?) as f64,
+            Kind::F32 => f64::from(f32::from_le_bytes(*bytes.first_chunk()?)),
+            Kind::F64 => f64::from_le_bytes(*bytes.first_chunk()?),
+        })
+    }
+}
+
+/// Length of the vector of these numbers; `None` where one is missing.
+pub(crate) fn vector_length(numbers: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    let squares = numbers.map(|number| number.map(|x| x * x));
+    squares.sum::<Option<f64>>().map(f64::sqrt)
+}
