@@ -4,18 +4,6 @@
 use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
 
-/// Outputs (from 1) that SERVOn_FUNCTION gives to motors, in order of the motor number.
-fn motor_outputs(parameters: &Parameters) -> Vec<(u16, u16)> {
-    let mut motors: Vec<(u16, u16)> = (1..=32)
-        .filter_map(|output| {
-            let function = parameters.get(&format!("SERVO{output}_FUNCTION"))?;
-            Some((motor_of_function(function as i64)?, output))
-        })
-        .collect();
-    motors.sort_unstable();
-    motors
-}
-
 /// Whether the log has any SERVOn_FUNCTION: firmware before 3.5 has none.
 fn has_functions(parameters: &Parameters) -> bool {
     (1..=32).any(|output| parameters.get(&format!("SERVO{output}_FUNCTION")).is_some())
@@ -33,40 +21,49 @@ fn motor_of_function(function: i64) -> Option<u16> {
     u16::try_from(number).ok()
 }
 
-/// The motors of outputs labelled `label` and a number.
-fn motors_by_function(parameters: &Parameters, label: &str) -> Vec<Motor> {
-    motor_outputs(parameters)
-        .into_iter()
-        .map(|(number, output)| {
-            let name = format!("SERVO{output}_FUNCTION");
-            let function = parameters.get(&name).unwrap_or_default();
-            Motor {
-                number,
-                output: format!("{label}{output}"),
-                source: format!("{name} = {function}"),
-            }
-        })
-        .collect()
-}
-
-/// The motors of a vehicle: by SERVOn_FUNCTION; where the log has none (firmware before
-/// 3.5), the outputs 1 to N with N from the frame.
-pub(crate) fn motors(parameters: &Parameters, vehicle: &Vehicle, label: &str) -> Vec<Motor> {
-    if has_functions(parameters) {
-        return motors_by_function(parameters, label);
+/// The motors of a vehicle and the number of the output (from 1) of each, in order of their
+/// own numbers: by SERVOn_FUNCTION; where the log has none (firmware before 3.5), the
+/// outputs 1 to N with N from the frame. `name` is what the log calls an output.
+pub(crate) fn motors(
+    parameters: &Parameters,
+    vehicle: &Vehicle,
+    name: impl Fn(u16) -> String,
+) -> Vec<(Motor, u16)> {
+    if !has_functions(parameters) {
+        let frame = vehicle.frame.as_deref().unwrap_or_default();
+        let source = format!("frame {frame} (the log has no SERVOn_FUNCTION)");
+        return numbered_motors(vehicle.motors.unwrap_or(0), name, &source);
     }
-    let frame = vehicle.frame.as_deref().unwrap_or_default();
-    let source = format!("frame {frame} (the log has no SERVOn_FUNCTION)");
-    numbered_motors(vehicle.motors.unwrap_or(0), label, &source)
+    let mut motors: Vec<(Motor, u16)> = (1..=32)
+        .filter_map(|output| {
+            let parameter = format!("SERVO{output}_FUNCTION");
+            let function = parameters.get(&parameter)?;
+            let motor = Motor {
+                number: motor_of_function(function as i64)?,
+                output: name(output),
+                source: format!("{parameter} = {function}"),
+            };
+            Some((motor, output))
+        })
+        .collect();
+    motors.sort_by_key(|(motor, output)| (motor.number, *output));
+    motors
 }
 
 /// Motors 1 to `motors`, on outputs of the same number.
-pub(crate) fn numbered_motors(motors: u16, label: &str, source: &str) -> Vec<Motor> {
+pub(crate) fn numbered_motors(
+    motors: u16,
+    name: impl Fn(u16) -> String,
+    source: &str,
+) -> Vec<(Motor, u16)> {
     (1..=motors)
-        .map(|number| Motor {
-            number,
-            output: format!("{label}{number}"),
-            source: source.into(),
+        .map(|number| {
+            let motor = Motor {
+                number,
+                output: name(number),
+                source: source.into(),
+            };
+            (motor, number)
         })
         .collect()
 }
@@ -102,41 +99,58 @@ pub(crate) fn air_from_commands(flight: &Flight) -> (Option<Intervals>, Option<I
     )
 }
 
-/// Name of a flight mode of ArduCopter.
-pub(crate) fn copter_mode(number: i64) -> String {
-    const NAMES: &[&str] = &[
-        "STABILIZE",
-        "ACRO",
-        "ALT_HOLD",
-        "AUTO",
-        "GUIDED",
-        "LOITER",
-        "RTL",
-        "CIRCLE",
-        "",
-        "LAND",
-        "",
-        "DRIFT",
-        "",
-        "SPORT",
-        "FLIP",
-        "AUTOTUNE",
-        "POSHOLD",
-        "BRAKE",
-        "THROW",
-        "AVOID_ADSB",
-        "GUIDED_NOGPS",
-        "SMART_RTL",
-        "FLOWHOLD",
-        "FOLLOW",
-        "ZIGZAG",
-        "SYSTEMID",
-        "AUTOROTATE",
-        "AUTO_RTL",
-        "TURTLE",
-    ];
-    name_of(NAMES, number, "mode")
+/// A flight mode as a log tells it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Mode {
+    Number(i64),
+    Name(String),
 }
+
+impl Mode {
+    /// Its name. Numbers mean different modes on different vehicles.
+    pub(crate) fn name(self, kind: VehicleKind) -> String {
+        match (self, kind) {
+            (Self::Name(name), _) => name,
+            (Self::Number(number), VehicleKind::Multirotor | VehicleKind::Helicopter) => {
+                name_of(COPTER_MODES, number, "mode")
+            }
+            (Self::Number(number), _) => format!("mode {number}"),
+        }
+    }
+}
+
+/// Flight modes of ArduCopter by their numbers.
+const COPTER_MODES: &[&str] = &[
+    "STABILIZE",
+    "ACRO",
+    "ALT_HOLD",
+    "AUTO",
+    "GUIDED",
+    "LOITER",
+    "RTL",
+    "CIRCLE",
+    "",
+    "LAND",
+    "",
+    "DRIFT",
+    "",
+    "SPORT",
+    "FLIP",
+    "AUTOTUNE",
+    "POSHOLD",
+    "BRAKE",
+    "THROW",
+    "AVOID_ADSB",
+    "GUIDED_NOGPS",
+    "SMART_RTL",
+    "FLOWHOLD",
+    "FOLLOW",
+    "ZIGZAG",
+    "SYSTEMID",
+    "AUTOROTATE",
+    "AUTO_RTL",
+    "TURTLE",
+];
 
 /// Number of motors of a frame by the name or class that the log gives it.
 fn motors_of_frame(frame: &str) -> Option<u16> {
@@ -311,19 +325,20 @@ mod tests {
 
     #[test]
     fn the_first_value_of_a_parameter_counts() {
-        let found = motors_by_function(
+        let found = motors(
             &parameters(&[
                 ("SERVO1_FUNCTION", 34.0),
                 ("SERVO5_FUNCTION", 33.0),
                 ("SERVO1_FUNCTION", 1.0),
             ]),
-            "C",
+            &Vehicle::default(),
+            |output| format!("C{output}"),
         );
         let found: Vec<_> = found
             .iter()
-            .map(|m| (m.number, m.output.as_str()))
+            .map(|(m, output)| (m.number, m.output.as_str(), *output))
             .collect();
-        assert_eq!(found, [(1, "C5"), (2, "C1")]);
+        assert_eq!(found, [(1, "C5", 5), (2, "C1", 1)]);
     }
 
     #[test]

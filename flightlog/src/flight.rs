@@ -318,7 +318,7 @@ impl Flight {
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
-    /// Rate of the motor commands: the inverse of the median time step.
+    /// Rows of motor commands a second, without pauses; `None` under two rows.
     pub fn command_rate_hz(&self) -> Option<f64> {
         crate::signal::rate_hz(self.commands.t_s())
     }

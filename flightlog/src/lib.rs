@@ -43,6 +43,7 @@ mod read;
 mod report;
 mod signal;
 mod statistics;
+mod tlog;
 mod ulog;
 mod utc;
 

@@ -1,7 +1,7 @@
 //! Servo outputs as ArduPilot logs them, before it is known which of them drive motors.
 
+use crate::Commands;
 use crate::signal::Order;
-use crate::{Commands, Motor};
 
 /// A pulse that is no pulse: the output was not logged in that row, or is damaged.
 const MISSING: u16 = u16::MAX;
@@ -61,32 +61,23 @@ impl Outputs {
         }
     }
 
-    /// The commands of these motors; their outputs are named by a label and the number.
-    pub(crate) fn commands(self, motors: &[Motor]) -> Commands {
-        let mut commands = Commands::new(motors.len());
-        let columns: Vec<Option<&Vec<u16>>> = motors
+    /// The commands of the motors on these outputs.
+    pub(crate) fn commands(self, outputs: &[u16]) -> Commands {
+        let mut commands = Commands::new(outputs.len());
+        let columns: Vec<Option<&Vec<u16>>> = outputs
             .iter()
-            .map(|motor| {
-                let digits = motor
-                    .output
-                    .trim_start_matches(|c: char| !c.is_ascii_digit());
-                let output: usize = digits.parse().ok()?;
-                self.columns.get(output.checked_sub(1)?)
-            })
+            .map(|output| self.columns.get(usize::from(*output).checked_sub(1)?))
             .collect();
         // Outputs that were never logged are no commands.
         if columns.iter().all(Option::is_none) {
             return commands;
         }
         for (row, &t_s) in self.t_s.iter().enumerate() {
-            let values =
-                columns
-                    .iter()
-                    .map(|column| match column.and_then(|column| column.get(row)) {
-                        Some(&value) if value != MISSING => f64::from(value),
-                        _ => f64::NAN,
-                    });
-            commands.push(t_s, values);
+            let value = |column: &Option<&Vec<u16>>| match column.and_then(|c| c.get(row)) {
+                Some(&value) if value != MISSING => f64::from(value),
+                _ => f64::NAN,
+            };
+            commands.push(t_s, columns.iter().map(value));
         }
         commands
     }

@@ -209,6 +209,38 @@ pub(crate) fn nav_state(number: i64) -> String {
     crate::parameters::name_of(NAMES, number, "state")
 }
 
+/// Name of a mode in HEARTBEAT.custom_mode: main mode in byte 2, that of AUTO in byte 3.
+pub(crate) fn custom_mode(number: u32) -> String {
+    const MAIN: &[&str] = &[
+        "",
+        "MANUAL",
+        "ALTCTL",
+        "POSCTL",
+        "AUTO",
+        "ACRO",
+        "OFFBOARD",
+        "STABILIZED",
+        "RATTITUDE",
+    ];
+    const AUTO: &[&str] = &[
+        "",
+        "AUTO_READY",
+        "AUTO_TAKEOFF",
+        "AUTO_LOITER",
+        "AUTO_MISSION",
+        "AUTO_RTL",
+        "AUTO_LAND",
+        "",
+        "AUTO_FOLLOW_TARGET",
+        "AUTO_PRECLAND",
+    ];
+    let [_, _, main, auto] = number.to_le_bytes();
+    match main {
+        4 => crate::parameters::name_of(AUTO, auto.into(), "AUTO"),
+        _ => crate::parameters::name_of(MAIN, main.into(), "mode"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

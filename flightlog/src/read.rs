@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use crate::input::Input;
-use crate::{Flight, ReadError, csv, dataflash, ulog};
+use crate::{Flight, ReadError, csv, dataflash, tlog, ulog};
 
 /// What to read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -83,6 +83,7 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
         Content::DataFlash => dataflash::read(input, options).map_err(io_error)?,
         Content::DataFlashText => dataflash::text::read(input, options).map_err(io_error)?,
         Content::ULog => ulog::read(input, options).map_err(io_error)?,
+        Content::Tlog => tlog::read(input, options).map_err(io_error)?,
         Content::Csv => csv::read(input, options)?,
         Content::Empty => {
             return Err(ReadError::Empty {
@@ -118,6 +119,7 @@ enum Content {
     DataFlash,
     DataFlashText,
     ULog,
+    Tlog,
     Csv,
     Empty,
     Other(&'static str),
@@ -153,6 +155,9 @@ fn sniff(start: &[u8]) -> Content {
     }
     if ulog::looks_like(start) {
         return Content::ULog;
+    }
+    if tlog::looks_like(start) {
+        return Content::Tlog;
     }
     if dataflash::text::looks_like(start) {
         return Content::DataFlashText;

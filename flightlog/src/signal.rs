@@ -71,6 +71,11 @@ impl Series {
             })
     }
 
+    /// No signal of it was asked for.
+    pub(crate) fn is_without_signals(&self) -> bool {
+        self.labels.is_empty()
+    }
+
     /// Keeps the signals of which `keep` says so by their name.
     fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
         let labels = std::mem::take(&mut self.labels);
@@ -121,7 +126,7 @@ impl<'a> Signal<'a> {
         }
     }
 
-    /// Samples a second: the inverse of the median time step, `None` under two samples.
+    /// Samples a second without pauses; `None` under two samples.
     pub fn rate_hz(&self) -> Option<f64> {
         rate_hz(self.t_s)
     }
@@ -184,21 +189,25 @@ impl Order {
     }
 }
 
-/// The inverse of the median positive time step; `None` when there is none.
+/// Samples a second: the inverse of the mean time step, without pauses. A step is a pause
+/// when it is over 2 s and over ten times the median step. `None` without any step.
 pub(crate) fn rate_hz(t_s: &[f64]) -> Option<f64> {
-    let mut steps: Vec<f64> = t_s
-        .windows(2)
-        .filter_map(|pair| match pair {
-            [a, b] if b > a => Some(b - a),
+    let steps = || {
+        t_s.windows(2).filter_map(|pair| match pair {
+            [a, b] => Some(b - a),
             _ => None,
         })
-        .collect();
-    if steps.is_empty() {
+    };
+    let mut sorted: Vec<f64> = steps().collect();
+    let middle = sorted.len() / 2;
+    if sorted.is_empty() {
         return None;
     }
-    let middle = steps.len() / 2;
-    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(1.0 / *median)
+    let (_, median, _) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
+    let longest = (10.0 * *median).max(2.0);
+    let within = || steps().filter(|step| *step <= longest);
+    let sum_s: f64 = within().sum();
+    (sum_s > 0.0).then(|| within().count() as f64 / sum_s)
 }
 
 #[cfg(test)]
@@ -237,8 +246,14 @@ mod tests {
     }
 
     #[test]
-    fn rate_is_that_of_the_median_step() {
-        assert_eq!(rate_hz(&[0.0, 0.1, 0.2, 5.0]), Some(10.0));
+    fn pauses_do_not_count_in_the_rate_but_bursts_do() {
+        let close = |t_s: &[f64], expected: f64| {
+            let rate = rate_hz(t_s).unwrap();
+            assert!((rate - expected).abs() < 1e-9, "{rate} for {expected}");
+        };
+        close(&[0.0, 0.1, 0.2, 500.0], 10.0);
+        close(&[0.0, 0.01, 0.02, 1.0, 1.01, 1.02, 2.0], 3.0);
+        close(&[0.0, 10.0, 20.0], 0.1);
         assert_eq!(rate_hz(&[1.0]), None);
         assert_eq!(rate_hz(&[1.0, 1.0]), None);
     }

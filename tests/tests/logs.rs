@@ -315,6 +315,35 @@ fn logs_without_an_answer_say_why() {
     }
 }
 
+/// Numbers that pymavlink 2.4.50 reads from the log.
+#[test]
+fn telemetry_is_as_pymavlink_reads_it() {
+    let Some(data) = shared_data() else { return };
+    let flight = open(&data.join("logs/tl_vtol.tlog"));
+    assert!(flight.report.is_clean());
+    assert_eq!(flight.report.messages, 23_894);
+    assert_eq!(flight.commands.len(), 797);
+    let outputs: Vec<&str> = flight.motors.iter().map(|m| m.output.as_str()).collect();
+    let (servo5, servo8) = (0, 3);
+    assert_eq!(
+        (outputs[servo5], outputs[servo8]),
+        ("servo5_raw", "servo8_raw")
+    );
+    let sum = |motor: usize| {
+        flight
+            .commands
+            .rows()
+            .map(|(_, row)| row[motor])
+            .sum::<f64>()
+    };
+    assert_eq!((sum(servo5), sum(servo8)), (1_047_646.0, 991_120.0));
+    assert!((flight.commands.t_s()[400] - 110.429).abs() < 1e-5);
+    let roll = flight.signal("roll_deg").unwrap();
+    assert_eq!(roll.values.len(), 888);
+    assert!((roll.t_s[500] - 113.079).abs() < 1e-5);
+    assert!((roll.values[500] - 45.795_930_026).abs() < 1e-6);
+}
+
 #[test]
 fn flight_csv_series_are_read_whole() {
     let Some(data) = shared_data() else { return };

@@ -5,7 +5,7 @@ use super::landing::{Landing, air_from_events};
 use super::plan::{Kind, MOTORS, Part, Role};
 use super::signals::SPECS;
 use super::untimed::{Kept, Untimed};
-use crate::ardupilot;
+use crate::ardupilot::{self, Mode};
 use crate::clock::{Clock, Placed};
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
@@ -28,7 +28,7 @@ pub(super) struct Collector<'o> {
     label: &'static str,
     series: Vec<(&'static str, Series)>,
     events: Vec<(f64, Landing)>,
-    modes: Vec<Event>,
+    modes: Vec<(f64, Mode)>,
     texts: Vec<Event>,
     /// Texts that stand above the messages of a text log.
     pub(super) greetings: Vec<String>,
@@ -223,10 +223,10 @@ impl<'o> Collector<'o> {
             Role::Mode { number: id, name } => {
                 let id = id.and_then(number).or_else(|| number(*name));
                 let mode = match id {
-                    Some(id) => ardupilot::copter_mode(id as i64),
-                    None => cells.text(format, *name).unwrap_or_default(),
+                    Some(id) => Mode::Number(id as i64),
+                    None => Mode::Name(cells.text(format, *name).unwrap_or_default()),
                 };
-                self.modes.push(Event::new(t_s, mode));
+                self.modes.push((t_s, mode));
             }
             Role::Outputs(_, columns) => {
                 let values = columns
@@ -272,13 +272,20 @@ impl<'o> Collector<'o> {
         let said = self.texts.iter().map(|text| &text.what);
         let texts = self.greetings.iter().chain(said).map(String::as_str);
         flight.vehicle = ardupilot::vehicle(texts, &self.parameters);
-        flight.motors = match self.named_motors {
-            0 => ardupilot::motors(&self.parameters, &flight.vehicle, self.label),
-            motors => ardupilot::numbered_motors(motors, "Mot", "MOT message"),
+        let motors = match self.named_motors {
+            0 => ardupilot::motors(&self.parameters, &flight.vehicle, |output| {
+                format!("{}{output}", self.label)
+            }),
+            motors => {
+                let name = |motor| format!("Mot{motor}");
+                ardupilot::numbered_motors(motors, name, "MOT message")
+            }
         };
+        let outputs: Vec<u16>;
+        (flight.motors, outputs) = motors.into_iter().unzip();
         flight.range = ardupilot::pwm_range(&self.parameters);
         flight.effective = ardupilot::effective_range(&self.parameters);
-        flight.commands = self.outputs.commands(&flight.motors);
+        flight.commands = self.outputs.commands(&outputs);
         let span_s = self.clock.first_s().zip(self.clock.now_s());
         (flight.armed, flight.in_air) = ardupilot::air_from_commands(&flight);
         if !self.events.is_empty() {
@@ -291,8 +298,13 @@ impl<'o> Collector<'o> {
             .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.message == *name));
         let series = self.series.into_iter().map(|(_, series)| series);
         flight.series = preferred(series.collect());
-        self.modes.sort_by_key(|mode| mode.t_us);
-        flight.modes = self.modes;
+        self.modes.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let kind = flight.vehicle.kind;
+        flight.modes = self
+            .modes
+            .into_iter()
+            .map(|(t_s, mode)| Event::new(t_s, mode.name(kind)))
+            .collect();
         flight.messages = self.texts;
         flight.utc_at_zero_s = self.utc_at_zero_s;
         flight.boots_s = self.clock.boots_s().to_vec();

@@ -1,0 +1,323 @@
+//! From MAVLink packets to a `Flight`.
+
+use super::packet::Packet;
+use super::signals::{SPECS, Spec};
+use crate::ardupilot::{self, Mode};
+use crate::clock::Latest;
+use crate::interval::both_hold;
+use crate::mav_type::mav_type;
+use crate::outputs::Outputs;
+use crate::parameters::Parameters;
+use crate::place::{Kind, Place};
+use crate::signal::{Label, preferred};
+use crate::{Event, Flight, Format, Intervals, Options, Report, Series, VehicleKind, px4};
+
+/// Telemetry pauses while the link is lost; a time further ahead is damage.
+const LONGEST_PAUSE_S: f64 = 3600.0;
+/// The component of a system that is its autopilot.
+const AUTOPILOT: u8 = 1;
+/// MAV_AUTOPILOT of PX4.
+const PX4: u8 = 12;
+/// Flag of HEARTBEAT.base_mode: the motors are armed.
+const ARMED: u8 = 128;
+
+const HEARTBEAT: u32 = 0;
+const PARAM_VALUE: u32 = 22;
+const SERVO_OUTPUT_RAW: u32 = 36;
+const BATTERY_STATUS: u32 = 147;
+const AUTOPILOT_VERSION: u32 = 148;
+const EXTENDED_SYS_STATE: u32 = 245;
+const STATUSTEXT: u32 = 253;
+
+pub(super) struct Collector<'o> {
+    options: &'o Options,
+    pub(super) report: Report,
+    /// Time of the first packet of the log, microseconds since 1970.
+    zero_us: Option<u64>,
+    latest: Latest,
+    /// The vehicle's system, and whether a heartbeat of its has told so.
+    system: Option<(u8, bool)>,
+    vehicle: Heard,
+}
+
+/// What was heard of the vehicle.
+#[derive(Default)]
+struct Heard {
+    autopilot: u8,
+    mav_type: Option<u8>,
+    version: Option<u32>,
+    parameters: Parameters,
+    outputs: Outputs,
+    series: Vec<(usize, Series)>,
+    armed: Vec<(f64, bool)>,
+    active: Vec<(f64, bool)>,
+    flying: Vec<(f64, bool)>,
+    modes: Vec<(f64, u32)>,
+    texts: Vec<Event>,
+}
+
+impl<'o> Collector<'o> {
+    pub(super) fn new(options: &'o Options) -> Self {
+        Self {
+            options,
+            report: Report::default(),
+            zero_us: None,
+            latest: Latest::new(LONGEST_PAUSE_S),
+            system: None,
+            vehicle: Heard::default(),
+        }
+    }
+
+    /// Takes in a packet.
+    pub(super) fn packet(&mut self, stamp_us: u64, packet: &Packet<'_>) {
+        let zero_us = *self.zero_us.get_or_insert(stamp_us);
+        let t_s = (stamp_us as f64 - zero_us as f64) * 1e-6;
+        if !self.latest.believe(t_s) {
+            self.report.bad_messages += 1;
+            self.report
+                .because(|| "a message with a time that no other agrees with".into());
+            return;
+        }
+        self.choose_system(packet);
+        // Ground stations store parameters under the number of another component.
+        let of_autopilot = packet.component == AUTOPILOT || packet.id == PARAM_VALUE;
+        if self
+            .system
+            .is_none_or(|(system, _)| system != packet.system)
+            || !of_autopilot
+        {
+            return;
+        }
+        // Version 2 leaves out the zeros at the end of a payload.
+        let mut payload = [0; 255];
+        let length = packet.payload.len().min(payload.len());
+        payload[..length].copy_from_slice(&packet.payload[..length]);
+        let dropped = self.vehicle.message(t_s, packet.id, &payload, self.options);
+        self.report.bad_messages += u64::from(dropped);
+    }
+
+    /// The vehicle is the autopilot of the first system that sends the heartbeat of one;
+    /// until there is any, the first system that sends anything as an autopilot would.
+    fn choose_system(&mut self, packet: &Packet<'_>) {
+        if packet.component != AUTOPILOT {
+            return;
+        }
+        let of_vehicle = packet.id == HEARTBEAT
+            && packet
+                .payload
+                .get(4)
+                .is_some_and(|&t| mav_type(t.into()).is_some());
+        match &mut self.system {
+            None => self.system = Some((packet.system, of_vehicle)),
+            Some((system, told)) if !*told && of_vehicle => {
+                if *system != packet.system {
+                    self.vehicle = Heard::default();
+                }
+                (*system, *told) = (packet.system, true);
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// The flight, once the whole log has been read.
+    pub(super) fn finish(self) -> Flight {
+        let mut flight = Flight::empty(Format::Tlog);
+        flight.report = self.report;
+        flight.utc_at_zero_s = self.zero_us.map(|zero_us| zero_us as f64 * 1e-6);
+        self.vehicle.finish(&mut flight);
+        flight
+    }
+}
+
+fn number(payload: &[u8], offset: usize, kind: Kind) -> Option<f64> {
+    Place { offset, kind }.number(payload)
+}
+
+fn text(bytes: &[u8]) -> String {
+    let end = bytes
+        .iter()
+        .position(|&byte| byte == 0)
+        .unwrap_or(bytes.len());
+    String::from_utf8_lossy(&bytes[..end]).trim().to_owned()
+}
+
+impl Heard {
+    /// Takes in a message of the vehicle; `true` when a row was dropped because times go back.
+    fn message(&mut self, t_s: f64, id: u32, payload: &[u8; 255], options: &Options) -> bool {
+        match id {
+            HEARTBEAT => self.heartbeat(t_s, payload),
+            PARAM_VALUE => self.parameter(payload),
+            SERVO_OUTPUT_RAW => return self.servos(t_s, payload),
+            AUTOPILOT_VERSION => {
+                // PX4 tells its version only here; capabilities, uid, then the version.
+                let version = number(payload, 16, Kind::U32).map(|version| version as u32);
+                self.version = self.version.or(version);
+            }
+            EXTENDED_SYS_STATE => {
+                // 1 on the ground, 2 in the air, 3 taking off, 4 landing.
+                if let landed @ 1..=4 = payload[1] {
+                    self.flying.push((t_s, landed != 1));
+                }
+            }
+            STATUSTEXT => self.texts.push(Event::new(t_s, text(&payload[1..51]))),
+            BATTERY_STATUS if payload[32] != 0 => {}
+            _ => return self.signals(t_s, id, payload, options),
+        }
+        false
+    }
+
+    fn heartbeat(&mut self, t_s: f64, payload: &[u8; 255]) {
+        let [mode @ .., mav_type, autopilot, base_mode, status] =
+            *payload.first_chunk::<8>().unwrap_or(&[0; 8]);
+        self.autopilot = autopilot;
+        self.mav_type = Some(mav_type);
+        self.armed.push((t_s, base_mode & ARMED != 0));
+        // ArduPilot is in STANDBY on the ground, and ACTIVE or CRITICAL in the air.
+        self.active.push((t_s, matches!(status, 4 | 5)));
+        let mode = u32::from_le_bytes(mode);
+        if self.modes.last().is_none_or(|(_, last)| *last != mode) {
+            self.modes.push((t_s, mode));
+        }
+    }
+
+    fn parameter(&mut self, payload: &[u8; 255]) {
+        // PX4 sends the bits of integers; ArduPilot sends every number as a float.
+        let is_integer = matches!(payload[24], 1..=6);
+        let kind = match self.autopilot == PX4 && is_integer {
+            true => Kind::I32,
+            false => Kind::F32,
+        };
+        if let Some(value) = number(payload, 0, kind) {
+            self.parameters.insert(&text(&payload[8..24]), value);
+        }
+    }
+
+    /// Outputs 1 to 8 of a port, and 9 to 16 in version 2.
+    fn servos(&mut self, t_s: f64, payload: &[u8; 255]) -> bool {
+        if payload[20] != 0 {
+            return false;
+        }
+        let offset = |output: u16| match output {
+            ..=8 => 2 + 2 * usize::from(output),
+            _ => 3 + 2 * usize::from(output),
+        };
+        // Those above 8 are 0 where the sender does not have them.
+        let outputs = (1..=16)
+            .filter_map(|output| Some((output, number(payload, offset(output), Kind::U16)?)))
+            .filter(|&(output, pulse_us)| output <= 8 || pulse_us > 0.0);
+        self.outputs.add(t_s, true, outputs)
+    }
+
+    fn signals(&mut self, t_s: f64, id: u32, payload: &[u8; 255], options: &Options) -> bool {
+        let Some(index) = SPECS.iter().position(|spec| spec.id == id) else {
+            return false;
+        };
+        let spec = &SPECS[index];
+        let known = self.series.iter().position(|(of, _)| *of == index);
+        let slot = known.unwrap_or_else(|| {
+            self.series
+                .push((index, Series::new(labels(spec, options))));
+            self.series.len() - 1
+        });
+        let wanted = spec
+            .signals
+            .iter()
+            .filter(|(_, name, _)| options.wants(name));
+        let values = wanted.map(|(from, _, _)| from.value(payload).unwrap_or(f64::NAN));
+        match self.series.get_mut(slot) {
+            Some((_, series)) if !series.is_without_signals() => series.push(t_s, values),
+            _ => false,
+        }
+    }
+
+    fn finish(mut self, flight: &mut Flight) {
+        self.name_vehicle(flight);
+        let name = |output| format!("servo{output}_raw");
+        let motors = match self.autopilot {
+            PX4 => {
+                let source = "MAV_TYPE, the first outputs";
+                let count = flight.vehicle.motors.unwrap_or(0);
+                ardupilot::numbered_motors(count, name, source)
+            }
+            _ => ardupilot::motors(&self.parameters, &flight.vehicle, name),
+        };
+        let outputs: Vec<u16>;
+        (flight.motors, outputs) = motors.into_iter().unzip();
+        flight.range = match self.autopilot {
+            PX4 => px4::output_range(&self.parameters, 0, 0, 0.0, ""),
+            _ => ardupilot::pwm_range(&self.parameters),
+        };
+        if self.autopilot != PX4 {
+            flight.effective = ardupilot::effective_range(&self.parameters);
+        }
+        flight.commands = self.outputs.commands(&outputs);
+        self.series.sort_by_key(|(index, _)| *index);
+        flight.series = preferred(self.series.into_iter().map(|(_, series)| series).collect());
+        flight.messages = self.texts;
+        let kind = flight.vehicle.kind;
+        let is_px4 = self.autopilot == PX4;
+        let mode = |number: u32| match is_px4 {
+            true => px4::custom_mode(number),
+            false => Mode::Number(number.into()).name(kind),
+        };
+        flight.modes = self
+            .modes
+            .into_iter()
+            .map(|(t_s, number)| Event::new(t_s, mode(number)))
+            .collect();
+        let Some(span_s) = flight.time_span_s() else {
+            return;
+        };
+        if self.armed.is_empty() {
+            return;
+        }
+        let rule = "HEARTBEAT.base_mode has its armed bit";
+        flight.armed = Some(Intervals::from_states(&self.armed, span_s, rule));
+        let (flying, rule) = match (self.flying.is_empty(), is_px4) {
+            (false, _) => (&self.flying, "EXTENDED_SYS_STATE.landed_state, and armed"),
+            (true, false) => (
+                &self.active,
+                "HEARTBEAT.system_status active or critical, and armed",
+            ),
+            // PX4 is active as soon as it is armed.
+            (true, true) => return,
+        };
+        let in_air = both_hold(flying, &self.armed);
+        flight.in_air = Some(Intervals::from_states(&in_air, span_s, rule));
+    }
+
+    /// The vehicle by its texts and parameters, and by the type in its heartbeats.
+    fn name_vehicle(&self, flight: &mut Flight) {
+        let texts = self.texts.iter().map(|text| text.what.as_str());
+        flight.vehicle = ardupilot::vehicle(texts, &self.parameters);
+        let vehicle = &mut flight.vehicle;
+        if self.autopilot == PX4 {
+            vehicle.firmware = self.version.map(px4::firmware);
+        }
+        let Some((number, told)) = self
+            .mav_type
+            .and_then(|number| Some((number, mav_type(number.into())?)))
+        else {
+            return;
+        };
+        // What sends the heartbeat of a quadplane may call itself a plane, not the reverse.
+        if !(vehicle.kind == VehicleKind::Vtol && told.kind == VehicleKind::Plane) {
+            vehicle.kind = told.kind;
+            vehicle.source = format!("HEARTBEAT.type = {number}");
+        }
+        vehicle.frame.get_or_insert_with(|| told.name.into());
+        vehicle.motors = vehicle.motors.or(told.motors);
+    }
+}
+
+fn labels(spec: &Spec, options: &Options) -> Vec<Label> {
+    spec.signals
+        .iter()
+        .filter(|(_, name, _)| options.wants(name))
+        .map(|(_, name, unit)| Label {
+            name: (*name).into(),
+            unit: (*unit).into(),
+            source: spec.message.into(),
+        })
+        .collect()
+}

@@ -1,0 +1,103 @@
+//! MAVLink telemetry logs (`.tlog`): the microseconds since 1970 (8 bytes, big-endian)
+//! before each packet, versions 1 and 2 mixed.
+
+mod checksum;
+mod collect;
+mod packet;
+mod signals;
+
+use std::io;
+
+use self::collect::Collector;
+use self::packet::Packet;
+use crate::input::Input;
+use crate::{Flight, Options};
+
+/// Bytes of a time stamp.
+const STAMP: usize = 8;
+const LONGEST: usize = STAMP + packet::LONGEST;
+/// Microseconds since 1970 of the years 2000 and 2100.
+const STAMPS_US: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
+
+/// Whether one of the first bytes starts a packet whose checksum holds.
+pub(crate) fn looks_like(start: &[u8]) -> bool {
+    let start = &start[..start.len().min(16 * LONGEST)];
+    (0..start.len()).any(|at| {
+        start[at..].len() > STAMP
+            && matches!(start[at + STAMP], 0xfd | 0xfe)
+            && record(&start[at..]).is_some_and(|(_, packet)| packet.sound == Some(true))
+    })
+}
+
+pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Flight> {
+    let mut collector = Collector::new(options);
+    input.scan(|window, at_end| scan(&mut collector, window, at_end))?;
+    Ok(collector.finish())
+}
+
+/// Reads the packets of a window and says how many bytes it is done with.
+fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
+    // A packet and the start of the next are in sight of each other, but at the end.
+    let sure = match at_end {
+        true => window.len(),
+        false => window.len().saturating_sub(2 * LONGEST),
+    };
+    let mut at = 0;
+    while at < sure {
+        let rest = &window[at..];
+        match believed(rest) {
+            Some((stamp_us, packet)) => {
+                collector.report.messages += 1;
+                collector.packet(stamp_us, &packet);
+                at += STAMP + packet.length;
+            }
+            None => {
+                let skip = next(rest);
+                let report = &mut collector.report;
+                // A packet that is whole but for its checksum was damaged.
+                let broken = record(rest).is_some_and(|(_, packet)| STAMP + packet.length == skip);
+                report.bad_messages += u64::from(broken);
+                report.skipped_bytes += skip as u64;
+                if skip == rest.len() && !broken {
+                    report.truncated = true;
+                    report.because(|| "the log ends inside a message".into());
+                } else {
+                    report.because(|| "packets with a wrong checksum, or no packets".into());
+                }
+                at += skip;
+            }
+        }
+    }
+    at.min(window.len())
+}
+
+/// The stamp and packet at the start of `bytes`.
+fn record(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
+    let (stamp, rest) = bytes.split_first_chunk()?;
+    Some((u64::from_be_bytes(*stamp), Packet::at(rest)?))
+}
+
+/// The record at the start of `bytes`, if its checksum holds. One of another dialect
+/// cannot be checked: it is believed if its stamp is a date and a packet follows.
+fn believed(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
+    let (stamp_us, packet) = record(bytes)?;
+    let believed = packet.sound.unwrap_or_else(|| {
+        let rest = &bytes[STAMP + packet.length..];
+        let next = rest
+            .get(STAMP)
+            .is_none_or(|magic| matches!(magic, 0xfd | 0xfe));
+        STAMPS_US.contains(&stamp_us) && next
+    });
+    believed.then_some((stamp_us, packet))
+}
+
+/// Where the next record starts that is sure to be one.
+fn next(bytes: &[u8]) -> usize {
+    let starts = |at: &usize| {
+        bytes
+            .get(at + STAMP)
+            .is_some_and(|magic| matches!(magic, 0xfd | 0xfe))
+            && record(&bytes[*at..]).is_some_and(|(_, packet)| packet.sound == Some(true))
+    };
+    (1..bytes.len()).find(starts).unwrap_or(bytes.len())
+}

@@ -1,0 +1,219 @@
+//! Which MAVLink messages hold which signals
+//! (<https://mavlink.io/en/messages/common.html>; fields lie in the order of their width).
+
+use crate::angle::Angle;
+use crate::place::{Kind, Place};
+
+/// How a signal is made from the payload of a message.
+pub(super) enum From {
+    /// A number times a factor; the second number stands for "not known".
+    Number(Place, f64, Option<f64>),
+    /// Length of the vector of these.
+    Length(&'static [Place]),
+    /// An angle of the quaternion that starts there.
+    Angle(Angle, usize),
+}
+
+/// Signals of one message: how made, name, unit.
+pub(super) struct Spec {
+    pub(super) id: u32,
+    pub(super) message: &'static str,
+    pub(super) signals: &'static [(From, &'static str, &'static str)],
+}
+
+const fn at(offset: usize, kind: Kind) -> Place {
+    Place { offset, kind }
+}
+
+const fn plain(offset: usize, kind: Kind) -> From {
+    From::Number(at(offset, kind), 1.0, None)
+}
+
+const DEG: f64 = 180.0 / std::f64::consts::PI;
+
+const fn degrees(offset: usize) -> From {
+    From::Number(at(offset, Kind::F32), DEG, None)
+}
+
+/// RADIO_STATUS of the common dialect and RADIO of SiK radios are alike.
+const RADIO: &[(From, &str, &str)] = &[
+    (plain(4, Kind::U8), "radio_rssi", ""),
+    (plain(5, Kind::U8), "radio_remote_rssi", ""),
+    (plain(7, Kind::U8), "radio_noise", ""),
+];
+
+/// Where two messages hold the same signal, the first is preferred.
+pub(super) const SPECS: &[Spec] = &[
+    Spec {
+        id: 30,
+        message: "ATTITUDE",
+        signals: &[
+            (degrees(4), "roll_deg", "deg"),
+            (degrees(8), "pitch_deg", "deg"),
+            (degrees(12), "yaw_deg", "deg"),
+        ],
+    },
+    Spec {
+        id: 62,
+        message: "NAV_CONTROLLER_OUTPUT",
+        signals: &[
+            (plain(0, Kind::F32), "roll_des_deg", "deg"),
+            (plain(4, Kind::F32), "pitch_des_deg", "deg"),
+        ],
+    },
+    Spec {
+        id: 83,
+        message: "ATTITUDE_TARGET",
+        signals: &[
+            (From::Angle(Angle::Roll, 4), "roll_des_deg", "deg"),
+            (From::Angle(Angle::Pitch, 4), "pitch_des_deg", "deg"),
+            (From::Angle(Angle::Yaw, 4), "yaw_des_deg", "deg"),
+        ],
+    },
+    Spec {
+        id: 1,
+        message: "SYS_STATUS",
+        signals: &[
+            (
+                From::Number(at(14, Kind::U16), 1e-3, Some(65_535.0)),
+                "battery_v",
+                "V",
+            ),
+            (
+                From::Number(at(16, Kind::I16), 0.01, Some(-1.0)),
+                "battery_a",
+                "A",
+            ),
+            (
+                From::Number(at(30, Kind::I8), 1.0, Some(-1.0)),
+                "battery_remaining_pct",
+                "%",
+            ),
+        ],
+    },
+    Spec {
+        id: 147,
+        message: "BATTERY_STATUS",
+        signals: &[(
+            From::Number(at(0, Kind::I32), 1.0, Some(-1.0)),
+            "battery_used_mah",
+            "mAh",
+        )],
+    },
+    Spec {
+        id: 33,
+        message: "GLOBAL_POSITION_INT",
+        signals: &[(
+            From::Number(at(16, Kind::I32), 1e-3, None),
+            "altitude_m",
+            "m",
+        )],
+    },
+    Spec {
+        id: 74,
+        message: "VFR_HUD",
+        signals: &[
+            (plain(4, Kind::F32), "ground_speed_m_s", "m/s"),
+            (plain(12, Kind::F32), "climb_m_s", "m/s"),
+        ],
+    },
+    Spec {
+        id: 241,
+        message: "VIBRATION",
+        signals: &[
+            (plain(8, Kind::F32), "vibration_x_m_s2", "m/s2"),
+            (plain(12, Kind::F32), "vibration_y_m_s2", "m/s2"),
+            (plain(16, Kind::F32), "vibration_z_m_s2", "m/s2"),
+            (
+                From::Length(&[at(8, Kind::F32), at(12, Kind::F32), at(16, Kind::F32)]),
+                "vibration_m_s2",
+                "m/s2",
+            ),
+            (plain(20, Kind::U32), "accelerometer_clips", ""),
+        ],
+    },
+    Spec {
+        id: 24,
+        message: "GPS_RAW_INT",
+        signals: &[
+            (plain(28, Kind::U8), "gps_fix", ""),
+            (
+                From::Number(at(29, Kind::U8), 1.0, Some(255.0)),
+                "gps_satellites",
+                "",
+            ),
+            (
+                From::Number(at(20, Kind::U16), 0.01, Some(65_535.0)),
+                "gps_hdop",
+                "",
+            ),
+            // These two are extensions: 0 where the sender does not have them.
+            (
+                From::Number(at(34, Kind::U32), 1e-3, Some(0.0)),
+                "gps_horizontal_accuracy_m",
+                "m",
+            ),
+            (
+                From::Number(at(38, Kind::U32), 1e-3, Some(0.0)),
+                "gps_vertical_accuracy_m",
+                "m",
+            ),
+        ],
+    },
+    Spec {
+        id: 109,
+        message: "RADIO_STATUS",
+        signals: RADIO,
+    },
+    Spec {
+        id: 166,
+        message: "RADIO",
+        signals: RADIO,
+    },
+    Spec {
+        id: 65,
+        message: "RC_CHANNELS",
+        signals: &[(
+            From::Number(at(41, Kind::U8), 1.0 / 254.0, Some(255.0)),
+            "rc_rssi",
+            "1",
+        )],
+    },
+    Spec {
+        id: 168,
+        message: "WIND",
+        signals: &[(plain(4, Kind::F32), "ekf_wind_m_s", "m/s")],
+    },
+    Spec {
+        id: 231,
+        message: "WIND_COV",
+        signals: &[
+            (plain(8, Kind::F32), "ekf_wind_north_m_s", "m/s"),
+            (plain(12, Kind::F32), "ekf_wind_east_m_s", "m/s"),
+            (
+                From::Length(&[at(8, Kind::F32), at(12, Kind::F32)]),
+                "ekf_wind_m_s",
+                "m/s",
+            ),
+        ],
+    },
+];
+
+impl From {
+    /// The value in a payload that was filled up with zeros.
+    pub(super) fn value(&self, payload: &[u8]) -> Option<f64> {
+        match self {
+            Self::Number(place, factor, unknown) => {
+                let number = place.number(payload)?;
+                (Some(number) != *unknown).then_some(number * factor)
+            }
+            Self::Length(places) => {
+                crate::place::vector_length(places.iter().map(|place| place.number(payload)))
+            }
+            Self::Angle(angle, offset) => {
+                let element = |index: usize| at(offset + 4 * index, Kind::F32).number(payload);
+                Some(angle.of([element(0)?, element(1)?, element(2)?, element(3)?]))
+            }
+        }
+    }
+}
