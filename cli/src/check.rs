@@ -126,7 +126,10 @@ fn examine(
     })?;
     let mut findings = document.warnings.0.clone();
     findings.extend(report.findings(&document.model, &document.places));
-    Ok((Findings::locate(findings, text), Some((document, report))))
+    let mut findings = Findings::locate(findings, text);
+    // What reading the file warns of is found by the analysis again.
+    findings.0.dedup();
+    Ok((findings, Some((document, report))))
 }
 
 /// What the engine cannot take although it reads well. It knows no places.

@@ -5,9 +5,13 @@
 mod assess;
 mod check;
 mod diagnostics;
+mod eval;
+mod explain;
 mod failure;
 mod inspect;
+mod new;
 mod profile;
+mod rule_set;
 
 use std::process::ExitCode;
 
@@ -30,8 +34,14 @@ enum Command {
     Assess(assess::Arguments),
     /// Say what is wrong with a rule set, and what its author should know about it
     Check(check::Arguments),
+    /// Evaluate a rule set at the points of a CSV file
+    Eval(eval::Arguments),
+    /// Say why the outputs of a rule set are what they are
+    Explain(explain::Arguments),
     /// Show what is in a flight log, and where each value came from
     Inspect(inspect::Arguments),
+    /// Write a rule set to start from
+    New(new::Arguments),
 }
 
 impl Command {
@@ -39,7 +49,10 @@ impl Command {
         match self {
             Command::Assess(arguments) => assess::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
+            Command::Eval(arguments) => eval::run(&arguments),
+            Command::Explain(arguments) => explain::run(&arguments),
             Command::Inspect(arguments) => inspect::run(&arguments),
+            Command::New(arguments) => new::run(&arguments),
         }
     }
 }

@@ -210,14 +210,18 @@ impl core::error::Error for Findings {}
 /// The candidate that an author who wrote `word` may have meant.
 ///
 /// Nearness is the number of letters to insert, delete, replace or swap (optimal string alignment), at most a third
-/// of the longer word's length; case does not count. Of equally near candidates the first one counts.
+/// of the longer word's length; case does not count. Of equally near candidates the first one counts. Where none is near,
+/// one that begins with the word is what was meant: `min` is short for `minimum`.
 ///
 /// ```
 /// use fuzzy::diagnostic::nearest;
 /// assert_eq!(nearest("mraginn", ["margin", "spread"]), Some("margin"));
 /// assert_eq!(nearest("wind", ["margin", "spread"]), None);
 /// ```
-pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(
+    word: &str,
+    candidates: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
+) -> Option<&'a str> {
     // Comparing costs the product of the lengths; nobody means a word longer than this.
     const LONGEST: usize = 64;
     let fold = |s: &str| {
@@ -229,8 +233,9 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     if word.len() > LONGEST {
         return None;
     }
+    let mut candidates = candidates.into_iter();
     let mut best: Option<(usize, &str)> = None;
-    for candidate in candidates {
+    for candidate in candidates.clone() {
         let other = fold(candidate);
         // At least one letter stays, or any letter would be near any other.
         let longest = word.len().max(other.len());
@@ -243,7 +248,11 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             best = Some((distance, candidate));
         }
     }
-    best.map(|(_, candidate)| candidate)
+    best.map(|(_, candidate)| candidate).or_else(|| {
+        const SHORTEST: usize = 3;
+        let begins = |candidate: &str| word.len() >= SHORTEST && fold(candidate).starts_with(&word);
+        candidates.find(|candidate| begins(candidate))
+    })
 }
 
 /// The optimal string alignment distance, three rows at a time.
@@ -266,13 +275,14 @@ fn edit_distance(a: &[char], b: &[char]) -> usize {
     last.last().copied().unwrap_or(0)
 }
 
-/// ``did you mean `margin`?``, or else what there is: ``one of `margin`, `spread` ``.
+/// ``did you mean `margin`?``, or else what there is: ``there are `margin` and `spread` ``.
 pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     match nearest(word, candidates.iter().copied()) {
         Some(candidate) => Some(alloc::format!("did you mean `{candidate}`?")),
         None if candidates.is_empty() => None,
-        None => Some(alloc::format!("there is {}", listed(&candidates))),
+        None if candidates.len() == 1 => Some(alloc::format!("there is {}", listed(&candidates))),
+        None => Some(alloc::format!("there are {}", listed(&candidates))),
     }
 }
 
@@ -326,6 +336,7 @@ mod tests {
             ("very-low", Some("very_low")),
             ("veri low", Some("very_low")),
             ("x", None),
+            ("ver", Some("very_low")),
             ("", None),
         ] {
             assert_eq!(nearest(word, ["low", "high", "very_low"]), meant, "{word}");

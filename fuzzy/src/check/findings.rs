@@ -9,10 +9,10 @@ use core::ops::Range;
 
 use super::{
     AgainstTrend, Coordinate, Counterexample, Direction, Hole, Jump, Reach, Report, TermOf,
-    Uncovered, shown,
+    Uncovered, names::outside_range, shown,
 };
 use crate::{
-    diagnostic::{Diagnostic, listed},
+    diagnostic::{Diagnostic, Severity, listed},
     format::{Places, VariablePlaces},
     model::{Model, NoRuleFires},
     rule::{Condition, Consequent, Name, Rule},
@@ -214,18 +214,21 @@ impl At<'_> {
 
     fn unreachable(&self, one: &TermOf) -> Diagnostic {
         let term = one.term.as_deref().unwrap_or("");
-        let message = format!("the term `{term}` of `{}` is never reached", one.variable);
-        let is_input = self
+        let here = self.term(one);
+        let input = self
             .model
             .inputs
             .iter()
-            .any(|input| input.name == one.variable);
-        let help = if is_input {
-            "it is 0 on the whole range; widen the range or move the term"
-        } else {
-            "every rule that concludes it never fires, or it lies outside the range"
-        };
-        Diagnostic::warning("unreachable-term", self.term(one), message).help(help)
+            .find(|input| input.name == one.variable);
+        let outside = input.and_then(|input| {
+            let index = input.terms.iter().position(|t| t.name == term)?;
+            outside_range("input", input, index, here.clone(), Severity::Warning)
+        });
+        outside.unwrap_or_else(|| {
+            let message = format!("the term `{term}` of `{}` is never reached", one.variable);
+            Diagnostic::warning("unreachable-term", here, message)
+                .help("every rule that concludes it never fires")
+        })
     }
 
     fn hole(&self, one: &Hole) -> Diagnostic {

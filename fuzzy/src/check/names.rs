@@ -4,8 +4,8 @@ use alloc::{collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use crate::{
-    diagnostic::{Diagnostic, suggest},
-    format::Places,
+    diagnostic::{Diagnostic, Severity, suggest},
+    format::{Places, VariablePlaces},
     model::{Defuzzifier, Model, Shape, Variable},
     rule::Name,
     tree::duplicate,
@@ -33,7 +33,60 @@ pub fn check(model: &Model, places: &Places) -> Vec<Diagnostic> {
     }
     duplicate_rules(model, places, &mut findings);
     output_terms(model, places, &mut findings);
+    terms_outside(model, places, &mut findings);
     findings
+}
+
+/// Terms that are 0 on the whole range of their variable. In an input that is a rule that never fires, in an output a
+/// conclusion without a value.
+fn terms_outside(model: &Model, places: &Places, findings: &mut Vec<Diagnostic>) {
+    let no_places = VariablePlaces::default();
+    for (i, input) in model.inputs.iter().enumerate() {
+        let places = places.inputs.get(i).unwrap_or(&no_places);
+        for term in super::terms::outside(input) {
+            let here = place(&places.terms, term);
+            let severity = Severity::Warning;
+            findings.extend(outside_range("input", input, term, here, severity));
+        }
+    }
+    for (i, output) in model.outputs.iter().enumerate() {
+        let places = places.outputs.get(i).unwrap_or(&no_places);
+        for term in super::terms::outside(&output.variable) {
+            let here = place(&places.terms, term);
+            let severity = Severity::Error;
+            findings.extend(outside_range(
+                "output",
+                &output.variable,
+                term,
+                here,
+                severity,
+            ));
+        }
+    }
+}
+
+/// A finding: this term lies outside the range.
+pub(super) fn outside_range(
+    kind: &str,
+    variable: &Variable,
+    term: usize,
+    here: Range<usize>,
+    severity: Severity,
+) -> Option<Diagnostic> {
+    let Variable {
+        name, low, high, ..
+    } = variable;
+    let term = &variable.terms.get(term)?.name;
+    let message =
+        format!("term `{term}` of {kind} `{name}` is 0 on the whole range [{low}, {high}]");
+    let finding = Diagnostic::error("term-outside-range", here, message);
+    Some(
+        Diagnostic {
+            severity,
+            ..finding
+        }
+        .help("widen the range or move the term"),
+    )
 }
 
 /// The variables of a model by name.
@@ -91,7 +144,7 @@ fn unknown<'a>(
 ) -> Diagnostic {
     let message = format!("there is no {kind} `{name}`");
     let mut finding = Diagnostic::error("unknown-variable", span, message);
-    finding.help = suggest(name, known);
+    finding.help = suggest(name, known).or_else(|| Some(format!("declare it under `{kind}s`")));
     finding
 }
 
@@ -156,7 +209,7 @@ fn duplicate_rules(model: &Model, places: &Places, findings: &mut Vec<Diagnostic
 
 /// Takagi-Sugeno outputs have constants and linear functions, Mamdani outputs have sets.
 fn output_terms(model: &Model, places: &Places, findings: &mut Vec<Diagnostic>) {
-    let no_places = Default::default();
+    let no_places = VariablePlaces::default();
     for (i, input) in model.inputs.iter().enumerate() {
         let places = places.inputs.get(i).unwrap_or(&no_places);
         for (k, term) in input.terms.iter().enumerate() {

@@ -74,14 +74,8 @@ pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> 
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let mut found = Vec::new();
     for variable in model.inputs.iter().chain(outputs) {
-        let places = axis::places(variable);
-        // A linear or constant function of a weighted output is no fuzzy set.
-        let sets = variable.terms.iter().filter(|term| is_set(&term.shape));
-        for term in sets {
-            if places.iter().all(|&x| term.membership(x) == 0.0) {
-                found.push(term_of(variable, term));
-            }
-        }
+        let terms = outside(variable).into_iter();
+        found.extend(terms.filter_map(|i| Some(term_of(variable, variable.terms.get(i)?))));
     }
     // The rules that never fire are sorted.
     let mut alive: BTreeSet<(&str, &str)> = BTreeSet::new();
@@ -107,8 +101,29 @@ pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> 
     found
 }
 
+/// The terms that are 0 on the whole range of a variable.
+pub(super) fn outside(variable: &Variable) -> Vec<usize> {
+    let range = variable.high - variable.low;
+    if range.is_nan() || range <= 0.0 {
+        // Where the range could not be read, that is the finding.
+        return Vec::new();
+    }
+    let places = axis::places(variable);
+    let is_zero = |term: &Term| places.iter().all(|&x| term.membership(x) == 0.0);
+    let terms = variable.terms.iter().enumerate();
+    // A linear or constant function of a weighted output is no fuzzy set, and a shape that could not be read is none yet.
+    terms
+        .filter(|(_, term)| is_set(&term.shape) && is_zero(term))
+        .map(|(i, _)| i)
+        .collect()
+}
+
 fn is_set(shape: &Shape) -> bool {
-    !matches!(shape, Shape::Linear { .. } | Shape::Constant { .. })
+    match shape {
+        Shape::Linear { .. } | Shape::Constant { .. } => false,
+        Shape::Piecewise { points } => !points.is_empty(),
+        _ => true,
+    }
 }
 
 /// Where every term of an input is 0: no rule without NOT speaks of those values.

@@ -14,6 +14,7 @@ use rules::{FiringRoom, Rules, Strongest};
 mod batch;
 mod compile;
 mod condition;
+mod explain;
 mod lanes;
 mod literal;
 pub(crate) mod operators;
@@ -22,6 +23,7 @@ mod problem;
 mod rules;
 mod uniform;
 
+pub use explain::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share};
 pub use outcome::{EvaluateError, Outcome, State};
 pub use problem::{CompileError, Problem};
 

@@ -75,6 +75,12 @@ pub enum EvaluateError {
         /// Another length.
         other: usize,
     },
+    /// An input is NaN or infinite, so there is nothing to explain.
+    #[error("an input is not a finite number")]
+    InputNotFinite,
+    /// The model is not the one that the engine was made from.
+    #[error("the engine was made from another model")]
+    OtherModel,
     /// No rule of an output fired, and the model says that this is an error.
     #[error("no rule fired for output `{output}`")]
     NoRuleFired {

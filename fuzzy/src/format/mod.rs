@@ -16,7 +16,7 @@ use crate::{
     check,
     diagnostic::{Diagnostic, Findings, Severity},
     model::Model,
-    tree::Node,
+    tree::{Node, Value},
 };
 
 mod rules;
@@ -97,25 +97,32 @@ fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Op
         "operators",
         "rules",
     ];
-    let fields = tree.fields("the rule set", &KEYS, findings)?;
-    let version = fields.require("fuzzy", "begin the file with `fuzzy: 1`", findings)?;
-    if version.whole("the format version `fuzzy`", 0, findings)? != VERSION {
-        let written = version.words("the version", findings)?;
+    if !matches!(tree.value, Value::Mapping(_)) {
+        let finding = tree.unexpected("a mapping for the rule set");
+        findings.push(finding.help(
+            "a rule set begins with `fuzzy: 1`; `flagred new NAME` writes one to start from",
+        ));
+        return None;
+    }
+    let mut unknown_keys = Vec::new();
+    let fields = tree.fields("the rule set", &KEYS, &mut unknown_keys)?;
+    if let Some(node) = fields.get("fuzzy")
+        && node.whole("the format version `fuzzy`", 0, findings)? != VERSION
+    {
+        let written = node.words("the version", findings)?;
         let message = format!("format version `{}` is not supported", written.text);
         findings.push(
-            Diagnostic::error("unsupported-version", version.span.clone(), message).help(format!(
+            Diagnostic::error("unsupported-version", node.span.clone(), message).help(format!(
                 "this program reads version {VERSION}; a newer one may read this file"
             )),
         );
-        // Another version may mean something else by every key behind it.
+        // Another version may mean something else by every other key.
         return None;
     }
-    let mut text_of = |key: &str| {
-        let node = fields.get(key)?;
-        let text = node.words(&format!("`{key}`"), findings)?;
-        Some(text.text.clone())
-    };
-    let (name, description) = (text_of("name"), text_of("description"));
+    findings.append(&mut unknown_keys);
+    fields.require("fuzzy", "begin the file with `fuzzy: 1`", findings);
+    let name = optional_text(&fields, "name", findings);
+    let description = optional_text(&fields, "description", findings);
     if fields.get("name").is_none() {
         fields.require(
             "name",

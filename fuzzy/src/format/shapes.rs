@@ -287,9 +287,9 @@ fn by_form(form: &Form, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<S
                 && form.as_list
             {
                 finding.message = format!(
-                    "the {name} has {} numbers, but it takes {}",
-                    items.len(),
-                    form.parameters.len()
+                    "the {name} takes {} numbers, not {}",
+                    form.parameters.len(),
+                    items.len()
                 );
             }
             findings.push(finding.help(spelling(form)));

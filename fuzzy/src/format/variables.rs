@@ -54,6 +54,7 @@ pub(super) fn outputs(
             )
             .help("write a name, a range and terms for at least one output"),
         );
+        return None;
     }
     let read = |entry: &Entry<'_>| {
         let what = format!("output `{}`", entry.key);
@@ -244,10 +245,7 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
         return None;
     };
     let [low, high] = ends.as_slice() else {
-        let message = format!(
-            "the range of {what} has {} numbers, but it takes 2",
-            ends.len()
-        );
+        let message = format!("the range of {what} takes 2 numbers, not {}", ends.len());
         findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
         return None;
     };
@@ -417,7 +415,7 @@ fn terms(
     let help =
         "write `terms: {low: {triangle: [0, 1, 2]}}`, or `partition: [low, high]` for even spacing";
     let before = findings.len();
-    let Some(entries) = node.entries(&format!("the terms of {what}"), "term", findings) else {
+    let Some(entries) = node.entries(what, "term", findings) else {
         if let Some(finding) = findings.get_mut(before) {
             finding.help = Some(String::from(help));
         }

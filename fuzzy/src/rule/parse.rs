@@ -461,7 +461,8 @@ fn either(words: &[&str]) -> String {
 fn advice(found: &str, expected: &[&str]) -> Option<String> {
     let say = |text: &str| Some(String::from(text));
     match found {
-        "&" | "&&" | "," => say("write `AND`"),
+        "," => say("write `AND` or `THEN`"),
+        "&" | "&&" => say("write `AND`"),
         "|" | "||" => say("write `OR`"),
         "!" | "~" => say("write `NOT`"),
         "=" | "==" | ":" => say("write `IS`"),

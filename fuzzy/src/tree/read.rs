@@ -122,14 +122,16 @@ impl Node {
         findings: &mut Vec<Diagnostic>,
     ) -> Option<Vec<Entry<'a>>> {
         let Value::Mapping(pairs) = &self.value else {
-            findings.push(self.unexpected(&format!("a mapping for {what}")));
+            let finding = self.unexpected(&format!("a mapping for {what}"));
+            findings.push(finding.help("write `key: value` lines below it, indented"));
             return None;
         };
         let mut entries: Vec<Entry<'a>> = Vec::with_capacity(pairs.len());
         let mut seen = alloc::collections::BTreeMap::new();
         for (key, value) in pairs {
             let Value::Scalar(scalar) = &key.value else {
-                findings.push(key.unexpected(&format!("a {kind} of {what}")));
+                let finding = key.unexpected(&format!("a {kind} of {what}"));
+                findings.push(finding.help("write a name before the colon"));
                 continue;
             };
             if let Some(first) = seen.insert(scalar.text.as_str(), key.span.clone()) {
@@ -150,7 +152,8 @@ impl Node {
         match &self.value {
             Value::List(items) => Some(items),
             _ => {
-                findings.push(self.unexpected(&format!("a list for {what}")));
+                let finding = self.unexpected(&format!("a list for {what}"));
+                findings.push(finding.help("write `- item` lines below it, or `[a, b]`"));
                 None
             }
         }
@@ -175,7 +178,8 @@ impl Node {
             }
             None => {
                 let mut finding = self.unexpected(&format!("a number for {what}"));
-                finding.help = self.number_advice();
+                let help = self.number_advice();
+                finding.help = Some(help.unwrap_or_else(|| "write a number such as `0.5`".into()));
                 findings.push(finding);
                 None
             }
@@ -192,7 +196,10 @@ impl Node {
             Some(number) if number >= least => Some(number),
             _ => {
                 let expected = format!("a whole number from {least} on for {what}");
-                findings.push(self.unexpected(&expected));
+                findings.push(
+                    self.unexpected(&expected)
+                        .help("write a whole number without quotes"),
+                );
                 None
             }
         }
@@ -203,7 +210,8 @@ impl Node {
         match &self.value {
             Value::Scalar(scalar) if !scalar.is_null() => Some(scalar),
             _ => {
-                findings.push(self.unexpected(&format!("text for {what}")));
+                let finding = self.unexpected(&format!("text for {what}"));
+                findings.push(finding.help("write a word or a sentence"));
                 None
             }
         }
@@ -216,7 +224,8 @@ impl Node {
             _ => None,
         };
         if found.is_none() {
-            findings.push(self.unexpected(&format!("`true` or `false` for {what}")));
+            let finding = self.unexpected(&format!("`true` or `false` for {what}"));
+            findings.push(finding.help("write one of the two, without quotes"));
         }
         found
     }

@@ -269,9 +269,9 @@ fn syntax(text: &str, error: &ScanError) -> Box<Diagnostic> {
         | ErrorKind::TabInBlockIndentation
         | ErrorKind::TabInIndentation
         | ErrorKind::TabAtBlockScalarStart => "indent with spaces",
-        ErrorKind::UnclosedQuotedScalar | ErrorKind::DocumentIndicatorInQuotedScalar => {
-            "add the closing quote"
-        }
+        ErrorKind::UnclosedQuotedScalar
+        | ErrorKind::DocumentIndicatorInQuotedScalar
+        | ErrorKind::InvalidQuotedScalarIndent => "add the closing quote",
         ErrorKind::MappingValueNotAllowed => {
             "text that holds `: ` stands in quotes; keys of one mapping begin in the same column"
         }

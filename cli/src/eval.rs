@@ -1,0 +1,259 @@
+//! `flagred eval`: a rule set over many points, CSV in and CSV out.
+
+use std::{
+    fs::File,
+    io::{self, BufReader, BufWriter, Read, Write},
+    path::{Path, PathBuf},
+    thread,
+};
+
+use fuzzy::{
+    Engine,
+    diagnostic::suggest,
+    engine::{EvaluateError, Outcome, Scratch, State},
+};
+
+use crate::{
+    failure::{Exit, Failure},
+    rule_set,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The rule set in YAML
+    #[arg(value_name = "MODEL")]
+    model: PathBuf,
+    /// Points: a column for each input, named as it is; other columns are kept as they are. Standard input where absent
+    #[arg(value_name = "POINTS.csv", default_value = "-")]
+    points: PathBuf,
+}
+
+/// Rows that are evaluated at once; they are split over the threads.
+const BLOCK: usize = 16_384;
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let (_, engine) = rule_set::load(&arguments.model)?;
+    let path = &arguments.points;
+    let input: Box<dyn Read> = if path == Path::new("-") {
+        Box::new(io::stdin().lock())
+    } else {
+        Box::new(BufReader::new(File::open(path).map_err(|error| {
+            Failure::unreadable(format!("`{}` cannot be read: {error}", path.display()))
+                .help("check the path")
+        })?))
+    };
+    // Fields may be padded; they are kept as they are, and trimmed where they are read as numbers.
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .from_reader(input);
+    let header = reader
+        .headers()
+        .map_err(|error| unreadable(&error))?
+        .clone();
+    let columns = columns(&engine, &header)?;
+    let mut writer = csv::Writer::from_writer(BufWriter::new(io::stdout().lock()));
+    writer
+        .write_record(header.iter().chain(engine.output_names()))
+        .map_err(written)?;
+
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let mut scratches: Vec<Scratch> = (0..threads).map(|_| engine.scratch()).collect();
+    let mut undefined = vec![Undefined::default(); engine.output_names().len()];
+    let mut rows = 0;
+    loop {
+        let mut block: Vec<csv::StringRecord> = Vec::with_capacity(BLOCK);
+        for record in reader.records().take(BLOCK) {
+            block.push(record.map_err(|error| unreadable(&error))?);
+        }
+        if block.is_empty() {
+            break;
+        }
+        for results in evaluate(&engine, &columns, &block, &mut scratches)? {
+            for (record, outcomes) in results {
+                for (outcome, undefined) in outcomes.iter().zip(&mut undefined) {
+                    undefined.count(outcome);
+                }
+                let values = outcomes
+                    .iter()
+                    .map(|o| o.value().map(digits).unwrap_or_default());
+                let fields = record.iter().map(String::from).chain(values);
+                writer.write_record(fields).map_err(written)?;
+            }
+        }
+        rows += block.len();
+    }
+    writer.flush()?;
+    let mut err = anstream::stderr().lock();
+    for (name, undefined) in engine.output_names().zip(undefined) {
+        if let Some(why) = undefined.why() {
+            // Nothing is left to tell a user whose standard error is closed.
+            let _ = writeln!(err, "`{name}` is undefined in {why}, of {rows} rows");
+        }
+    }
+    Ok(Exit::Clean)
+}
+
+/// Rows in which an output has no value.
+#[derive(Clone, Default)]
+struct Undefined {
+    no_rule: usize,
+    no_input: usize,
+}
+
+impl Undefined {
+    fn count(&mut self, outcome: &Outcome) {
+        match outcome.state {
+            State::NoRuleFired => self.no_rule += 1,
+            State::InputNotFinite => self.no_input += 1,
+            State::Defined(_) | State::Default(_) => {}
+        }
+    }
+
+    fn why(&self) -> Option<String> {
+        match (self.no_rule, self.no_input) {
+            (0, 0) => None,
+            (rows, 0) => Some(format!("{rows} where no rule fires")),
+            (0, rows) => Some(format!("{rows} where an input is unknown")),
+            (rule, input) => Some(format!(
+                "{rule} where no rule fires, {input} where an input is unknown"
+            )),
+        }
+    }
+}
+
+/// Where each input stands in a row.
+fn columns(engine: &Engine, header: &csv::StringRecord) -> Result<Vec<usize>, Failure> {
+    let names = || header.iter().map(str::trim);
+    for output in engine.output_names() {
+        if names().any(|name| name == output) {
+            return Err(
+                Failure::usage(format!("the points have a column `{output}` already"))
+                    .help("that is the name of an output; rename the column"),
+            );
+        }
+    }
+    let column = |input: &str| {
+        let mut found = names().enumerate().filter(|(_, name)| *name == input);
+        match (found.next(), found.next()) {
+            (Some((column, _)), None) => Ok(column),
+            (Some(_), Some(_)) => Err(Failure::usage(format!(
+                "the points have two columns `{input}`"
+            ))),
+            (None, _) => {
+                let failure = Failure::usage(format!("the points have no column `{input}`"));
+                Err(match suggest(input, names()) {
+                    Some(help) => failure.help(help),
+                    None => failure,
+                })
+            }
+        }
+    };
+    engine.input_names().map(column).collect()
+}
+
+type Row<'b> = (&'b csv::StringRecord, Vec<Outcome>);
+
+/// Evaluates a block, its parts on threads of their own; the rows stay in order.
+fn evaluate<'b>(
+    engine: &Engine,
+    columns: &[usize],
+    block: &'b [csv::StringRecord],
+    scratches: &mut [Scratch],
+) -> Result<Vec<Vec<Row<'b>>>, Failure> {
+    let part = block.len().div_ceil(scratches.len().max(1)).max(1);
+    let results: Vec<Result<Vec<Row<'b>>, Failure>> = thread::scope(|scope| {
+        let parts = block.chunks(part).zip(scratches);
+        let running: Vec<_> = parts
+            .map(|(rows, scratch)| {
+                scope.spawn(move || evaluate_part(engine, columns, rows, scratch))
+            })
+            .collect();
+        let ended = running.into_iter().map(|thread| {
+            thread.join().unwrap_or_else(|_| {
+                Err(Failure::unreadable(
+                    "a thread of the evaluation ended early",
+                ))
+            })
+        });
+        ended.collect()
+    });
+    results.into_iter().collect()
+}
+
+fn evaluate_part<'b>(
+    engine: &Engine,
+    columns: &[usize],
+    rows: &'b [csv::StringRecord],
+    scratch: &mut Scratch,
+) -> Result<Vec<Row<'b>>, Failure> {
+    let mut point = vec![0.0; columns.len()];
+    let mut outcomes = vec![Outcome::default(); engine.output_names().len()];
+    let mut results = Vec::with_capacity(rows.len());
+    for record in rows {
+        for (place, (column, name)) in point
+            .iter_mut()
+            .zip(columns.iter().zip(engine.input_names()))
+        {
+            *place = number(record.get(*column).unwrap_or(""), name, record)?;
+        }
+        match engine.evaluate_with(scratch, &point, &mut outcomes) {
+            Ok(()) => {}
+            Err(error @ EvaluateError::NoRuleFired { .. }) => {
+                return Err(Failure::unreadable(format!("{}: {error}", line(record)))
+                    .help("the rule set says `when_no_rule_fires: error`; add the rules that are missing there"));
+            }
+            Err(error) => return Err(Failure::unreadable(format!("{}: {error}", line(record)))),
+        }
+        results.push((record, outcomes.clone()));
+    }
+    Ok(results)
+}
+
+/// The number in a field. An empty field is an unknown input: NaN, for which the engine gives no value.
+fn number(field: &str, name: &str, record: &csv::StringRecord) -> Result<f64, Failure> {
+    let field = field.trim();
+    if field.is_empty() {
+        return Ok(f64::NAN);
+    }
+    field.parse().map_err(|_| {
+        Failure::unreadable(format!(
+            "{}: `{field}` of `{name}` is no number",
+            line(record)
+        ))
+        .help("leave the field empty where the value is unknown")
+    })
+}
+
+fn line(record: &csv::StringRecord) -> String {
+    record
+        .position()
+        .map_or("a row".into(), |place| format!("line {}", place.line()))
+}
+
+/// Seventeen digits: reading them again gives the same number.
+fn digits(value: f64) -> String {
+    let exponent = if value == 0.0 {
+        0
+    } else {
+        value.abs().log10().floor() as i32
+    };
+    if (-5..16).contains(&exponent) {
+        let decimals = (16 - exponent).max(0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.16e}")
+    }
+}
+
+fn unreadable(error: &csv::Error) -> Failure {
+    Failure::unreadable(format!("the points cannot be read: {error}"))
+        .help("every row needs as many fields as the header")
+}
+
+/// The output could not be written; a closed pipe is no failure.
+fn written(error: csv::Error) -> Failure {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => Failure::from(error),
+        other => Failure::unreadable(format!("the output cannot be written: {other:?}")),
+    }
+}

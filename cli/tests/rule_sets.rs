@@ -1,0 +1,240 @@
+//! The commands for those who write rule sets, run as a user runs them.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::{
+    fs,
+    io::Write,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+fn flagred(arguments: &[&str], input: &str) -> (Output, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_flagred"))
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../rules"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let input = input.to_owned();
+    // Beside reading what it prints, or both would wait for each other. A command that reads nothing may have ended.
+    let writer = std::thread::spawn(move || drop(stdin.write_all(input.as_bytes())));
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    (output, text)
+}
+
+fn errors(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[test]
+fn check_shows_what_the_papers_rules_leave_open() {
+    let (output, text) = flagred(&["check", "flagred-paper.yaml"], "");
+    assert_eq!(output.status.code(), Some(0));
+    insta::assert_snapshot!(text);
+    let (output, _) = flagred(&["check", "flagred-paper.yaml", "--deny", "warnings"], "");
+    assert_eq!(output.status.code(), Some(1));
+}
+
+#[test]
+fn check_holds_outputs_against_what_their_author_says() {
+    let claims = [
+        "check",
+        "flagred-paper.yaml",
+        "--json",
+        "--monotone",
+        "spread:increasing",
+        "margin:decreasing",
+    ];
+    let (output, text) = flagred(&claims, "");
+    assert_eq!(output.status.code(), Some(0));
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["schema"], "flagred-check-1");
+    let worst = &json["report"]["counterexamples"][0];
+    assert_eq!(worst["claim"]["input"], "spread");
+    assert_eq!(worst["at"][0]["value"], 0.2);
+    assert_eq!(
+        (&worst["from_value"], &worst["to"]),
+        (&25.0.into(), &0.2.into())
+    );
+    let box_ = &json["report"]["uncovered"][1];
+    assert_eq!(box_["sides"][0]["high"], 0.15);
+    assert_eq!(box_["sides"][1]["high"], 0.05);
+
+    let (output, _) = flagred(
+        &[
+            "check",
+            "flagred-paper.yaml",
+            "--monotone",
+            "wind:increasing",
+        ],
+        "",
+    );
+    assert_eq!(output.status.code(), Some(2));
+    assert!(errors(&output).contains("there are `margin` and `spread`"));
+}
+
+#[test]
+fn check_reads_standard_input_and_tells_what_cannot_be_read() {
+    let (output, text) = flagred(&["check", "-"], "fuzzy: 9\n");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text.contains("--> -:1:8"), "{text}");
+    let (output, _) = flagred(&["check", "no-such-file.yaml"], "");
+    assert_eq!(output.status.code(), Some(3));
+    let (output, _) = flagred(&["check"], "");
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn explain_shows_why() {
+    let (output, text) = flagred(
+        &[
+            "explain",
+            "flagred-paper.yaml",
+            "margin=0.13",
+            "spread=0.12",
+        ],
+        "",
+    );
+    assert_eq!(output.status.code(), Some(0));
+    insta::assert_snapshot!(text);
+    let (_, text) = flagred(
+        &["explain", "flagred-paper.yaml", "spread=-1", "margin=0"],
+        "",
+    );
+    insta::assert_snapshot!("explain_where_no_rule_fires", text);
+    let (_, text) = flagred(
+        &[
+            "explain",
+            "flagred-paper.yaml",
+            "margin=0.13",
+            "spread=0.12",
+            "--json",
+        ],
+        "",
+    );
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["schema"], "flagred-explain-1");
+    assert_eq!(json["inputs"][0]["terms"][1]["term"], "low");
+    assert!(json["outputs"][0]["value"].as_f64().unwrap() > 40.0);
+}
+
+#[test]
+fn explain_asks_for_what_is_missing() {
+    for (arguments, said) in [
+        (&["margin=0.1"][..], "the input `spread` has no value"),
+        (&["margin=0.1", "sprad=0.1"], "did you mean `spread`?"),
+        (
+            &["margin=0.1", "margin=0.2", "spread=0"],
+            "`margin` is given twice",
+        ),
+        (&["margin=much", "spread=0"], "`much` is no finite number"),
+        (&["margin"], "write NAME=VALUE"),
+    ] {
+        let all: Vec<&str> = ["explain", "flagred-paper.yaml"]
+            .iter()
+            .chain(arguments)
+            .copied()
+            .collect();
+        let (output, _) = flagred(&all, "");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(
+            errors(&output).contains(said),
+            "{arguments:?}: {}",
+            errors(&output)
+        );
+    }
+}
+
+#[test]
+fn eval_adds_the_outputs_with_all_digits() {
+    let points = "id,spread,margin\na,0.12,0.13\nb,0,0\nc,,0.1\nd,9,0.05\n";
+    let (output, text) = flagred(&["eval", "flagred-paper.yaml"], points);
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    let text_model = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../rules/flagred-paper.yaml"),
+    );
+    let model = fuzzy::yaml::parse(&text_model.unwrap()).unwrap().model;
+    let engine = fuzzy::Engine::new(&model).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows[0], ["id", "spread", "margin", "risk"]);
+    let value = |margin: f64, spread: f64| engine.evaluate(&[margin, spread]).unwrap()[0].value();
+    assert_eq!(rows[1][3].parse().ok(), value(0.13, 0.12));
+    assert_eq!((rows[2][3], rows[3][3]), ("", ""));
+    assert_eq!(rows[4][3].parse().ok(), value(0.05, 0.5));
+    assert!(
+        errors(&output)
+            .contains("undefined in 1 where no rule fires, 1 where an input is unknown, of 4 rows")
+    );
+}
+
+#[test]
+fn eval_keeps_order_over_blocks_and_threads() {
+    let mut points = String::from("margin,spread\n");
+    for i in 0..40_000 {
+        points += &format!(
+            "{},{}\n",
+            f64::from(i % 997) / 1994.0,
+            f64::from(i % 613) / 1226.0
+        );
+    }
+    let (_, text) = flagred(&["eval", "flagred-paper.yaml"], &points);
+    assert_eq!(text.lines().count(), 40_001);
+    for (given, got) in points.lines().zip(text.lines()) {
+        assert!(got.starts_with(given), "{given}: {got}");
+    }
+}
+
+#[test]
+fn eval_says_what_is_wrong_with_points() {
+    for (points, code, said) in [
+        ("margin\n0.1\n", 2, "the points have no column `spread`"),
+        ("margin,spraed\n0.1,0.1\n", 2, "did you mean `spraed`?"),
+        ("margin,spread,spread\n1,1,1\n", 2, "two columns `spread`"),
+        ("margin,spread,risk\n1,1,1\n", 2, "a column `risk` already"),
+        (
+            "margin,spread\n0.1,0.1\n0.1,wide\n",
+            3,
+            "line 3: `wide` of `spread` is no number",
+        ),
+        ("margin,spread\n0.1\n", 3, "as many fields as the header"),
+    ] {
+        let (output, _) = flagred(&["eval", "flagred-paper.yaml"], points);
+        assert_eq!(output.status.code(), Some(code), "{points}");
+        assert!(
+            errors(&output).contains(said),
+            "{points}: {}",
+            errors(&output)
+        );
+    }
+}
+
+#[test]
+fn new_writes_a_rule_set_that_passes_check() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("new");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("my.yaml");
+    let file = file.to_str().unwrap();
+    let (output, text) = flagred(&["new", "fan-control", "--output", file], "");
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    assert!(text.contains("flagred check"));
+    assert!(
+        fs::read_to_string(file)
+            .unwrap()
+            .contains("name: fan-control")
+    );
+    let (output, text) = flagred(&["check", file, "--deny", "warnings"], "");
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    let (output, _) = flagred(&["explain", file, "temperature=24", "humidity=70"], "");
+    assert_eq!(output.status.code(), Some(0));
+    // Nobody's work is overwritten.
+    let (output, _) = flagred(&["new", "fan-control", "--output", file], "");
+    assert_eq!(output.status.code(), Some(2));
+    let (output, _) = flagred(&["new", "../evil"], "");
+    assert_eq!(output.status.code(), Some(2));
+}

@@ -1,0 +1,346 @@
+//! Why an output is what it is: memberships, fired rules, the aggregated set.
+
+use alloc::{
+    string::{String, ToString},
+    vec::Vec,
+};
+
+use serde::Serialize;
+
+use super::{
+    Engine, EvaluateError, Outcome, State,
+    operators::{larger, smaller},
+};
+use crate::model::{Aggregation, Model, NoRuleFires, Operators, Output, Shape, Term, Variable};
+use crate::rule::{Condition, Proposition};
+
+/// All that an evaluation rests on.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Explanation {
+    /// The inputs, with the degree of each of their terms.
+    pub inputs: Vec<ExplainedInput>,
+    /// The rules that fired, the strongest first.
+    pub rules: Vec<FiredRule>,
+    /// The outputs.
+    pub outputs: Vec<ExplainedOutput>,
+}
+
+/// An input, and what its value means.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExplainedInput {
+    /// Its name.
+    pub name: String,
+    /// The value that was given.
+    pub given: f64,
+    /// The value that was used: the end of the range where the given one lies outside.
+    pub value: f64,
+    /// The degree of each term.
+    pub terms: Vec<Degree>,
+}
+
+/// The degree of membership of a value in a term.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Degree {
+    /// The term.
+    pub term: String,
+    /// The degree, in [0, 1].
+    pub degree: f64,
+}
+
+/// A rule that fired.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FiredRule {
+    /// Its index in the model.
+    pub rule: usize,
+    /// The rule as it is written.
+    pub text: String,
+    /// The degree of its condition.
+    pub degree: f64,
+    /// The degree times the weight.
+    pub strength: f64,
+}
+
+/// An output, and how it came about.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExplainedOutput {
+    /// Its name.
+    pub name: String,
+    /// The value; none where no rule fired and the model says that it is undefined or an error then.
+    pub value: Option<f64>,
+    /// Whether the value is the one that the model gives where no rule fires.
+    pub is_default: bool,
+    /// The largest firing strength of a rule of this output.
+    pub coverage: f64,
+    /// The rules that speak of it, the largest share first.
+    pub rules: Vec<Share>,
+    /// The degree of the value in each term; empty for Takagi-Sugeno outputs.
+    pub terms: Vec<Degree>,
+    /// The aggregated set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno outputs.
+    pub set: Vec<(f64, f64)>,
+}
+
+/// What a rule adds to an output.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Share {
+    /// The rule's index in the model.
+    pub rule: usize,
+    /// The term it concludes.
+    pub term: String,
+    /// Its firing strength.
+    pub strength: f64,
+    /// Its share of the result, in [0, 1]. With the maximum as aggregation, the part of the aggregated set's area where
+    /// this rule is the highest; with sums, its part of the area of all sets; in a Takagi-Sugeno output, its part of the
+    /// weights.
+    pub share: f64,
+}
+
+/// Even steps of the aggregated set.
+const STEPS: usize = 200;
+
+impl Engine {
+    /// Tells how the outputs come about: memberships, fired rules with strength and share, the aggregated set.
+    ///
+    /// `model` is the one the engine was made from: the engine itself keeps no names of terms and no text.
+    /// It allocates and takes its time; use [`Engine::evaluate`] for values alone.
+    ///
+    /// # Errors
+    /// Not one finite value for each input, or another model.
+    ///
+    /// # Example: which rules fired, how strongly?
+    /// ```
+    /// use fuzzy::Engine;
+    ///
+    /// let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = Engine::new(&model)?;
+    /// let explanation = engine.explain(&model, &[0.007969, 0.226310])?;
+    /// let strongest = &explanation.rules[0];
+    /// assert_eq!(strongest.text, "IF margin IS very_low AND spread IS high THEN risk IS very_high");
+    /// assert!((strongest.strength - 0.92031).abs() < 1e-5);
+    /// assert!((explanation.outputs[0].rules.iter().map(|r| r.share).sum::<f64>() - 1.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn explain(&self, model: &Model, inputs: &[f64]) -> Result<Explanation, EvaluateError> {
+        let names = model.inputs.iter().map(|input| input.name.as_str());
+        let outputs = model.outputs.iter().map(|o| o.variable.name.as_str());
+        if !names.eq(self.input_names()) || !outputs.eq(self.output_names()) {
+            return Err(EvaluateError::OtherModel);
+        }
+        // Where no rule fires, this is the answer to "why", not a reason to give none.
+        let mut engine = self.clone();
+        for output in &mut engine.outputs {
+            if let NoRuleFires::Error = output.when_no_rule_fires {
+                output.when_no_rule_fires = NoRuleFires::Undefined;
+            }
+        }
+        let outcomes = engine.evaluate(inputs)?;
+        if let Some(Outcome {
+            state: State::InputNotFinite,
+            ..
+        }) = outcomes.first()
+        {
+            return Err(EvaluateError::InputNotFinite);
+        }
+        let explained: Vec<ExplainedInput> = model.inputs.iter().zip(inputs).map(input).collect();
+        let values: Vec<f64> = explained.iter().map(|input| input.value).collect();
+        let rules = fired(model, &values);
+        let outputs = model.outputs.iter().zip(&outcomes);
+        let outputs =
+            outputs.map(|(output, outcome)| explain_output(model, output, outcome, &rules));
+        Ok(Explanation {
+            outputs: outputs.collect(),
+            inputs: explained,
+            rules,
+        })
+    }
+}
+
+fn input((variable, &given): (&Variable, &f64)) -> ExplainedInput {
+    let value = larger(variable.low, smaller(variable.high, given));
+    ExplainedInput {
+        name: variable.name.clone(),
+        given,
+        value,
+        terms: degrees(&variable.terms, value),
+    }
+}
+
+fn degrees(terms: &[Term], value: f64) -> Vec<Degree> {
+    let degree = |term: &Term| Degree {
+        term: term.name.clone(),
+        degree: term.membership(value),
+    };
+    terms.iter().map(degree).collect()
+}
+
+fn fired(model: &Model, values: &[f64]) -> Vec<FiredRule> {
+    let mut fired: Vec<FiredRule> = Vec::new();
+    for (index, rule) in model.rules.iter().enumerate() {
+        let degree = holds(&rule.rule.condition, model, values, model.operators);
+        let strength = rule.rule.weight * degree;
+        if strength > 0.0 {
+            fired.push(FiredRule {
+                rule: index,
+                text: rule.rule.to_string(),
+                degree,
+                strength,
+            });
+        }
+    }
+    // Of equally strong rules the first in the file stands first.
+    fired.sort_by(|a, b| b.strength.total_cmp(&a.strength));
+    fired
+}
+
+/// The degree of a condition, read from its tree.
+fn holds(condition: &Condition, model: &Model, values: &[f64], operators: Operators) -> f64 {
+    let degree = |part: &Condition| holds(part, model, values, operators);
+    match condition {
+        Condition::Is(proposition) => proposition_holds(proposition, model, values),
+        Condition::Not(inner) => 1.0 - degree(inner),
+        Condition::And(parts) => {
+            let joined = parts
+                .iter()
+                .map(degree)
+                .reduce(|a, b| operators.and.of(a, b));
+            joined.unwrap_or(0.0)
+        }
+        Condition::Or(parts) => {
+            let joined = parts
+                .iter()
+                .map(degree)
+                .reduce(|a, b| operators.or.of(a, b));
+            joined.unwrap_or(0.0)
+        }
+    }
+}
+
+fn proposition_holds(proposition: &Proposition, model: &Model, values: &[f64]) -> f64 {
+    let inputs = model.inputs.iter().zip(values);
+    let mut named = inputs.filter(|(input, _)| input.name == proposition.variable.text);
+    let membership = named.next().and_then(|(input, &value)| {
+        let name = &proposition.term.as_ref()?.text;
+        let term = input.terms.iter().find(|term| term.name == *name)?;
+        Some(term.membership(value))
+    });
+    let hedges = proposition.hedges.iter().rev();
+    hedges.fold(membership.unwrap_or(0.0), |degree, hedge| hedge.of(degree))
+}
+
+fn explain_output(
+    model: &Model,
+    output: &Output,
+    outcome: &Outcome,
+    fired: &[FiredRule],
+) -> ExplainedOutput {
+    let variable = &output.variable;
+    let weighted = output.defuzzifier.is_weighted();
+    let mut active: Vec<Active<'_>> = Vec::new();
+    for rule in fired {
+        let consequents = model
+            .rules
+            .get(rule.rule)
+            .map(|r| r.rule.consequents.as_slice());
+        for consequent in consequents.unwrap_or_default() {
+            let named = |term: &&Term| term.name == consequent.term.text;
+            if consequent.output.text == variable.name
+                && let Some(term) = variable.terms.iter().find(named)
+            {
+                active.push(Active {
+                    rule: rule.rule,
+                    term,
+                    strength: rule.strength,
+                    part: 0.0,
+                });
+            }
+        }
+    }
+    let mut set = Vec::new();
+    if weighted {
+        active.iter_mut().for_each(|one| one.part = one.strength);
+    } else {
+        let step = |i: f64| variable.low + (variable.high - variable.low) * i / STEPS as f64;
+        set = (0..=STEPS)
+            .map(|i| {
+                (
+                    step(i as f64),
+                    aggregated(&active, model.operators, step(i as f64)),
+                )
+            })
+            .collect();
+        for i in 0..STEPS {
+            add_parts(&mut active, model.operators, step(i as f64 + 0.5));
+        }
+    }
+    let whole: f64 = active.iter().map(|one| one.part).sum();
+    let mut rules: Vec<Share> = active
+        .iter()
+        .map(|one| Share {
+            rule: one.rule,
+            term: one.term.name.clone(),
+            strength: one.strength,
+            share: if whole > 0.0 { one.part / whole } else { 0.0 },
+        })
+        .collect();
+    rules.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let value = outcome.value();
+    let sets = variable
+        .terms
+        .iter()
+        .all(|term| !matches!(term.shape, Shape::Linear { .. }));
+    ExplainedOutput {
+        name: variable.name.clone(),
+        value,
+        is_default: matches!(outcome.state, State::Default(_)),
+        coverage: outcome.coverage,
+        rules,
+        terms: match value {
+            Some(value) if sets && !weighted => degrees(&variable.terms, value),
+            _ => Vec::new(),
+        },
+        set,
+    }
+}
+
+/// A consequent of a rule that fired.
+struct Active<'m> {
+    rule: usize,
+    term: &'m Term,
+    strength: f64,
+    /// What it adds to the result, so far.
+    part: f64,
+}
+
+impl Active<'_> {
+    fn degree(&self, operators: Operators, x: f64) -> f64 {
+        operators
+            .implication
+            .of(self.strength, self.term.membership(x))
+    }
+}
+
+fn aggregated(active: &[Active<'_>], operators: Operators, x: f64) -> f64 {
+    let degrees = active.iter().map(|one| one.degree(operators, x));
+    degrees.fold(0.0, |all, degree| operators.aggregation.of(all, degree))
+}
+
+/// Adds what each consequent contributes at `x`: under the maximum all of it is the highest one's.
+fn add_parts(active: &mut [Active<'_>], operators: Operators, x: f64) {
+    if operators.aggregation != Aggregation::Maximum {
+        for one in active {
+            one.part += one.degree(operators, x);
+        }
+        return;
+    }
+    let mut highest: Option<(usize, f64)> = None;
+    for (i, one) in active.iter().enumerate() {
+        let degree = one.degree(operators, x);
+        if degree > highest.map_or(0.0, |(_, most)| most) {
+            highest = Some((i, degree));
+        }
+    }
+    if let Some((i, degree)) = highest
+        && let Some(one) = active.get_mut(i)
+    {
+        one.part += degree;
+    }
+}
