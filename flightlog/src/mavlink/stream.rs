@@ -1,0 +1,91 @@
+//! Packets out of bytes that come in pieces.
+
+use super::{Next, Packet, Why, next_packet};
+
+/// What was passed over.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Skipped {
+    /// Bytes that belong to no packet that could be read.
+    pub bytes: u64,
+    /// Packets whose checksum was wrong, and bytes that only looked like the beginning of one.
+    pub checksums: u64,
+    /// Packets with a message or a feature that is not known here.
+    pub unknown: u64,
+    /// Signed packets: without the key nobody can tell whether they are genuine.
+    pub signed: u64,
+}
+
+impl Skipped {
+    /// Nothing was passed over.
+    pub fn is_empty(&self) -> bool {
+        *self == Skipped::default()
+    }
+}
+
+/// Bytes as they arrive, and the packets in them.
+///
+/// Its memory is bounded by the largest piece that was pushed and one packet.
+#[derive(Debug, Clone, Default)]
+pub struct Stream {
+    buffer: Vec<u8>,
+    taken: usize,
+    skipped: Skipped,
+}
+
+impl Stream {
+    /// A stream that starts here.
+    pub fn new() -> Stream {
+        Stream::default()
+    }
+
+    /// Adds the bytes that arrived.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.buffer.drain(..self.taken.min(self.buffer.len()));
+        self.taken = 0;
+        self.buffer.extend_from_slice(bytes);
+    }
+
+    /// The next packet; `None` until more bytes arrive. Signed packets are counted and passed over.
+    pub fn packet(&mut self) -> Option<Packet<'_>> {
+        let length = loop {
+            match next_packet(self.buffer.get(self.taken..)?) {
+                Next::Packet(packet) => {
+                    let length = packet.bytes.len();
+                    if !packet.is_signed {
+                        break length;
+                    }
+                    self.skipped.signed += 1;
+                    self.taken += length;
+                }
+                Next::Skip(count, why) => {
+                    match why {
+                        Why::NoPacket => {}
+                        Why::Checksum => self.skipped.checksums += 1,
+                        Why::UnknownMessage(_) | Why::UnknownFlags(_) => self.skipped.unknown += 1,
+                    }
+                    self.skipped.bytes += count as u64;
+                    self.taken += count;
+                }
+                Next::More => return None,
+            }
+        };
+        let start = self.taken;
+        self.taken += length;
+        match next_packet(self.buffer.get(start..self.taken)?) {
+            Next::Packet(packet) => Some(packet),
+            _ => None,
+        }
+    }
+
+    /// The bytes end here, as at the end of a datagram: the beginning of a packet that is left is none.
+    pub fn end(&mut self) {
+        self.skipped.bytes += self.buffer.len().saturating_sub(self.taken) as u64;
+        self.buffer.clear();
+        self.taken = 0;
+    }
+
+    /// What was passed over since the stream began.
+    pub fn skipped(&self) -> Skipped {
+        self.skipped
+    }
+}
