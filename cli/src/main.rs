@@ -11,6 +11,7 @@ mod failure;
 mod inspect;
 mod new;
 mod profile;
+mod report;
 mod rule_set;
 
 use std::process::ExitCode;

@@ -13,17 +13,22 @@ use crate::{
 /// The profile that is used where none is named.
 pub(crate) const DEFAULT: &str = "flagred";
 
+/// A profile and its rule set, ready to use and as they were written.
+pub(crate) struct Loaded {
+    pub(crate) estimator: Estimator,
+    pub(crate) model: Model,
+    pub(crate) profile_text: String,
+    pub(crate) rules_text: String,
+}
+
 /// Compiles a profile, which is a shipped one's name or a file, with its rule set.
 ///
 /// A shipped name wins over a file of that name (`./flagred` is the file); a file's rule set is looked for beside it first, and then among the shipped ones.
-pub(crate) fn load(profile: &str) -> Result<Estimator, Failure> {
-    let path = Path::new(profile);
-    let (profile, rules) = match shipped::profile(profile) {
-        Some(read) => {
-            let read = read.map_err(Failure::unreadable)?;
-            let rules = rules(&read, None)?;
-            (read, rules)
-        }
+pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
+    let path = Path::new(name);
+    let shipped = shipped::PROFILES.iter().find(|known| known.name == name);
+    let (profile_text, folder) = match shipped {
+        Some(known) => (known.text.to_owned(), None),
         None => {
             let text = read_text(path).map_err(|failure| {
                 failure.help(format!(
@@ -31,36 +36,44 @@ pub(crate) fn load(profile: &str) -> Result<Estimator, Failure> {
                     shipped::profile_names().join(" and ")
                 ))
             })?;
-            let read =
-                Profile::from_yaml(&text).map_err(|findings| refuse(&findings, profile, &text))?;
-            let rules = rules(&read, path.parent())?;
-            (read, rules)
+            (text, path.parent())
         }
     };
-    Estimator::new(&profile, &rules).map_err(|error| {
+    let profile = Profile::from_yaml(&profile_text)
+        .map_err(|findings| refuse(&findings, name, &profile_text))?;
+    let (rules_file, rules_text) = rules(&profile, folder)?;
+    let model = fuzzy::yaml::parse(&rules_text)
+        .map_err(|findings| refuse(&findings, &rules_file, &rules_text))?
+        .model;
+    let estimator = Estimator::new(&profile, &model).map_err(|error| {
         Failure::unreadable(format!(
             "profile `{}` with rule set `{}`: {error}",
             profile.name, profile.rules
         ))
+    })?;
+    Ok(Loaded {
+        estimator,
+        model,
+        profile_text,
+        rules_text,
     })
 }
 
-fn rules(profile: &Profile, folder: Option<&Path>) -> Result<Model, Failure> {
+/// The file and the text of the rule set that a profile names.
+fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String, String), Failure> {
     let beside = folder.map(|folder| folder.join(&profile.rules));
-    match (
-        beside.filter(|path| path.is_file()),
-        shipped::rule_set(&profile.rules),
-    ) {
-        (Some(path), _) => {
-            let text = read_text(&path)?;
-            let document = fuzzy::yaml::parse(&text)
-                .map_err(|findings| refuse(&findings, &path.display().to_string(), &text))?;
-            Ok(document.model)
-        }
-        (None, Some(read)) => read.map_err(Failure::unreadable),
-        (None, None) => Err(Failure::unreadable(format!(
-            "profile `{}` names the rule set `{}`, which is no file beside it and not shipped",
-            profile.name, profile.rules
-        ))),
+    if let Some(path) = beside.filter(|path| path.is_file()) {
+        return Ok((path.display().to_string(), read_text(&path)?));
     }
+    let shipped = shipped::RULE_SETS
+        .iter()
+        .find(|known| known.name == profile.rules);
+    shipped
+        .map(|known| (known.file.to_owned(), known.text.to_owned()))
+        .ok_or_else(|| {
+            Failure::unreadable(format!(
+                "profile `{}` names the rule set `{}`, which is no file beside it and not shipped",
+                profile.name, profile.rules
+            ))
+        })
 }

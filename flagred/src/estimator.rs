@@ -154,8 +154,26 @@ impl Estimator {
         &self.engine
     }
 
-    /// The risk at the values of the inputs, in the order of the profile; `None` where rules say nothing and there
-    /// is nothing to fill from.
+    /// The risk at the values of the inputs, in the order of the profile: what a monitor says at such a moment.
+    /// `None` where rules say nothing and there is nothing to fill from, or a value is not finite.
+    ///
+    /// # Example: the corner of the paper's map that no rule covers
+    ///
+    /// ```
+    /// use flagred::{estimator::Estimator, shipped};
+    ///
+    /// let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// let estimator = Estimator::new(&profile, &rules)?;
+    /// let saturated = estimator.at(&[0.0, 0.0]).ok_or("unknown")?;
+    /// assert!(saturated.risk_pct > 75.0 && saturated.filled_from.is_some());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn at(&self, inputs: &[f64]) -> Option<Estimate> {
+        self.estimate(inputs, &mut Memory::of(self))
+    }
+
+    /// As [`Estimator::at`], without allocating.
     pub(crate) fn estimate(&self, inputs: &[f64], memory: &mut Memory) -> Option<Estimate> {
         for (value, from) in memory.inputs.iter_mut().zip(&self.order) {
             *value = *inputs.get(*from)?;

@@ -1,11 +1,11 @@
 //! `flagred assess`: how risky was this flight?
 
 mod document;
-mod follow;
+pub(crate) mod follow;
 mod picture;
-mod words;
+pub(crate) mod words;
 
-use std::io::Write;
+use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use flagred::verdict::Level;
@@ -13,6 +13,7 @@ use flagred::verdict::Level;
 use crate::{
     failure::{Exit, Failure},
     profile,
+    report::{self, Subject},
 };
 use follow::{Assessed, Verdict};
 
@@ -36,6 +37,14 @@ pub(crate) struct Arguments {
     /// A table of the steps instead of words
     #[arg(long)]
     csv: bool,
+
+    /// Also write a report to look at: one HTML file that opens offline; of several logs, a comparison
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+
+    /// Also write the picture of risk over time, as an SVG file
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
 
     /// Exit with 1 from this verdict on
     #[arg(long, value_enum, value_name = "VERDICT", default_value = "warn")]
@@ -62,17 +71,26 @@ fn step(text: &str) -> Result<f64, String> {
 
 /// Assesses every log in turn; one that cannot be read is told of and does not stop the others.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let estimator = profile::load(&arguments.profile)?;
+    let loaded = profile::load(&arguments.profile)?;
+    let estimator = &loaded.estimator;
     let several = arguments.logs.len() > 1;
     if arguments.logs.iter().filter(|log| *log == "-").count() > 1 {
         return Err(Failure::usage("standard input can be read only once").help("name `-` once"));
     }
+    if several && arguments.svg.is_some() {
+        return Err(
+            Failure::usage("--svg draws one flight").help("compare several with --html FILE")
+        );
+    }
+    let reports = arguments.html.is_some() || arguments.svg.is_some();
+    let options = options(estimator, reports);
+    let mut subjects = Vec::new();
     let mut out = anstream::stdout().lock();
     let mut exit = Exit::Clean;
     let mut documents = Vec::new();
     let mut head = true;
     for log in &arguments.logs {
-        let flight = match flightlog::open(log, &options(&estimator)) {
+        let flight = match flightlog::open(log, &options) {
             Ok(flight) => flight,
             Err(error) => {
                 Failure::from(error).report();
@@ -80,16 +98,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 continue;
             }
         };
-        let assessed = follow::follow(&flight, &estimator, arguments.step);
+        let assessed = follow::follow(&flight, estimator, arguments.step);
         exit = exit.max(exit_of(&assessed, arguments.fail_on));
         if arguments.json {
-            documents.push(document::document(log, &flight, &estimator, &assessed));
+            documents.push(document::document(log, &flight, estimator, &assessed));
         } else if arguments.csv {
             document::write_csv(
                 &mut out,
                 several.then_some(log.as_str()),
                 head,
-                &estimator,
+                estimator,
                 &assessed,
             )?;
             head = false;
@@ -102,6 +120,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         } else {
             words::write(&mut out, log, &flight, &estimator.profile().name, &assessed)?;
         }
+        if reports {
+            subjects.push(Subject {
+                name: log.clone(),
+                flight,
+                assessed,
+            });
+        }
     }
     if arguments.json {
         match (documents.as_slice(), several) {
@@ -111,15 +136,44 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
     }
     out.flush()?;
+    write_reports(arguments, &subjects, &loaded)?;
     Ok(exit)
 }
 
+/// Writes the files that were asked for; where no log could be read, there is nothing to write.
+fn write_reports(
+    arguments: &Arguments,
+    subjects: &[Subject],
+    loaded: &profile::Loaded,
+) -> Result<(), Failure> {
+    let text = match subjects {
+        [] => return Ok(()),
+        [subject] if arguments.logs.len() == 1 => report::report(subject, loaded),
+        several => report::comparison(several, loaded),
+    };
+    if let Some(path) = &arguments.html {
+        report::write_whole(path, &text)?;
+    }
+    if let (Some(path), [subject]) = (&arguments.svg, subjects) {
+        let text = report::svg(subject, loaded).ok_or_else(|| {
+            Failure::unreadable(format!(
+                "`{}`: no risk is known at any time, so there is nothing to draw",
+                subject.name
+            ))
+        })?;
+        report::write_whole(path, &text)?;
+    }
+    Ok(())
+}
+
 /// Only what is looked at is decoded.
-fn options(estimator: &flagred::estimator::Estimator) -> flightlog::Options {
+fn options(estimator: &flagred::estimator::Estimator, reports: bool) -> flightlog::Options {
+    let drawn = reports.then_some(report::SIGNALS);
     let mut signals: Vec<String> = estimator
         .profile()
         .signals()
         .into_iter()
+        .chain(drawn.into_iter().flatten())
         .map(str::to_owned)
         .collect();
     signals.sort_unstable();

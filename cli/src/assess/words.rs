@@ -9,6 +9,8 @@ use flagred::{
 };
 use flightlog::Flight;
 
+use crate::report::number;
+
 use super::{
     follow::{Assessed, Summary, Verdict, word},
     picture,
@@ -81,7 +83,7 @@ pub(crate) fn write(
 }
 
 /// The vehicle in a line: firmware, frame, motors and ranges.
-fn vehicle(flight: &Flight) -> String {
+pub(crate) fn vehicle(flight: &Flight) -> String {
     let mut parts = vec![flight.format.to_string()];
     parts.extend(flight.vehicle.firmware.clone());
     parts.extend(flight.vehicle.frame.clone());
@@ -95,7 +97,8 @@ fn vehicle(flight: &Flight) -> String {
         parts.push(format!("{} to {} {}", range.low, range.high, range.unit));
         parts.push(format!(
             "flown between {} and {} of it",
-            flight.effective.low, flight.effective.high
+            number(flight.effective.low, 3),
+            number(flight.effective.high, 3)
         ));
     }
     parts.join(", ")
@@ -105,7 +108,7 @@ fn vehicle(flight: &Flight) -> String {
 const ONE_MESSAGE_BYTES: u64 = 256;
 
 /// What is wrong with the log, and that it was read all the same.
-fn damage(report: &flightlog::Report) -> String {
+pub(crate) fn damage(report: &flightlog::Report) -> String {
     if report.truncated && report.bad_messages == 0 && report.skipped_bytes <= ONE_MESSAGE_BYTES {
         return format!(
             "the log ends inside a message: its last {} bytes are left out",

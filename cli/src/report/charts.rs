@@ -1,0 +1,374 @@
+//! Which curves tell a flight, and from what they are drawn.
+
+use flagred::{
+    attitude::Attitude,
+    estimator::Estimator,
+    verdict::{Level, Threshold},
+};
+use flightlog::{Flight, Signal};
+use fuzzy::Model;
+
+use super::{
+    curve::{Stretch, path},
+    panel::{Line, Panel, Size, Timeline},
+};
+use crate::assess::follow::{Assessed, Step};
+
+/// Signals beside those of the profile that a report draws.
+pub(crate) const SIGNALS: [&str; 6] = [
+    "roll_des_deg",
+    "roll_deg",
+    "pitch_des_deg",
+    "pitch_deg",
+    "battery_v",
+    "battery_remaining_pct",
+];
+
+/// More events than this are a carpet; the rest is said to be left out.
+const MOST_EVENTS: usize = 200;
+
+/// The stretch that is drawn: from the first time in the air to the last, or all of the log where there is none.
+fn stretch(flight: &Flight) -> Stretch {
+    let air = flight.in_air.iter().flat_map(|air| &air.spans);
+    let hull = air
+        .map(|span| (span.start_s, span.end_s))
+        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let (start_s, end_s) = hull.or_else(|| flight.time_span_s()).unwrap_or((0.0, 1.0));
+    Stretch {
+        start_s,
+        end_s: end_s.max(start_s + 0.1),
+    }
+}
+
+/// What stands behind and over all curves of a flight.
+pub(crate) fn timeline(flight: &Flight, assessed: &Assessed) -> Timeline {
+    let stretch = stretch(flight);
+    let ends = flight.modes.iter().skip(1).map(|next| next.t_s());
+    let ends = ends.chain([f64::INFINITY]);
+    let mut kinds: Vec<&str> = Vec::new();
+    let mut modes = Vec::new();
+    for (mode, end_s) in flight.modes.iter().zip(ends) {
+        let span = Stretch {
+            start_s: mode.t_s().max(stretch.start_s),
+            end_s: end_s.min(stretch.end_s),
+        };
+        if span.end_s > span.start_s {
+            let known = kinds.iter().position(|known| *known == mode.what);
+            let kind = known.unwrap_or_else(|| {
+                kinds.push(&mode.what);
+                kinds.len() - 1
+            });
+            modes.push((span, mode.what.clone(), kind));
+        }
+    }
+    let findings = assessed.findings.iter().map(|finding| {
+        let span = Stretch {
+            start_s: finding.from_s,
+            end_s: finding.to_s,
+        };
+        (span, level_class(finding.level))
+    });
+    let said = flight
+        .messages
+        .iter()
+        .map(|message| (message.t_s(), message.what.clone()));
+    let boots = flight.boots_s.iter();
+    let boots = boots.map(|t_s| (*t_s, "the autopilot booted again".to_owned()));
+    let mut events: Vec<(f64, String)> = said
+        .chain(boots)
+        .filter(|(t_s, _)| stretch.contains(*t_s))
+        .collect();
+    events.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if events.len() > MOST_EVENTS {
+        let more = format!("and {} more events", events.len() - MOST_EVENTS + 1);
+        events.truncate(MOST_EVENTS - 1);
+        if let Some((t_s, _)) = events.last() {
+            events.push((*t_s, more));
+        }
+    }
+    Timeline {
+        stretch,
+        modes,
+        findings: findings.collect(),
+        events,
+    }
+}
+
+pub(crate) fn level_class(level: Level) -> &'static str {
+    match level {
+        Level::Good => "good",
+        Level::Warn => "warn",
+        Level::Fail => "fail",
+    }
+}
+
+/// The curves of one value of the steps.
+fn of_steps(
+    steps: &[Step],
+    stretch: Stretch,
+    gap_s: f64,
+    decimals: usize,
+    value: impl Fn(&Step) -> Option<f64>,
+) -> String {
+    let points = steps
+        .iter()
+        .map(|step| (step.t_s, value(step).unwrap_or(f64::NAN)));
+    path(points, stretch, gap_s, decimals)
+}
+
+/// Without a sample for this long, a curve is broken: a few samples, and what the profile calls a gap.
+fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
+    let longest_gap_s = estimator.profile().sampling.longest_gap_s;
+    rate_hz.map_or(longest_gap_s, |rate_hz| longest_gap_s.max(5.0 / rate_hz))
+}
+
+/// Risk and elevated risk; `None` where no moment of the flight could be assessed.
+pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch) -> Option<Panel> {
+    let gap_s = gap_s(estimator, None);
+    let draw =
+        |value: &dyn Fn(&Step) -> Option<f64>| of_steps(&assessed.steps, stretch, gap_s, 1, value);
+    let risk = draw(&|step| step.estimate.map(|estimate| estimate.risk_pct));
+    if risk.is_empty() {
+        return None;
+    }
+    let verdict = &estimator.profile().verdict;
+    let level = |threshold: &Threshold, class| threshold.risk_pct.map(|risk_pct| (risk_pct, class));
+    let levels = [
+        level(&verdict.warn.raise, "warn"),
+        level(&verdict.fail.raise, "fail"),
+    ];
+    Some(Panel {
+        title: "Risk".into(),
+        unit: "%",
+        low: 0.0,
+        high: 100.0,
+        size: Size::Large,
+        lines: vec![
+            Line {
+                class: "elevated",
+                name: "elevated risk".into(),
+                data: draw(&|step| step.elevated_risk_pct),
+            },
+            Line {
+                class: "risk",
+                name: "risk".into(),
+                data: risk,
+            },
+        ],
+        levels: levels.into_iter().flatten().collect(),
+        zones: Vec::new(),
+        input: None,
+    })
+}
+
+/// How far the nearest motor is from its lower and from its upper limit, and the mean margin.
+pub(crate) fn margins(
+    flight: &Flight,
+    assessed: &Assessed,
+    estimator: &Estimator,
+    stretch: Stretch,
+) -> Option<Panel> {
+    let gap_s = gap_s(estimator, flight.command_rate_hz());
+    let least = |side: &dyn Fn(f64) -> f64| {
+        let rows = flight.commands.rows().map(|(t_s, row)| {
+            let sides = row.iter().filter_map(|raw| flight.effective_command(*raw));
+            (t_s, sides.map(side).fold(f64::NAN, f64::min))
+        });
+        path(rows, stretch, gap_s, 3)
+    };
+    let low = least(&|e| e);
+    if low.is_empty() {
+        return None;
+    }
+    let line = |class, name: &str, data| Line {
+        class,
+        name: name.into(),
+        data,
+    };
+    let mean = of_steps(&assessed.steps, stretch, gap_s, 3, |step| step.margin);
+    Some(Panel {
+        title: "Margin of the nearest motor".into(),
+        unit: "",
+        low: 0.0,
+        high: 1.0,
+        size: Size::Medium,
+        lines: vec![
+            line("mean", "mean margin", mean),
+            line("low", "to its lower limit", low),
+            line("high", "to its upper limit", least(&|e| 1.0 - e)),
+        ],
+        levels: Vec::new(),
+        zones: Vec::new(),
+        input: None,
+    })
+}
+
+/// The command of each motor on its full range, with what lies beyond the effective limits shaded.
+pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
+    let gap_s = gap_s(estimator, flight.command_rate_hz());
+    let limits = &flight.effective;
+    let panel = |(i, motor): (usize, &flightlog::Motor)| {
+        let rows = flight.commands.rows().map(|(t_s, row)| {
+            let command = row.get(i).and_then(|raw| flight.command(*raw));
+            (t_s, command.unwrap_or(f64::NAN) * 100.0)
+        });
+        Panel {
+            title: format!("Motor {}", motor.number),
+            unit: "%",
+            low: 0.0,
+            high: 100.0,
+            size: Size::Small,
+            lines: vec![Line {
+                class: "motor",
+                name: motor.output.clone(),
+                data: path(rows, stretch, gap_s, 1),
+            }],
+            levels: vec![
+                (limits.low * 100.0, "limit"),
+                (limits.high * 100.0, "limit"),
+            ],
+            zones: vec![(0.0, limits.low * 100.0), (limits.high * 100.0, 100.0)],
+            input: None,
+        }
+    };
+    let panels = flight.motors.iter().enumerate().map(panel);
+    panels.filter(has_data).collect()
+}
+
+/// What the rules saw: each of their inputs.
+pub(crate) fn inputs(
+    assessed: &Assessed,
+    estimator: &Estimator,
+    model: &Model,
+    stretch: Stretch,
+) -> Vec<Panel> {
+    let gap_s = gap_s(estimator, None);
+    let panel = |(i, input): (usize, &flagred::profile::ProfileInput)| {
+        let (low, high) = super::decision::focus(model, &input.name, i, &assessed.steps);
+        let unit = model.inputs.iter().find(|known| known.name == input.name);
+        let unit = unit.and_then(|known| known.unit.as_deref());
+        let data = of_steps(&assessed.steps, stretch, gap_s, 4, |step| {
+            step.inputs.get(i).copied()
+        });
+        Panel {
+            title: input.name.clone(),
+            unit: "",
+            low,
+            high,
+            size: Size::Small,
+            lines: vec![Line {
+                class: "value",
+                name: unit.unwrap_or_default().to_owned(),
+                data,
+            }],
+            levels: Vec::new(),
+            zones: Vec::new(),
+            input: Some(i),
+        }
+    };
+    let inputs = estimator.profile().inputs.iter().enumerate();
+    inputs.map(panel).filter(has_data).collect()
+}
+
+/// The attitude error in degrees: `sqrt((roll_des - roll)^2 + (pitch_des - pitch)^2)`.
+pub(crate) fn attitude_error(
+    flight: &Flight,
+    estimator: &Estimator,
+    stretch: Stretch,
+) -> Option<Panel> {
+    let roll = flight.signal("roll_deg")?;
+    let mut others = [
+        flight.signal("roll_des_deg")?.hold(),
+        flight.signal("pitch_des_deg")?.hold(),
+        flight.signal("pitch_deg")?.hold(),
+    ];
+    let errors: Vec<(f64, f64)> = roll
+        .t_s
+        .iter()
+        .zip(roll.values)
+        .map(|(t_s, roll_deg)| {
+            let [roll_des_deg, pitch_des_deg, pitch_deg] = others
+                .each_mut()
+                .map(|hold| hold.at(*t_s).unwrap_or(f64::NAN));
+            let attitude = Attitude {
+                roll_des_deg,
+                roll_deg: *roll_deg,
+                pitch_des_deg,
+                pitch_deg,
+            };
+            (*t_s, attitude.squared_error_deg2().sqrt())
+        })
+        .collect();
+    // Up to the critical error at least, so that a calm flight looks calm.
+    let critical_deg = flagred::attitude::CRITICAL_ERROR_DEG;
+    let largest = errors
+        .iter()
+        .filter(|(t_s, _)| stretch.contains(*t_s))
+        .map(|(_, error)| *error)
+        .fold(critical_deg * 1.1, f64::max);
+    let gap_s = gap_s(estimator, roll.rate_hz());
+    let panel = Panel {
+        title: "Attitude error".into(),
+        unit: "°",
+        low: 0.0,
+        high: largest,
+        size: Size::Medium,
+        lines: vec![Line {
+            class: "value",
+            name: "roll and pitch against their set points".into(),
+            data: path(errors.into_iter(), stretch, gap_s, 2),
+        }],
+        levels: vec![(critical_deg, "limit")],
+        zones: Vec::new(),
+        input: None,
+    };
+    has_data(&panel).then_some(panel)
+}
+
+/// Battery voltage and what remains, as far as the log has them.
+pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
+    let curve = |signal: &Signal<'_>, decimals| {
+        let points = signal.t_s.iter().copied();
+        let points = points.zip(signal.values.iter().copied());
+        path(
+            points,
+            stretch,
+            gap_s(estimator, signal.rate_hz()),
+            decimals,
+        )
+    };
+    let panel = |title: &str, unit, (low, high), signal: Signal<'_>, decimals| Panel {
+        title: title.into(),
+        unit,
+        low,
+        high,
+        size: Size::Medium,
+        lines: vec![Line {
+            class: "value",
+            name: signal.label.source.clone(),
+            data: curve(&signal, decimals),
+        }],
+        levels: Vec::new(),
+        zones: Vec::new(),
+        input: None,
+    };
+    let voltage = flight.signal("battery_v").and_then(|signal| {
+        let seen = signal.t_s.iter().zip(signal.values);
+        let seen = seen.filter(|(t_s, value)| stretch.contains(**t_s) && value.is_finite());
+        let (low, high) = seen
+            .map(|(_, value)| (*value, *value))
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        let room = ((high - low) * 0.1).max(0.1);
+        let span = ((low - room).max(0.0), high + room);
+        Some(panel("Battery voltage", "V", span, signal, 2))
+    });
+    let remaining = flight
+        .signal("battery_remaining_pct")
+        .map(|signal| panel("Battery remaining", "%", (0.0, 100.0), signal, 1));
+    let panels = voltage.into_iter().chain(remaining);
+    panels.filter(has_data).collect()
+}
+
+fn has_data(panel: &Panel) -> bool {
+    panel.lines.iter().any(|line| !line.data.is_empty())
+}

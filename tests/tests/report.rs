@@ -1,0 +1,266 @@
+//! `flagred assess --html` and `--svg`: files that are whole, that need nothing beside them, and that say what the
+//! flight says.
+
+use std::{
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+    process::Output,
+};
+
+use flagred_tests::flagred;
+use serde_json::Value;
+
+const FLIGHT: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../examples/flights/steady.BIN"
+);
+
+/// A folder of this test's own, gone when the test is.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path =
+            std::env::temp_dir().join(format!("flagred-report-{}-{name}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn assess(logs: &[&Path], more: &[&str]) -> Output {
+    flagred()
+        .arg("assess")
+        .args(logs)
+        .args(more)
+        .output()
+        .unwrap()
+}
+
+fn report(logs: &[&Path], folder: &Folder) -> String {
+    let file = folder.file("report.html");
+    let output = assess(
+        logs,
+        &["--html", file.to_str().unwrap(), "--fail-on", "never"],
+    );
+    assert!(
+        output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    fs::read_to_string(file).unwrap()
+}
+
+/// The points of the curve of a class, as the report's own script reads them.
+fn curve(html: &str, class: &str) -> Vec<(f64, f64)> {
+    let (_, rest) = html
+        .split_once(&format!("<path class=\"line {class}\" d=\""))
+        .unwrap();
+    let (data, _) = rest.split_once('"').unwrap();
+    data.replace("h0", "")
+        .split(['M', 'L'])
+        .filter(|point| !point.is_empty())
+        .map(|point| {
+            let (x, y) = point.split_once(' ').unwrap();
+            (x.parse().unwrap(), y.parse().unwrap())
+        })
+        .collect()
+}
+
+#[test]
+fn the_curves_hold_the_values_of_the_json_document() {
+    let folder = Folder::new("curves");
+    let html = report(&[Path::new(FLIGHT)], &folder);
+    let document: Value =
+        serde_json::from_slice(&assess(&[Path::new(FLIGHT)], &["--json"]).stdout).unwrap();
+    for (class, name) in [
+        ("risk", "risk"),
+        ("elevated", "elevated_risk"),
+        ("mean", "margin"),
+    ] {
+        let steps = document["steps"].as_array().unwrap();
+        let known = steps.iter().filter_map(|step| step[name].as_f64());
+        let (low, high) = known.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+        let drawn = curve(&html, class).into_iter().map(|(_, v)| v);
+        let (least, most) = drawn.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+        assert!((least - low).abs() <= 0.051, "{name}: {least} is not {low}");
+        assert!((most - high).abs() <= 0.051, "{name}: {most} is not {high}");
+    }
+    let start_s = document["steps"][0]["t_s"].as_f64().unwrap();
+    assert!(html.contains("Nothing reached a threshold"));
+    assert!(
+        html.contains("SERVO3_FUNCTION = 35"),
+        "where motor 3 is known from"
+    );
+    assert!(
+        html.contains("IF at_limit IS much THEN risk IS very_high"),
+        "the rules in full"
+    );
+    assert!(
+        html.contains("quiet_after_take_off_s: 5"),
+        "the profile in full"
+    );
+    assert!((48.0..50.0).contains(&start_s));
+}
+
+/// Whatever would make a browser ask for something that is not in the file.
+#[test]
+fn a_report_needs_no_network() {
+    let folder = Folder::new("offline");
+    let html = report(&[Path::new(FLIGHT)], &folder);
+    for word in [
+        "http:", "https:", " src=", "<link", "@import", "fetch(", "url(//", "XMLHttp",
+    ] {
+        assert!(!html.contains(word), "`{word}` in the report");
+    }
+    assert!(html.contains("default-src 'none'"));
+    assert_eq!(html.matches("<script>").count(), 1);
+}
+
+/// A flight CSV of an octocopter in gusts.
+fn long_log(seconds: u32, hz: u32) -> String {
+    let mut log = String::from(
+        "## pwm_low_us: 1000\n## pwm_high_us: 2000\n\
+         t_s,pwm1,pwm2,pwm3,pwm4,pwm5,pwm6,pwm7,pwm8,roll_des_deg,roll_deg,pitch_des_deg,pitch_deg,battery_v,in_air\n",
+    );
+    for i in 0..seconds * hz {
+        let t_s = f64::from(i) / f64::from(hz);
+        let gust = 1500.0 + 200.0 * (t_s * 0.7).sin() * (t_s * 2.9).sin();
+        let _ = write!(log, "{t_s}");
+        for motor in 0..8 {
+            let _ = write!(
+                log,
+                ",{:.0}",
+                gust + 20.0 * f64::from(motor) * (t_s * 0.31).cos()
+            );
+        }
+        let _ = writeln!(
+            log,
+            ",0,{:.2},0,0,{:.2},1",
+            gust / 500.0,
+            16.8 - t_s / 600.0
+        );
+    }
+    log
+}
+
+#[test]
+fn ten_minutes_of_an_octocopter_stay_small() {
+    let folder = Folder::new("long");
+    let log = folder.file("log.csv");
+    fs::write(&log, long_log(600, 25)).unwrap();
+    let html = report(&[&log], &folder);
+    assert!(html.len() < 1_500_000, "{} bytes", html.len());
+    assert_eq!(html.matches("<figure class=\"panel small\"").count(), 8 + 4);
+}
+
+/// Who can write into a log must not be able to write into the page that shows it.
+#[test]
+fn nothing_in_a_log_is_markup() {
+    const SAID: &[u8] = b"EKF3 IMU0 MAG0 in-flight yaw alignment complete";
+    const HOSTILE: &[u8] = b"</title></svg><script>alert(2)</script>\x01&amp;12";
+    let folder = Folder::new("hostile");
+    let mut bytes = fs::read(FLIGHT).unwrap();
+    let place = bytes
+        .windows(SAID.len())
+        .position(|window| window == SAID)
+        .unwrap();
+    bytes[place..place + HOSTILE.len()].copy_from_slice(HOSTILE);
+    let log = folder.file("<img src=x> & <script>.bin");
+    fs::write(&log, bytes).unwrap();
+    let svg = folder.file("risk.svg");
+    let html = report(&[&log], &folder);
+    assert_eq!(html.matches("<script").count(), 1, "only ours");
+    assert!(!html.contains("<img") && !html.contains("</title></svg>"));
+    assert!(
+        html.contains("&lt;script&gt;alert(2)&lt;/script&gt;"),
+        "what the log says is shown"
+    );
+
+    assess(&[&log], &["--svg", svg.to_str().unwrap()]);
+    let text = fs::read_to_string(&svg).unwrap();
+    let tree = roxmltree::Document::parse(&text).unwrap();
+    let curves = tree
+        .descendants()
+        .filter(|node| node.attribute("class") == Some("line risk"));
+    assert_eq!(curves.count(), 1);
+    assert!(!tree.descendants().any(|node| node.has_tag_name("script")));
+    let said = tree.descendants().filter(|node| node.has_tag_name("title"));
+    assert!(
+        said.filter_map(|node| node.text())
+            .any(|text| text.contains("<script>alert(2)"))
+    );
+}
+
+#[test]
+fn several_flights_are_compared_on_one_scale() {
+    let folder = Folder::new("several");
+    let log = folder.file("long.csv");
+    fs::write(&log, long_log(200, 10)).unwrap();
+    let html = report(&[Path::new(FLIGHT), &log], &folder);
+    assert!(html.contains("2 flights compared"));
+    assert_eq!(html.matches("<section id=\"flight").count(), 2);
+    let lengths: Vec<&str> = html
+        .split("data-length=\"")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next())
+        .collect();
+    assert_eq!(lengths.len(), 2);
+    assert_eq!(lengths[0], lengths[1]);
+}
+
+#[test]
+fn a_report_that_cannot_be_written_says_so_and_leaves_nothing() {
+    let folder = Folder::new("nowhere");
+    let file = folder.file("missing/report.html");
+    let output = assess(&[Path::new(FLIGHT)], &["--html", file.to_str().unwrap()]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(
+        message.contains("report.html` cannot be written"),
+        "{message}"
+    );
+    assert!(
+        message.contains("help: check that its folder exists"),
+        "{message}"
+    );
+
+    let kept = folder.file("kept.html");
+    fs::create_dir(&kept).unwrap();
+    let output = assess(&[Path::new(FLIGHT)], &["--html", kept.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(3));
+    let names: Vec<_> = fs::read_dir(&folder.0)
+        .unwrap()
+        .map(|e| e.unwrap().file_name())
+        .collect();
+    assert_eq!(names, ["kept.html"], "no draft is left");
+
+    let output = assess(&[Path::new(FLIGHT), Path::new(FLIGHT)], &["--svg", "x.svg"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+/// A log without an answer still shows what was read, and why there is none.
+#[test]
+fn no_answer_is_reported_as_none() {
+    let folder = Folder::new("none");
+    let log = folder.file("ground.csv");
+    let text = long_log(20, 10).replace(",1\n", ",0\n");
+    fs::write(&log, text).unwrap();
+    let html = report(&[&log], &folder);
+    assert!(html.contains("<span class=\"badge na\">NA</span>"));
+    assert!(html.contains("No answer: "));
+    let svg = folder.file("risk.svg");
+    let output = assess(&[&log], &["--svg", svg.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(!svg.exists());
+}
