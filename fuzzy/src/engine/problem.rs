@@ -25,7 +25,7 @@ impl core::fmt::Display for CompileError {
 
 impl core::error::Error for CompileError {}
 
-/// One reason why a model makes no engine. `rule` is an index into [`Model::rules`]; messages count from 1.
+/// One reason why a model makes no engine. `rule` is an index into [`Model::rules`](crate::Model::rules); messages count from 1.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Problem {
