@@ -12,7 +12,8 @@ const LONGEST_PULSE_US: f64 = 3000.0;
 #[derive(Debug, Default)]
 pub(crate) struct Outputs {
     t_s: Vec<f64>,
-    /// Columns by output number less one; shorter than `t_s` while nothing was logged since.
+    /// Columns by output number less one; shorter than `t_s` while nothing was logged since,
+    /// empty while all was 0.
     columns: Vec<Vec<u16>>,
 }
 
@@ -45,7 +46,12 @@ impl Outputs {
             let Some(column) = self.columns.get_mut(index) else {
                 continue;
             };
-            column.resize(row, MISSING);
+            // Most outputs are 0 for ever: their columns stay empty.
+            if value == 0.0 && column.is_empty() {
+                continue;
+            }
+            let before = if column.is_empty() { 0 } else { MISSING };
+            column.resize(row, before);
             column.push(match value {
                 value if (0.0..=LONGEST_PULSE_US).contains(&value) => value as u16,
                 _ => MISSING,
@@ -67,6 +73,7 @@ impl Outputs {
         let columns: Vec<Option<&Vec<u16>>> = outputs
             .iter()
             .map(|output| self.columns.get(usize::from(*output).checked_sub(1)?))
+            .map(|column| column.filter(|column| !column.is_empty()))
             .collect();
         // Outputs that were never logged are no commands.
         if columns.iter().all(Option::is_none) {

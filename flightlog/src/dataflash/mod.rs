@@ -64,42 +64,65 @@ impl<'o> Scanner<'o> {
     /// Reads the records of a window and says how many bytes it is done with: all but a
     /// record that may go on behind the window, or really all at the end of the log.
     fn scan(&mut self, window: &[u8], at_end: bool) -> usize {
-        let mut at = 0;
-        let mut messages = 0;
-        // Two records and the next head are in sight of each other, but for the end.
-        let sure = if at_end {
-            window.len()
-        } else {
-            window.len().saturating_sub(2 * LONGEST + HEAD.len())
+        // Two records and the next head are in sight of each other, but at the end.
+        let sure = match at_end {
+            true => window.len(),
+            false => window.len().saturating_sub(2 * LONGEST + HEAD.len()),
         };
+        let mut at = 0;
+        let mut length = self.length(window);
+        let mut messages = 0;
         while at < sure {
-            match self.record(&window[at..]) {
-                Found::Record { type_id, payload } => {
-                    messages += 1;
-                    at += 3 + payload.len();
-                    if self.wanted[usize::from(type_id)] {
-                        self.take(type_id, payload);
-                    }
-                }
-                Found::Cut => {
-                    self.collector.report.truncated = true;
-                    self.collector
-                        .report
-                        .because(|| "the log ends inside a message".into());
-                    self.collector.report.skipped_bytes += (window.len() - at) as u64;
-                    at = window.len();
-                }
-                Found::Damage { skip } => {
-                    self.collector.report.skipped_bytes += skip as u64;
-                    self.collector
-                        .report
-                        .because(|| "bytes that belong to no message".into());
-                    at += skip;
+            let end = at + length;
+            let next = self.length(window.get(end..).unwrap_or_default());
+            if length == 0 || next == 0 {
+                at += self.step(&window[at..], sure - at, at_end);
+                length = self.length(window.get(at..).unwrap_or_default());
+                continue;
+            }
+            // Almost all of a log is this: a record, and another one behind it.
+            messages += 1;
+            length = next;
+            let type_id = window[at + 2];
+            if self.wanted[usize::from(type_id)] {
+                self.take(type_id, &window[at + 3..end]);
+                if type_id == FMT {
+                    length = self.length(&window[end..]);
                 }
             }
+            at = end;
         }
         self.collector.report.messages += messages;
         at.min(window.len())
+    }
+
+    /// Deals with what is at the start of `bytes` and not followed by a record, or no
+    /// record at all; gives its length. `sure` is how far damage can be told from a record
+    /// that goes on behind the window.
+    fn step(&mut self, bytes: &[u8], sure: usize, at_end: bool) -> usize {
+        let found = self.record(bytes);
+        let report = &mut self.collector.report;
+        match found {
+            Found::Record { type_id, payload } => {
+                report.messages += 1;
+                if self.wanted[usize::from(type_id)] {
+                    self.take(type_id, payload);
+                }
+                3 + payload.len()
+            }
+            Found::Cut => {
+                report.truncated = true;
+                report.because(|| "the log ends inside a message".into());
+                report.skipped_bytes += bytes.len() as u64;
+                bytes.len()
+            }
+            Found::Damage { skip } => {
+                let skip = if at_end { skip } else { skip.min(sure) };
+                report.skipped_bytes += skip as u64;
+                report.because(|| "bytes that belong to no message".into());
+                skip
+            }
+        }
     }
 
     fn take(&mut self, type_id: u8, payload: &[u8]) {

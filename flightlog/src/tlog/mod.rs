@@ -52,7 +52,11 @@ fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
                 at += STAMP + packet.length;
             }
             None => {
-                let skip = next(rest);
+                let skip = match at_end {
+                    true => next(rest),
+                    // A packet may start at the end of the window.
+                    false => next(rest).min(sure - at),
+                };
                 let report = &mut collector.report;
                 // A packet that is whole but for its checksum was damaged.
                 let broken = record(rest).is_some_and(|(_, packet)| STAMP + packet.length == skip);

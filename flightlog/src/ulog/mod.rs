@@ -69,7 +69,8 @@ impl Scanner<'_> {
             false => window.len().saturating_sub(LONGEST + HEAD),
         };
         while at < sure {
-            at += self.step(&window[at..], self.at + at as u64);
+            let room = if at_end { usize::MAX } else { sure - at };
+            at += self.step(&window[at..], self.at + at as u64, room);
         }
         let used = at.min(window.len());
         self.at += used as u64;
@@ -77,7 +78,8 @@ impl Scanner<'_> {
     }
 
     /// Deals with what is at the start of `bytes`, at `place` in the file; gives its length.
-    fn step(&mut self, bytes: &[u8], place: u64) -> usize {
+    /// Behind `room` bytes damage cannot be told from a message that is not all in sight.
+    fn step(&mut self, bytes: &[u8], place: u64, room: usize) -> usize {
         // What was appended starts anew, wherever the message before would have ended.
         let next = self.appended.iter().find(|&&start| start > place);
         let limit = next.and_then(|start| usize::try_from(start - place).ok());
@@ -95,7 +97,7 @@ impl Scanner<'_> {
                 message.len()
             }
             _ => {
-                let skip = self.next_message(within);
+                let skip = self.next_message(within).min(room);
                 let report = &mut self.collector.report;
                 report.skipped_bytes += skip as u64;
                 let ends = skip == within.len();
