@@ -1,5 +1,7 @@
 //! What the tests across packages share; the tests themselves are in `tests/tests/`.
 
+pub mod log_writer;
+
 use std::{path::PathBuf, process::Command, sync::OnceLock};
 
 /// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent.

@@ -5,7 +5,7 @@ use super::signals::{SPECS, Spec};
 use crate::ardupilot::{self, Mode};
 use crate::clock::Latest;
 use crate::interval::both_hold;
-use crate::mav_type::mav_type;
+use crate::mav_type::{MavType, mav_type};
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
 use crate::place::{Kind, Place};
@@ -35,12 +35,11 @@ pub(super) struct Collector<'o> {
     /// Time of the first packet of the log, microseconds since 1970.
     zero_us: Option<u64>,
     latest: Latest,
-    /// The vehicle's system, and whether a heartbeat of its has told so.
-    system: Option<(u8, bool)>,
-    vehicle: Heard,
+    /// What was heard of each system, in the order in which they were first heard.
+    systems: Vec<(u8, Heard)>,
 }
 
-/// What was heard of the vehicle.
+/// What was heard of a system.
 #[derive(Default)]
 struct Heard {
     autopilot: u8,
@@ -63,8 +62,7 @@ impl<'o> Collector<'o> {
             report: Report::default(),
             zero_us: None,
             latest: Latest::new(LONGEST_PAUSE_S),
-            system: None,
-            vehicle: Heard::default(),
+            systems: Vec::new(),
         }
     }
 
@@ -78,44 +76,22 @@ impl<'o> Collector<'o> {
                 .because(|| "a message with a time that no other agrees with".into());
             return;
         }
-        self.choose_system(packet);
         // Ground stations store parameters under the number of another component.
-        let of_autopilot = packet.component == AUTOPILOT || packet.id == PARAM_VALUE;
-        if self
-            .system
-            .is_none_or(|(system, _)| system != packet.system)
-            || !of_autopilot
-        {
+        if packet.component != AUTOPILOT && packet.id != PARAM_VALUE {
             return;
         }
         // Version 2 leaves out the zeros at the end of a payload.
         let mut payload = [0; 255];
         let length = packet.payload.len().min(payload.len());
         payload[..length].copy_from_slice(&packet.payload[..length]);
-        let dropped = self.vehicle.message(t_s, packet.id, &payload, self.options);
-        self.report.bad_messages += u64::from(dropped);
-    }
-
-    /// The vehicle is the autopilot of the first system that sends the heartbeat of one;
-    /// until there is any, the first system that sends anything as an autopilot would.
-    fn choose_system(&mut self, packet: &Packet<'_>) {
-        if packet.component != AUTOPILOT {
-            return;
-        }
-        let of_vehicle = packet.id == HEARTBEAT
-            && packet
-                .payload
-                .get(4)
-                .is_some_and(|&t| mav_type(t.into()).is_some());
-        match &mut self.system {
-            None => self.system = Some((packet.system, of_vehicle)),
-            Some((system, told)) if !*told && of_vehicle => {
-                if *system != packet.system {
-                    self.vehicle = Heard::default();
-                }
-                (*system, *told) = (packet.system, true);
-            }
-            Some(_) => {}
+        let known = (self.systems.iter()).position(|(system, _)| *system == packet.system);
+        let index = known.unwrap_or_else(|| {
+            self.systems.push((packet.system, Heard::default()));
+            self.systems.len() - 1
+        });
+        if let Some((_, heard)) = self.systems.get_mut(index) {
+            let dropped = heard.message(t_s, packet.id, &payload, self.options);
+            self.report.bad_messages += u64::from(dropped);
         }
     }
 
@@ -124,7 +100,14 @@ impl<'o> Collector<'o> {
         let mut flight = Flight::empty(Format::Tlog);
         flight.report = self.report;
         flight.utc_at_zero_s = self.zero_us.map(|zero_us| zero_us as f64 * 1e-6);
-        self.vehicle.finish(&mut flight);
+        // The vehicle is the first system that says of itself to be one; where none does,
+        // the first that sends anything as an autopilot.
+        let is_vehicle = |(_, heard): &(u8, Heard)| heard.mav_type().is_some();
+        let mut systems = self.systems;
+        let chosen = systems.iter().position(is_vehicle).unwrap_or(0);
+        if chosen < systems.len() {
+            systems.swap_remove(chosen).1.finish(&mut flight);
+        }
         flight
     }
 }
@@ -164,6 +147,12 @@ impl Heard {
             _ => return self.signals(t_s, id, payload, options),
         }
         false
+    }
+
+    /// The type in its heartbeats, if it is that of a vehicle.
+    fn mav_type(&self) -> Option<(u8, MavType)> {
+        let number = self.mav_type?;
+        Some((number, mav_type(number.into())?))
     }
 
     fn heartbeat(&mut self, t_s: f64, payload: &[u8; 255]) {
@@ -294,10 +283,7 @@ impl Heard {
         if self.autopilot == PX4 {
             vehicle.firmware = self.version.map(px4::firmware);
         }
-        let Some((number, told)) = self
-            .mav_type
-            .and_then(|number| Some((number, mav_type(number.into())?)))
-        else {
+        let Some((number, told)) = self.mav_type() else {
             return;
         };
         // What sends the heartbeat of a quadplane may call itself a plane, not the reverse.
