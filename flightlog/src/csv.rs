@@ -248,8 +248,7 @@ impl Rows {
         match self.try_add(layout, record) {
             Ok(()) => report.messages += 1,
             Err(why) => {
-                report.bad_messages += 1;
-                report.because(|| format!("line {line}: {why}"));
+                report.bad(&format!("line {line}: {why}"));
                 self.last_was_short = record.len() < layout.columns();
             }
         }

@@ -29,6 +29,19 @@ impl Report {
         self.skipped_bytes == 0 && self.bad_messages == 0 && !self.truncated
     }
 
+    /// Counts a message that is thrown away.
+    pub(crate) fn bad(&mut self, why: &str) {
+        self.bad_messages += 1;
+        self.because(|| why.into());
+    }
+
+    /// Counts a row that is dropped because times go back there.
+    pub(crate) fn dropped_row(&mut self, dropped: bool) {
+        if dropped {
+            self.bad("a time that goes back");
+        }
+    }
+
     pub(crate) fn because(&mut self, reason: impl FnOnce() -> String) {
         if self.reason.is_none() {
             self.reason = Some(reason());

@@ -1,6 +1,6 @@
 //! From DataFlash messages, binary or text, to a `Flight`.
 
-use super::format::{Cells, FMT, Format};
+use super::format::{Cells, Column, FMT, Format};
 use super::landing::{Landing, air_from_events};
 use super::plan::{Kind, MOTORS, Part, Role};
 use super::signals::SPECS;
@@ -64,10 +64,23 @@ impl<'o> Collector<'o> {
             .is_some_and(|kind| !matches!(kind.role, Role::Nothing))
     }
 
-    /// Number of fields of messages of this type.
-    pub(super) fn columns(&self, type_id: u8) -> usize {
-        self.kind(type_id)
-            .map_or(0, |kind| kind.format.columns.len())
+    /// Whether the fields of a text line are as many and such as its definition says.
+    pub(super) fn check(&self, type_id: u8, cells: &[&str]) -> Result<(), &'static str> {
+        let Some(kind) = self.kind(type_id) else {
+            return Ok(());
+        };
+        let columns = &kind.format.columns;
+        if cells.len() < columns.len() {
+            return Err("with too few fields");
+        }
+        let is_number = |(column, cell): (&Column, &&str)| {
+            matches!(column.kind, b'n' | b'N' | b'Z' | b'M' | b'a') || cell.parse::<f64>().is_ok()
+        };
+        let wanted = !matches!(kind.role, Role::Nothing);
+        if wanted && !columns.iter().zip(cells).all(is_number) {
+            return Err("with a field that is no number");
+        }
+        Ok(())
     }
 
     fn kind(&self, type_id: u8) -> Option<&Kind> {
@@ -88,9 +101,8 @@ impl<'o> Collector<'o> {
         }
         // Within one boot a second, different definition of a type is damage.
         if is_known && !self.redefine {
-            self.report.bad_messages += 1;
             self.report
-                .because(|| format!("message `{}` is defined twice", format.name));
+                .bad(&format!("message `{}` is defined twice", format.name));
             return false;
         }
         let type_id = usize::from(format.type_id);
@@ -138,14 +150,12 @@ impl<'o> Collector<'o> {
             if !matches!(kind.role, Role::Event(_) | Role::Arm(_) | Role::Nothing)
                 && !self.untimed.keep(type_id, cells)
             {
-                self.report.bad_messages += 1;
-                self.report.because(|| "messages without a time".into());
+                self.report.bad("messages without a time");
             }
             return;
         };
         let Some(t_s) = cells.number(&kind.format, column).map(|time| time * unit) else {
-            self.report.bad_messages += 1;
-            return;
+            return self.report.bad("a message without a time");
         };
         match self.clock.place(t_s) {
             Placed::At(t_s) => self.take_timed(type_id, cells, t_s),
@@ -185,9 +195,7 @@ impl<'o> Collector<'o> {
 
     fn refute(&mut self) {
         self.waiting = None;
-        self.report.bad_messages += 1;
-        self.report
-            .because(|| "a message with a time that no other agrees with".into());
+        self.report.bad("a time that no other agrees with");
     }
 
     fn take(&mut self, type_id: u8, cells: Cells<'_>, t_s: f64) {
@@ -233,7 +241,8 @@ impl<'o> Collector<'o> {
                     .iter()
                     .filter_map(|(column, output)| Some((*output, number(*column)?)));
                 let first = columns.first().is_none_or(|(_, output)| *output == 1);
-                self.report.bad_messages += u64::from(self.outputs.add(t_s, first, values));
+                self.report
+                    .dropped_row(self.outputs.add(t_s, first, values));
             }
             Role::Series(index, parts) => {
                 if self.utc_at_zero_s.is_none() && format.name == "GPS" {
@@ -252,7 +261,7 @@ impl<'o> Collector<'o> {
                     }
                 });
                 if let Some((_, series)) = self.series.get_mut(*index) {
-                    self.report.bad_messages += u64::from(series.push(t_s, values));
+                    self.report.dropped_row(series.push(t_s, values));
                 }
             }
         }

@@ -130,11 +130,10 @@ impl<'o> Scanner<'o> {
             return self.collector.message(type_id, Cells::Binary(payload));
         }
         let Some(format) = Format::from_payload(payload) else {
-            self.collector.report.bad_messages += 1;
-            self.collector
+            return self
+                .collector
                 .report
-                .because(|| "a definition that makes no sense".into());
-            return;
+                .bad("a definition that makes no sense");
         };
         let (type_id, length) = (format.type_id, format.length);
         if self.collector.define(format) && type_id != FMT {

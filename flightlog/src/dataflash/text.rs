@@ -72,14 +72,13 @@ impl Lines<'_> {
             report.because(|| "a line that no definition describes".into());
             return;
         };
-        if !text.ends_with('\n') && cells.len() < self.collector.columns(type_id) {
-            self.collector.report.truncated = true;
-        }
-        if cells.len() < self.collector.columns(type_id) {
-            self.collector.report.bad_messages += 1;
-            let report = &mut self.collector.report;
-            report.because(|| format!("a line of `{name}` with too few fields"));
-            return;
+        if let Err(why) = self.collector.check(type_id, &cells) {
+            let ends = !text.ends_with('\n');
+            self.collector.report.truncated |= ends;
+            return self
+                .collector
+                .report
+                .bad(&format!("a line of `{name}` {why}"));
         }
         self.collector.report.messages += 1;
         self.collector.message(type_id, Cells::Text(&cells));
@@ -97,11 +96,11 @@ impl Lines<'_> {
             _ => None,
         };
         let Some(format) = format else {
-            self.collector.report.bad_messages += 1;
             self.collector.report.skipped_bytes += bytes as u64;
-            let report = &mut self.collector.report;
-            report.because(|| "a definition that makes no sense".into());
-            return;
+            return self
+                .collector
+                .report
+                .bad("a definition that makes no sense");
         };
         self.collector.report.messages += 1;
         let (type_id, name) = (format.type_id, format.name.clone());

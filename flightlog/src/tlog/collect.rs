@@ -71,10 +71,7 @@ impl<'o> Collector<'o> {
         let zero_us = *self.zero_us.get_or_insert(stamp_us);
         let t_s = (stamp_us as f64 - zero_us as f64) * 1e-6;
         if !self.latest.believe(t_s) {
-            self.report.bad_messages += 1;
-            self.report
-                .because(|| "a message with a time that no other agrees with".into());
-            return;
+            return self.report.bad("a time that no other agrees with");
         }
         // Ground stations store parameters under the number of another component.
         if packet.component != AUTOPILOT && packet.id != PARAM_VALUE {
@@ -91,7 +88,7 @@ impl<'o> Collector<'o> {
         });
         if let Some((_, heard)) = self.systems.get_mut(index) {
             let dropped = heard.message(t_s, packet.id, &payload, self.options);
-            self.report.bad_messages += u64::from(dropped);
+            self.report.dropped_row(dropped);
         }
     }
 

@@ -70,7 +70,7 @@ impl<'o> Collector<'o> {
             b'F' => {
                 let text = String::from_utf8_lossy(body);
                 if self.topics.formats.define(&text).is_none() {
-                    self.bad("a definition that makes no sense");
+                    self.report.bad("a definition that makes no sense");
                 }
             }
             b'A' => self.announce(body),
@@ -93,11 +93,6 @@ impl<'o> Collector<'o> {
             }
             _ => {}
         }
-    }
-
-    fn bad(&mut self, why: &str) {
-        self.report.bad_messages += 1;
-        self.report.because(|| why.into());
     }
 
     fn text(&mut self, body: Option<&[u8]>, skip: usize) {
@@ -198,10 +193,10 @@ impl<'o> Collector<'o> {
             return;
         }
         let Some(t_s) = time.number(body).map(|time_us| time_us * 1e-6) else {
-            return self.bad("a message without a time");
+            return self.report.bad("a message without a time");
         };
         if !self.latest.believe(t_s) {
-            return self.bad("a message with a time that no other agrees with");
+            return self.report.bad("a time that no other agrees with");
         }
         let flag = |place: &Place, yes: f64| Some((t_s, place.number(body)? == yes));
         match role {
@@ -213,7 +208,7 @@ impl<'o> Collector<'o> {
                 let Some(outputs) = self.outputs.get_mut(*index) else {
                     return;
                 };
-                self.report.bad_messages += u64::from(outputs.push(t_s, values));
+                self.report.dropped_row(outputs.push(t_s, values));
             }
             Role::Status {
                 arming,
@@ -245,7 +240,7 @@ impl<'o> Collector<'o> {
                     let values = parts
                         .iter()
                         .map(|part| part.value(body).unwrap_or(f64::NAN));
-                    self.report.bad_messages += u64::from(series.push(t_s, values));
+                    self.report.dropped_row(series.push(t_s, values));
                 }
             }
         }
