@@ -4,6 +4,7 @@
 
 mod assess;
 mod check;
+mod convert;
 mod diagnostics;
 mod eval;
 mod explain;
@@ -35,6 +36,8 @@ enum Command {
     Assess(assess::Arguments),
     /// Say what is wrong with a rule set, and what its author should know about it
     Check(check::Arguments),
+    /// Write a flight log as flight CSV
+    Convert(convert::Arguments),
     /// Evaluate a rule set at the points of a CSV file
     Eval(eval::Arguments),
     /// Say why the outputs of a rule set are what they are
@@ -50,6 +53,7 @@ impl Command {
         match self {
             Command::Assess(arguments) => assess::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
+            Command::Convert(arguments) => convert::run(&arguments),
             Command::Eval(arguments) => eval::run(&arguments),
             Command::Explain(arguments) => explain::run(&arguments),
             Command::Inspect(arguments) => inspect::run(&arguments),

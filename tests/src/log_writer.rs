@@ -41,7 +41,7 @@ impl DataFlash {
 
     /// Defines a message.
     pub fn define(&mut self, type_id: u8, name: &str, kinds: &str, labels: &str) {
-        let widths = kinds.bytes().map(|kind| width(kind));
+        let widths = kinds.bytes().map(width);
         let length = 3 + widths.sum::<usize>();
         self.bytes.extend([0xa3, 0x95, 128, type_id, length as u8]);
         for (text, width) in [(name, 4), (kinds, 16), (labels, 64)] {

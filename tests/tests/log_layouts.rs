@@ -364,3 +364,23 @@ fn telemetry_of_one_vehicle_among_others() {
     assert_eq!(flight.signal("pitch_des_deg").unwrap().at(5.0), Some(-12.0));
     assert!((flight.statistics().unwrap().margin_mean - 0.3).abs() < 1e-9);
 }
+
+/// The example of the documentation is what it says it is.
+#[test]
+fn the_documented_flight_csv() {
+    let page = include_str!("../../docs/flight-csv.md");
+    let example = page
+        .split("```csv\n")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let flight = read(example.as_bytes());
+    assert!(flight.report.is_clean());
+    assert_eq!(flight.motors.len(), 4);
+    assert_eq!(flight.is_in_air(0.02), Some(false));
+    assert_eq!(flight.signal("battery_v").unwrap().at(0.04), Some(16.2));
+    let expected = (0.48 - 0.15) / 0.8;
+    assert!((flight.effective_command(1480.0).unwrap() - expected).abs() < 1e-12);
+}

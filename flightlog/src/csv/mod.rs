@@ -1,5 +1,7 @@
 //! Flight CSV: `t_s`, the motor commands and any signals; see `docs/flight-csv.md`.
 
+mod write;
+
 use std::io::BufRead;
 
 use csv::{ByteRecord, ReaderBuilder};

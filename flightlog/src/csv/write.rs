@@ -1,0 +1,134 @@
+//! A flight as CSV.
+
+use std::io::{self, Write};
+
+use crate::{Flight, Hold, VehicleKind};
+
+impl Flight {
+    /// Writes the flight as CSV: its vehicle and ranges in the lines on top, then a row for
+    /// each row of motor commands, with the latest value of every signal at that time. A
+    /// flight without motor commands has a row for each row of its longest series.
+    ///
+    /// Commands in us are written as they are (`pwm1`..), all others as fractions of the
+    /// full range (`motor1`..). What is not known is an empty cell. Numbers are written so
+    /// that reading them gives the same number again.
+    ///
+    /// # Errors
+    ///
+    /// When `out` cannot be written.
+    ///
+    /// ```
+    /// let log = "t_s,motor1,motor2,in_air\n0,0.5,0.25,0\n0.1,0.75,0.5,1\n";
+    /// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
+    /// let mut written = Vec::new();
+    /// flight.write_csv(&mut written)?;
+    /// let again = flightlog::read(&written[..], &flightlog::Options::default())?;
+    /// assert_eq!(again.commands, flight.commands);
+    /// assert_eq!(again.in_air, flight.in_air);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn write_csv(&self, mut out: impl Write) -> io::Result<()> {
+        let out: &mut dyn Write = &mut out;
+        self.write_header(out)?;
+        let in_us = self.range.as_ref().is_none_or(|range| range.unit == "us");
+        let stem = if in_us { "pwm" } else { "motor" };
+        write!(out, "t_s")?;
+        let motors = if self.commands.is_empty() {
+            0
+        } else {
+            self.motors.len()
+        };
+        for number in 1..=motors {
+            write!(out, ",{stem}{number}")?;
+        }
+        if self.in_air.is_some() {
+            write!(out, ",in_air")?;
+        }
+        for signal in self.signals() {
+            write!(out, ",{}", quoted(&signal.label.name))?;
+        }
+        writeln!(out)?;
+
+        let mut holds: Vec<Hold<'_>> = self.signals().map(|signal| signal.hold()).collect();
+        let mut row = |out: &mut dyn Write, t_s: f64, commands: &[f64]| {
+            write!(out, "{t_s}")?;
+            for &raw in commands {
+                let known = if in_us { Some(raw) } else { self.command(raw) };
+                cell(out, known.filter(|value| value.is_finite()))?;
+            }
+            if let Some(in_air) = self.is_in_air(t_s) {
+                write!(out, ",{}", u8::from(in_air))?;
+            }
+            for hold in &mut holds {
+                cell(out, hold.at(t_s))?;
+            }
+            writeln!(out)
+        };
+        if motors > 0 {
+            return self
+                .commands
+                .rows()
+                .try_for_each(|(t_s, raw)| row(out, t_s, raw));
+        }
+        let longest = self
+            .series
+            .iter()
+            .map(|series| series.t_s())
+            .max_by_key(|t_s| t_s.len());
+        let times = longest.unwrap_or_default();
+        times.iter().try_for_each(|&t_s| row(out, t_s, &[]))
+    }
+
+    fn write_header(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut known = Vec::new();
+        let mut line = |out: &mut dyn Write, key: &str, value: &str| {
+            known.push(key.to_owned());
+            // A line break would end the comment.
+            writeln!(out, "# {key}: {}", value.replace(['\r', '\n'], " "))
+        };
+        let vehicle = &self.vehicle;
+        if let Some(frame) = &vehicle.frame {
+            line(out, "vehicle", frame)?;
+        }
+        if vehicle.kind != VehicleKind::Unknown {
+            line(out, "vehicle_kind", &vehicle.kind.to_string())?;
+        }
+        if let Some(firmware) = &vehicle.firmware {
+            line(out, "firmware", firmware)?;
+        }
+        if let Some(range) = self.range.as_ref().filter(|range| range.unit == "us") {
+            line(out, "pwm_low_us", &range.low.to_string())?;
+            line(out, "pwm_high_us", &range.high.to_string())?;
+        }
+        line(out, "effective_low", &self.effective.low.to_string())?;
+        line(out, "effective_high", &self.effective.high.to_string())?;
+        if let Some(utc_s) = self.utc_at_zero_s {
+            line(out, "utc_at_zero_s", &utc_s.to_string())?;
+        }
+        for (number, motor) in (1..).zip(&self.motors) {
+            let output = format!("{} ({})", motor.output, motor.source);
+            line(out, &format!("motor{number}_from"), &output)?;
+        }
+        for (key, value) in &self.header {
+            if !known.contains(key) {
+                writeln!(out, "# {key}: {value}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn cell(out: &mut dyn Write, value: Option<f64>) -> io::Result<()> {
+    match value {
+        Some(value) => write!(out, ",{value}"),
+        None => write!(out, ","),
+    }
+}
+
+/// A name as a cell: in quotes where it holds what would end the cell.
+fn quoted(name: &str) -> String {
+    match name.contains([',', '"', '\r', '\n']) {
+        true => format!("\"{}\"", name.replace('"', "\"\"")),
+        false => name.into(),
+    }
+}

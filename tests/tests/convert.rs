@@ -1,0 +1,94 @@
+//! `flagred convert`: what is written is read back the same.
+
+use flagred_tests::{flagred, shared_data};
+use flightlog::{Flight, Options};
+
+fn open(path: &std::path::Path) -> Flight {
+    flightlog::open(path, &Options::default()).unwrap()
+}
+
+fn converted(log: &std::path::Path) -> Flight {
+    let name = format!("converted-{}.csv", log.file_name().unwrap().display());
+    let csv = std::env::temp_dir().join(format!("{}-{name}", std::process::id()));
+    let status = flagred()
+        .arg("convert")
+        .arg(log)
+        .arg("-o")
+        .arg(&csv)
+        .status()
+        .unwrap();
+    assert!(status.success());
+    let flight = open(&csv);
+    std::fs::remove_file(csv).unwrap();
+    flight
+}
+
+/// Commands, ranges and statistics are the same to the last bit; signals are held.
+fn compare(log: &std::path::Path) {
+    let (flight, again) = (open(log), converted(log));
+    assert!(again.report.is_clean(), "{:?}", again.report);
+    assert_eq!(again.commands.t_s(), flight.commands.t_s());
+    assert_eq!(again.statistics(), flight.statistics());
+    assert_eq!(
+        again.full_range_statistics(),
+        flight.full_range_statistics()
+    );
+    assert_eq!(again.vehicle.kind, flight.vehicle.kind);
+    for signal in flight.signals() {
+        let name = &signal.label.name;
+        let copy = again
+            .signal(name)
+            .unwrap_or_else(|| panic!("{name} is lost"));
+        for &t_s in flight.commands.t_s() {
+            assert_eq!(copy.at(t_s), signal.at(t_s), "{name} at {t_s}");
+        }
+    }
+}
+
+#[test]
+fn the_shipped_flight_is_the_same_as_csv() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/flights");
+    compare(&std::path::Path::new(folder).join("steady.BIN"));
+}
+
+#[test]
+fn flights_of_other_formats_are_the_same_as_csv() {
+    let Some(data) = shared_data() else { return };
+    for log in [
+        "px_quadlocal.ulg",
+        "px_esc.ulg",
+        "aptxt_mechanical_fail.log",
+    ] {
+        compare(&data.join("logs").join(log));
+    }
+}
+
+#[test]
+fn standard_output_and_failures() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/flights");
+    let log = std::path::Path::new(folder).join("steady.BIN");
+    let output = flagred()
+        .arg("convert")
+        .arg(&log)
+        .args(["-o", "-"])
+        .output()
+        .unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.starts_with("# vehicle: QUAD/X\n# vehicle_kind: multirotor\n"),
+        "{}",
+        &text[..200]
+    );
+    assert!(text.contains("\nt_s,pwm1,pwm2,pwm3,pwm4,in_air,roll_des_deg,"));
+
+    let mut refused = flagred();
+    refused
+        .arg("convert")
+        .arg(&log)
+        .args(["-o", "/no/such/folder/x.csv"]);
+    let output = refused.output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        String::from_utf8_lossy(&output.stderr).contains("cannot write `/no/such/folder/x.csv`")
+    );
+}
