@@ -4,6 +4,8 @@ pub mod log_writer;
 
 use std::{path::PathBuf, process::Command, sync::OnceLock};
 
+pub mod reference;
+
 /// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent.
 ///
 /// Says so where it does not: the tests that need the data are skipped then.

@@ -175,7 +175,7 @@ impl<'m> Probe<'m> {
     /// drawn without order but the same every time.
     fn points(&self, most: usize) -> Vec<Vec<f64>> {
         let count = self.places.len();
-        let side = (most as f64).powf(1.0 / count.max(1) as f64) as usize;
+        let side = libm::pow(most as f64, 1.0 / count.max(1) as f64) as usize;
         if side >= 5 {
             let mut points: Vec<Vec<f64>> = Vec::from([Vec::new()]);
             for input in &self.model.inputs {

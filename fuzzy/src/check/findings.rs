@@ -128,7 +128,7 @@ impl At<'_> {
             0.0 => String::new(),
             share => format!(
                 ": {} % of the input space",
-                shown((1000.0 * share).round() / 10.0)
+                shown(libm::round(1000.0 * share) / 10.0)
             ),
         };
         let place_of_rules = self.places.rules_key.clone();

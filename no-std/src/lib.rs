@@ -1,0 +1,81 @@
+//! A rule set in firmware: model, engine and evaluation with `core` and `alloc` alone.
+//!
+//! `scripts/test-no-std` builds this for a processor that has no standard library. In a build of the whole
+//! workspace cargo turns on the features that other members want, so such a build proves nothing.
+#![no_std]
+
+use fuzzy::engine::{CompileError, EvaluateError, Outcome, Scratch};
+use fuzzy::model::{Model, Output, Shape, Variable};
+use fuzzy::rule::{Condition, Rule};
+use fuzzy::{Engine, map::DecisionMap, map::Grid};
+
+/// How risky a margin in [0, 0.5] is, in %: curved and straight terms, two rules.
+///
+/// # Errors
+/// Never: the model is whole.
+pub fn engine() -> Result<Engine, CompileError> {
+    Engine::new(
+        &Model::builder("margin")
+            .input(
+                Variable::new("margin", 0.0, 0.5)
+                    .term("low", Shape::Gaussian { mean: 0.0, sd: 0.1 })
+                    .term(
+                        "high",
+                        Shape::RightShoulder {
+                            foot: 0.1,
+                            top: 0.3,
+                        },
+                    ),
+            )
+            .output(Output::new(
+                Variable::new("risk", 0.0, 100.0)
+                    .term(
+                        "low",
+                        Shape::LeftShoulder {
+                            top: 0.0,
+                            foot: 50.0,
+                        },
+                    )
+                    .term(
+                        "high",
+                        Shape::SShape {
+                            foot: 50.0,
+                            top: 100.0,
+                        },
+                    ),
+            ))
+            .rule(Rule::new(Condition::is("margin", "low"), "risk", "high"))
+            .rule(Rule::new(Condition::is("margin", "high"), "risk", "low"))
+            .build(),
+    )
+}
+
+/// One evaluation in the caller's scratch: what a control loop calls.
+///
+/// # Errors
+/// Never: the model has one input and one output.
+pub fn risk(engine: &Engine, scratch: &mut Scratch, margin: f64) -> Result<Outcome, EvaluateError> {
+    let mut outcome = [Outcome::default()];
+    engine.evaluate_with(scratch, &[margin], &mut outcome)?;
+    let [outcome] = outcome;
+    Ok(outcome)
+}
+
+/// The risk over the whole range, to be kept in place of the engine.
+pub fn map(engine: &Engine) -> Option<DecisionMap> {
+    let grid = Grid::new(engine, 51).ok()?;
+    DecisionMap::new(engine, grid, 0).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn it_runs() {
+        let engine = super::engine().unwrap();
+        let mut scratch = engine.scratch();
+        let low = super::risk(&engine, &mut scratch, 0.02).unwrap();
+        let high = super::risk(&engine, &mut scratch, 0.4).unwrap();
+        assert!(low.value() > Some(60.0) && high.value() < Some(40.0));
+        assert_eq!(super::map(&engine).unwrap().value(2), low.value());
+    }
+}

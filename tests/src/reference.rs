@@ -1,0 +1,386 @@
+//! What a rule set means, by definition: every formula written out a second time, apart from the engine, and
+//! every integral a plain sum over many samples. Slow, and nothing else.
+
+use std::f64::consts::PI;
+
+use fuzzy::model::{
+    Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, Model, NoRuleFires, Output,
+    Shape, Term,
+};
+use fuzzy::rule::{Condition, Hedge, Proposition};
+
+/// The value of each output at a point; `None` where no rule fires and the author chose no value.
+/// `samples` are taken between every two places at which a shape has a parameter.
+pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
+    let mut values = Vec::new();
+    for (variable, x) in model.inputs.iter().zip(point) {
+        values.push(x.clamp(variable.low, variable.high));
+    }
+    let strengths: Vec<f64> = model
+        .rules
+        .iter()
+        .map(|rule| rule.rule.weight * degree(model, &values, &rule.rule.condition))
+        .collect();
+    model
+        .outputs
+        .iter()
+        .map(|output| {
+            let mut fired: Vec<(f64, &Term)> = Vec::new();
+            for (rule, strength) in model.rules.iter().zip(&strengths) {
+                for consequent in &rule.rule.consequents {
+                    if consequent.output.text == output.variable.name && *strength > 0.0 {
+                        fired.push((
+                            *strength,
+                            term(&output.variable.terms, &consequent.term.text),
+                        ));
+                    }
+                }
+            }
+            if fired.is_empty() {
+                return match output.when_no_rule_fires {
+                    NoRuleFires::Value(value) => Some(value),
+                    NoRuleFires::Undefined | NoRuleFires::Error => None,
+                };
+            }
+            Some(number(model, output, &fired, &values, samples))
+        })
+        .collect()
+}
+
+fn term<'m>(terms: &'m [Term], name: &str) -> &'m Term {
+    terms.iter().find(|term| term.name == name).unwrap()
+}
+
+/// The degree of a condition.
+fn degree(model: &Model, values: &[f64], condition: &Condition) -> f64 {
+    let of = |condition: &Condition| degree(model, values, condition);
+    match condition {
+        Condition::Is(proposition) => proposed(model, values, proposition),
+        Condition::Not(inner) => 1.0 - of(inner),
+        Condition::And(all) => {
+            let degrees = all.iter().map(of);
+            degrees
+                .reduce(|a, b| and(model.operators.and, a, b))
+                .unwrap()
+        }
+        Condition::Or(any) => {
+            let degrees = any.iter().map(of);
+            degrees.reduce(|a, b| or(model.operators.or, a, b)).unwrap()
+        }
+    }
+}
+
+fn proposed(model: &Model, values: &[f64], proposition: &Proposition) -> f64 {
+    let name = &proposition.variable.text;
+    let input = model.inputs.iter().position(|v| &v.name == name).unwrap();
+    let mut x = match &proposition.term {
+        Some(name) => {
+            let term = term(&model.inputs[input].terms, &name.text);
+            term.height * membership(&term.shape, values[input])
+        }
+        None => 1.0,
+    };
+    for hedge in proposition.hedges.iter().rev() {
+        x = match hedge {
+            Hedge::Not => 1.0 - x,
+            Hedge::Very => x.powi(2),
+            Hedge::Somewhat => x.sqrt(),
+            Hedge::Extremely if x <= 0.5 => 2.0 * x.powi(2),
+            Hedge::Extremely => 1.0 - 2.0 * (1.0 - x).powi(2),
+            Hedge::Seldom if x <= 0.5 => (x / 2.0).sqrt(),
+            Hedge::Seldom => 1.0 - ((1.0 - x) / 2.0).sqrt(),
+            Hedge::Any => 1.0,
+        };
+    }
+    x
+}
+
+fn and(operator: Conjunction, a: f64, b: f64) -> f64 {
+    match operator {
+        Conjunction::Minimum => a.min(b),
+        Conjunction::Product => a * b,
+        Conjunction::BoundedDifference => (a + b - 1.0).max(0.0),
+        Conjunction::Drastic if a == 1.0 => b,
+        Conjunction::Drastic if b == 1.0 => a,
+        Conjunction::Drastic => 0.0,
+        Conjunction::Einstein => a * b / (2.0 - (a + b - a * b)),
+        Conjunction::Hamacher if a + b == 0.0 => 0.0,
+        Conjunction::Hamacher => a * b / (a + b - a * b),
+        Conjunction::NilpotentMinimum if a + b > 1.0 => a.min(b),
+        Conjunction::NilpotentMinimum => 0.0,
+    }
+}
+
+fn or(operator: Disjunction, a: f64, b: f64) -> f64 {
+    match operator {
+        Disjunction::Maximum => a.max(b),
+        Disjunction::ProbabilisticSum => a + b - a * b,
+        Disjunction::BoundedSum => (a + b).min(1.0),
+        Disjunction::Drastic if a == 0.0 => b,
+        Disjunction::Drastic if b == 0.0 => a,
+        Disjunction::Drastic => 1.0,
+        Disjunction::Einstein => (a + b) / (1.0 + a * b),
+        Disjunction::Hamacher if a * b == 1.0 => 1.0,
+        Disjunction::Hamacher => (a + b - 2.0 * a * b) / (1.0 - a * b),
+        Disjunction::NilpotentMaximum if a + b < 1.0 => a.max(b),
+        Disjunction::NilpotentMaximum => 1.0,
+    }
+}
+
+fn number(
+    model: &Model,
+    output: &Output,
+    fired: &[(f64, &Term)],
+    values: &[f64],
+    samples: usize,
+) -> f64 {
+    if let Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum = output.defuzzifier {
+        let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
+        let sum: f64 = fired
+            .iter()
+            .map(|(weight, term)| weight * consequent(model, &term.shape, values))
+            .sum();
+        return match output.defuzzifier {
+            Defuzzifier::WeightedSum => sum,
+            _ => sum / total,
+        };
+    }
+    let aggregated = |x: f64| {
+        let mut y = 0.0;
+        for (strength, term) in fired {
+            let membership = term.height * membership(&term.shape, x);
+            let part = match model.operators.implication {
+                Implication::Minimum => strength.min(membership),
+                Implication::Product => strength * membership,
+            };
+            y = match model.operators.aggregation {
+                Aggregation::Maximum => part.max(y),
+                Aggregation::ProbabilisticSum => y + part - y * part,
+                Aggregation::BoundedSum => (y + part).min(1.0),
+                Aggregation::Sum => y + part,
+            };
+        }
+        y
+    };
+    // Steps must not fall inside a sample's cell, so the range is cut at all parameters.
+    let (low, high) = (output.variable.low, output.variable.high);
+    let mut cuts: Vec<f64> = fired
+        .iter()
+        .flat_map(|(_, term)| parameters(&term.shape))
+        .collect();
+    cuts.retain(|x| low < *x && *x < high);
+    cuts.extend([low, high]);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    // (place, width of the cell, degree)
+    let mut set = Vec::new();
+    for ends in cuts.windows(2) {
+        let width = (ends[1] - ends[0]) / samples as f64;
+        for i in 0..samples {
+            let x = ends[0] + (i as f64 + 0.5) * width;
+            set.push((x, width, aggregated(x)));
+        }
+    }
+    let area: f64 = set.iter().map(|(_, width, y)| width * y).sum();
+    let highest = set.iter().fold(0.0, |most: f64, (_, _, y)| most.max(*y));
+    let top = set.iter().filter(|(_, _, y)| *y >= highest * (1.0 - 1e-9));
+    match output.defuzzifier {
+        Defuzzifier::Centroid => set.iter().map(|(x, width, y)| x * width * y).sum::<f64>() / area,
+        Defuzzifier::Bisector => {
+            let mut sum = 0.0;
+            for (x, width, y) in &set {
+                if sum + width * y >= 0.5 * area {
+                    return x - 0.5 * width + (0.5 * area - sum) / y;
+                }
+                sum += width * y;
+            }
+            high
+        }
+        Defuzzifier::SmallestOfMaxima => top.clone().next().unwrap().0,
+        Defuzzifier::LargestOfMaxima => top.clone().next_back().unwrap().0,
+        _ => {
+            let (sum, total) = top.fold((0.0, 0.0), |(sum, total), (x, width, _)| {
+                (sum + x * width, total + width)
+            });
+            sum / total
+        }
+    }
+}
+
+fn consequent(model: &Model, shape: &Shape, values: &[f64]) -> f64 {
+    match shape {
+        Shape::Constant { value } | Shape::Singleton { at: value } => *value,
+        Shape::Linear {
+            coefficients,
+            constant,
+        } => {
+            let mut z = *constant;
+            for (name, coefficient) in coefficients {
+                let input = model.inputs.iter().position(|v| &v.name == name).unwrap();
+                z += coefficient * values[input];
+            }
+            z
+        }
+        other => panic!("{other:?} is no consequent"),
+    }
+}
+
+/// The places at which a shape has a parameter.
+fn parameters(shape: &Shape) -> Vec<f64> {
+    match *shape {
+        Shape::Triangle { left, peak, right } => vec![left, peak, right],
+        Shape::Trapezoid {
+            left,
+            left_top,
+            right_top,
+            right,
+        }
+        | Shape::PiShape {
+            left,
+            left_top,
+            right_top,
+            right,
+        } => vec![left, left_top, right_top, right],
+        Shape::LeftShoulder { top, foot }
+        | Shape::RightShoulder { foot, top }
+        | Shape::SShape { foot, top }
+        | Shape::ZShape { top, foot } => vec![top, foot],
+        Shape::Rectangle { left, right } => vec![left, right],
+        Shape::Piecewise { ref points } => points.iter().map(|point| point.0).collect(),
+        Shape::Gaussian { mean, .. } => vec![mean],
+        Shape::Gaussian2 {
+            left_mean,
+            right_mean,
+            ..
+        } => vec![left_mean, right_mean],
+        Shape::Bell { center, .. } | Shape::Spike { center, .. } => vec![center],
+        Shape::Cosine { center, width } => vec![center - width / 2.0, center, center + width / 2.0],
+        Shape::Concave { end, .. } => vec![end],
+        Shape::Sigmoid { inflection, .. } => vec![inflection],
+        Shape::SigmoidDifference {
+            left_inflection,
+            right_inflection,
+            ..
+        }
+        | Shape::SigmoidProduct {
+            left_inflection,
+            right_inflection,
+            ..
+        } => vec![left_inflection, right_inflection],
+        Shape::Singleton { .. } | Shape::Constant { .. } | Shape::Linear { .. } => vec![],
+    }
+}
+
+fn membership(shape: &Shape, x: f64) -> f64 {
+    let sigmoid = |inflection: f64, slope: f64| 1.0 / (1.0 + (-slope * (x - inflection)).exp());
+    let gaussian = |mean: f64, sd: f64| (-(x - mean).powi(2) / (2.0 * sd.powi(2))).exp();
+    // An S from a to b, by its two parabolas.
+    let s = |a: f64, b: f64| {
+        if x <= a && a < b {
+            0.0
+        } else if x >= b {
+            1.0
+        } else if x < (a + b) / 2.0 {
+            2.0 * ((x - a) / (b - a)).powi(2)
+        } else {
+            1.0 - 2.0 * ((x - b) / (b - a)).powi(2)
+        }
+    };
+    let z = |a: f64, b: f64| {
+        if x <= a {
+            1.0
+        } else if x >= b {
+            0.0
+        } else if x < (a + b) / 2.0 {
+            1.0 - 2.0 * ((x - a) / (b - a)).powi(2)
+        } else {
+            2.0 * ((x - b) / (b - a)).powi(2)
+        }
+    };
+    let trapezoid = |a: f64, b: f64, c: f64, d: f64| {
+        if b <= x && x <= c {
+            1.0
+        } else if a < x && x < b {
+            (x - a) / (b - a)
+        } else if c < x && x < d {
+            (d - x) / (d - c)
+        } else {
+            0.0
+        }
+    };
+    match *shape {
+        Shape::Triangle { left, peak, right } => trapezoid(left, peak, peak, right),
+        Shape::Trapezoid {
+            left,
+            left_top,
+            right_top,
+            right,
+        } => trapezoid(left, left_top, right_top, right),
+        Shape::LeftShoulder { top, foot } => trapezoid(-1e9, -1e9, top, foot),
+        Shape::RightShoulder { foot, top } => trapezoid(foot, top, 1e9, 1e9),
+        Shape::Rectangle { left, right } => trapezoid(left, left, right, right),
+        Shape::Singleton { at } => f64::from(x == at),
+        Shape::Piecewise { ref points } => {
+            let at = points
+                .iter()
+                .filter(|point| point.0 == x)
+                .map(|point| point.1);
+            let before = points.iter().rev().find(|point| point.0 < x);
+            let after = points.iter().find(|point| point.0 > x);
+            match (at.reduce(f64::max), before, after) {
+                (Some(y), _, _) => y,
+                (_, Some(a), Some(b)) => a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0),
+                (_, Some(only), None) | (_, None, Some(only)) => only.1,
+                (_, None, None) => 0.0,
+            }
+        }
+        Shape::Gaussian { mean, sd } => gaussian(mean, sd),
+        Shape::Gaussian2 {
+            left_mean, left_sd, ..
+        } if x < left_mean => gaussian(left_mean, left_sd),
+        Shape::Gaussian2 {
+            right_mean,
+            right_sd,
+            ..
+        } if x > right_mean => gaussian(right_mean, right_sd),
+        Shape::Gaussian2 { .. } => 1.0,
+        Shape::Bell {
+            center,
+            width,
+            slope,
+        } => 1.0 / (1.0 + ((x - center) / width).abs().powf(2.0 * slope)),
+        Shape::Sigmoid { inflection, slope } => sigmoid(inflection, slope),
+        Shape::SigmoidDifference {
+            left_inflection,
+            left_slope,
+            right_inflection,
+            right_slope,
+        } => (sigmoid(left_inflection, left_slope) - sigmoid(right_inflection, right_slope)).abs(),
+        Shape::SigmoidProduct {
+            left_inflection,
+            left_slope,
+            right_inflection,
+            right_slope,
+        } => sigmoid(left_inflection, left_slope) * sigmoid(right_inflection, right_slope),
+        Shape::SShape { foot, top } => s(foot, top),
+        Shape::ZShape { top, foot } => z(top, foot),
+        Shape::PiShape {
+            left,
+            left_top,
+            right_top,
+            right,
+        } => s(left, left_top).min(z(right_top, right)),
+        Shape::Cosine { center, width } if (x - center).abs() > width / 2.0 => 0.0,
+        Shape::Cosine { center, width } => (1.0 + (2.0 / width * PI * (x - center)).cos()) / 2.0,
+        Shape::Spike { center, width } => (-(10.0 / width * (x - center)).abs()).exp(),
+        Shape::Concave { inflection, end } if inflection <= end && x < end => {
+            (end - inflection) / (2.0 * end - inflection - x)
+        }
+        Shape::Concave { inflection, end } if inflection > end && x > end => {
+            (inflection - end) / (inflection - 2.0 * end + x)
+        }
+        Shape::Concave { .. } => 1.0,
+        Shape::Constant { value } => value,
+        Shape::Linear { .. } => 0.0,
+    }
+}

@@ -1,0 +1,305 @@
+//! One meaning, many paths: the corpus in `tests/conformance` through every way of evaluating.
+//!
+//! A file holds a rule set and, behind `---`, its cases: operators that differ from those of the rule set,
+//! a point, and the values there. The values come from the integration in `flagred_tests::reference` with
+//! very many samples; to write those of new cases, leave `is` out and run
+//! `FLAGRED_BLESS=1 cargo test --release -p flagred-tests --test conformance`.
+
+use std::path::{Path, PathBuf};
+
+use flagred_tests::reference;
+use fuzzy::Engine;
+use fuzzy::engine::Outcome;
+use fuzzy::map::{DecisionMap, Grid};
+use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, Model};
+
+/// How far from the value the engine may be, and the plain integration with few samples, as a part of the
+/// output's range. Maxima are as good as the samples of the integration are dense.
+const ENGINE: f64 = 1e-9;
+const ENGINE_MAXIMA: f64 = 1e-5;
+const FEW: usize = 4_000;
+const FEW_TOLERANCE: f64 = 1e-6;
+const FEW_MAXIMA: f64 = 1e-3;
+const MANY: usize = 200_000;
+
+struct Case {
+    model: Model,
+    point: Vec<f64>,
+    values: Vec<Option<f64>>,
+    place: String,
+}
+
+fn files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance");
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    files.sort();
+    files
+}
+
+/// Rule set and the lines of the cases.
+fn parts(file: &Path) -> (Model, String) {
+    let text = std::fs::read_to_string(file).unwrap();
+    let (rule_set, cases) = text.split_once("\n---\n").unwrap();
+    let document = fuzzy::yaml::parse(rule_set);
+    let document = document.unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    (document.model, cases.into())
+}
+
+/// `- {and: product, defuzzifier: bisector, at: [0.1, 0.2], is: [3.5, none]}`
+fn case(model: &Model, line: &str, place: String) -> Case {
+    let mut case = Case {
+        model: model.clone(),
+        point: Vec::new(),
+        values: Vec::new(),
+        place,
+    };
+    let list = |text: &str| -> Vec<Option<f64>> {
+        let numbers = text.trim_matches(['[', ']']).split(", ");
+        numbers.map(|number| number.parse().ok()).collect()
+    };
+    let inside = line.strip_prefix("- {").unwrap().strip_suffix('}').unwrap();
+    let mut rest = inside;
+    while !rest.is_empty() {
+        let (key, behind) = rest.split_once(": ").unwrap();
+        let end = if behind.starts_with('[') {
+            behind.find(']').unwrap() + 1
+        } else {
+            behind.find(", ").unwrap_or(behind.len())
+        };
+        let (value, behind) = behind.split_at(end);
+        rest = behind.strip_prefix(", ").unwrap_or(behind);
+        let operators = &mut case.model.operators;
+        match key {
+            "at" => case.point = list(value).into_iter().flatten().collect(),
+            "is" => case.values = list(value),
+            "and" => operators.and = conjunction(value),
+            "or" => operators.or = disjunction(value),
+            "implication" => {
+                operators.implication = match value {
+                    "minimum" => Implication::Minimum,
+                    "product" => Implication::Product,
+                    other => panic!("{other}"),
+                }
+            }
+            "aggregation" => {
+                operators.aggregation = match value {
+                    "maximum" => Aggregation::Maximum,
+                    "probabilistic_sum" => Aggregation::ProbabilisticSum,
+                    "bounded_sum" => Aggregation::BoundedSum,
+                    "sum" => Aggregation::Sum,
+                    other => panic!("{other}"),
+                }
+            }
+            "defuzzifier" => {
+                for output in &mut case.model.outputs {
+                    output.defuzzifier = match value {
+                        "centroid" => Defuzzifier::Centroid,
+                        "bisector" => Defuzzifier::Bisector,
+                        "smallest_of_maxima" => Defuzzifier::SmallestOfMaxima,
+                        "mean_of_maxima" => Defuzzifier::MeanOfMaxima,
+                        "largest_of_maxima" => Defuzzifier::LargestOfMaxima,
+                        other => panic!("{other}"),
+                    };
+                }
+            }
+            other => panic!("{}: `{other}`", case.place),
+        }
+    }
+    case
+}
+
+fn conjunction(word: &str) -> Conjunction {
+    match word {
+        "minimum" => Conjunction::Minimum,
+        "product" => Conjunction::Product,
+        "bounded_difference" => Conjunction::BoundedDifference,
+        "drastic" => Conjunction::Drastic,
+        "einstein" => Conjunction::Einstein,
+        "hamacher" => Conjunction::Hamacher,
+        "nilpotent_minimum" => Conjunction::NilpotentMinimum,
+        other => panic!("{other}"),
+    }
+}
+
+fn disjunction(word: &str) -> Disjunction {
+    match word {
+        "maximum" => Disjunction::Maximum,
+        "probabilistic_sum" => Disjunction::ProbabilisticSum,
+        "bounded_sum" => Disjunction::BoundedSum,
+        "drastic" => Disjunction::Drastic,
+        "einstein" => Disjunction::Einstein,
+        "hamacher" => Disjunction::Hamacher,
+        "nilpotent_maximum" => Disjunction::NilpotentMaximum,
+        other => panic!("{other}"),
+    }
+}
+
+fn corpus() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for file in files() {
+        let (model, lines) = parts(&file);
+        let name = file.file_name().unwrap().to_string_lossy().into_owned();
+        for line in lines.lines() {
+            cases.push(case(&model, line, format!("{name}: {line}")));
+        }
+    }
+    cases
+}
+
+fn is_maxima(defuzzifier: Defuzzifier) -> bool {
+    use Defuzzifier::{LargestOfMaxima, MeanOfMaxima, SmallestOfMaxima};
+    matches!(
+        defuzzifier,
+        SmallestOfMaxima | MeanOfMaxima | LargestOfMaxima
+    )
+}
+
+/// Compares values with those of a case; `tolerances` are of integrals and of maxima.
+fn compare(case: &Case, values: &[Option<f64>], tolerances: (f64, f64)) {
+    assert_eq!(values.len(), case.values.len(), "{}", case.place);
+    for ((output, value), expected) in case.model.outputs.iter().zip(values).zip(&case.values) {
+        let range = output.variable.high - output.variable.low;
+        let part = if is_maxima(output.defuzzifier) {
+            tolerances.1
+        } else {
+            tolerances.0
+        };
+        match (value, expected) {
+            (Some(value), Some(expected)) => assert!(
+                (value - expected).abs() <= part * range,
+                "{}: {} is {value}, {:e} of its range away",
+                case.place,
+                output.variable.name,
+                (value - expected).abs() / range
+            ),
+            (value, expected) => assert_eq!(value, expected, "{}", case.place),
+        }
+    }
+}
+
+fn values(outcomes: &[Outcome]) -> Vec<Option<f64>> {
+    outcomes.iter().map(Outcome::value).collect()
+}
+
+/// Everything that an outcome says, to the bit.
+fn bits(outcomes: &[Outcome]) -> Vec<String> {
+    let bits = |x: Option<f64>| x.map(f64::to_bits);
+    outcomes
+        .iter()
+        .map(|o| {
+            format!(
+                "{:?} {:?} {:?} {}",
+                bits(o.value()),
+                bits(Some(o.coverage)),
+                o.dominant,
+                o.clamped
+            )
+        })
+        .collect()
+}
+
+#[test]
+fn the_corpus_is_as_large_as_it_should_be() {
+    let cases = corpus();
+    let outputs: usize = cases.iter().map(|case| case.values.len()).sum();
+    assert!(
+        cases.len() >= 300,
+        "{} cases, {outputs} values",
+        cases.len()
+    );
+}
+
+#[test]
+fn single_calls_give_the_values_of_the_corpus() {
+    for case in corpus() {
+        let engine = Engine::new(&case.model).unwrap();
+        let outcomes = engine.evaluate(&case.point).unwrap();
+        compare(&case, &values(&outcomes), (ENGINE, ENGINE_MAXIMA));
+    }
+}
+
+#[test]
+fn the_values_of_the_corpus_are_those_of_a_plain_integration() {
+    if std::env::var_os("FLAGRED_BLESS").is_some() {
+        bless();
+    }
+    for case in corpus() {
+        let values = reference::evaluate(&case.model, &case.point, FEW);
+        compare(&case, &values, (FEW_TOLERANCE, FEW_MAXIMA));
+    }
+}
+
+/// Writes the values of all cases from the plain integration with very many samples.
+fn bless() {
+    for file in files() {
+        let (model, lines) = parts(&file);
+        let mut cases = String::new();
+        for line in lines.lines() {
+            let case = case(&model, line, line.into());
+            let values: Vec<String> = reference::evaluate(&case.model, &case.point, MANY)
+                .into_iter()
+                .map(|value| value.map_or("none".into(), |value| format!("{value:.12}")))
+                .collect();
+            let asked = line.split(", is: ").next().unwrap().trim_end_matches('}');
+            cases.push_str(&format!("{asked}, is: [{}]}}\n", values.join(", ")));
+        }
+        let text = std::fs::read_to_string(&file).unwrap();
+        let (rule_set, _) = text.split_once("\n---\n").unwrap();
+        std::fs::write(&file, format!("{rule_set}\n---\n{cases}")).unwrap();
+    }
+}
+
+/// A batch of many rows, so that blocks, tasks and threads all come to their ends somewhere.
+#[test]
+fn batches_on_one_and_many_threads_have_the_bits_of_single_calls() {
+    let pools = [1, 4].map(|threads| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+    });
+    for case in corpus() {
+        let engine = Engine::new(&case.model).unwrap();
+        let single = bits(&engine.evaluate(&case.point).unwrap());
+        let rows = if case.place.ends_with("1}") {
+            9_001
+        } else {
+            11
+        };
+        let columns: Vec<Vec<f64>> = case.point.iter().map(|x| vec![*x; rows]).collect();
+        let columns: Vec<&[f64]> = columns.iter().map(|column| &**column).collect();
+        for pool in &pools {
+            let batch = pool.install(|| engine.evaluate_batch(&columns).unwrap());
+            for outcomes in batch.chunks(case.values.len()) {
+                assert_eq!(bits(outcomes), single, "{}", case.place);
+            }
+        }
+    }
+}
+
+/// A map of one fixed point and one axis that begins at the point.
+#[test]
+fn decision_maps_have_the_bits_of_single_calls() {
+    for case in corpus() {
+        let engine = Engine::new(&case.model).unwrap();
+        let mut grid = Grid::new(&engine, 3).unwrap();
+        for (name, x) in engine.input_names().zip(&case.point).skip(1) {
+            grid = grid.fix(name, *x).unwrap();
+        }
+        for output in 0..case.values.len() {
+            let map = DecisionMap::new(&engine, grid.clone(), output).unwrap();
+            for cell in 0..map.grid().cells() {
+                let mut point = case.point.clone();
+                point[0] = map.grid().point(cell)[0];
+                let single = engine.evaluate(&point).unwrap()[output];
+                let value = map.value(cell).map(f64::to_bits);
+                assert_eq!(value, single.value().map(f64::to_bits), "{}", case.place);
+                assert_eq!(map.coverage(cell).to_bits(), single.coverage.to_bits());
+                assert_eq!(map.dominant(cell), single.dominant);
+            }
+        }
+    }
+}
