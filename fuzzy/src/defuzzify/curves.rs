@@ -102,7 +102,7 @@ impl Curves {
                     // Just inside, where a step at the cut has been taken.
                     left: degree(from.next_up()),
                     right: degree(to.next_down()),
-                    curve: Some(&degree),
+                    curve: Some(&|part| degree(from + (to - from) * part)),
                 });
             }
         }

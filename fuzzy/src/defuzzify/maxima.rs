@@ -42,7 +42,7 @@ impl Maxima {
         let least = self.least_degree;
         let high = |degree: f64| degree >= least;
         let middle = 0.5 * (piece.from + piece.to);
-        let flat = piece.curve.is_none_or(|curve| high(curve(middle)));
+        let flat = piece.curve.is_none_or(|curve| high(curve(0.5)));
         let (left, right) = (high(piece.left), high(piece.right));
         if left && right && flat {
             let width = piece.to - piece.from;
@@ -90,17 +90,16 @@ impl Maxima {
 /// The highest place inside a curve that rises from its beginning and falls to its end.
 fn peak(piece: &Piece<'_>) -> Option<(f64, f64)> {
     let curve = piece.curve?;
-    let width = piece.to - piece.from;
-    let step = 0.02 * width;
     // The derivative by central differences of sixth order.
-    let derivative = |x: f64| {
-        let difference = |k: f64| curve(x + k * step) - curve(x - k * step);
+    let step = 0.02;
+    let derivative = |part: f64| {
+        let difference = |k: f64| curve(part + k * step) - curve(part - k * step);
         45.0 * difference(1.0) - 9.0 * difference(2.0) + difference(3.0)
     };
-    let (a, b) = (piece.from + 3.0 * step, piece.to - 3.0 * step);
+    let (a, b) = (3.0 * step, 1.0 - 3.0 * step);
     if derivative(a) > 0.0 && derivative(b) < 0.0 {
-        let x = root(a, b, derivative);
-        Some((x, curve(x)))
+        let part = root(a, b, derivative);
+        Some((piece.from + (piece.to - piece.from) * part, curve(part)))
     } else {
         None
     }

@@ -258,7 +258,7 @@ impl Defuzzify {
                 let mut bisector = None;
                 self.pieces(heights, room, &mut |piece| {
                     if bisector.is_none() {
-                        let area = piece.area_to(piece.to);
+                        let area = piece.area();
                         if sum + area >= half && area > 0.0 {
                             bisector = Some(piece.where_area_is(half - sum));
                         }

@@ -263,7 +263,7 @@ fn join(
                 to: stretch.to,
                 left: degree(0.0),
                 right: degree(1.0),
-                curve: Some(&|x| degree((x - stretch.from) / (stretch.to - stretch.from))),
+                curve: Some(&degree),
             });
         }
     }
