@@ -20,11 +20,13 @@ use crate::{
 };
 
 mod rules;
+mod schema;
 mod shapes;
 mod variables;
 mod words;
 mod write;
 
+pub use schema::schema;
 pub(crate) use shapes::parameters as shape_parameters;
 
 /// The version of the format this library reads and writes.

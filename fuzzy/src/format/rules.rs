@@ -11,7 +11,7 @@ use crate::{
     tree::{Node, Scalar, Value},
 };
 
-const KEYS: [&str; 5] = ["rule", "confidence", "support", "against", "note"];
+pub(super) const KEYS: [&str; 5] = ["rule", "confidence", "support", "against", "note"];
 
 pub(super) fn read(
     node: &Node,

@@ -22,21 +22,33 @@ pub(super) struct Form {
     /// Whether the parameters may stand in a list. Only places from left to right may: programs differ in the order of
     /// all others, `gaussian: [1, 5]` means mean 1 to one and mean 5 to another.
     pub(super) as_list: bool,
+    /// What it is, for the schema.
+    pub(super) about: &'static str,
 }
 
-const fn places(name: &'static str, parameters: &'static [&'static str]) -> Form {
+const fn places(
+    name: &'static str,
+    parameters: &'static [&'static str],
+    about: &'static str,
+) -> Form {
     Form {
         name,
         parameters,
         as_list: true,
+        about,
     }
 }
 
-const fn named(name: &'static str, parameters: &'static [&'static str]) -> Form {
+const fn named(
+    name: &'static str,
+    parameters: &'static [&'static str],
+    about: &'static str,
+) -> Form {
     Form {
         name,
         parameters,
         as_list: false,
+        about,
     }
 }
 
@@ -49,28 +61,85 @@ const SIGMOIDS: [&str; 4] = [
 
 /// All shapes with a fixed number of parameters; `piecewise` and `linear` have their own spelling.
 pub(super) const FORMS: [Form; 19] = [
-    places("triangle", &["left", "peak", "right"]),
-    places("trapezoid", &["left", "left_top", "right_top", "right"]),
-    places("left_shoulder", &["top", "foot"]),
-    places("right_shoulder", &["foot", "top"]),
-    places("rectangle", &["left", "right"]),
-    places("singleton", &["at"]),
-    named("gaussian", &["mean", "sd"]),
+    places(
+        "triangle",
+        &["left", "peak", "right"],
+        "0 at left, 1 at peak, 0 at right",
+    ),
+    places(
+        "trapezoid",
+        &["left", "left_top", "right_top", "right"],
+        "1 from left_top to right_top, 0 outside left and right",
+    ),
+    places(
+        "left_shoulder",
+        &["top", "foot"],
+        "1 up to top, 0 from foot on",
+    ),
+    places(
+        "right_shoulder",
+        &["foot", "top"],
+        "0 up to foot, 1 from top on",
+    ),
+    places("rectangle", &["left", "right"], "1 from left to right"),
+    places("singleton", &["at"], "1 at one value alone"),
+    named("gaussian", &["mean", "sd"], "exp(-(x - mean)^2 / (2 sd^2))"),
     named(
         "gaussian2",
         &["left_mean", "left_sd", "right_mean", "right_sd"],
+        "Gaussian flanks around 1 from left_mean to right_mean",
     ),
-    named("bell", &["center", "width", "slope"]),
-    named("sigmoid", &["inflection", "slope"]),
-    named("sigmoid_difference", &SIGMOIDS),
-    named("sigmoid_product", &SIGMOIDS),
-    places("s_shape", &["foot", "top"]),
-    places("z_shape", &["top", "foot"]),
-    places("pi_shape", &["left", "left_top", "right_top", "right"]),
-    named("cosine", &["center", "width"]),
-    named("spike", &["center", "width"]),
-    named("concave", &["inflection", "end"]),
-    places("constant", &["value"]),
+    named(
+        "bell",
+        &["center", "width", "slope"],
+        "1 / (1 + |(x - center) / width|^(2 slope))",
+    ),
+    named(
+        "sigmoid",
+        &["inflection", "slope"],
+        "1 / (1 + exp(-slope (x - inflection)))",
+    ),
+    named(
+        "sigmoid_difference",
+        &SIGMOIDS,
+        "The difference of two sigmoids, without its sign",
+    ),
+    named("sigmoid_product", &SIGMOIDS, "The product of two sigmoids"),
+    places(
+        "s_shape",
+        &["foot", "top"],
+        "Two parabolas up from 0 at foot to 1 at top",
+    ),
+    places(
+        "z_shape",
+        &["top", "foot"],
+        "Two parabolas down from 1 at top to 0 at foot",
+    ),
+    places(
+        "pi_shape",
+        &["left", "left_top", "right_top", "right"],
+        "An S up to left_top, 1, a Z down from right_top",
+    ),
+    named(
+        "cosine",
+        &["center", "width"],
+        "A bump of a cosine, width wide",
+    ),
+    named(
+        "spike",
+        &["center", "width"],
+        "exp(-|10 (x - center) / width|)",
+    ),
+    named(
+        "concave",
+        &["inflection", "end"],
+        "(end - inflection) / (2 end - inflection - x) up to end, 1 beyond it",
+    ),
+    places(
+        "constant",
+        &["value"],
+        "The same degree everywhere; in a Takagi-Sugeno output, the value itself",
+    ),
 ];
 
 /// The shape of a name with its parameters.

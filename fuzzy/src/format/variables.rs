@@ -13,8 +13,8 @@ use crate::{
     tree::{Entry, Fields, Node, Value},
 };
 
-const INPUT_KEYS: [&str; 5] = ["description", "unit", "range", "partition", "terms"];
-const OUTPUT_KEYS: [&str; 8] = [
+pub(super) const INPUT_KEYS: [&str; 5] = ["description", "unit", "range", "partition", "terms"];
+pub(super) const OUTPUT_KEYS: [&str; 8] = [
     "description",
     "unit",
     "range",
@@ -255,8 +255,17 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
     if low >= high {
         let message = format!("the range of {what} ends at {high}, not after its start at {low}");
         findings.push(
-            Diagnostic::error("inverted-range", node.span.clone(), message)
+            Diagnostic::error("wrong-range", node.span.clone(), message)
                 .help("the least value stands first, the greatest second"),
+        );
+        return None;
+    }
+    // Twice the width must be a number too, or spans within the range overflow.
+    if !(2.0 * (high - low)).is_finite() {
+        let message = format!("the range of {what} is wider than numbers reach");
+        findings.push(
+            Diagnostic::error("wrong-range", node.span.clone(), message)
+                .help("write the values that can occur"),
         );
         return None;
     }

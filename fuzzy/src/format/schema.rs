@@ -1,0 +1,429 @@
+//! The file format as a JSON Schema (draft 2020-12), for editors that complete and check while one types.
+//!
+//! It is made from the tables that read the format, so it cannot tell of a shape or an operator that is not there. What
+//! a schema cannot say (that parameters stand in order, that rules name what there is) `flagred check` tells.
+
+use alloc::{format, string::String, vec::Vec};
+
+use super::{
+    VERSION, rules,
+    shapes::{FORMS, Form},
+    variables::{INPUT_KEYS, OUTPUT_KEYS},
+    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, IMPLICATIONS},
+};
+use crate::tree::Node;
+
+/// The schema as a tree; `rules/schema.json` is what serde makes of it.
+///
+/// # Example
+/// ```
+/// let schema = serde_json::to_value(fuzzy::format::schema())?;
+/// assert_eq!(schema["properties"]["fuzzy"]["const"], 1);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[must_use]
+pub fn schema() -> Node {
+    let properties = [
+        (
+            "fuzzy",
+            about(
+                "The version of the format",
+                [("const", Node::number(VERSION as f64))],
+            ),
+        ),
+        ("name", text("The name of the rule set")),
+        ("description", text("What the rule set is for")),
+        (
+            "inputs",
+            named("The inputs, by the names that rules use", "input"),
+        ),
+        (
+            "outputs",
+            named("The outputs, by the names that rules use", "output"),
+        ),
+        ("operators", operators()),
+        ("rules", list("The rules", reference("rule"), Some(1))),
+    ];
+    let required = ["fuzzy", "name", "inputs", "outputs", "rules"];
+    let mut schema = object("A fuzzy rule set", properties, &required);
+    schema.splice(
+        0..0,
+        [
+            entry(
+                "$schema",
+                Node::text("https://json-schema.org/draft/2020-12/schema"),
+            ),
+            entry("title", Node::text("fuzzy rule set")),
+        ],
+    );
+    schema.push(entry("$defs", definitions()));
+    Node::mapping(schema)
+}
+
+type Entries = Vec<(String, Node)>;
+
+fn entry(key: &str, value: Node) -> (String, Node) {
+    (key.into(), value)
+}
+
+fn about<const N: usize>(description: &str, entries: [(&str, Node); N]) -> Node {
+    let description = [("description", Node::text(description))];
+    Node::mapping(description.into_iter().chain(entries))
+}
+
+fn text(description: &str) -> Node {
+    about(description, [("type", Node::text("string"))])
+}
+
+fn number(description: &str) -> Node {
+    about(description, [("type", Node::text("number"))])
+}
+
+fn degree(description: &str) -> Node {
+    let entries = [
+        ("type", Node::text("number")),
+        ("minimum", Node::number(0.0)),
+        ("maximum", Node::number(1.0)),
+    ];
+    about(description, entries)
+}
+
+fn whole(description: &str, least: f64) -> Node {
+    about(
+        description,
+        [
+            ("type", Node::text("integer")),
+            ("minimum", Node::number(least)),
+        ],
+    )
+}
+
+fn words<T>(description: &str, words: &[(&str, T)]) -> Node {
+    let words = words.iter().map(|(word, _)| Node::text(*word));
+    about(description, [("enum", Node::list(words.collect()))])
+}
+
+fn list(description: &str, items: Node, least: Option<usize>) -> Node {
+    let mut entries = Vec::from([
+        ("description", Node::text(description)),
+        ("type", Node::text("array")),
+        ("items", items),
+    ]);
+    entries.extend(least.map(|least| ("minItems", Node::number(least as f64))));
+    Node::mapping(entries)
+}
+
+/// A list of so many numbers.
+fn numbers(description: &str, count: usize) -> Node {
+    let count = || Node::number(count as f64);
+    about(
+        description,
+        [
+            ("type", Node::text("array")),
+            ("items", Node::mapping([("type", Node::text("number"))])),
+            ("minItems", count()),
+            ("maxItems", count()),
+        ],
+    )
+}
+
+/// A mapping of known keys and no others.
+fn object<'a>(
+    description: &str,
+    properties: impl IntoIterator<Item = (&'a str, Node)>,
+    required: &[&str],
+) -> Entries {
+    let required = required.iter().map(|key| Node::text(*key)).collect();
+    Vec::from([
+        entry("description", Node::text(description)),
+        entry("type", Node::text("object")),
+        entry("properties", Node::mapping(properties)),
+        entry("required", Node::list(required)),
+        entry("additionalProperties", no()),
+    ])
+}
+
+fn no() -> Node {
+    Node::scalar("false".into(), false)
+}
+
+fn reference(name: &str) -> Node {
+    Node::mapping([("$ref", Node::text(format!("#/$defs/{name}")))])
+}
+
+fn any_of(description: &str, options: Vec<Node>) -> Node {
+    about(description, [("anyOf", Node::list(options))])
+}
+
+/// A mapping of names the author chooses.
+fn named(description: &str, of: &str) -> Node {
+    let entries = [
+        ("type", Node::text("object")),
+        ("additionalProperties", reference(of)),
+    ];
+    about(description, entries)
+}
+
+fn definitions() -> Node {
+    let of = |keys: &[&'static str], description| {
+        let properties = keys.iter().map(|key| (*key, variable_key(key)));
+        let mut entries = object(description, properties, &["range"]);
+        let one = |key: &str| Node::mapping([("required", Node::list([Node::text(key)].into()))]);
+        entries.push(entry(
+            "oneOf",
+            Node::list([one("partition"), one("terms")].into()),
+        ));
+        Node::mapping(entries)
+    };
+    Node::mapping([
+        ("input", of(&INPUT_KEYS, "An input: a range and terms")),
+        (
+            "output",
+            of(
+                &OUTPUT_KEYS,
+                "An output: a range, terms, and how they become a number",
+            ),
+        ),
+        ("term", term()),
+        ("rule", rule()),
+    ])
+}
+
+/// What stands behind a key of an input or output.
+fn variable_key(key: &str) -> Node {
+    match key {
+        "description" => text("What it means"),
+        "unit" => text("The unit of its values, for people"),
+        "range" => numbers("The least and the greatest value", 2),
+        "partition" => any_of(
+            "Terms whose memberships sum to 1, the outer ones shoulders",
+            Vec::from([
+                list(
+                    "Evenly spaced over the range",
+                    Node::mapping([("type", scalar())]),
+                    Some(2),
+                ),
+                about(
+                    "By their peaks, from left to right",
+                    [
+                        ("type", Node::text("object")),
+                        (
+                            "additionalProperties",
+                            Node::mapping([("type", Node::text("number"))]),
+                        ),
+                        ("minProperties", Node::number(2.0)),
+                    ],
+                ),
+            ]),
+        ),
+        "terms" => named("Terms, each with a shape of its own", "term"),
+        "defuzzifier" => words("How the fuzzy result becomes a number", &DEFUZZIFIERS),
+        "samples" => {
+            let rules = [
+                (
+                    "midpoint",
+                    whole("At the middles of so many even steps", 1.0),
+                ),
+                (
+                    "trapezoid",
+                    whole("At so many evenly spaced points, the ends included", 2.0),
+                ),
+            ];
+            let mut entries = object(
+                "Integrate by sampling, to reproduce another program",
+                rules,
+                &[],
+            );
+            entries.push(entry("minProperties", Node::number(1.0)));
+            entries.push(entry("maxProperties", Node::number(1.0)));
+            Node::mapping(entries)
+        }
+        "when_no_rule_fires" => any_of(
+            "What the output is where no rule fires",
+            Vec::from([
+                words(
+                    "Undefined, or an error",
+                    &[("undefined", ()), ("error", ())],
+                ),
+                Node::mapping(object(
+                    "A value of the range",
+                    [("value", number("The value"))],
+                    &["value"],
+                )),
+            ]),
+        ),
+        // Every key that is read has its line above; a new one is at least allowed.
+        _ => Node::mapping(Entries::new()),
+    }
+}
+
+/// A name may look like a number or like yes and no.
+fn scalar() -> Node {
+    Node::list(["string", "number", "boolean"].map(Node::text).into())
+}
+
+fn term() -> Node {
+    let height = (
+        "height",
+        about(
+            "The largest degree of membership",
+            [
+                ("type", Node::text("number")),
+                ("exclusiveMinimum", Node::number(0.0)),
+                ("maximum", Node::number(1.0)),
+            ],
+        ),
+    );
+    let point = numbers("[x, degree]", 2);
+    let linear = about(
+        "Takagi-Sugeno outputs: the sum of the constant and of each input times its number",
+        [
+            ("type", Node::text("object")),
+            (
+                "additionalProperties",
+                Node::mapping([("type", Node::text("number"))]),
+            ),
+        ],
+    );
+    let others = [
+        (
+            "piecewise",
+            list(
+                "Straight between points, from left to right",
+                point,
+                Some(1),
+            ),
+        ),
+        ("linear", linear),
+        height,
+    ];
+    let properties = FORMS
+        .iter()
+        .map(|form| (form.name, shape(form)))
+        .chain(others);
+    let mut entries = object(
+        "A term: one shape, and a height where it is not 1",
+        properties,
+        &[],
+    );
+    entries.push(entry("minProperties", Node::number(1.0)));
+    entries.push(entry("maxProperties", Node::number(2.0)));
+    Node::mapping(entries)
+}
+
+/// The parameters of a shape, in each spelling it has.
+fn shape(form: &Form) -> Node {
+    let properties = form.parameters.iter().map(|name| {
+        let mut entries = Vec::from([("type", Node::text("number"))]);
+        if matches!(*name, "sd" | "left_sd" | "right_sd" | "width") {
+            entries.push(("exclusiveMinimum", Node::number(0.0)));
+        }
+        (*name, Node::mapping(entries))
+    });
+    let by_name = Node::mapping(object("By name", properties, form.parameters));
+    let mut options = Vec::new();
+    if form.as_list {
+        let order = format!("[{}], from left to right", form.parameters.join(", "));
+        options.push(numbers(&order, form.parameters.len()));
+    }
+    if form.parameters.len() == 1 {
+        options.push(number("Its one parameter"));
+    }
+    options.push(by_name);
+    any_of(form.about, options)
+}
+
+fn operators() -> Node {
+    let properties = [
+        ("and", words("AND; minimum where absent", &CONJUNCTIONS)),
+        ("or", words("OR; maximum where absent", &DISJUNCTIONS)),
+        (
+            "implication",
+            words(
+                "How a firing strength cuts or scales a term; minimum where absent",
+                &IMPLICATIONS,
+            ),
+        ),
+        (
+            "aggregation",
+            words(
+                "How the terms of an output join; maximum where absent",
+                &AGGREGATIONS,
+            ),
+        ),
+    ];
+    Node::mapping(object(
+        "The operators that all rules share",
+        properties,
+        &[],
+    ))
+}
+
+fn rule() -> Node {
+    let beaten = object(
+        "A conclusion that lost against the one in the rule when it was learned",
+        [
+            ("term", text("The term that lost")),
+            ("degree", degree("Its degree")),
+            ("support", whole("How many samples stood behind it", 0.0)),
+        ],
+        &["term", "degree", "support"],
+    );
+    let value = |key: &str| match key {
+        "rule" => rule_text(),
+        "confidence" => degree("How sure its source is of it; it does not weight the rule"),
+        "support" => whole("How many samples stand behind it", 0.0),
+        "against" => list(
+            "The conclusions it beat",
+            Node::mapping(beaten.clone()),
+            None,
+        ),
+        _ => text("A remark"),
+    };
+    let properties = rules::KEYS.iter().map(|key| (*key, value(key)));
+    let with_provenance = Node::mapping(object(
+        "A rule and where it came from",
+        properties,
+        &["rule"],
+    ));
+    any_of(
+        "IF input IS [hedge] term {AND|OR ...} THEN output IS term [WITH weight]",
+        Vec::from([rule_text(), with_provenance]),
+    )
+}
+
+fn rule_text() -> Node {
+    // Comments and space may come first; a rule of only these is none.
+    let pattern = r"^(\s|#[^\n]*\n)*[Ii][Ff]\b";
+    about(
+        "IF input IS [not|very|somewhat|extremely|seldom|any] term {AND|OR ...} THEN output IS term [WITH weight]",
+        [
+            ("type", Node::text("string")),
+            ("pattern", Node::text(pattern)),
+        ],
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `UPDATE_SCHEMA=1 cargo test -p fuzzy schema` writes the file anew.
+    #[test]
+    fn the_file_is_what_the_types_say() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/schema.json");
+        let made = serde_json::to_string_pretty(&schema()).unwrap() + "\n";
+        if std::env::var_os("UPDATE_SCHEMA").is_some() {
+            std::fs::write(path, &made).unwrap();
+        }
+        assert_eq!(std::fs::read_to_string(path).unwrap(), made);
+    }
+
+    #[test]
+    fn every_key_of_a_variable_is_described() {
+        for key in INPUT_KEYS.iter().chain(&OUTPUT_KEYS) {
+            let value = serde_json::to_value(variable_key(key)).unwrap();
+            assert!(value["description"].is_string(), "{key}");
+        }
+    }
+}
