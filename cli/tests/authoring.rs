@@ -59,8 +59,9 @@ fn every_wrong_file_is_told_what_is_wrong_where_and_what_to_do() {
         snapshots_in("err").bind(|| insta::assert_snapshot!(name.as_str(), drawn));
 
         let text = fs::read_to_string(path).unwrap();
-        let findings = fuzzy::yaml::parse(&text).map(drop).unwrap_err();
-        assert!(findings.has_errors(), "{name}");
+        let Err(findings) = fuzzy::yaml::parse(&text) else {
+            panic!("{name} reads well");
+        };
         for finding in &findings.0 {
             let message = &finding.message;
             let opening = message.trim_start_matches('`').chars().next().unwrap();
@@ -92,5 +93,30 @@ fn every_right_file_is_the_tree_it_should_be() {
         let again = fuzzy::yaml::parse(&saved).unwrap_or_else(|f| panic!("{name}:\n{saved}\n{f}"));
         assert_eq!(again.model, document.model, "{name}:\n{saved}");
         fuzzy::Engine::new(&document.model).unwrap_or_else(|e| panic!("{name}: {e}"));
+    }
+}
+
+#[test]
+fn every_code_is_documented_and_the_documented_examples_load() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/rule-sets.md");
+    let docs = fs::read_to_string(docs).unwrap();
+    for (name, path) in cases("err") {
+        let findings = fuzzy::yaml::parse(&fs::read_to_string(path).unwrap());
+        for finding in findings.map(drop).err().map(|f| f.0).unwrap_or_default() {
+            let code = finding.code;
+            assert!(
+                docs.contains(&format!("`{code}`")),
+                "{name}: {code} stands in no docs"
+            );
+        }
+    }
+    let examples = docs
+        .split("```yaml\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next());
+    let whole: Vec<&str> = examples.filter(|text| text.starts_with("fuzzy:")).collect();
+    assert!(!whole.is_empty());
+    for text in whole {
+        fuzzy::yaml::parse(text).unwrap_or_else(|f| panic!("{text}\n{f}"));
     }
 }
