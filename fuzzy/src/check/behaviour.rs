@@ -116,8 +116,8 @@ pub struct Jump {
     pub above: f64,
 }
 
-/// Steps that may be spent on evaluations, a step being one rule at one point: about a tenth of a second.
-const MOST_STEPS: usize = 8_000_000;
+/// Steps that may be spent on a question, a step being one rule or term at one point: some tens of milliseconds.
+const MOST_STEPS: usize = 3_000_000;
 /// Points of a line along one input.
 const MOST_ON_A_LINE: usize = 200;
 /// A smaller part of the output's range is no jump, and no counterexample.

@@ -55,10 +55,12 @@ pub(super) struct Boxes {
 }
 
 /// More boxes than this no author reads; the largest are kept.
-const MOST_BOXES: usize = 200;
+const MOST_BOXES: usize = 50;
 const MOST_MISSING: usize = 16;
+/// Nobody writes a rule over more inputs than this to fill a box, so none is told.
+const MOST_SIDES_OF_A_RULE: usize = 6;
 /// How many formulas are looked at before the search is given up.
-const MOST_LOOKS: usize = 400_000;
+const MOST_LOOKS: usize = 100_000;
 
 /// The boxes in which no rule of `output` reaches `coverage`, or fires at all where that is `None`.
 pub(super) fn uncovered(model: &Model, output: &str, coverage: Option<f64>) -> Boxes {
@@ -129,25 +131,25 @@ fn undecided(logic: &Logic, cells: &Cells, formulas: &[usize]) -> Option<Vec<usi
 
 /// Joins boxes that are one box together.
 fn merged(mut boxes: Vec<Cells>) -> Vec<Cells> {
-    let mut i = 0;
-    while i < boxes.len() {
-        let joined = (i + 1..boxes.len()).find_map(|k| {
-            let whole = together(boxes.get(i)?, boxes.get(k)?)?;
-            Some((k, whole))
-        });
-        match joined {
-            Some((k, whole)) => {
-                boxes.swap_remove(k);
-                if let Some(place) = boxes.get_mut(i) {
-                    *place = whole;
-                }
-                // The larger box may now join with an earlier one.
-                i = 0;
+    loop {
+        let before = boxes.len();
+        let mut left: Vec<Cells> = Vec::with_capacity(before);
+        for one in boxes {
+            let joined = left
+                .iter()
+                .enumerate()
+                .find_map(|(i, other)| Some((i, together(other, &one)?)));
+            match joined.and_then(|(i, whole)| Some((left.get_mut(i)?, whole))) {
+                Some((place, whole)) => *place = whole,
+                None => left.push(one),
             }
-            None => i += 1,
         }
+        // A larger box may join with one that stood before it.
+        if left.len() == before {
+            return left;
+        }
+        boxes = left;
     }
-    boxes
 }
 
 /// The two as one box, if they differ in one input and touch there.
@@ -258,7 +260,10 @@ impl<'v> Dominating<'v> {
 
 /// One of each, in all combinations, up to `most`.
 fn combinations(choices: &[Vec<Antecedent>], most: usize) -> Vec<Vec<Antecedent>> {
-    if choices.is_empty() || choices.iter().any(Vec::is_empty) {
+    if choices.is_empty()
+        || choices.len() > MOST_SIDES_OF_A_RULE
+        || choices.iter().any(Vec::is_empty)
+    {
         return Vec::new();
     }
     let mut all: Vec<Vec<Antecedent>> = Vec::from([Vec::new()]);
