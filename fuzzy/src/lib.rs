@@ -11,6 +11,7 @@ mod defuzzify;
 pub mod diagnostic;
 pub mod engine;
 pub mod format;
+pub mod learn;
 pub mod map;
 pub mod model;
 pub mod rule;

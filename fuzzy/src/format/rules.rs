@@ -21,8 +21,9 @@ pub(super) fn read(
     let items = node.items("`rules`", findings)?;
     if items.is_empty() {
         findings.push(
-            Diagnostic::error("no-rules", node.span.clone(), "the list of rules is empty")
-                .help("write at least one rule: `- IF input IS term THEN output IS term`"),
+            Diagnostic::warning("no-rules", node.span.clone(), "the list of rules is empty").help(
+                "write rules, `- IF input IS term THEN output IS term`, or let `flagred learn` write them",
+            ),
         );
     }
     let mut rules = Vec::with_capacity(items.len());

@@ -1,0 +1,478 @@
+//! Rules from data, after Wang and Mendel (1992): every sample votes for the rule it lies nearest to.
+//!
+//! 1. Each value of a sample is given to the term with its highest membership (the first of equal ones). The terms of
+//!    the inputs are the antecedent, the term of the output the consequent, and the degree of the vote is the product
+//!    of all memberships, times the sample's weight.
+//! 2. Where the samples of an antecedent disagree, [`Resolution`] decides.
+//! 3. What was beaten, how many samples stand behind a rule and how sure they are is kept with the rule.
+//!
+//! Sums are made in fixed point, so the order of the samples changes nothing, not a bit.
+
+use alloc::{
+    boxed::Box,
+    collections::BTreeMap,
+    string::{String, ToString},
+    vec,
+    vec::Vec,
+};
+
+use crate::{
+    model::{Model, Shape, Variable},
+    rule::{Condition, Name},
+};
+
+mod resolve;
+#[cfg(test)]
+mod tests;
+
+/// What decides between the consequents that samples of one antecedent vote for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Resolution {
+    /// The consequent of the one vote with the highest degree wins: Wang and Mendel's, and the FLAGRED paper's.
+    /// One odd sample can decide.
+    #[default]
+    Strongest,
+    /// The consequent with the highest sum of degrees wins.
+    Heaviest,
+    /// The mean of the output over the samples of the antecedent, each weighted with the product of its input
+    /// memberships, decides: the term it belongs to most. Where no term holds it, the term whose peak is nearest.
+    Mean,
+}
+
+/// Which way the output must go when an input rises.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// It never falls.
+    Rising,
+    /// It never rises.
+    Falling,
+}
+
+/// What is learned, and how.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Settings {
+    /// What decides where samples disagree.
+    pub resolution: Resolution,
+    /// An antecedent with fewer samples makes no rule; 0 and 1 take every one.
+    pub min_support: u64,
+    /// A rule with a lower confidence is left out.
+    pub min_degree: f64,
+    /// Complete the rules: an antecedent without one takes what the nearest one says (steps between terms counted,
+    /// the highest of equally near ones), and says so in its note.
+    pub complete: bool,
+    /// Inputs on which the output must be monotone. Neighbouring antecedents that contradict it are averaged until
+    /// none does.
+    pub monotone: Vec<(String, Direction)>,
+    /// A condition that every learned rule is joined to by AND; its inputs are not learned over, and a sample counts
+    /// as much as it fulfils it.
+    pub given: Option<Condition>,
+}
+
+/// Why nothing can be learned with a model and settings.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LearnError {
+    /// The model has not exactly one output.
+    #[error("rules are learned for one output, but the model has {outputs}")]
+    Outputs {
+        /// How many it has.
+        outputs: usize,
+    },
+    /// A variable without terms.
+    #[error("`{variable}` has no terms")]
+    NoTerms {
+        /// The variable.
+        variable: String,
+    },
+    /// A setting names what is no input of the model, or not one that is learned over.
+    #[error("`{name}` is no input that rules are learned over")]
+    NoInput {
+        /// The name.
+        name: String,
+    },
+    /// The given condition names a term that its input does not have.
+    #[error("`{variable}` has no term `{term}`")]
+    NoTerm {
+        /// The input.
+        variable: String,
+        /// The term.
+        term: String,
+    },
+    /// The given condition is more than propositions joined by AND.
+    #[error("the given condition is not made of `input IS term` joined by AND")]
+    Given,
+}
+
+/// Why a sample was not learned from.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// Not one value for each variable.
+    #[error("there are {got} values for {expected} variables")]
+    WrongNumber {
+        /// Inputs and output.
+        expected: usize,
+        /// The values given.
+        got: usize,
+    },
+    /// A value that is NaN or infinite.
+    #[error("`{variable}` is not a finite number")]
+    NotFinite {
+        /// The variable.
+        variable: String,
+    },
+    /// A value outside the range of its variable.
+    #[error("`{variable}` is {value}, outside its range from {low} to {high}")]
+    OutOfRange {
+        /// The variable.
+        variable: String,
+        /// The value.
+        value: f64,
+        /// The lower end of the range.
+        low: f64,
+        /// The upper end of the range.
+        high: f64,
+    },
+    /// A value that belongs to no term.
+    #[error("`{variable}` is {value}, which belongs to none of its terms")]
+    NoTerm {
+        /// The variable.
+        variable: String,
+        /// The value.
+        value: f64,
+    },
+    /// A weight that is not a finite number above 0.
+    #[error("the weight {weight} is not a finite number above 0")]
+    Weight {
+        /// The weight.
+        weight: f64,
+    },
+}
+
+/// Collects samples, and makes rules of them.
+///
+/// # Example: one row of the FLAGRED paper's Table I, and the rule it makes
+///
+/// ```
+/// use fuzzy::learn::{Learner, Settings};
+///
+/// let model = fuzzy::yaml::parse("
+/// fuzzy: 1
+/// name: flight
+/// inputs:
+///   margin: {range: [0, 0.5], partition: {very_low: 0, low: 0.1, medium: 0.2, high: 0.3}}
+///   spread: {range: [0, 0.5], partition: {low: 0, medium: 0.1, high: 0.2}}
+/// outputs:
+///   risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}
+/// rules: []
+/// ")?.model;
+/// let mut learner = Learner::new(&model, Settings::default())?;
+/// learner.add(&[0.007969, 0.226310, 65.679063], 1.0)?;
+/// let learned = learner.finish();
+///
+/// let rule = &learned.model.rules[0];
+/// assert_eq!(rule.rule.to_string(), "IF margin IS very_low AND spread IS high THEN risk IS high");
+/// assert!((rule.confidence.unwrap_or(0.0) - 0.577186).abs() < 1e-6);
+/// assert_eq!(learned.missing, 11);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Learner {
+    model: Model,
+    settings: Settings,
+    /// The inputs that rules are learned over, as indices of the model's.
+    learned: Vec<usize>,
+    /// The given condition: inputs and terms.
+    given: Vec<(usize, usize)>,
+    samples: u64,
+    cells: BTreeMap<Box<[u16]>, Cell>,
+}
+
+/// The rules that were learned, and what was learned about the data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Learned {
+    /// The model with the rules: those it came with, then the learned ones in the order of their antecedents.
+    pub model: Model,
+    /// The samples learned from.
+    pub samples: u64,
+    /// The antecedents whose samples voted for more than one consequent.
+    pub conflicts: u64,
+    /// The antecedents without a rule.
+    pub missing: u64,
+    /// The first [`Learned::SHOWN`] of them.
+    pub missing_antecedents: Vec<Condition>,
+    /// The antecedents that had samples, but too few or too unsure ones for a rule.
+    pub left_out: u64,
+    /// The rules that were completed from their neighbours.
+    pub completed: u64,
+}
+
+impl Learned {
+    /// How many antecedents without a rule are kept.
+    pub const SHOWN: usize = 100;
+}
+
+/// What the samples of one antecedent say.
+#[derive(Debug, Clone, Default)]
+struct Cell {
+    samples: u64,
+    /// For each term of the output that samples voted for.
+    votes: BTreeMap<u16, Votes>,
+    /// Sum of the degrees of the antecedent.
+    degrees: Fixed,
+    /// Sum of these degrees times the share of the output's range below the value.
+    values: Fixed,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Votes {
+    samples: u64,
+    strongest: f64,
+    degrees: Fixed,
+}
+
+/// A sum of numbers from 0 to 2^40 in steps of 2^-64: the same in whatever order they come.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Fixed(u128);
+
+impl Fixed {
+    const ONE: f64 = 18_446_744_073_709_551_616.0;
+
+    fn add(&mut self, x: f64) {
+        self.0 = self.0.saturating_add((x * Fixed::ONE) as u128);
+    }
+
+    fn value(self) -> f64 {
+        self.0 as f64 / Fixed::ONE
+    }
+}
+
+impl Learner {
+    /// A learner for the variables of a model with one output.
+    ///
+    /// # Errors
+    ///
+    /// Not one output, a variable without terms, or settings that name what the model does not have.
+    pub fn new(model: &Model, settings: Settings) -> Result<Learner, LearnError> {
+        let [output] = model.outputs.as_slice() else {
+            return Err(LearnError::Outputs {
+                outputs: model.outputs.len(),
+            });
+        };
+        let mut variables = model.inputs.iter().chain([&output.variable]);
+        if let Some(bare) = variables.find(|v| v.terms.is_empty()) {
+            return Err(LearnError::NoTerms {
+                variable: bare.name.clone(),
+            });
+        }
+        let given = match &settings.given {
+            Some(condition) => given(model, condition)?,
+            None => Vec::new(),
+        };
+        let learned: Vec<usize> = (0..model.inputs.len())
+            .filter(|input| given.iter().all(|(known, _)| known != input))
+            .collect();
+        for (name, _) in &settings.monotone {
+            let found = learned.iter().filter_map(|input| model.inputs.get(*input));
+            if !found.into_iter().any(|input| input.name == *name) {
+                return Err(LearnError::NoInput { name: name.clone() });
+            }
+        }
+        Ok(Learner {
+            model: model.clone(),
+            settings,
+            learned,
+            given,
+            samples: 0,
+            cells: BTreeMap::new(),
+        })
+    }
+
+    /// Adds a sample: a value for each input of the model, then the output; and its weight.
+    ///
+    /// # Errors
+    ///
+    /// Why it was refused; the learner goes on without it.
+    pub fn add(&mut self, values: &[f64], weight: f64) -> Result<(), Refusal> {
+        let Some((output, inputs)) = values
+            .split_last()
+            .filter(|(_, inputs)| inputs.len() == self.model.inputs.len())
+        else {
+            return Err(Refusal::WrongNumber {
+                expected: self.model.inputs.len() + 1,
+                got: values.len(),
+            });
+        };
+        if !(weight.is_finite() && weight > 0.0) {
+            return Err(Refusal::Weight { weight });
+        }
+        let Some(consequent) = self.model.outputs.first().map(|o| &o.variable) else {
+            return Ok(());
+        };
+        for (variable, value) in self.model.inputs.iter().chain([consequent]).zip(values) {
+            check(variable, *value)?;
+        }
+        let mut degree = weight;
+        let mut antecedent = vec![0; self.learned.len()];
+        for (place, input) in antecedent.iter_mut().zip(&self.learned) {
+            let (Some(variable), Some(value)) = (self.model.inputs.get(*input), inputs.get(*input))
+            else {
+                continue;
+            };
+            let (term, membership) = highest(variable, *value).ok_or_else(|| Refusal::NoTerm {
+                variable: variable.name.clone(),
+                value: *value,
+            })?;
+            *place = term;
+            degree *= membership;
+        }
+        for (input, term) in &self.given {
+            let term = self
+                .model
+                .inputs
+                .get(*input)
+                .and_then(|i| i.terms.get(*term));
+            if let (Some(term), Some(value)) = (term, inputs.get(*input)) {
+                degree *= term.height * term.shape.membership(*value);
+            }
+        }
+        let vote = highest(consequent, *output);
+        if vote.is_none() && self.settings.resolution != Resolution::Mean {
+            return Err(Refusal::NoTerm {
+                variable: consequent.name.clone(),
+                value: *output,
+            });
+        }
+        self.samples += 1;
+        if degree <= 0.0 {
+            return Ok(());
+        }
+        let cell = self.cells.entry(antecedent.into_boxed_slice()).or_default();
+        cell.samples += 1;
+        cell.degrees.add(degree);
+        let share = (output - consequent.low) / (consequent.high - consequent.low);
+        cell.values.add(degree * share);
+        if let Some((term, membership)) = vote {
+            let votes = cell.votes.entry(term).or_default();
+            votes.samples += 1;
+            votes.strongest = votes.strongest.max(degree * membership);
+            votes.degrees.add(degree * membership);
+        }
+        Ok(())
+    }
+
+    /// The number of samples learned from so far.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Makes the rules.
+    pub fn finish(&self) -> Learned {
+        resolve::resolve(self)
+    }
+}
+
+/// The inputs and terms of `a IS x AND b IS y`.
+fn given(model: &Model, condition: &Condition) -> Result<Vec<(usize, usize)>, LearnError> {
+    match condition {
+        Condition::And(all) => {
+            let parts = all.iter().map(|part| given(model, part));
+            Ok(parts.collect::<Result<Vec<_>, _>>()?.concat())
+        }
+        Condition::Is(proposition) if proposition.hedges.is_empty() => {
+            let name = &proposition.variable.text;
+            let input = model.inputs.iter().position(|input| input.name == *name);
+            let input = input.ok_or_else(|| LearnError::NoInput { name: name.clone() })?;
+            let word = proposition.term.as_ref().map_or("", |term| &term.text);
+            let terms = model.inputs.get(input).map(|i| i.terms.as_slice());
+            let term = terms
+                .unwrap_or_default()
+                .iter()
+                .position(|term| term.name == word);
+            let term = term.ok_or_else(|| LearnError::NoTerm {
+                variable: name.clone(),
+                term: word.to_string(),
+            })?;
+            Ok(vec![(input, term)])
+        }
+        _ => Err(LearnError::Given),
+    }
+}
+
+fn check(variable: &Variable, value: f64) -> Result<(), Refusal> {
+    if !value.is_finite() {
+        return Err(Refusal::NotFinite {
+            variable: variable.name.clone(),
+        });
+    }
+    if value < variable.low || value > variable.high {
+        return Err(Refusal::OutOfRange {
+            variable: variable.name.clone(),
+            value,
+            low: variable.low,
+            high: variable.high,
+        });
+    }
+    Ok(())
+}
+
+/// The term a value belongs to most, and its membership; the first of equal ones, `None` where it belongs to none.
+fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
+    let mut best: Option<(u16, f64)> = None;
+    for (i, term) in (0..=u16::MAX).zip(&variable.terms) {
+        let membership = term.height * term.shape.membership(value);
+        if membership > best.map_or(0.0, |(_, highest)| highest) {
+            best = Some((i, membership));
+        }
+    }
+    best
+}
+
+/// Where a term stands on its variable: the middle of the part in which it is highest.
+fn peak(variable: &Variable, shape: &Shape) -> f64 {
+    // Shapes are many and few have a closed form; terms are told apart by far more than a thousandth of the range.
+    const STEPS: u32 = 2000;
+    let at =
+        |i: u32| variable.low + (variable.high - variable.low) * f64::from(i) / f64::from(STEPS);
+    let mut highest = f64::NEG_INFINITY;
+    let (mut first, mut last) = (variable.low, variable.low);
+    for x in (0..=STEPS).map(at) {
+        let membership = shape.membership(x);
+        if membership > highest + 1e-12 {
+            (highest, first, last) = (membership, x, x);
+        } else if membership >= highest - 1e-12 {
+            last = x;
+        }
+    }
+    (first + last) / 2.0
+}
+
+/// `a IS x AND b IS y` for terms of the learned inputs.
+fn antecedent(learner: &Learner, terms: &[u16]) -> Option<Condition> {
+    let model = &learner.model;
+    let learned = learner
+        .learned
+        .iter()
+        .zip(terms.iter().map(|t| usize::from(*t)));
+    let given = learner.given.iter().map(|(input, term)| (input, *term));
+    // In the order of the model's inputs, whatever was given.
+    let mut all: Vec<(usize, usize)> = learned.chain(given).map(|(i, t)| (*i, t)).collect();
+    all.sort_unstable();
+    let parts: Vec<Condition> = all
+        .into_iter()
+        .filter_map(|(input, term)| {
+            let input = model.inputs.get(input)?;
+            let term = input.terms.get(term)?;
+            Some(Condition::Is(crate::rule::Proposition {
+                variable: Name::from(input.name.as_str()),
+                hedges: Vec::new(),
+                term: Some(Name::from(term.name.as_str())),
+            }))
+        })
+        .collect();
+    match parts.len() {
+        0 => None,
+        1 => parts.into_iter().next(),
+        _ => Some(Condition::And(parts)),
+    }
+}

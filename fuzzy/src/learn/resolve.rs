@@ -1,0 +1,309 @@
+//! From the votes of each antecedent to its rule.
+
+use alloc::{boxed::Box, collections::BTreeMap, format, string::String, vec, vec::Vec};
+
+use super::{Cell, Direction, Learned, Learner, Resolution, antecedent, highest, peak};
+use crate::{
+    model::{Beaten, Rule, Variable},
+    rule::{Consequent, Name},
+};
+
+/// The most antecedents that are completed or made monotone; more than that nobody reads.
+const MOST_COMPLETED: u64 = 1_000_000;
+
+/// Averages of neighbours settle long before this many rounds.
+const MOST_ROUNDS: usize = 1000;
+
+/// What an antecedent says before it is put into words.
+struct Decision {
+    /// The output, in its unit.
+    value: f64,
+    /// The term of the output that samples decided for; `None` where the value decides.
+    term: Option<u16>,
+    confidence: Option<f64>,
+    note: Option<String>,
+}
+
+pub(super) fn resolve(learner: &Learner) -> Learned {
+    let model = &learner.model;
+    let mut learned = Learned {
+        model: model.clone(),
+        samples: learner.samples,
+        conflicts: 0,
+        missing: 0,
+        missing_antecedents: Vec::new(),
+        left_out: 0,
+        completed: 0,
+    };
+    let Some(output) = model.outputs.first().map(|o| &o.variable) else {
+        return learned;
+    };
+    let shape: Vec<u16> = learner
+        .learned
+        .iter()
+        .filter_map(|input| model.inputs.get(*input))
+        .map(|input| u16::try_from(input.terms.len()).unwrap_or(u16::MAX))
+        .collect();
+    let antecedents = shape
+        .iter()
+        .fold(1u64, |n, terms| n.saturating_mul(u64::from(*terms)));
+    let peaks: Vec<f64> = output
+        .terms
+        .iter()
+        .map(|term| peak(output, &term.shape))
+        .collect();
+
+    let mut decisions: BTreeMap<Box<[u16]>, Decision> = BTreeMap::new();
+    for (terms, cell) in &learner.cells {
+        learned.conflicts += u64::from(cell.votes.len() > 1);
+        let decision = decide(learner, output, &peaks, cell);
+        let sure = decision.confidence.unwrap_or(0.0) >= learner.settings.min_degree;
+        if cell.samples >= learner.settings.min_support && sure {
+            decisions.insert(terms.clone(), decision);
+        } else {
+            learned.left_out += 1;
+        }
+    }
+    if antecedents <= MOST_COMPLETED {
+        if learner.settings.complete && !decisions.is_empty() {
+            learned.completed = complete(&shape, &mut decisions);
+        }
+        if !learner.settings.monotone.is_empty() {
+            make_monotone(learner, &shape, &mut decisions);
+        }
+    }
+    learned.missing = antecedents - decisions.len() as u64;
+    if learned.missing > 0 && antecedents <= MOST_COMPLETED {
+        learned.missing_antecedents = every_antecedent(&shape)
+            .filter(|terms| !decisions.contains_key(terms.as_slice()))
+            .filter_map(|terms| antecedent(learner, &terms))
+            .take(Learned::SHOWN)
+            .collect();
+    }
+    for (terms, decision) in decisions {
+        let cell = learner.cells.get(&terms);
+        learned
+            .model
+            .rules
+            .extend(rule(learner, output, &peaks, &terms, decision, cell));
+    }
+    learned
+}
+
+fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> Decision {
+    // Equal ones: more samples, then the first term.
+    let winner = |weigh: fn(&super::Votes) -> f64| {
+        let mut votes = cell.votes.iter();
+        let first = votes.next();
+        votes.fold(first, |best, next| {
+            let better = best.is_none_or(|best| {
+                (weigh(next.1), next.1.samples) > (weigh(best.1), best.1.samples)
+            });
+            if better { Some(next) } else { best }
+        })
+    };
+    let best = match learner.settings.resolution {
+        Resolution::Strongest => winner(|votes| votes.strongest),
+        Resolution::Heaviest => winner(|votes| votes.degrees.value()),
+        Resolution::Mean => {
+            let share = cell.values.value() / cell.degrees.value();
+            let value = output.low + share * (output.high - output.low);
+            let term = nearest_term(output, peaks, value);
+            let votes = cell.votes.get(&term).map_or(0, |votes| votes.samples);
+            return Decision {
+                value,
+                term: None,
+                // How many of the samples say the same in the same word.
+                confidence: Some(votes as f64 / cell.samples.max(1) as f64),
+                note: None,
+            };
+        }
+    };
+    let term = best.map_or(0, |(term, _)| *term);
+    Decision {
+        value: peaks.get(usize::from(term)).copied().unwrap_or(output.low),
+        term: Some(term),
+        confidence: best.map(|(_, votes)| votes.strongest.min(1.0)),
+        note: None,
+    }
+}
+
+/// The term a value belongs to most; where it belongs to none, the one whose peak is nearest.
+fn nearest_term(output: &Variable, peaks: &[f64], value: f64) -> u16 {
+    if let Some((term, _)) = highest(output, value) {
+        return term;
+    }
+    let mut nearest = (0, f64::INFINITY);
+    for (term, peak) in (0..=u16::MAX).zip(peaks) {
+        let distance = (peak - value).abs();
+        if distance < nearest.1 {
+            nearest = (term, distance);
+        }
+    }
+    nearest.0
+}
+
+fn rule(
+    learner: &Learner,
+    output: &Variable,
+    peaks: &[f64],
+    terms: &[u16],
+    decision: Decision,
+    cell: Option<&Cell>,
+) -> Option<Rule> {
+    let term = decision
+        .term
+        .unwrap_or_else(|| nearest_term(output, peaks, decision.value));
+    let word = &output.terms.get(usize::from(term))?.name;
+    let against = cell.into_iter().flat_map(|cell| &cell.votes);
+    Some(Rule {
+        rule: crate::rule::Rule {
+            condition: antecedent(learner, terms)?,
+            consequents: vec![Consequent {
+                output: Name::from(output.name.as_str()),
+                term: Name::from(word.as_str()),
+            }],
+            weight: 1.0,
+        },
+        confidence: decision.confidence,
+        support: Some(cell.map_or(0, |cell| cell.samples)),
+        against: against
+            .filter(|(other, _)| **other != term)
+            .filter_map(|(other, votes)| {
+                Some(Beaten {
+                    term: output.terms.get(usize::from(*other))?.name.clone(),
+                    degree: match learner.settings.resolution {
+                        Resolution::Strongest => votes.strongest,
+                        Resolution::Heaviest | Resolution::Mean => votes.degrees.value(),
+                    },
+                    support: votes.samples,
+                })
+            })
+            .collect(),
+        note: decision.note,
+    })
+}
+
+/// Every antecedent, the last input running fastest.
+fn every_antecedent(shape: &[u16]) -> impl Iterator<Item = Vec<u16>> + '_ {
+    let count = shape.iter().map(|n| u64::from(*n)).product();
+    (0..count).map(move |i| {
+        let mut rest = i;
+        let mut terms = vec![0; shape.len()];
+        for (term, n) in terms.iter_mut().zip(shape).rev() {
+            *term = (rest % u64::from(*n)) as u16;
+            rest /= u64::from(*n);
+        }
+        terms
+    })
+}
+
+/// Gives every antecedent without a decision that of the nearest one; how many.
+fn complete(shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) -> u64 {
+    let known: Vec<(Box<[u16]>, f64, Option<u16>)> = decisions
+        .iter()
+        .map(|(terms, decision)| (terms.clone(), decision.value, decision.term))
+        .collect();
+    let mut completed = 0;
+    for terms in every_antecedent(shape) {
+        if decisions.contains_key(terms.as_slice()) {
+            continue;
+        }
+        let steps = |other: &[u16]| -> u32 {
+            let pairs = other.iter().zip(&terms);
+            pairs.map(|(a, b)| u32::from(a.abs_diff(*b))).sum()
+        };
+        let nearest = known.iter().min_by(|a, b| {
+            let near = steps(&a.0).cmp(&steps(&b.0));
+            near.then(b.1.total_cmp(&a.1))
+        });
+        if let Some((from, value, term)) = nearest {
+            completed += 1;
+            decisions.insert(
+                terms.clone().into_boxed_slice(),
+                Decision {
+                    value: *value,
+                    term: *term,
+                    confidence: None,
+                    note: Some(format!(
+                        "no samples; as the nearest rule, {} away",
+                        match steps(from) {
+                            1 => "1 step".into(),
+                            steps => format!("{steps} steps"),
+                        }
+                    )),
+                },
+            );
+        }
+    }
+    completed
+}
+
+/// Averages neighbours that go against the direction until none does.
+fn make_monotone(learner: &Learner, shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) {
+    let directions: Vec<Option<Direction>> = learner
+        .learned
+        .iter()
+        .map(|input| {
+            let name = &learner.model.inputs.get(*input)?.name;
+            let found = learner.settings.monotone.iter().find(|(n, _)| n == name);
+            found.map(|(_, direction)| *direction)
+        })
+        .collect();
+    let keys: Vec<Vec<u16>> = every_antecedent(shape).collect();
+    let place = |terms: &[u16]| {
+        terms.iter().zip(shape).fold(0usize, |at, (term, n)| {
+            at * usize::from(*n) + usize::from(*term)
+        })
+    };
+    let mut values: Vec<Option<f64>> = keys
+        .iter()
+        .map(|terms| decisions.get(terms.as_slice()).map(|d| d.value))
+        .collect();
+    let before = values.clone();
+    for _ in 0..MOST_ROUNDS {
+        let mut largest = 0.0_f64;
+        for (axis, direction) in directions.iter().enumerate() {
+            let Some(direction) = direction else {
+                continue;
+            };
+            for terms in &keys {
+                let mut next = terms.clone();
+                if let Some(term) = next.get_mut(axis) {
+                    *term += 1;
+                }
+                if next.get(axis) >= shape.get(axis) {
+                    continue;
+                }
+                let (here, there) = (place(terms), place(&next));
+                let (Some(Some(a)), Some(Some(b))) = (values.get(here), values.get(there)) else {
+                    continue;
+                };
+                let against = match direction {
+                    Direction::Rising => a - b,
+                    Direction::Falling => b - a,
+                };
+                if against > 0.0 {
+                    let mean = Some((a + b) / 2.0);
+                    values[here] = mean;
+                    values[there] = mean;
+                    largest = largest.max(against);
+                }
+            }
+        }
+        if largest < 1e-9 {
+            break;
+        }
+    }
+    for ((terms, old), new) in keys.iter().zip(before).zip(values) {
+        let Some(decision) = decisions.get_mut(terms.as_slice()) else {
+            continue;
+        };
+        if let (Some(old), Some(new)) = (old, new)
+            && old != new
+        {
+            decision.value = new;
+            decision.term = None;
+        }
+    }
+}

@@ -1,0 +1,355 @@
+use super::*;
+use crate::Engine;
+use alloc::format;
+use proptest::prelude::*;
+
+fn variables() -> Model {
+    let text = "
+fuzzy: 1
+name: flight
+inputs:
+  margin: {range: [0, 0.5], partition: {very_low: 0, low: 0.1, medium: 0.2, high: 0.3}}
+  spread: {range: [0, 0.5], partition: {low: 0, medium: 0.1, high: 0.2}}
+outputs:
+  risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}
+rules: []
+";
+    crate::yaml::parse(text).unwrap().model
+}
+
+fn learn(settings: Settings, rows: &[[f64; 3]]) -> Learned {
+    let mut learner = Learner::new(&variables(), settings).unwrap();
+    for row in rows {
+        learner.add(row, 1.0).unwrap();
+    }
+    learner.finish()
+}
+
+fn words(learned: &Learned) -> Vec<String> {
+    learned
+        .model
+        .rules
+        .iter()
+        .map(|r| r.rule.to_string())
+        .collect()
+}
+
+// FLAGRED, Table I: the four rows that the paper prints, numbers 0, 2, 383 and 384.
+const TABLE_1: [[f64; 3]; 4] = [
+    [0.007969, 0.226310, 65.679063],
+    [0.070469, 0.308401, 100.0],
+    [0.064687, 0.153689, 46.015181],
+    [0.351094, 0.092301, 4.798570],
+];
+
+#[test]
+fn the_papers_printed_rows_make_three_rules() {
+    let learned = learn(Settings::default(), &TABLE_1);
+    // By hand: products of the memberships of the terms in which the values lie highest. Rows 2 and 383 share their
+    // antecedent: 0.70469 * 1 * 1 beats 0.64687 * 0.53689 * 0.84061.
+    let expected = [
+        (
+            "IF margin IS very_low AND spread IS high THEN risk IS high",
+            0.577186,
+        ),
+        (
+            "IF margin IS low AND spread IS high THEN risk IS very_high",
+            0.70469,
+        ),
+        (
+            "IF margin IS high AND spread IS medium THEN risk IS very_low",
+            0.745841,
+        ),
+    ];
+    let rules = &learned.model.rules;
+    assert_eq!(rules.len(), 3);
+    for (rule, expected) in rules.iter().zip(expected) {
+        assert_eq!(rule.rule.to_string(), expected.0);
+        approx::assert_abs_diff_eq!(rule.confidence.unwrap(), expected.1, epsilon = 5e-6);
+    }
+    let beaten = &rules[1].against;
+    assert_eq!(
+        (beaten.len(), beaten[0].term.as_str(), beaten[0].support),
+        (1, "medium", 1)
+    );
+    approx::assert_abs_diff_eq!(beaten[0].degree, 0.291941, epsilon = 1e-6);
+    assert_eq!(
+        (learned.samples, learned.conflicts, learned.missing),
+        (4, 1, 9)
+    );
+}
+
+#[test]
+fn the_papers_rules_are_recovered_from_their_own_map() {
+    let model = crate::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))
+        .unwrap()
+        .model;
+    let engine = Engine::new(&model).unwrap();
+    let mut blank = model.clone();
+    blank.rules.clear();
+    // At the peaks and half way between them. A finer sample shows the learner the centroid's blends between two
+    // rules, which are votes of their own: 75 % at margin 0.08 is `high` in full, and no rule says `high`.
+    for step in [5, 10] {
+        let mut learner = Learner::new(&blank, Settings::default()).unwrap();
+        for i in (0..=50).step_by(step) {
+            for j in (0..=50).step_by(step) {
+                let point = [f64::from(i) / 100.0, f64::from(j) / 100.0];
+                let outcome = engine.evaluate(&point).unwrap()[0];
+                // Where the dominating antecedent has no rule the map is a gap.
+                if let (Some(risk), true) = (outcome.value(), outcome.coverage > 0.5 + 1e-9) {
+                    learner.add(&[point[0], point[1], risk], 1.0).unwrap();
+                }
+            }
+        }
+        let mut found = words(&learner.finish());
+        let mut expected: Vec<String> = model.rules.iter().map(|r| r.rule.to_string()).collect();
+        found.sort();
+        expected.sort();
+        assert_eq!(found, expected, "a sample every {step} hundredths");
+    }
+}
+
+#[test]
+fn disagreement_is_resolved_as_asked_and_the_beaten_are_kept() {
+    // One strong vote for very_low against three weaker ones for medium.
+    let rows = [
+        [0.3, 0.2, 0.0],
+        [0.27, 0.2, 45.0],
+        [0.27, 0.2, 50.0],
+        [0.27, 0.2, 50.0],
+    ];
+    let strongest = learn(Settings::default(), &rows);
+    assert_eq!(
+        words(&strongest),
+        ["IF margin IS high AND spread IS high THEN risk IS very_low"]
+    );
+    let rule = &strongest.model.rules[0];
+    assert_eq!((rule.confidence, rule.support), (Some(1.0), Some(4)));
+    assert_eq!(rule.against.len(), 1);
+    assert_eq!(
+        (rule.against[0].term.as_str(), rule.against[0].support),
+        ("medium", 3)
+    );
+    approx::assert_abs_diff_eq!(rule.against[0].degree, 0.7, epsilon = 1e-9);
+    assert_eq!(strongest.conflicts, 1);
+
+    let by = |resolution| {
+        let settings = Settings {
+            resolution,
+            ..Settings::default()
+        };
+        let learned = learn(settings, &rows);
+        learned.model.rules[0].rule.consequents[0].term.text.clone()
+    };
+    assert_eq!(by(Resolution::Heaviest), "medium");
+    // (0 + 0.7 * 145) / (1 + 3 * 0.7) = 32.7
+    assert_eq!(by(Resolution::Mean), "low");
+}
+
+#[test]
+fn few_and_unsure_samples_make_no_rule_where_that_is_asked() {
+    let rows = [[0.3, 0.2, 0.0], [0.3, 0.2, 0.0], [0.0, 0.2, 90.0]];
+    let with = |min_support, min_degree| {
+        let settings = Settings {
+            min_support,
+            min_degree,
+            ..Settings::default()
+        };
+        let learned = learn(settings, &rows);
+        (words(&learned).len(), learned.left_out)
+    };
+    assert_eq!(with(0, 0.0), (2, 0));
+    assert_eq!(with(2, 0.0), (1, 1));
+    assert_eq!(with(0, 0.7), (1, 1));
+}
+
+#[test]
+fn rules_can_be_completed_and_made_monotone() {
+    let rows = [
+        [0.0, 0.2, 100.0],
+        [0.1, 0.2, 25.0],
+        // Against the physics: less margin, yet less risk than above.
+        [0.1, 0.1, 75.0],
+        [0.3, 0.0, 0.0],
+    ];
+    let settings = Settings {
+        resolution: Resolution::Mean,
+        complete: true,
+        monotone: vec![
+            ("margin".into(), Direction::Falling),
+            ("spread".into(), Direction::Rising),
+        ],
+        ..Settings::default()
+    };
+    let learned = learn(settings, &rows);
+    assert_eq!(learned.model.rules.len(), 12);
+    assert_eq!((learned.completed, learned.missing), (8, 0));
+    let engine = Engine::new(&learned.model).unwrap();
+    let risk = |margin: f64, spread: f64| {
+        engine.evaluate(&[margin, spread]).unwrap()[0]
+            .value()
+            .unwrap()
+    };
+    for margin in [0.0, 0.1, 0.2] {
+        for spread in [0.0, 0.1, 0.2] {
+            assert!(risk(margin, spread) >= risk(margin + 0.1, spread) - 1e-9);
+            assert!(risk(margin, spread) >= risk(margin, (spread - 0.1).max(0.0)) - 1e-9);
+        }
+    }
+    let completed = learned
+        .model
+        .rules
+        .iter()
+        .filter(|rule| rule.support == Some(0));
+    for rule in completed {
+        assert!(
+            rule.note
+                .as_ref()
+                .unwrap()
+                .starts_with("no samples; as the nearest rule")
+        );
+        assert_eq!(rule.confidence, None);
+    }
+}
+
+#[test]
+fn what_is_given_joins_every_rule_and_weighs_every_sample() {
+    let condition = crate::rule::parse("IF spread IS low THEN risk IS low")
+        .unwrap()
+        .condition;
+    let settings = Settings {
+        resolution: Resolution::Heaviest,
+        given: Some(condition),
+        ..Settings::default()
+    };
+    let rows = [
+        // Fulfils the condition to 0.1, so three of them are less than one that fulfils it wholly.
+        [0.3, 0.09, 100.0],
+        [0.3, 0.09, 100.0],
+        [0.3, 0.09, 100.0],
+        [0.3, 0.0, 0.0],
+        // Does not fulfil it at all.
+        [0.1, 0.2, 50.0],
+    ];
+    let learned = learn(settings, &rows);
+    assert_eq!(
+        words(&learned),
+        ["IF margin IS high AND spread IS low THEN risk IS very_low"]
+    );
+    assert_eq!((learned.samples, learned.missing), (5, 3));
+}
+
+#[test]
+fn rules_that_the_model_has_are_kept() {
+    let mut model = variables();
+    model.rules.push(crate::model::Rule::from(
+        crate::rule::parse("IF margin IS very_low THEN risk IS very_high").unwrap(),
+    ));
+    let mut learner = Learner::new(&model, Settings::default()).unwrap();
+    learner.add(&TABLE_1[3], 1.0).unwrap();
+    assert_eq!(
+        words(&learner.finish()),
+        [
+            "IF margin IS very_low THEN risk IS very_high",
+            "IF margin IS high AND spread IS medium THEN risk IS very_low"
+        ]
+    );
+}
+
+#[test]
+fn bad_samples_are_refused_with_the_reason() {
+    let mut learner = Learner::new(&variables(), Settings::default()).unwrap();
+    for (values, weight, message) in [
+        (vec![0.1, 0.1], 1.0, "there are 2 values for 3 variables"),
+        (
+            vec![f64::NAN, 0.1, 1.0],
+            1.0,
+            "`margin` is not a finite number",
+        ),
+        (
+            vec![0.1, f64::INFINITY, 1.0],
+            1.0,
+            "`spread` is not a finite number",
+        ),
+        (
+            vec![0.1, 0.6, 1.0],
+            1.0,
+            "`spread` is 0.6, outside its range from 0 to 0.5",
+        ),
+        (
+            vec![0.1, 0.1, -1.0],
+            1.0,
+            "`risk` is -1, outside its range from 0 to 100",
+        ),
+        (
+            vec![0.1, 0.1, 1.0],
+            0.0,
+            "the weight 0 is not a finite number above 0",
+        ),
+    ] {
+        let refusal = learner.add(&values, weight).unwrap_err();
+        assert_eq!(refusal.to_string(), message);
+    }
+    assert_eq!(learner.samples(), 0);
+    assert_eq!(learner.finish().model.rules, []);
+}
+
+#[test]
+fn settings_that_do_not_fit_the_model_are_refused() {
+    let parse = |text: &str| Some(crate::rule::parse(text).unwrap().condition);
+    let given = |text: &str| Settings {
+        given: parse(text),
+        ..Settings::default()
+    };
+    let monotone = Settings {
+        monotone: vec![("wind".into(), Direction::Rising)],
+        ..Settings::default()
+    };
+    for (settings, message) in [
+        (monotone, "`wind` is no input that rules are learned over"),
+        (
+            given("IF wind IS low THEN risk IS low"),
+            "`wind` is no input that rules are learned over",
+        ),
+        (
+            given("IF spread IS wide THEN risk IS low"),
+            "`spread` has no term `wide`",
+        ),
+        (
+            given("IF spread IS low OR margin IS low THEN risk IS low"),
+            "the given condition is not made of `input IS term` joined by AND",
+        ),
+    ] {
+        let error = Learner::new(&variables(), settings).unwrap_err();
+        assert_eq!(error.to_string(), message);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn the_order_of_the_rows_does_not_matter(
+        rows in prop::collection::vec((0.0..0.5f64, 0.0..0.5f64, 0.0..100.0f64, 0.01..3.0f64), 1..120),
+        shift in 0usize..120,
+    ) {
+        for resolution in [Resolution::Strongest, Resolution::Heaviest, Resolution::Mean] {
+            let settings = Settings { resolution, ..Settings::default() };
+            let learn = |rows: &[(f64, f64, f64, f64)]| {
+                let mut learner = Learner::new(&variables(), settings.clone()).unwrap();
+                for (margin, spread, risk, weight) in rows {
+                    learner.add(&[*margin, *spread, *risk], *weight).unwrap();
+                }
+                learner.finish()
+            };
+            let mut turned = rows.clone();
+            turned.rotate_left(shift % rows.len());
+            let mut reversed = rows.clone();
+            reversed.reverse();
+            let once = learn(&rows);
+            prop_assert_eq!(&once, &learn(&turned));
+            prop_assert_eq!(&once, &learn(&reversed));
+            prop_assert_eq!(format!("{once:?}"), format!("{:?}", learn(&turned)));
+        }
+    }
+}
