@@ -6,6 +6,7 @@ pub mod attitude;
 pub mod estimator;
 pub mod evaluation;
 pub mod gap;
+pub mod learning;
 pub mod margin;
 pub mod monitor;
 pub mod profile;

@@ -6,7 +6,7 @@ use crate::{
     accumulator::Accumulator,
     estimator::{Estimate, Estimator, Memory},
     profile::Profile,
-    source::{Motors, Observer, Signal, Source, Statistic, Values},
+    source::{Motors, Observer, Signal, Source, Statistic},
     verdict::{Alert, Ended, Level, Step},
 };
 
@@ -237,11 +237,8 @@ impl<'a> Monitor<'a> {
                 *kept = *e;
             }
         }
-        let values = Values {
-            motors: &self.motors,
-            named: sample.signals,
-        };
-        self.observer.push(t_s, held_s, &values);
+        self.observer
+            .push(t_s, held_s, &self.motors, sample.signals);
         let risk = self.estimate();
         let Ok(estimate) = risk else {
             let known_s = self.last_known_s.unwrap_or(t_s);

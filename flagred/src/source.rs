@@ -98,18 +98,30 @@ pub struct Source {
     pub window_s: f64,
 }
 
-/// The values of a sample that sources draw on.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Values<'a> {
-    /// The effective command of each motor; NaN is unknown.
-    pub(crate) motors: &'a [f64],
-    /// The named signals, in the order in which the monitor was told their names; NaN is unknown.
-    pub(crate) named: &'a [f64],
-}
-
 /// The windows that a number of sources need, each window shared by those that look at the same thing.
+///
+/// # Example: the mean margin of two motors over a second
+///
+/// ```
+/// use flagred::source::{Motors, Observer, Signal, Source, Statistic};
+///
+/// let margin = Source {
+///     statistic: Statistic::Mean,
+///     motors: Motors::Pooled,
+///     signal: Signal::named("motor_margin"),
+///     window_s: 1.0,
+/// };
+/// let mut observer = Observer::new([&margin], &[])?;
+/// for i in 1..=20 {
+///     observer.push(f64::from(i) * 0.1, 0.1, &[0.2, 0.7], &[]);
+/// }
+/// let observed = observer.value(0).ok_or("nothing observed")?;
+/// assert!((observed.value - 0.25).abs() < 1e-12);
+/// assert_eq!(observed.samples, Some(10));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
-pub(crate) struct Observer {
+pub struct Observer {
     inputs: Vec<Input>,
     channels: Vec<Channel>,
 }
@@ -152,7 +164,7 @@ impl Observer {
     /// # Errors
     ///
     /// The name of a signal that is not among `names`.
-    pub(crate) fn new<'a>(
+    pub fn new<'a>(
         sources: impl IntoIterator<Item = &'a Source>,
         names: &[&str],
     ) -> Result<Observer, String> {
@@ -202,17 +214,19 @@ impl Observer {
         Ok(observer)
     }
 
-    pub(crate) fn clear(&mut self) {
+    /// Forgets everything.
+    pub fn clear(&mut self) {
         for channel in &mut self.channels {
             channel.window.clear();
             channel.last = None;
         }
     }
 
-    /// Adds a sample at `t_s` that stands for the `held_s` seconds before it.
-    pub(crate) fn push(&mut self, t_s: f64, held_s: f64, values: &Values<'_>) {
+    /// Adds a sample at `t_s` that stands for the `held_s` seconds before it: the effective command of each motor, and
+    /// the named signals in the order of their names; NaN is unknown.
+    pub fn push(&mut self, t_s: f64, held_s: f64, motors: &[f64], named: &[f64]) {
         for channel in &mut self.channels {
-            let now = channel.reduce(values);
+            let now = channel.reduce(motors, named);
             channel.last = now.mean();
             if now.weight() > 0.0 {
                 // A sample weighs its time, however many motors it knows.
@@ -226,7 +240,7 @@ impl Observer {
     }
 
     /// The value of an input, and how much of its window is behind it; `None` where nothing is known.
-    pub(crate) fn value(&self, input: usize) -> Option<Observation> {
+    pub fn value(&self, input: usize) -> Option<Observation> {
         let Input { channel, statistic } = *self.inputs.get(input)?;
         let channel = self.channels.get(channel)?;
         let total = channel.window.total();
@@ -250,22 +264,25 @@ impl Observer {
     }
 }
 
-/// The value of an input.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Observation {
-    pub(crate) value: f64,
+/// The value of an input, and what is behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// The value.
+    pub value: f64,
     /// The samples in the window; `None` for a statistic that needs but one.
-    pub(crate) samples: Option<u32>,
-    pub(crate) covered_s: f64,
-    pub(crate) window_s: f64,
+    pub samples: Option<u32>,
+    /// How much time of the window they cover, in seconds.
+    pub covered_s: f64,
+    /// The length of the window in seconds.
+    pub window_s: f64,
 }
 
 impl Channel {
     /// The values of one sample, each motor known with weight 1.
-    fn reduce(&self, values: &Values<'_>) -> Moments {
+    fn reduce(&self, motors: &[f64], named: &[f64]) -> Moments {
         let observe: fn(f64) -> f64 = match self.observed {
             Observed::Named(index) => {
-                let value = values.named.get(index).copied().unwrap_or(f64::NAN);
+                let value = named.get(index).copied().unwrap_or(f64::NAN);
                 return self.threshold(value);
             }
             Observed::Command | Observed::LowSide => |e| e,
@@ -274,13 +291,13 @@ impl Channel {
         };
         if self.motors == Motors::Pooled {
             let mut all = Moments::EMPTY;
-            for e in values.motors {
+            for e in motors {
                 all.merge(&self.threshold(observe(*e)));
             }
             return all;
         }
         let mut all = Moments::EMPTY;
-        for e in values.motors.iter().filter(|e| e.is_finite()) {
+        for e in motors.iter().filter(|e| e.is_finite()) {
             all.merge(&Moments::of(observe(*e), 1.0));
         }
         let one = match self.motors {
@@ -322,14 +339,7 @@ mod tests {
     fn observe(sources: &[Source], samples: &[[f64; 2]]) -> Vec<Option<f64>> {
         let mut observer = Observer::new(sources, &["battery_v"]).unwrap();
         for (i, motors) in samples.iter().enumerate() {
-            observer.push(
-                i as f64 * 0.1,
-                0.1,
-                &Values {
-                    motors,
-                    named: &[14.8],
-                },
-            );
+            observer.push(i as f64 * 0.1, 0.1, motors, &[14.8]);
         }
         (0..observer.inputs.len())
             .map(|i| observer.value(i).map(|o| o.value))

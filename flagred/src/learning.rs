@@ -1,0 +1,417 @@
+//! How good learned rules are: on samples they were not learned from, and where a rule is missing.
+
+use alloc::{collections::BTreeMap, vec, vec::Vec};
+
+use fuzzy::{
+    Engine, Model,
+    engine::EvaluateError,
+    learn::{LearnError, Learner, Refusal, Settings},
+    map::{DecisionMap, Grid, GridError},
+};
+
+use crate::{
+    estimator::points_along,
+    gap::{FilledMap, GapMethod, GapSettings, is_gap},
+};
+
+/// A sample to learn from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// A value for each input of the model, then the risk in %.
+    pub values: Vec<f64>,
+    /// How much it counts.
+    pub weight: f64,
+    /// What it belongs to, such as its vehicle: rows of one group are learned from together or not at all.
+    pub group: Option<u32>,
+}
+
+/// How far predictions are from what the rows say, in the unit of the output; rows count by their weight.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Errors {
+    /// The rows compared.
+    pub rows: usize,
+    /// The rows for which there was no prediction.
+    pub without_prediction: usize,
+    /// The root mean square of the error.
+    pub rmse: f64,
+    /// The mean size of the error.
+    pub mean_absolute: f64,
+    /// The mean of prediction less truth: above 0 the predictions are too high.
+    pub bias: f64,
+}
+
+/// Sums up errors.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    rows: usize,
+    without_prediction: usize,
+    weight: f64,
+    squares: f64,
+    sizes: f64,
+    sum: f64,
+}
+
+impl Tally {
+    fn add(&mut self, prediction: Option<f64>, truth: f64, weight: f64) {
+        let Some(prediction) = prediction else {
+            self.without_prediction += 1;
+            return;
+        };
+        let error = prediction - truth;
+        self.rows += 1;
+        self.weight += weight;
+        self.squares += weight * error * error;
+        self.sizes += weight * error.abs();
+        self.sum += weight * error;
+    }
+
+    fn errors(&self) -> Errors {
+        let mean = |sum: f64| {
+            if self.weight > 0.0 {
+                sum / self.weight
+            } else {
+                0.0
+            }
+        };
+        Errors {
+            rows: self.rows,
+            without_prediction: self.without_prediction,
+            rmse: libm::sqrt(mean(self.squares)),
+            mean_absolute: mean(self.sizes),
+            bias: mean(self.sum),
+        }
+    }
+}
+
+/// Why learned rules could not be examined.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExamineError {
+    /// Nothing can be learned.
+    #[error(transparent)]
+    Learn(#[from] LearnError),
+    /// The rules cannot be used.
+    #[error(transparent)]
+    Compile(#[from] fuzzy::engine::CompileError),
+    /// Their map cannot be laid.
+    #[error(transparent)]
+    Map(#[from] GridError),
+    /// Their map cannot be evaluated.
+    #[error(transparent)]
+    Evaluate(#[from] EvaluateError),
+    /// A row cannot be learned from.
+    #[error("row {row}: {refusal}")]
+    Refused {
+        /// The row, counted from 0.
+        row: usize,
+        /// Why.
+        refusal: Refusal,
+    },
+}
+
+/// A rule set with its gaps filled, read anywhere.
+struct Predictor {
+    engine: Engine,
+    coverage_below: f64,
+    filled: FilledMap,
+}
+
+impl Predictor {
+    fn new(model: &Model, gap: &GapSettings) -> Result<Predictor, ExamineError> {
+        let engine = Engine::new(model)?;
+        let coverage_below = gap.coverage_below(model);
+        Ok(Predictor {
+            filled: FilledMap::new(map(&engine, model)?, coverage_below, gap.method),
+            engine,
+            coverage_below,
+        })
+    }
+
+    fn predict(&self, inputs: &[f64]) -> Result<Option<f64>, EvaluateError> {
+        let outcome = match self.engine.evaluate(inputs) {
+            Ok(outcomes) => outcomes.first().copied().unwrap_or_default(),
+            Err(EvaluateError::NoRuleFired { .. }) => fuzzy::engine::Outcome::default(),
+            Err(error) => return Err(error),
+        };
+        if is_gap(outcome.coverage, self.coverage_below) {
+            return Ok(self.filled.read(inputs).map(|reading| reading.value));
+        }
+        Ok(outcome.value())
+    }
+}
+
+fn map(engine: &Engine, model: &Model) -> Result<DecisionMap, ExamineError> {
+    let grid = Grid::new(engine, points_along(model.inputs.len()))?;
+    Ok(DecisionMap::new(engine, grid, 0)?)
+}
+
+/// Into how many parts rows without groups, or rows of very many groups, are divided.
+const FOLDS: u32 = 10;
+
+/// Leaving out one group at a time is affordable up to so many.
+const MOST_GROUPS: usize = 50;
+
+/// Learns without a part of the rows and predicts that part, for each part in turn.
+///
+/// The parts are the groups where the rows have any (tenths of the groups where there are over 50), else tenths of the
+/// rows, divided by their values so that their order does not matter.
+///
+/// # Errors
+///
+/// Where a row is refused or the model cannot be learned with.
+pub fn cross_validate(
+    model: &Model,
+    settings: &Settings,
+    gap: &GapSettings,
+    rows: &[Row],
+) -> Result<Errors, ExamineError> {
+    let parts = parts(rows);
+    let mut all: Vec<u32> = parts.clone();
+    all.sort_unstable();
+    all.dedup();
+    let mut tally = Tally::default();
+    if all.len() < 2 {
+        return Ok(tally.errors());
+    }
+    for part in all {
+        let mut learner = Learner::new(model, settings.clone())?;
+        let (mut held_out, mut learned) = (vec![], 0);
+        for (i, (row, of)) in rows.iter().zip(&parts).enumerate() {
+            if *of == part {
+                held_out.push(row);
+                continue;
+            }
+            let added = learner.add(&row.values, row.weight);
+            added.map_err(|refusal| ExamineError::Refused { row: i, refusal })?;
+            learned += 1;
+        }
+        if learned == 0 {
+            continue;
+        }
+        let predictor = Predictor::new(&learner.finish().model, gap)?;
+        for row in held_out {
+            if let Some((truth, inputs)) = row.values.split_last() {
+                tally.add(predictor.predict(inputs)?, *truth, row.weight);
+            }
+        }
+    }
+    Ok(tally.errors())
+}
+
+/// The part each row belongs to.
+fn parts(rows: &[Row]) -> Vec<u32> {
+    let mut groups: Vec<u32> = rows.iter().filter_map(|row| row.group).collect();
+    groups.sort_unstable();
+    groups.dedup();
+    rows.iter()
+        .map(|row| match row.group {
+            Some(group) if groups.len() <= MOST_GROUPS => group,
+            Some(group) => group % FOLDS,
+            None => (fingerprint(&row.values) % u64::from(FOLDS)) as u32,
+        })
+        .collect()
+}
+
+/// FNV-1a over the bits of the values.
+fn fingerprint(values: &[f64]) -> u64 {
+    let bytes = values
+        .iter()
+        .flat_map(|value| value.to_bits().to_le_bytes());
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    // The low bits of the product depend on the low bits of the bytes alone.
+    hash ^ (hash >> 32)
+}
+
+/// What each gap method makes of cells whose rule was taken away.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GapComparison {
+    /// The rules left out, one at a time: those with samples.
+    pub rules: usize,
+    /// The predictions of the rules themselves, none left out: what a method can hope for.
+    pub with_the_rule: MethodErrors,
+    /// Each method's errors.
+    pub methods: Vec<(GapMethod, MethodErrors)>,
+}
+
+/// Errors over all rows, and the mean over rules of the errors of their rows.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MethodErrors {
+    /// Each row counts.
+    pub by_row: Errors,
+    /// Each rule counts the same, however many samples it has: the mean of its mean absolute error.
+    pub by_rule_mean_absolute: f64,
+}
+
+/// Leaves out the rules one by one, fills the gap each leaves, and compares the filled cells with the rows there.
+///
+/// Rows belong to the rule that fires most strongly on them; rows where none fires enough to cover them are left out.
+///
+/// # Errors
+///
+/// Where the rules do not compile.
+pub fn leave_one_rule_out(
+    model: &Model,
+    rows: &[Row],
+    methods: &[GapMethod],
+    coverage_below: Option<f64>,
+) -> Result<GapComparison, ExamineError> {
+    let settings = |method| GapSettings {
+        method,
+        coverage_below,
+    };
+    let below = settings(GapMethod::Nearest).coverage_below(model);
+    let engine = Engine::new(model)?;
+    let mut of_rule: BTreeMap<usize, Vec<&Row>> = BTreeMap::new();
+    for row in rows {
+        let Some((_, inputs)) = row.values.split_last() else {
+            continue;
+        };
+        let outcome = engine
+            .evaluate(inputs)
+            .ok()
+            .and_then(|o| o.first().copied());
+        if let Some(outcome) = outcome.filter(|o| !is_gap(o.coverage, below))
+            && let Some(rule) = outcome.dominant
+        {
+            of_rule.entry(rule).or_default().push(row);
+        }
+    }
+    let mut totals = vec![(Tally::default(), 0.0); methods.len() + 1];
+    for (rule, rows) in &of_rule {
+        let mut without = model.clone();
+        if *rule < without.rules.len() {
+            without.rules.remove(*rule);
+        }
+        let engine_without = Engine::new(&without)?;
+        let map = map(&engine_without, &without)?;
+        let filled: Vec<FilledMap> = methods
+            .iter()
+            .map(|method| FilledMap::new(map.clone(), below, *method))
+            .collect();
+        let mut tallies = vec![Tally::default(); methods.len() + 1];
+        for row in rows {
+            let Some((truth, inputs)) = row.values.split_last() else {
+                continue;
+            };
+            let with_it = engine.evaluate(inputs)?;
+            let with_it = with_it.first().and_then(fuzzy::engine::Outcome::value);
+            let without_it = filled.iter().map(|map| map.read(inputs).map(|r| r.value));
+            let predictions = [with_it].into_iter().chain(without_it);
+            for ((tally, (total, _)), prediction) in
+                tallies.iter_mut().zip(&mut totals).zip(predictions)
+            {
+                tally.add(prediction, *truth, row.weight);
+                total.add(prediction, *truth, row.weight);
+            }
+        }
+        for ((_, by_rule), tally) in totals.iter_mut().zip(tallies) {
+            *by_rule += tally.errors().mean_absolute / of_rule.len() as f64;
+        }
+    }
+    let mut all = totals.into_iter().map(|(tally, by_rule)| MethodErrors {
+        by_row: tally.errors(),
+        by_rule_mean_absolute: by_rule,
+    });
+    Ok(GapComparison {
+        rules: of_rule.len(),
+        with_the_rule: all.next().unwrap_or_default(),
+        methods: methods.iter().copied().zip(all).collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Risk falls evenly with the margin; nothing depends on the spread.
+    fn rows(groups: Option<u32>) -> Vec<Row> {
+        (0..400)
+            .map(|i| {
+                let (margin, spread) = (f64::from(i % 20) / 40.0, f64::from(i / 20) / 40.0);
+                Row {
+                    values: vec![margin, spread, 100.0 - 200.0 * margin],
+                    weight: 1.0,
+                    group: groups.map(|n| i as u32 % n),
+                }
+            })
+            .collect()
+    }
+
+    fn blank() -> Model {
+        let text = "
+fuzzy: 1
+name: even
+inputs:
+  margin: {range: [0, 0.5], partition: [a, b, c, d, e]}
+  spread: {range: [0, 0.5], partition: [low, high]}
+outputs: {risk: {range: [0, 100], partition: [v0, v25, v50, v75, v100]}}
+rules: []
+";
+        fuzzy::yaml::parse(text).unwrap().model
+    }
+
+    fn learned() -> Model {
+        let mut learner = Learner::new(&blank(), Settings::default()).unwrap();
+        for row in rows(None) {
+            learner.add(&row.values, row.weight).unwrap();
+        }
+        learner.finish().model
+    }
+
+    #[test]
+    fn an_even_relation_is_predicted_on_rows_that_were_left_out() {
+        let validate = |groups, order: fn(&mut Vec<Row>)| {
+            let mut rows = rows(groups);
+            order(&mut rows);
+            cross_validate(
+                &blank(),
+                &Settings::default(),
+                &GapSettings::default(),
+                &rows,
+            )
+            .unwrap()
+        };
+        let errors = validate(None, |_| {});
+        assert_eq!((errors.rows, errors.without_prediction), (400, 0));
+        // The centroid of the outer terms stays 8 % away from the ends, and each rule covers 25 %.
+        assert!(
+            errors.rmse < 8.0 && errors.mean_absolute <= errors.rmse,
+            "{errors:?}"
+        );
+        let turned = validate(None, |rows| rows.reverse());
+        approx::assert_abs_diff_eq!(turned.rmse, errors.rmse, epsilon = 1e-9);
+        assert_eq!(validate(Some(4), |_| {}).rows, 400);
+        assert_eq!(validate(Some(100), |_| {}).rows, 400);
+        assert_eq!(validate(Some(1), |_| {}).rows, 0);
+    }
+
+    #[test]
+    fn a_rule_left_out_is_made_up_for_by_its_neighbours() {
+        let methods = GapMethod::ALL;
+        let compared = leave_one_rule_out(&learned(), &rows(None), &methods, None).unwrap();
+        assert_eq!(compared.rules, 10);
+        assert_eq!(compared.methods.len(), 4);
+        for (method, errors) in &compared.methods {
+            assert_eq!(errors.by_row.rows, 400, "{method:?}");
+            assert!(errors.by_row.rmse >= compared.with_the_rule.by_row.rmse);
+            // A neighbour across the spread knows the same as the rule that is gone.
+            assert!(errors.by_rule_mean_absolute < 15.0, "{method:?} {errors:?}");
+        }
+    }
+
+    #[test]
+    fn a_bad_row_is_named() {
+        let mut rows = rows(None);
+        rows[7].values[0] = f64::NAN;
+        let error = cross_validate(
+            &blank(),
+            &Settings::default(),
+            &GapSettings::default(),
+            &rows,
+        )
+        .unwrap_err();
+        assert_eq!(error.to_string(), "row 7: `margin` is not a finite number");
+    }
+}
