@@ -5,15 +5,19 @@
 mod assess;
 mod check;
 mod convert;
+mod dataset;
 mod diagnostics;
 mod eval;
 mod explain;
 mod failure;
 mod inspect;
+mod learn;
 mod new;
 mod profile;
 mod report;
 mod rule_set;
+mod samples;
+mod table;
 
 use std::process::ExitCode;
 
@@ -42,8 +46,12 @@ enum Command {
     Eval(eval::Arguments),
     /// Say why the outputs of a rule set are what they are
     Explain(explain::Arguments),
+    /// Turn flights into rows to learn from: inputs, attitude error, risk
+    Dataset(dataset::Arguments),
     /// Show what is in a flight log, and where each value came from
     Inspect(inspect::Arguments),
+    /// Learn the rules of a rule set from rows of data
+    Learn(learn::Arguments),
     /// Write a rule set to start from
     New(new::Arguments),
 }
@@ -56,7 +64,9 @@ impl Command {
             Command::Convert(arguments) => convert::run(&arguments),
             Command::Eval(arguments) => eval::run(&arguments),
             Command::Explain(arguments) => explain::run(&arguments),
+            Command::Dataset(arguments) => dataset::run(&arguments),
             Command::Inspect(arguments) => inspect::run(&arguments),
+            Command::Learn(arguments) => learn::run(&arguments),
             Command::New(arguments) => new::run(&arguments),
         }
     }

@@ -1,6 +1,6 @@
 //! `--profile`: a shipped profile by its name, or a file, with the rule set it names.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flagred::{estimator::Estimator, profile::Profile, shipped};
 use fuzzy::Model;
@@ -25,23 +25,8 @@ pub(crate) struct Loaded {
 ///
 /// A shipped name wins over a file of that name (`./flagred` is the file); a file's rule set is looked for beside it first, and then among the shipped ones.
 pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
-    let path = Path::new(name);
-    let shipped = shipped::PROFILES.iter().find(|known| known.name == name);
-    let (profile_text, folder) = match shipped {
-        Some(known) => (known.text.to_owned(), None),
-        None => {
-            let text = read_text(path).map_err(|failure| {
-                failure.help(format!(
-                    "shipped profiles are {}",
-                    shipped::profile_names().join(" and ")
-                ))
-            })?;
-            (text, path.parent())
-        }
-    };
-    let profile = Profile::from_yaml(&profile_text)
-        .map_err(|findings| refuse(&findings, name, &profile_text))?;
-    let (rules_file, rules_text) = rules(&profile, folder)?;
+    let (profile, profile_text, folder) = read(name)?;
+    let (rules_file, rules_text) = rules(&profile, folder.as_deref())?;
     let model = fuzzy::yaml::parse(&rules_text)
         .map_err(|findings| refuse(&findings, &rules_file, &rules_text))?
         .model;
@@ -57,6 +42,26 @@ pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
         profile_text,
         rules_text,
     })
+}
+
+/// Reads a profile without its rule set: also its text, and of a file the folder it is in.
+pub(crate) fn read(name: &str) -> Result<(Profile, String, Option<PathBuf>), Failure> {
+    let path = Path::new(name);
+    let shipped = shipped::PROFILES.iter().find(|known| known.name == name);
+    let (text, folder) = match shipped {
+        Some(known) => (known.text.to_owned(), None),
+        None => {
+            let text = read_text(path).map_err(|failure| {
+                failure.help(format!(
+                    "shipped profiles are {}",
+                    shipped::profile_names().join(" and ")
+                ))
+            })?;
+            (text, path.parent().map(Path::to_owned))
+        }
+    };
+    let profile = Profile::from_yaml(&text).map_err(|findings| refuse(&findings, name, &text))?;
+    Ok((profile, text, folder))
 }
 
 /// The file and the text of the rule set that a profile names.

@@ -2,10 +2,12 @@
 
 use flagred::{
     estimator::{Estimate, Estimator},
-    monitor::{Assessment, Monitor, MonitorError, Sample, Unknown},
+    monitor::{Assessment, Monitor, MonitorError, Unknown},
     verdict::{Finding, Level, VerdictSettings},
 };
 use flightlog::{Flight, Gap};
+
+use crate::samples;
 
 /// What became of one flight.
 pub(crate) struct Assessed {
@@ -91,15 +93,7 @@ pub(crate) fn follow(flight: &Flight, estimator: &Estimator, step_s: f64) -> Ass
         return not_available(gap.to_string(), gap.help().map(str::to_owned));
     }
     let names = estimator.profile().signals();
-    let mut holds: Vec<_> = names
-        .iter()
-        .filter_map(|name| flight.signal(name).map(|signal| signal.hold()))
-        .collect();
-    let carried: Vec<&str> = names
-        .iter()
-        .copied()
-        .filter(|name| flight.signal(name).is_some())
-        .collect();
+    let carried = samples::carried(flight, &names);
     let mut monitor = match Monitor::new(estimator, flight.motors.len(), &carried) {
         Ok(monitor) => monitor,
         Err(error) => {
@@ -113,26 +107,13 @@ pub(crate) fn follow(flight: &Flight, estimator: &Estimator, step_s: f64) -> Ass
     let mut findings = Vec::new();
     let mut steps = Vec::new();
     let mut next_step_s = f64::NEG_INFINITY;
-    let mut motors = vec![f64::NAN; flight.motors.len()];
-    let mut signals = vec![f64::NAN; holds.len()];
-    for (t_s, row) in flight.commands.rows() {
-        for (effective, &raw) in motors.iter_mut().zip(row) {
-            *effective = flight.effective_command(raw).unwrap_or(f64::NAN);
-        }
-        for (value, hold) in signals.iter_mut().zip(&mut holds) {
-            *value = hold.at(t_s).unwrap_or(f64::NAN);
-        }
-        let in_air = flight.is_in_air(t_s) == Some(true);
-        let assessment = monitor.push(&Sample {
-            t_s,
-            motors: &motors,
-            in_air,
-            signals: &signals,
-        });
+    samples::each(flight, &carried, |sample| {
+        let (t_s, in_air) = (sample.t_s, sample.in_air);
+        let assessment = monitor.push(sample);
         findings.extend(assessment.ended.into_iter().flatten());
         let judged = is_judged(flight, &estimator.profile().verdict, t_s);
         if in_air {
-            tally.add(&assessment, judged, &motors);
+            tally.add(&assessment, judged, sample.motors);
         }
         if in_air && t_s >= next_step_s {
             // On a grid of `step_s`; every sample where they are rarer.
@@ -147,7 +128,7 @@ pub(crate) fn follow(flight: &Flight, estimator: &Estimator, step_s: f64) -> Ass
                 judged,
             });
         }
-    }
+    });
     findings.extend(monitor.finish().into_iter().flatten());
     findings.sort_by(|a, b| b.level.cmp(&a.level).then(a.from_s.total_cmp(&b.from_s)));
 

@@ -83,7 +83,7 @@ impl GapSettings {
 
 /// Whether a coverage is below the one from which on a cell counts as covered. Half way between two peaks, where both
 /// terms should be at 0.5, rounding leaves one of them a hair below it.
-pub(crate) fn is_gap(coverage: f64, coverage_below: f64) -> bool {
+pub fn is_gap(coverage: f64, coverage_below: f64) -> bool {
     coverage < coverage_below - 1e-9 * coverage_below
 }
 

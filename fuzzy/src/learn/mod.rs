@@ -29,13 +29,14 @@ mod tests;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Resolution {
     /// The consequent of the one vote with the highest degree wins: Wang and Mendel's, and the FLAGRED paper's.
-    /// One odd sample can decide.
+    /// One odd sample can decide. The confidence of a rule is that degree.
     #[default]
     Strongest,
-    /// The consequent with the highest sum of degrees wins.
+    /// The consequent with the highest sum of degrees wins. The confidence is its share of the sum of all degrees.
     Heaviest,
     /// The mean of the output over the samples of the antecedent, each weighted with the product of its input
-    /// memberships, decides: the term it belongs to most. Where no term holds it, the term whose peak is nearest.
+    /// memberships, decides: the term it belongs to most. Where no term holds it, the term whose peak is nearest. The
+    /// confidence is the share of that weight whose own values say the same term.
     Mean,
 }
 
@@ -184,6 +185,8 @@ pub struct Learner {
     learned: Vec<usize>,
     /// The given condition: inputs and terms.
     given: Vec<(usize, usize)>,
+    /// Where the terms of the output stand.
+    peaks: Vec<f64>,
     samples: u64,
     cells: BTreeMap<Box<[u16]>, Cell>,
 }
@@ -283,6 +286,12 @@ impl Learner {
             settings,
             learned,
             given,
+            peaks: output
+                .variable
+                .terms
+                .iter()
+                .map(|term| peak(&output.variable, &term.shape))
+                .collect(),
             samples: 0,
             cells: BTreeMap::new(),
         })
@@ -336,13 +345,18 @@ impl Learner {
                 degree *= term.height * term.shape.membership(*value);
             }
         }
-        let vote = highest(consequent, *output);
-        if vote.is_none() && self.settings.resolution != Resolution::Mean {
-            return Err(Refusal::NoTerm {
-                variable: consequent.name.clone(),
-                value: *output,
-            });
-        }
+        let vote = match (highest(consequent, *output), self.settings.resolution) {
+            (Some(vote), Resolution::Mean) => (vote.0, 1.0),
+            (Some(vote), _) => vote,
+            // Between terms that leave gaps a value still lies nearest to one of them.
+            (None, Resolution::Mean) => (resolve::nearest_peak(&self.peaks, *output), 1.0),
+            (None, _) => {
+                return Err(Refusal::NoTerm {
+                    variable: consequent.name.clone(),
+                    value: *output,
+                });
+            }
+        };
         self.samples += 1;
         if degree <= 0.0 {
             return Ok(());
@@ -352,12 +366,11 @@ impl Learner {
         cell.degrees.add(degree);
         let share = (output - consequent.low) / (consequent.high - consequent.low);
         cell.values.add(degree * share);
-        if let Some((term, membership)) = vote {
-            let votes = cell.votes.entry(term).or_default();
-            votes.samples += 1;
-            votes.strongest = votes.strongest.max(degree * membership);
-            votes.degrees.add(degree * membership);
-        }
+        let (term, membership) = vote;
+        let votes = cell.votes.entry(term).or_default();
+        votes.samples += 1;
+        votes.strongest = votes.strongest.max(degree * membership);
+        votes.degrees.add(degree * membership);
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use alloc::{boxed::Box, collections::BTreeMap, format, string::String, vec, vec::Vec};
 
-use super::{Cell, Direction, Learned, Learner, Resolution, antecedent, highest, peak};
+use super::{Cell, Direction, Learned, Learner, Resolution, Votes, antecedent, highest};
 use crate::{
     model::{Beaten, Rule, Variable},
     rule::{Consequent, Name},
@@ -47,16 +47,11 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
     let antecedents = shape
         .iter()
         .fold(1u64, |n, terms| n.saturating_mul(u64::from(*terms)));
-    let peaks: Vec<f64> = output
-        .terms
-        .iter()
-        .map(|term| peak(output, &term.shape))
-        .collect();
-
+    let peaks = &learner.peaks;
     let mut decisions: BTreeMap<Box<[u16]>, Decision> = BTreeMap::new();
     for (terms, cell) in &learner.cells {
         learned.conflicts += u64::from(cell.votes.len() > 1);
-        let decision = decide(learner, output, &peaks, cell);
+        let decision = decide(learner, output, peaks, cell);
         let sure = decision.confidence.unwrap_or(0.0) >= learner.settings.min_degree;
         if cell.samples >= learner.settings.min_support && sure {
             decisions.insert(terms.clone(), decision);
@@ -85,14 +80,14 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
         learned
             .model
             .rules
-            .extend(rule(learner, output, &peaks, &terms, decision, cell));
+            .extend(rule(learner, output, peaks, &terms, decision, cell));
     }
     learned
 }
 
 fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> Decision {
     // Equal ones: more samples, then the first term.
-    let winner = |weigh: fn(&super::Votes) -> f64| {
+    let winner = |weigh: fn(&Votes) -> f64| {
         let mut votes = cell.votes.iter();
         let first = votes.next();
         votes.fold(first, |best, next| {
@@ -109,12 +104,10 @@ fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> D
             let share = cell.values.value() / cell.degrees.value();
             let value = output.low + share * (output.high - output.low);
             let term = nearest_term(output, peaks, value);
-            let votes = cell.votes.get(&term).map_or(0, |votes| votes.samples);
             return Decision {
                 value,
                 term: None,
-                // How many of the samples say the same in the same word.
-                confidence: Some(votes as f64 / cell.samples.max(1) as f64),
+                confidence: Some(degree(learner, cell, cell.votes.get(&term))),
                 note: None,
             };
         }
@@ -123,8 +116,29 @@ fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> D
     Decision {
         value: peaks.get(usize::from(term)).copied().unwrap_or(output.low),
         term: Some(term),
-        confidence: best.map(|(_, votes)| votes.strongest.min(1.0)),
+        confidence: best.map(|(_, votes)| degree(learner, cell, Some(votes))),
         note: None,
+    }
+}
+
+/// How much stands behind a consequent, in [0, 1].
+fn degree(learner: &Learner, cell: &Cell, votes: Option<&Votes>) -> f64 {
+    let Some(votes) = votes else {
+        return 0.0;
+    };
+    match learner.settings.resolution {
+        Resolution::Strongest => votes.strongest.min(1.0),
+        Resolution::Heaviest | Resolution::Mean => {
+            let all = cell
+                .votes
+                .values()
+                .fold(0.0, |sum, v| sum + v.degrees.value());
+            if all > 0.0 {
+                votes.degrees.value() / all
+            } else {
+                0.0
+            }
+        }
     }
 }
 
@@ -133,6 +147,10 @@ fn nearest_term(output: &Variable, peaks: &[f64], value: f64) -> u16 {
     if let Some((term, _)) = highest(output, value) {
         return term;
     }
+    nearest_peak(peaks, value)
+}
+
+pub(super) fn nearest_peak(peaks: &[f64], value: f64) -> u16 {
     let mut nearest = (0, f64::INFINITY);
     for (term, peak) in (0..=u16::MAX).zip(peaks) {
         let distance = (peak - value).abs();
@@ -172,10 +190,7 @@ fn rule(
             .filter_map(|(other, votes)| {
                 Some(Beaten {
                     term: output.terms.get(usize::from(*other))?.name.clone(),
-                    degree: match learner.settings.resolution {
-                        Resolution::Strongest => votes.strongest,
-                        Resolution::Heaviest | Resolution::Mean => votes.degrees.value(),
-                    },
+                    degree: cell.map_or(0.0, |cell| degree(learner, cell, Some(votes))),
                     support: votes.samples,
                 })
             })

@@ -1,0 +1,240 @@
+//! Rows from a flight log.
+
+use flagred::{
+    attitude::{Attitude, AttitudeError, risk_pct},
+    source::{Observer, Source},
+    window::{Moments, Window},
+};
+use flightlog::{Flight, Gap};
+
+use super::{Cut, Plan, Row, Rows};
+use crate::{failure::Failure, samples};
+
+/// How far apart the moments are from which [`Cut::Ahead`] looks ahead, in seconds.
+const STEP_S: f64 = 0.5;
+
+/// Without times in the header, so much at either end of a time in the air is taking off and landing, in seconds.
+const ENDS_S: f64 = 10.0;
+
+/// The attitude error that counts as one is over so many seconds: a shorter one is a twitch.
+const ERROR_WINDOW_S: f64 = 1.0;
+
+const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
+
+pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
+    let names = plan.profile.signals();
+    let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
+    let options = flightlog::Options {
+        signals: Some(wanted.collect()),
+    };
+    let flight = flightlog::open(log, &options)?;
+    let said = |key: &str| {
+        let found = flight.header.iter().find(|(k, _)| k == key);
+        found.map(|(_, value)| value.as_str())
+    };
+    if let Some((key, value)) = plan.skip.iter().find(|(k, v)| said(k) == Some(v)) {
+        return Ok(Rows {
+            rows: Vec::new(),
+            notes: vec![format!("left out: {key} is {value}")],
+        });
+    }
+    let gaps = flight.gaps();
+    if let Some(gap) = gaps.iter().find(|gap| !matches!(gap, Gap::TooSlow { .. })) {
+        let failure = Failure::unreadable(format!("`{log}` makes no rows: {gap}"));
+        return Err(match gap.help() {
+            Some(help) => failure.help(help),
+            None => failure,
+        });
+    }
+    let carried = samples::carried(&flight, &names);
+    if let Some(lacking) = names.iter().find(|name| !carried.contains(name)) {
+        return Err(Failure::unreadable(format!(
+            "`{log}` makes no rows: it does not carry the signal `{lacking}`"
+        ))
+        .help("`flagred inspect` lists the signals a log carries"));
+    }
+    let number = |key: &str| said(key).and_then(|text| text.parse::<f64>().ok());
+    let spans: Vec<(f64, f64)> = match (number("judged_from_s"), number("judged_to_s")) {
+        (Some(from_s), Some(to_s)) => vec![(from_s, to_s)],
+        _ => flight
+            .in_air
+            .iter()
+            .flat_map(|air| &air.spans)
+            .map(|span| (span.start_s + ENDS_S, span.end_s - ENDS_S))
+            .collect(),
+    };
+    let errors = squared_errors(&flight);
+    let mut made = Rows {
+        rows: Vec::new(),
+        notes: Vec::new(),
+    };
+    let mut refused = 0;
+    for (from_s, to_s) in spans {
+        if to_s <= from_s {
+            continue;
+        }
+        let moments = moments(plan.cut, from_s, to_s);
+        let length_s = match plan.cut {
+            Cut::Flights => Some(to_s - from_s),
+            Cut::Windows { length_s } => Some(length_s),
+            Cut::Ahead { .. } => None,
+        };
+        let inputs = inputs(&flight, plan, &carried, length_s, &moments);
+        for (t_s, inputs) in moments.into_iter().zip(inputs) {
+            let error_deg = match plan.cut {
+                Cut::Ahead { horizon_s } => largest_ahead(&errors, t_s, horizon_s),
+                _ => rmse(&errors, t_s - length_s.unwrap_or(0.0), t_s),
+            };
+            let known = inputs.iter().all(|value| value.is_finite());
+            let (Some(att_rmse_deg), true) = (error_deg, known) else {
+                refused += 1;
+                continue;
+            };
+            made.rows.push(Row {
+                vehicle: said("vehicle").unwrap_or("").to_owned(),
+                from_s: length_s.map(|length_s| t_s - length_s),
+                to_s: Some(t_s),
+                inputs,
+                att_rmse_deg,
+                risk_pct: risk_pct(att_rmse_deg, plan.critical_deg),
+            });
+        }
+    }
+    if made.rows.is_empty() {
+        made.notes
+            .push("no row: too short a time in the air, or nothing known in it".to_owned());
+    } else if refused > 0 {
+        made.notes.push(format!(
+            "{refused} rows left out: an input or the attitude is unknown"
+        ));
+    }
+    Ok(made)
+}
+
+/// The times at which rows are made, in order.
+fn moments(cut: Cut, from_s: f64, to_s: f64) -> Vec<f64> {
+    let every = |first_s: f64, step_s: f64| {
+        let count = ((to_s - first_s) / step_s + 1e-9).floor();
+        (0..=count.max(-1.0) as i64).map(move |i| first_s + i as f64 * step_s)
+    };
+    match cut {
+        Cut::Flights => vec![to_s],
+        Cut::Windows { length_s } if from_s + length_s > to_s => Vec::new(),
+        Cut::Windows { length_s } => every(from_s + length_s, length_s).collect(),
+        Cut::Ahead { .. } => every(from_s, STEP_S).collect(),
+    }
+}
+
+/// The inputs at each moment, over windows of one length or over their own.
+fn inputs(
+    flight: &Flight,
+    plan: &Plan,
+    carried: &[&str],
+    length_s: Option<f64>,
+    moments: &[f64],
+) -> Vec<Vec<f64>> {
+    let sources: Vec<Source> = plan
+        .profile
+        .inputs
+        .iter()
+        .map(|input| Source {
+            window_s: length_s.unwrap_or(input.source.window_s),
+            ..input.source.clone()
+        })
+        .collect();
+    let Ok(mut observer) = Observer::new(&sources, carried) else {
+        return Vec::new();
+    };
+    let read = |observer: &Observer| {
+        let values = (0..sources.len()).map(|i| observer.value(i));
+        values
+            .map(|observed| observed.map_or(f64::NAN, |o| o.value))
+            .collect::<Vec<f64>>()
+    };
+    let mut rows = Vec::with_capacity(moments.len());
+    let mut last_s = None;
+    let longest_gap_s = plan.profile.sampling.longest_gap_s;
+    samples::each(flight, carried, |sample| {
+        // The state at a moment is that after the newest sample up to it.
+        while moments
+            .get(rows.len())
+            .is_some_and(|t_s| *t_s + 1e-6 < sample.t_s)
+        {
+            rows.push(read(&observer));
+        }
+        let held_s = last_s.map_or(0.0, |last_s| sample.t_s - last_s);
+        last_s = Some(sample.t_s);
+        if !sample.in_air || held_s > longest_gap_s {
+            observer.clear();
+        } else if held_s > 0.0 {
+            observer.push(sample.t_s, held_s, sample.motors, sample.signals);
+        }
+    });
+    while rows.len() < moments.len() {
+        rows.push(read(&observer));
+    }
+    rows
+}
+
+/// The squared attitude error in square degrees over time.
+fn squared_errors(flight: &Flight) -> Vec<(f64, Attitude)> {
+    let Some(roll) = flight.signal("roll_deg") else {
+        return Vec::new();
+    };
+    let mut holds: Vec<_> = ATTITUDE
+        .iter()
+        .map(|name| flight.signal(name).map(|signal| signal.hold()))
+        .collect();
+    roll.t_s
+        .iter()
+        .map(|&t_s| {
+            let mut at = |i: usize| {
+                let hold = holds.get_mut(i).and_then(Option::as_mut);
+                hold.and_then(|hold| hold.at(t_s)).unwrap_or(f64::NAN)
+            };
+            let attitude = Attitude {
+                roll_des_deg: at(0),
+                roll_deg: at(1),
+                pitch_des_deg: at(2),
+                pitch_deg: at(3),
+            };
+            (t_s, attitude)
+        })
+        .collect()
+}
+
+fn within(errors: &[(f64, Attitude)], after_s: f64, to_s: f64) -> &[(f64, Attitude)] {
+    let first = errors.partition_point(|(t_s, _)| *t_s <= after_s + 1e-6);
+    let end = errors.partition_point(|(t_s, _)| *t_s <= to_s + 1e-6);
+    errors.get(first..end).unwrap_or(&[])
+}
+
+/// The root mean square over `(from_s, to_s]`.
+fn rmse(errors: &[(f64, Attitude)], from_s: f64, to_s: f64) -> Option<f64> {
+    let mut rmse = AttitudeError::default();
+    for (_, attitude) in within(errors, from_s, to_s) {
+        rmse.push(attitude);
+    }
+    rmse.rmse_deg()
+}
+
+/// The largest root mean square over a second that ends within `(t_s, t_s + horizon_s]`.
+fn largest_ahead(errors: &[(f64, Attitude)], t_s: f64, horizon_s: f64) -> Option<f64> {
+    let mut second = Window::new(ERROR_WINDOW_S);
+    let mut last_s = None;
+    let mut largest: Option<f64> = None;
+    for (at_s, attitude) in within(errors, t_s - ERROR_WINDOW_S, t_s + horizon_s) {
+        let held_s = last_s.map_or(0.0, |last_s| at_s - last_s);
+        last_s = Some(*at_s);
+        let square = attitude.squared_error_deg2();
+        if square.is_finite() && held_s > 0.0 {
+            second.push(*at_s, held_s, &Moments::of(square, held_s));
+        }
+        if *at_s > t_s + 1e-6
+            && let Some(mean) = second.total().mean()
+        {
+            largest = Some(largest.unwrap_or(0.0).max(mean.sqrt()));
+        }
+    }
+    largest
+}

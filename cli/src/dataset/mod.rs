@@ -1,0 +1,260 @@
+//! `flagred dataset`: flights as rows to learn from.
+
+mod flight;
+mod summary;
+
+use std::{
+    io::{IsTerminal, Write},
+    path::Path,
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
+    thread,
+};
+
+use flagred::{
+    attitude::CRITICAL_ERROR_DEG,
+    profile::Profile,
+    source::{Motors, Signal, Source, Statistic},
+};
+
+use crate::{
+    failure::{Exit, Failure},
+    profile,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Flight logs with attitude, or tables with a row for each flight (`margin_mean`, `c_mean`, `c_std`, ...)
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<String>,
+
+    /// Add the inputs of this profile: a shipped one's name, or a file
+    #[arg(long, value_name = "NAME|FILE")]
+    profile: Option<String>,
+
+    /// A row for every so many seconds, instead of one for each time in the air
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "ahead")]
+    window: Option<f64>,
+
+    /// What comes within so many seconds, seen from every half second: the inputs over the windows of the profile, and
+    /// the largest attitude error over a second that follows
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    ahead: Option<f64>,
+
+    /// The attitude error that counts as 100 %, in degrees
+    #[arg(long, value_name = "DEG", value_parser = seconds, default_value_t = CRITICAL_ERROR_DEG)]
+    critical: f64,
+
+    /// Leave out flights whose header says so: `kind=manoeuvre`
+    #[arg(long, value_name = "KEY=VALUE", value_parser = pair)]
+    skip: Vec<(String, String)>,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("write a number above 0".to_owned()),
+    }
+}
+
+pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("write `KEY=VALUE`")?;
+    Ok((key.trim().to_owned(), value.trim().to_owned()))
+}
+
+/// What rows are made of.
+struct Plan {
+    profile: Profile,
+    cut: Cut,
+    critical_deg: f64,
+    skip: Vec<(String, String)>,
+}
+
+/// How a flight is cut into rows.
+#[derive(Clone, Copy)]
+enum Cut {
+    /// One row for each time in the air.
+    Flights,
+    /// One row for every so many seconds.
+    Windows { length_s: f64 },
+    /// A row every [`flight::STEP_S`], the truth in the seconds that follow.
+    Ahead { horizon_s: f64 },
+}
+
+/// One row of the data set.
+struct Row {
+    vehicle: String,
+    from_s: Option<f64>,
+    to_s: Option<f64>,
+    inputs: Vec<f64>,
+    att_rmse_deg: f64,
+    risk_pct: f64,
+}
+
+/// The rows of one file, and what is to be said about it.
+struct Rows {
+    rows: Vec<Row>,
+    notes: Vec<String>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let profile = match &arguments.profile {
+        Some(name) => profile::read(name)?.0,
+        None => profile::read("flagred-paper")?.0,
+    };
+    let plan = Plan {
+        profile: with_margin_and_spread(profile),
+        cut: match (arguments.window, arguments.ahead) {
+            (Some(length_s), _) => Cut::Windows { length_s },
+            (None, Some(horizon_s)) => Cut::Ahead { horizon_s },
+            (None, None) => Cut::Flights,
+        },
+        critical_deg: arguments.critical,
+        skip: arguments.skip.clone(),
+    };
+    let mut out = std::io::stdout().lock();
+    write!(out, "file,vehicle,from_s,t_s")?;
+    for input in &plan.profile.inputs {
+        write!(out, ",{}", input.name)?;
+    }
+    writeln!(out, ",att_rmse_deg,{}", plan.profile.output)?;
+
+    let mut exit = Exit::Clean;
+    let mut written = 0;
+    let mut failed = None;
+    in_order(
+        &arguments.logs,
+        |log| rows_of(log, &plan),
+        |log, made| {
+            match made {
+                Ok(made) => {
+                    for note in &made.notes {
+                        say(&format!("{log}: {note}"));
+                    }
+                    written += made.rows.len();
+                    for row in &made.rows {
+                        if failed.is_none() {
+                            failed = write_row(&mut out, log, row).err();
+                        }
+                    }
+                }
+                Err(failure) => {
+                    failure.report();
+                    exit = Exit::Unreadable;
+                }
+            }
+            failed.is_none()
+        },
+    );
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+    if written == 0 && exit == Exit::Clean {
+        return Err(Failure::unreadable("no row could be made of these flights"));
+    }
+    Ok(exit)
+}
+
+/// The paper's two inputs come first, whatever the rules of the profile look at.
+fn with_margin_and_spread(mut profile: Profile) -> Profile {
+    let paper = [
+        ("margin", Statistic::Mean, Signal::MotorMargin),
+        ("spread", Statistic::Std, Signal::MotorCommand),
+    ];
+    for (place, (name, statistic, signal)) in paper.into_iter().enumerate() {
+        if profile.inputs.iter().all(|input| input.name != name) {
+            let source = Source {
+                statistic,
+                motors: Motors::Pooled,
+                signal,
+                window_s: profile.window_s,
+            };
+            let name = name.to_owned();
+            let input = flagred::profile::ProfileInput { name, source };
+            profile
+                .inputs
+                .insert(place.min(profile.inputs.len()), input);
+        }
+    }
+    profile
+}
+
+fn rows_of(log: &str, plan: &Plan) -> Result<Rows, Failure> {
+    if let Some(table) = summary::open(Path::new(log)) {
+        return summary::rows(&table?, plan);
+    }
+    flight::rows(log, plan)
+}
+
+fn write_row(out: &mut impl Write, log: &str, row: &Row) -> std::io::Result<()> {
+    let quoted = |text: &str| match text.contains([',', '"', '\n']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    };
+    let time = |t_s: Option<f64>| t_s.map(|t_s| format!("{t_s:.3}")).unwrap_or_default();
+    let (from, to) = (time(row.from_s), time(row.to_s));
+    write!(out, "{},{},{from},{to}", quoted(log), quoted(&row.vehicle))?;
+    for value in &row.inputs {
+        write!(out, ",{value:.8}")?;
+    }
+    writeln!(out, ",{:.6},{:.5}", row.att_rmse_deg, row.risk_pct)
+}
+
+fn say(note: &str) {
+    // Nothing is left to tell a user whose standard error is closed.
+    let _ = writeln!(anstream::stderr(), "{note}");
+}
+
+/// Works on all items on all cores, and hands over the results in the order of the items; `take` says whether to go
+/// on. Shows how far it is, where someone is watching.
+fn in_order<R: Send>(
+    items: &[String],
+    work: impl Fn(&str) -> R + Sync,
+    mut take: impl FnMut(&str, R) -> bool,
+) {
+    let next = AtomicUsize::new(0);
+    let stop = AtomicUsize::new(0);
+    let done = Mutex::new(0usize);
+    let watched = std::io::stderr().is_terminal() && items.len() > 1;
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let (send, receive) = std::sync::mpsc::sync_channel(2 * threads);
+    thread::scope(|scope| {
+        for _ in 0..threads.min(items.len()) {
+            let send = send.clone();
+            scope.spawn(|| {
+                let send = send;
+                loop {
+                    let i = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(item) = items.get(i) else {
+                        break;
+                    };
+                    if stop.load(Ordering::Relaxed) > 0 || send.send((i, work(item))).is_err() {
+                        break;
+                    }
+                    if let (true, Ok(mut done)) = (watched, done.lock()) {
+                        *done += 1;
+                        let _ = write!(anstream::stderr(), "\r{} of {} files", *done, items.len());
+                        if *done == items.len() {
+                            let _ = writeln!(anstream::stderr());
+                        }
+                    }
+                }
+            });
+        }
+        drop(send);
+        let mut waiting: std::collections::BTreeMap<usize, R> = std::collections::BTreeMap::new();
+        let mut turn = 0;
+        for (i, result) in receive {
+            waiting.insert(i, result);
+            while let Some(result) = waiting.remove(&turn) {
+                let item = items.get(turn).map_or("", String::as_str);
+                turn += 1;
+                if !take(item, result) {
+                    stop.store(1, Ordering::Relaxed);
+                }
+            }
+        }
+    });
+}

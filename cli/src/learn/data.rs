@@ -1,0 +1,104 @@
+//! Rows from tables, each with its place for messages.
+
+use std::collections::BTreeMap;
+
+use flagred::learning::Row;
+use fuzzy::Model;
+
+use super::Arguments;
+use crate::{failure::Failure, table::Table};
+
+/// Rows, and those that cannot be used, with the reason.
+pub(super) struct Data {
+    pub(super) rows: Vec<(Row, String)>,
+    pub(super) refused: Vec<String>,
+}
+
+pub(super) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure> {
+    let inputs = model.inputs.iter();
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
+    if let Some((stray, _)) = arguments
+        .column
+        .iter()
+        .find(|(name, _)| !names.contains(&name.as_str()))
+    {
+        let failure = Failure::usage(format!("the rule set has no variable `{stray}`"));
+        let meant = fuzzy::diagnostic::suggest(stray, names.iter().copied());
+        return Err(failure.help(meant.unwrap_or_default()));
+    }
+    let mut data = Data {
+        rows: Vec::new(),
+        refused: Vec::new(),
+    };
+    let mut firsts = Vec::new();
+    let mut groups: BTreeMap<String, u32> = BTreeMap::new();
+    for path in &arguments.data {
+        let table = Table::read(path)?;
+        let columns = names
+            .iter()
+            .map(|name| {
+                let named = arguments.column.iter().find(|(n, _)| n == name);
+                let column = named.map_or(*name, |(_, column)| column.as_str());
+                let help = format!("or say which one it is with `--column {name}=COLUMN`");
+                table.require(column, &help)
+            })
+            .collect::<Result<Vec<usize>, Failure>>()?;
+        let optional = |name: &Option<String>| {
+            name.as_ref()
+                .map(|name| table.require(name, "or leave that option out"))
+                .transpose()
+        };
+        let weight = optional(&arguments.weight)?;
+        let group = optional(&arguments.group_by)?;
+        let first = data.rows.len();
+        for row in 0..table.len() {
+            let mut bad = Vec::new();
+            let mut number = |column: usize| {
+                table.number(row, column).unwrap_or_else(|cell| {
+                    bad.push(format!(
+                        "`{}`, line {}, column `{}`: {}",
+                        table.file, cell.line, cell.column, cell.problem
+                    ));
+                    f64::NAN
+                })
+            };
+            let values: Vec<f64> = columns.iter().map(|column| number(*column)).collect();
+            let weight = weight.map_or(1.0, &mut number);
+            if !bad.is_empty() {
+                data.refused.append(&mut bad);
+                continue;
+            }
+            let group = group.map(|column| {
+                let next = u32::try_from(groups.len()).unwrap_or(u32::MAX);
+                let name = table.text(row, column).to_owned();
+                *groups.entry(name).or_insert(next)
+            });
+            let place = format!("`{}`, line {}", table.file, table.line(row));
+            let row = Row {
+                values,
+                weight,
+                group,
+            };
+            data.rows.push((row, place));
+        }
+        firsts.push(first);
+    }
+    if arguments.balance {
+        balance(&mut data.rows, &firsts);
+    }
+    Ok(data)
+}
+
+/// Scales weights so that each file, its rows from one of `firsts` to the next, counts the same, and a row 1 on average.
+fn balance(rows: &mut [(Row, String)], firsts: &[usize]) {
+    let count = rows.len();
+    let ends = firsts.iter().skip(1).copied().chain([count]);
+    for (first, end) in firsts.iter().zip(ends) {
+        let rows = rows.get_mut(*first..end).unwrap_or_default();
+        let total: f64 = rows.iter().map(|(row, _)| row.weight).sum();
+        for (row, _) in rows {
+            row.weight *= count as f64 / firsts.len() as f64 / total;
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! `flagred learn`: rules from rows of data.
+
+mod data;
+pub(crate) mod report;
+
+use std::{
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use clap::ValueEnum;
+use flagred::{
+    gap::{FilledMap, GapMethod, GapSettings},
+    learning::{Errors, GapComparison, cross_validate, leave_one_rule_out},
+};
+use fuzzy::{
+    Engine, Model,
+    learn::{Direction, Learned, Learner, Resolution, Settings},
+    map::{DecisionMap, Grid},
+    rule::Condition,
+};
+
+use crate::{
+    diagnostics::{read_text, refuse},
+    failure::{Exit, Failure},
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The rule set whose variables are learned with; its rules are replaced
+    #[arg(value_name = "MODEL")]
+    model: PathBuf,
+
+    /// Tables with a column for each input and for the output, as `flagred dataset` makes them
+    #[arg(required = true, value_name = "DATA.csv")]
+    data: Vec<PathBuf>,
+
+    /// Where the learned rule set goes; `-` is standard output
+    #[arg(short, long, value_name = "OUT.yaml")]
+    output: PathBuf,
+
+    /// What decides where rows with the same terms disagree
+    #[arg(long, value_enum, default_value = "strongest", value_name = "HOW")]
+    resolve: Resolve,
+
+    /// Fewer rows than this make no rule
+    #[arg(long, default_value_t = 1, value_name = "ROWS")]
+    min_support: u64,
+
+    /// A rule with a lower confidence is left out
+    #[arg(long, default_value_t = 0.0, value_name = "DEGREE")]
+    min_degree: f64,
+
+    /// Give terms that no row has the rule of the nearest ones that have
+    #[arg(long)]
+    complete: bool,
+
+    /// The output must not fall when this input rises
+    #[arg(long, value_name = "INPUT")]
+    rising: Vec<String>,
+
+    /// The output must not rise when this input rises
+    #[arg(long, value_name = "INPUT")]
+    falling: Vec<String>,
+
+    /// A condition that every learned rule has besides: `at_limit IS none`
+    #[arg(long, value_name = "CONDITION")]
+    given: Option<String>,
+
+    /// Keep the rules that MODEL has, and add the learned ones
+    #[arg(long)]
+    keep_rules: bool,
+
+    /// Every file counts the same, however many rows it has
+    #[arg(long)]
+    balance: bool,
+
+    /// A column that does not have the name of its variable: `margin=margin_mean`
+    #[arg(long, value_name = "NAME=COLUMN", value_parser = super::dataset::pair)]
+    column: Vec<(String, String)>,
+
+    /// The column that says how much a row counts
+    #[arg(long, value_name = "COLUMN")]
+    weight: Option<String>,
+
+    /// Cross-validation leaves out all rows with one value of this column together: `vehicle`
+    #[arg(long, value_name = "COLUMN")]
+    group_by: Option<String>,
+
+    /// Go on without rows that cannot be learned from
+    #[arg(long)]
+    skip_bad_rows: bool,
+
+    /// Compare the methods of filling gaps: leave out rules one by one and look at the rows there
+    #[arg(long)]
+    compare_gaps: bool,
+
+    /// The report as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Resolve {
+    /// The row with the highest degree wins, as in the paper
+    Strongest,
+    /// The consequent with the highest sum of degrees wins
+    Heaviest,
+    /// The mean of the rows decides
+    Mean,
+}
+
+/// What the report tells.
+struct Outcome {
+    learned: Learned,
+    kept: usize,
+    refused: Vec<String>,
+    refused_count: usize,
+    coverage: f64,
+    after_filling: f64,
+    errors: Errors,
+    gaps: Option<GapComparison>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let name = arguments.model.display().to_string();
+    let text = read_text(&arguments.model)?;
+    let mut model = fuzzy::yaml::parse(&text)
+        .map_err(|findings| refuse(&findings, &name, &text))?
+        .model;
+    if !arguments.keep_rules {
+        model.rules.clear();
+    }
+    let settings = settings(arguments, &model)?;
+    let mut learner = Learner::new(&model, settings.clone()).map_err(|error| {
+        Failure::usage(format!("`{name}`: {error}"))
+            .help("name inputs and terms as the rule set does")
+    })?;
+    let data = data::read(arguments, &model)?;
+    let mut rows = Vec::with_capacity(data.rows.len());
+    let mut refused = data.refused;
+    for (row, place) in data.rows {
+        match learner.add(&row.values, row.weight) {
+            Ok(()) => rows.push(row),
+            Err(refusal) => refused.push(format!("{place}: {refusal}")),
+        }
+    }
+    if !refused.is_empty() && (!arguments.skip_bad_rows || rows.is_empty()) {
+        return Err(bad_rows(&refused));
+    }
+    let learned = learner.finish();
+    let gap = GapSettings::default();
+    let examined = |error: flagred::learning::ExamineError| Failure::unreadable(error.to_string());
+    let (coverage, after_filling) = coverage(&learned.model, &gap)?;
+    let outcome = Outcome {
+        kept: model.rules.len(),
+        refused_count: refused.len(),
+        refused,
+        coverage,
+        after_filling,
+        errors: cross_validate(&model, &settings, &gap, &rows).map_err(examined)?,
+        gaps: match arguments.compare_gaps {
+            true => {
+                let compared = leave_one_rule_out(&learned.model, &rows, &GapMethod::ALL, None);
+                Some(compared.map_err(examined)?)
+            }
+            false => None,
+        },
+        learned,
+    };
+    write(arguments, &report::rule_set(arguments, &outcome, &text))?;
+    let mut out: Box<dyn Write> = if arguments.output == Path::new("-") {
+        Box::new(anstream::stderr())
+    } else {
+        Box::new(anstream::stdout())
+    };
+    if arguments.json {
+        writeln!(out, "{:#}", report::json(arguments, &outcome))?;
+    } else {
+        report::words(&mut out, arguments, &outcome)?;
+    }
+    Ok(Exit::Clean)
+}
+
+fn settings(arguments: &Arguments, model: &Model) -> Result<Settings, Failure> {
+    let directed = |names: &[String], direction| {
+        let names = names.iter().cloned();
+        names.map(move |name| (name, direction)).collect::<Vec<_>>()
+    };
+    let mut monotone = directed(&arguments.rising, Direction::Rising);
+    monotone.extend(directed(&arguments.falling, Direction::Falling));
+    Ok(Settings {
+        resolution: match arguments.resolve {
+            Resolve::Strongest => Resolution::Strongest,
+            Resolve::Heaviest => Resolution::Heaviest,
+            Resolve::Mean => Resolution::Mean,
+        },
+        min_support: arguments.min_support,
+        min_degree: arguments.min_degree,
+        complete: arguments.complete,
+        monotone,
+        given: match &arguments.given {
+            Some(text) => Some(condition(text, model)?),
+            None => None,
+        },
+    })
+}
+
+/// Reads a condition by making a rule of it.
+fn condition(text: &str, model: &Model) -> Result<Condition, Failure> {
+    let output = model.outputs.first().map(|o| &o.variable);
+    let word = output
+        .and_then(|o| o.terms.first())
+        .map_or("x", |t| &t.name);
+    let output = output.map_or("x", |o| &o.name);
+    let rule = format!("IF {text} THEN \"{output}\" IS \"{word}\"");
+    let rule = fuzzy::rule::parse(&rule).map_err(|finding| {
+        Failure::usage(format!("`--given {text}`: {}", finding.message))
+            .help("write `input IS term`, joined by AND")
+    })?;
+    Ok(rule.condition)
+}
+
+fn bad_rows(refused: &[String]) -> Failure {
+    const SHOWN: usize = 20;
+    let shown: Vec<&str> = refused.iter().take(SHOWN).map(String::as_str).collect();
+    let more = match refused.len().saturating_sub(SHOWN) {
+        0 => String::new(),
+        more => format!("\n  and {more} more"),
+    };
+    let count = refused.len();
+    Failure::unreadable(format!(
+        "{count} row{} cannot be learned from, and nothing was written\n  {}{more}",
+        if count == 1 { "" } else { "s" },
+        shown.join("\n  ")
+    ))
+    .help("correct or remove these rows, or leave them out with --skip-bad-rows")
+}
+
+/// The shares of the map that rules cover, and that have a value after filling.
+fn coverage(model: &Model, gap: &GapSettings) -> Result<(f64, f64), Failure> {
+    let unusable = |error: &dyn std::fmt::Display| {
+        Failure::unreadable(format!("the learned rules cannot be used: {error}"))
+    };
+    let engine = Engine::new(model).map_err(|error| unusable(&error))?;
+    let points = flagred::estimator::points_along(model.inputs.len());
+    let grid = Grid::new(&engine, points).map_err(|error| unusable(&error))?;
+    let map = DecisionMap::new(&engine, grid, 0).map_err(|error| unusable(&error))?;
+    let filled = FilledMap::new(map, gap.coverage_below(model), gap.method);
+    let cells = filled.map().grid().cells();
+    let known = (0..cells).filter(|cell| filled.value(*cell).is_some());
+    let known = known.count() as f64 / cells.max(1) as f64;
+    Ok((1.0 - filled.filled_share(), known))
+}
+
+/// Writes the rule set beside its place first, so that there is never half of one.
+fn write(arguments: &Arguments, text: &str) -> Result<(), Failure> {
+    if arguments.output == Path::new("-") {
+        write!(std::io::stdout().lock(), "{text}")?;
+        return Ok(());
+    }
+    let mut beside = arguments.output.clone().into_os_string();
+    beside.push(".partial");
+    let beside = PathBuf::from(beside);
+    fs::write(&beside, text)
+        .and_then(|()| fs::rename(&beside, &arguments.output))
+        .map_err(|error| {
+            // What is left of it is of no use; that it cannot be removed either is no news.
+            let _ = fs::remove_file(&beside);
+            let shown = arguments.output.display();
+            Failure::unreadable(format!("`{shown}` cannot be written: {error}"))
+                .help("check the folder and its permissions")
+        })
+}

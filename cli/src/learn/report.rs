@@ -1,0 +1,179 @@
+//! What was learned, in words, as JSON, and as the rule set itself.
+
+use std::io::Write;
+
+use flagred::{gap::GapMethod, learning::Errors};
+use serde_json::{Value, json};
+
+use super::{Arguments, Outcome, Resolve};
+
+/// The antecedents without a rule that are named.
+const SHOWN: usize = 12;
+
+/// The name of a gap method, as profiles have it.
+pub(crate) fn method_name(method: GapMethod) -> &'static str {
+    match method {
+        GapMethod::Nearest => "nearest",
+        GapMethod::InverseDistance { .. } => "inverse_distance",
+        GapMethod::ThinPlate => "thin_plate",
+        GapMethod::Harmonic => "harmonic",
+    }
+}
+
+fn resolution(arguments: &Arguments) -> &'static str {
+    match arguments.resolve {
+        Resolve::Strongest => "strongest",
+        Resolve::Heaviest => "heaviest",
+        Resolve::Mean => "mean",
+    }
+}
+
+/// The rule set under the comments that the model began with, and a line that says where its rules came from. Degrees
+/// are kept to six digits: authors read them.
+pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome, model_text: &str) -> String {
+    let learned = &outcome.learned;
+    let round = |degree: f64| (degree * 1e6).round() / 1e6;
+    let mut model = learned.model.clone();
+    for rule in &mut model.rules {
+        rule.confidence = rule.confidence.map(round);
+        for beaten in &mut rule.against {
+            beaten.degree = round(beaten.degree);
+        }
+    }
+    let head = model_text.split_inclusive('\n');
+    let head: String = head.take_while(|line| line.starts_with('#')).collect();
+    let gap = if head.is_empty() { "" } else { "#\n" };
+    format!(
+        "{head}{gap}# Learned by `flagred learn` from {} rows, {} resolution: {} rules learned, {} of them without samples.\n{}",
+        learned.samples,
+        resolution(arguments),
+        learned.model.rules.len() - outcome.kept,
+        learned.completed,
+        fuzzy::yaml::to_string(&model)
+    )
+}
+
+pub(super) fn words(
+    out: &mut dyn Write,
+    arguments: &Arguments,
+    outcome: &Outcome,
+) -> std::io::Result<()> {
+    let learned = &outcome.learned;
+    let rules = learned.model.rules.len() - outcome.kept;
+    writeln!(
+        out,
+        "rows       {} used, {} refused",
+        learned.samples, outcome.refused_count
+    )?;
+    for refused in outcome.refused.iter().take(SHOWN) {
+        writeln!(out, "           {refused}")?;
+    }
+    writeln!(
+        out,
+        "rules      {rules} learned ({}), {} of them completed from their neighbours; {} kept",
+        resolution(arguments),
+        learned.completed,
+        outcome.kept
+    )?;
+    writeln!(
+        out,
+        "conflicts  {} combinations of terms whose rows disagree; {} left out for few or unsure rows",
+        learned.conflicts, learned.left_out
+    )?;
+    writeln!(
+        out,
+        "missing    {} combinations of terms without a rule",
+        learned.missing
+    )?;
+    for antecedent in learned.missing_antecedents.iter().take(SHOWN) {
+        writeln!(out, "           {antecedent}")?;
+    }
+    writeln!(
+        out,
+        "coverage   {:.1} % of the map by rules, {:.1} % after filling ({})",
+        100.0 * outcome.coverage,
+        100.0 * outcome.after_filling,
+        method_name(GapMethod::default())
+    )?;
+    let parts = match &arguments.group_by {
+        Some(column) => format!("groups of `{column}` left out in turn"),
+        None => "tenths of the rows left out in turn".to_owned(),
+    };
+    let errors = &outcome.errors;
+    if errors.rows == 0 {
+        writeln!(out, "error      unknown: too few rows to leave any out")?;
+    } else {
+        writeln!(
+            out,
+            "error      {:.2} RMS, {:.2} mean, {:+.2} bias over {} rows ({parts})",
+            errors.rmse, errors.mean_absolute, errors.bias, errors.rows
+        )?;
+    }
+    if let Some(gaps) = &outcome.gaps {
+        writeln!(
+            out,
+            "gaps       {} rules left out one by one; error of the filled cells on the rows there",
+            gaps.rules
+        )?;
+        writeln!(
+            out,
+            "           {:<18} {:>8} {:>8} {:>8} {:>16}",
+            "method", "RMS", "mean", "bias", "mean over rules"
+        )?;
+        let with = ("(with the rule)", &gaps.with_the_rule);
+        let methods = gaps.methods.iter().map(|(m, e)| (method_name(*m), e));
+        for (name, errors) in [with].into_iter().chain(methods) {
+            writeln!(
+                out,
+                "           {name:<18} {:>8.2} {:>8.2} {:>+8.2} {:>16.2}",
+                errors.by_row.rmse,
+                errors.by_row.mean_absolute,
+                errors.by_row.bias,
+                errors.by_rule_mean_absolute
+            )?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn json(arguments: &Arguments, outcome: &Outcome) -> Value {
+    let learned = &outcome.learned;
+    let errors = |errors: &Errors| {
+        json!({
+            "rows": errors.rows,
+            "without_prediction": errors.without_prediction,
+            "rmse": errors.rmse,
+            "mean_absolute": errors.mean_absolute,
+            "bias": errors.bias,
+        })
+    };
+    let missing = learned.missing_antecedents.iter().map(ToString::to_string);
+    json!({
+        "schema": 1,
+        "rows": {"used": learned.samples, "refused": outcome.refused_count, "reasons": outcome.refused},
+        "resolution": resolution(arguments),
+        "rules": {
+            "learned": learned.model.rules.len() - outcome.kept,
+            "kept": outcome.kept,
+            "completed": learned.completed,
+        },
+        "conflicts": learned.conflicts,
+        "left_out": learned.left_out,
+        "missing": {"count": learned.missing, "antecedents": missing.collect::<Vec<_>>()},
+        "coverage": {
+            "by_rules": outcome.coverage,
+            "after_filling": outcome.after_filling,
+            "gap_method": method_name(GapMethod::default()),
+        },
+        "cross_validation": (outcome.errors.rows > 0).then(|| errors(&outcome.errors)),
+        "gap_methods": outcome.gaps.as_ref().map(|gaps| json!({
+            "rules_left_out": gaps.rules,
+            "with_the_rule": errors(&gaps.with_the_rule.by_row),
+            "methods": gaps.methods.iter().map(|(method, found)| json!({
+                "method": method_name(*method),
+                "by_row": errors(&found.by_row),
+                "by_rule_mean_absolute": found.by_rule_mean_absolute,
+            })).collect::<Vec<_>>(),
+        })),
+    })
+}
