@@ -12,6 +12,7 @@ mod explain;
 mod failure;
 mod inspect;
 mod learn;
+mod map;
 mod new;
 mod profile;
 mod report;
@@ -52,6 +53,8 @@ enum Command {
     Inspect(inspect::Arguments),
     /// Learn the rules of a rule set from rows of data
     Learn(learn::Arguments),
+    /// Draw what a rule set decides over its inputs
+    Map(map::Arguments),
     /// Write a rule set to start from
     New(new::Arguments),
 }
@@ -67,6 +70,7 @@ impl Command {
             Command::Dataset(arguments) => dataset::run(&arguments),
             Command::Inspect(arguments) => inspect::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
+            Command::Map(arguments) => map::run(&arguments),
             Command::New(arguments) => new::run(&arguments),
         }
     }

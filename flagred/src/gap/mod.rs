@@ -5,7 +5,10 @@
 //! from the covered rest of the map. Distances are in shares of each input's range, so that no input counts more
 //! because of its unit.
 
-use fuzzy::{Model, model::Conjunction};
+use fuzzy::{
+    Model,
+    model::{Conjunction, Variable},
+};
 
 mod harmonic;
 mod inverse_distance;
@@ -69,16 +72,34 @@ pub struct GapSettings {
 impl GapSettings {
     /// The coverage below which a cell of the map of a model is a gap.
     ///
-    /// Where none is set: with terms that sum to 1 the dominating antecedent has memberships of 0.5 at least. With
-    /// the minimum as AND it fires at 0.5 or more, with the product of n inputs at `0.5^n`: less means that the
-    /// dominating antecedent has no rule. With the other conjunctions only what no rule covers at all is a gap.
+    /// Where none is set: if the terms of every input sum to 1 everywhere, the dominating antecedent has memberships of
+    /// 0.5 at least, where two neighbours meet. With the minimum as AND it then fires at 0.5 or more, with the product
+    /// of n inputs at `0.5^n`: less means that the dominating antecedent has no rule. With other terms and other
+    /// conjunctions only what no rule covers at all is a gap.
     pub fn coverage_below(&self, model: &Model) -> f64 {
-        self.coverage_below.unwrap_or(match model.operators.and {
+        let least = || match model.operators.and {
             Conjunction::Minimum => 0.5,
             Conjunction::Product => libm::pow(0.5, model.inputs.len() as f64),
             _ => f64::MIN_POSITIVE,
-        })
+        };
+        self.coverage_below
+            .unwrap_or_else(|| match model.inputs.iter().all(sums_to_one) {
+                true => least(),
+                false => f64::MIN_POSITIVE,
+            })
     }
+}
+
+/// Whether the memberships of a variable's terms sum to 1 all over its range.
+fn sums_to_one(variable: &Variable) -> bool {
+    const STEPS: u32 = 500;
+    (0..=STEPS).all(|i| {
+        let share = f64::from(i) / f64::from(STEPS);
+        let x = variable.low + (variable.high - variable.low) * share;
+        let memberships = variable.terms.iter();
+        let sum: f64 = memberships.map(|t| t.height * t.shape.membership(x)).sum();
+        (sum - 1.0).abs() < 1e-6
+    })
 }
 
 /// Whether a coverage is below the one from which on a cell counts as covered. Half way between two peaks, where both
@@ -245,6 +266,32 @@ mod tests {
     use proptest::prelude::*;
 
     const RANGE: (f64, f64) = (0.0, 100.0);
+
+    #[test]
+    fn what_counts_as_covered_follows_from_the_terms_and_the_conjunction() {
+        let below = |partition: &str, and: &str| {
+            let text = format!(
+                "
+fuzzy: 1
+name: test
+inputs: {{a: {{range: [0, 1], {partition}}}, b: {{range: [0, 1], partition: [low, high]}}}}
+outputs: {{y: {{range: [0, 1], partition: [low, high]}}}}
+operators: {{and: {and}}}
+rules: [IF a IS low THEN y IS low]
+"
+            );
+            let model = fuzzy::yaml::parse(&text).unwrap().model;
+            GapSettings::default().coverage_below(&model)
+        };
+        assert_eq!(below("partition: [low, high]", "minimum"), 0.5);
+        assert_eq!(below("partition: [low, high]", "product"), 0.25);
+        let bells = "terms: {low: {gaussian: {mean: 0, sd: 0.2}}}";
+        assert_eq!(below(bells, "minimum"), f64::MIN_POSITIVE);
+        assert_eq!(
+            below("partition: [low, high]", "einstein"),
+            f64::MIN_POSITIVE
+        );
+    }
 
     #[test]
     fn neighbours_stop_at_the_edge() {

@@ -1,0 +1,240 @@
+//! `flagred dataset` and `flagred learn` as their users meet them, and the rule set that they made.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+use flagred_tests::{flagred, shared_data};
+use serde_json::Value;
+
+const VARIABLES: &str = "\
+# Kept at the head.
+fuzzy: 1
+name: test
+inputs:
+  margin: {range: [0, 0.5], partition: {very_low: 0, low: 0.1, medium: 0.2, high: 0.3}}
+  spread: {range: [0, 0.5], partition: {low: 0, medium: 0.1, high: 0.2}}
+outputs:
+  risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}
+rules: []
+";
+
+/// A folder of this test's own, gone when the test is.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("flagred-{}-{name}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    fn file(&self, name: &str, text: &str) -> String {
+        let path = self.0.join(name);
+        fs::write(&path, text).unwrap();
+        path.display().to_string()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn learn(arguments: &[&str]) -> Output {
+    flagred().arg("learn").args(arguments).output().unwrap()
+}
+
+#[test]
+fn rows_become_a_rule_set_with_its_provenance() {
+    let folder = Folder::new("learn");
+    let model = folder.file("model.yaml", VARIABLES);
+    // Table I of the paper, under other names.
+    let data = folder.file(
+        "data.csv",
+        "m,s,r\n0.007969,0.226310,65.679063\n0.070469,0.308401,100.0\n0.064687,0.153689,46.015181\n0.351094,0.092301,4.798570\n",
+    );
+    let out = folder.0.join("out.yaml").display().to_string();
+    let columns = [
+        "--column", "margin=m", "--column", "spread=s", "--column", "risk=r",
+    ];
+    let mut arguments = vec![model.as_str(), &data, "-o", &out, "--json"];
+    arguments.extend(columns);
+    let output = learn(&arguments);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["rows"]["used"], 4);
+    assert_eq!(report["rules"]["learned"], 3);
+    assert_eq!(report["conflicts"], 1);
+    assert_eq!(report["missing"]["count"], 9);
+    let written = fs::read_to_string(&out).unwrap();
+    insta::assert_snapshot!(written);
+    // What was written is a rule set again.
+    let check = flagred().args(["check", &out]).output().unwrap();
+    assert_ne!(check.status.code(), Some(3));
+}
+
+#[test]
+fn bad_data_is_told_with_its_place_and_nothing_is_written() {
+    let folder = Folder::new("bad");
+    let model = folder.file("model.yaml", VARIABLES);
+    let out = folder.0.join("out.yaml");
+    for (name, text, expected) in [
+        (
+            "missing",
+            "margin,spred,risk\n0.1,0.1,5\n",
+            "has no column `spread`",
+        ),
+        (
+            "nan",
+            "margin,spread,risk\n0.1,0.1,5\n0.1,NaN,5\n",
+            "line 3, column `spread`: `NaN` is no finite number",
+        ),
+        (
+            "text",
+            "margin,spread,risk\nhigh,0.1,5\n",
+            "line 2, column `margin`: `high` is no number",
+        ),
+        (
+            "infinite",
+            "margin,spread,risk\n0.1,0.1,inf\n",
+            "line 2, column `risk`: `inf` is no finite number",
+        ),
+        (
+            "range",
+            "margin,spread,risk\n0.1,0.1,5\n0.1,0.7,5\n",
+            "line 3: `spread` is 0.7, outside its range from 0 to 0.5",
+        ),
+        (
+            "cell",
+            "margin,spread,risk\n0.1,,5\n",
+            "line 2, column `spread`: the cell is empty",
+        ),
+        ("empty", "", "is empty"),
+        (
+            "header",
+            "margin,spread,risk\n",
+            "has a header, but no rows",
+        ),
+        ("ragged", "margin,spread,risk\n0.1,0.1\n", "cannot be read"),
+    ] {
+        let data = folder.file(&format!("{name}.csv"), text);
+        let output = learn(&[&model, &data, "-o", out.to_str().unwrap()]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{name}: {said}");
+        assert!(
+            said.contains(expected) && said.contains(name),
+            "{name}: {said}"
+        );
+        assert!(said.contains("help: "), "{name}: {said}");
+        assert!(!out.exists(), "{name}");
+    }
+    // A single row is enough for a rule, and bad ones can be left out.
+    let data = folder.file("one.csv", "margin,spread,risk\n0.1,0.1,5\n0.1,NaN,5\n");
+    let output = learn(&[
+        &model,
+        &data,
+        "-o",
+        out.to_str().unwrap(),
+        "--skip-bad-rows",
+    ]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(
+        said.contains("1 used, 1 refused") && said.contains("`NaN` is no finite number"),
+        "{said}"
+    );
+    assert!(out.exists());
+}
+
+#[test]
+fn a_flight_becomes_rows() {
+    let flight = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../examples/flights/steady.BIN"
+    );
+    let rows = |arguments: &[&str]| {
+        let output = flagred()
+            .arg("dataset")
+            .args(arguments)
+            .arg(flight)
+            .output()
+            .unwrap();
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let text = String::from_utf8(output.stdout).unwrap();
+        let mut lines = text
+            .lines()
+            .map(|l| l.split(',').map(str::to_owned).collect::<Vec<_>>());
+        let header = lines.next().unwrap();
+        (header, lines.collect::<Vec<_>>())
+    };
+    let (header, whole) = rows(&[]);
+    let names = [
+        "file",
+        "vehicle",
+        "from_s",
+        "t_s",
+        "margin",
+        "spread",
+        "att_rmse_deg",
+        "risk",
+    ];
+    assert_eq!(header, names);
+    assert_eq!(whole.len(), 1);
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let margin = number(&whole[0][4]);
+    assert!((0.3..0.45).contains(&margin), "{margin}");
+    approx::assert_abs_diff_eq!(
+        number(&whole[0][7]),
+        20.0 * number(&whole[0][6]),
+        epsilon = 1e-3
+    );
+
+    let (_, windows) = rows(&["--window", "10"]);
+    assert!((8..14).contains(&windows.len()), "{}", windows.len());
+    let mean = windows.iter().map(|row| number(&row[4])).sum::<f64>() / windows.len() as f64;
+    approx::assert_abs_diff_eq!(mean, margin, epsilon = 0.01);
+
+    let (header, ahead) = rows(&["--ahead", "5", "--profile", "flagred"]);
+    assert_eq!(header[6], "unsteady_now");
+    assert!(ahead.len() > 180, "{}", ahead.len());
+}
+
+#[test]
+fn the_shipped_rules_are_what_the_documented_command_learns() {
+    let Some(data) = shared_data() else {
+        return;
+    };
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folder = Folder::new("flagred-rules");
+    let out = folder.0.join("flagred.yaml");
+    let status = Command::new(workspace.join("scripts/learn-flagred"))
+        .arg(data)
+        .arg(&out)
+        .env("FLAGRED", flagred().get_program())
+        .output()
+        .unwrap();
+    assert!(
+        status.status.success(),
+        "{}",
+        String::from_utf8_lossy(&status.stderr)
+    );
+    let shipped = fs::read_to_string(workspace.join("rules/flagred.yaml")).unwrap();
+    assert!(
+        fs::read_to_string(out).unwrap() == shipped,
+        "run scripts/learn-flagred on the data and commit rules/flagred.yaml"
+    );
+}
