@@ -173,7 +173,7 @@ pub enum Refusal {
 ///
 /// let rule = &learned.model.rules[0];
 /// assert_eq!(rule.rule.to_string(), "IF margin IS very_low AND spread IS high THEN risk IS high");
-/// assert!((rule.confidence.unwrap_or(0.0) - 0.577186).abs() < 1e-6);
+/// assert!((rule.confidence.unwrap_or(0.0) - 0.577186).abs() < 1e-5);
 /// assert_eq!(learned.missing, 11);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
