@@ -1,0 +1,320 @@
+//! `flagred map`: what a rule set decides, over all its inputs.
+
+mod activations;
+mod contour;
+mod heat;
+mod palette;
+mod slice;
+mod surface;
+mod svg;
+mod text;
+
+use std::{fs, io::Write, path::PathBuf};
+
+use clap::ValueEnum;
+use flagred::gap::{FilledMap, GapMethod, GapSettings};
+use fuzzy::{
+    Engine, Model,
+    map::{DecisionMap, Grid},
+};
+
+use crate::{
+    diagnostics::{read_text, refuse},
+    failure::{Exit, Failure},
+};
+use slice::Slice;
+
+/// Points along each axis where nothing else is asked for.
+const POINTS: usize = 51;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The rule set in YAML; `-` is standard input
+    #[arg(value_name = "MODEL")]
+    model: PathBuf,
+
+    /// Points along each axis; more inputs than two have fewer by default
+    #[arg(long, value_name = "POINTS", value_parser = clap::value_parser!(u16).range(2..=1001))]
+    points: Option<u16>,
+
+    /// Hold an input at a value, so that it is no axis: `battery=0.8`
+    #[arg(long, value_name = "INPUT=VALUE", value_parser = fix)]
+    fix: Vec<(String, f64)>,
+
+    /// The input along the horizontal axis, the first one that is not fixed; or a part of it: `spread:0..0.2`
+    #[arg(long, value_name = "INPUT", value_parser = axis)]
+    x: Option<AxisChoice>,
+
+    /// The input along the vertical axis; the next one that is not fixed
+    #[arg(long, value_name = "INPUT", value_parser = axis)]
+    y: Option<AxisChoice>,
+
+    /// The output, where there are several
+    #[arg(long, value_name = "OUTPUT")]
+    output: Option<String>,
+
+    /// How cells that no rule covers are filled
+    #[arg(long, value_enum, value_name = "METHOD", default_value = "thin-plate")]
+    fill: Fill,
+
+    /// Cells are filled where no rule fires at least this strongly; 0.5 where AND is the minimum
+    #[arg(long, value_name = "DEGREE")]
+    coverage_below: Option<f64>,
+
+    /// Draw a picture into this file; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+
+    /// Draw the map as a surface in three dimensions
+    #[arg(long, requires = "svg")]
+    surface: bool,
+
+    /// Show which rule dominates where, instead of the value
+    #[arg(long, conflicts_with = "surface")]
+    activations: bool,
+
+    /// A table of all cells instead of a picture
+    #[arg(long, conflicts_with_all = ["svg", "activations"])]
+    csv: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Fill {
+    /// Leave gaps as they are
+    None,
+    /// The value of the nearest covered cell
+    Nearest,
+    /// The mean of the nearest covered cells, near ones counting more
+    InverseDistance,
+    /// The thin-plate spline through the nearest covered cells
+    ThinPlate,
+    /// Laplace's equation: smooth, cannot overshoot
+    Harmonic,
+}
+
+impl Fill {
+    fn method(self) -> Option<GapMethod> {
+        match self {
+            Fill::None => None,
+            Fill::Nearest => Some(GapMethod::Nearest),
+            Fill::InverseDistance => Some(GapMethod::INVERSE_DISTANCE),
+            Fill::ThinPlate => Some(GapMethod::ThinPlate),
+            Fill::Harmonic => Some(GapMethod::Harmonic),
+        }
+    }
+}
+
+/// An input for an axis, and the part of its range that is shown.
+#[derive(Debug, Clone)]
+struct AxisChoice {
+    name: String,
+    part: Option<(f64, f64)>,
+}
+
+fn axis(text: &str) -> Result<AxisChoice, String> {
+    let Some((name, part)) = text.rsplit_once(':') else {
+        return Ok(AxisChoice {
+            name: text.to_owned(),
+            part: None,
+        });
+    };
+    let ends = part.split_once("..").and_then(|(low, high)| {
+        let ends = (
+            low.trim().parse::<f64>().ok()?,
+            high.trim().parse::<f64>().ok()?,
+        );
+        (ends.0.is_finite() && ends.1.is_finite() && ends.0 < ends.1).then_some(ends)
+    });
+    match ends {
+        Some(part) => Ok(AxisChoice {
+            name: name.to_owned(),
+            part: Some(part),
+        }),
+        None => Err("write `INPUT` or `INPUT:LOW..HIGH`".to_owned()),
+    }
+}
+
+fn fix(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("write `INPUT=VALUE`")?;
+    match value.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok((name.trim().to_owned(), value)),
+        _ => Err(format!("`{value}` is no finite number")),
+    }
+}
+
+/// An evaluated rule set: the engine, and its map over every input, filled where it was asked for.
+struct Evaluated {
+    model: Model,
+    engine: Engine,
+    output: usize,
+    coverage_below: f64,
+    filled: Option<FilledMap>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let name = arguments.model.display().to_string();
+    let text = read_text(&arguments.model)?;
+    let model = fuzzy::yaml::parse(&text)
+        .map_err(|findings| refuse(&findings, &name, &text))?
+        .model;
+    let evaluated = evaluate(arguments, model)?;
+    let mut out = anstream::stdout().lock();
+    let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();
+    if arguments.csv && whole && evaluated.model.inputs.len() > 2 {
+        write_whole(&mut out, &evaluated)?;
+        return Ok(Exit::Clean);
+    }
+    let slice = slice::cut(arguments, &evaluated)?;
+    if arguments.csv {
+        write_slice(&mut out, &slice)?;
+        return Ok(Exit::Clean);
+    }
+    let Some(file) = &arguments.svg else {
+        if arguments.activations {
+            text::write_activations(&mut out, &slice, &evaluated.model)?;
+        } else {
+            text::write(&mut out, &slice)?;
+        }
+        return Ok(Exit::Clean);
+    };
+    let drawn = if arguments.surface {
+        surface::draw(&slice)?
+    } else if arguments.activations {
+        activations::draw(&slice, &evaluated.model)
+    } else {
+        heat::draw(&slice)
+    };
+    if file.as_os_str() == "-" {
+        write!(out, "{drawn}")?;
+    } else {
+        fs::write(file, drawn).map_err(|error| {
+            Failure::unreadable(format!("`{}` cannot be written: {error}", file.display()))
+                .help("check the folder and its permissions")
+        })?;
+    }
+    Ok(Exit::Clean)
+}
+
+fn evaluate(arguments: &Arguments, model: Model) -> Result<Evaluated, Failure> {
+    let name = arguments.model.display();
+    let unusable = |error: &dyn std::fmt::Display| {
+        Failure::unreadable(format!("`{name}` has no map: {error}"))
+    };
+    let engine =
+        Engine::new(&model).map_err(|error| unusable(&error).help("`flagred check` says where"))?;
+    let output = match &arguments.output {
+        None => 0,
+        Some(wanted) => engine.output(wanted).ok_or_else(|| {
+            let outputs = engine.output_names();
+            let failure = Failure::usage(format!("`{name}` has no output `{wanted}`"));
+            failure.help(fuzzy::diagnostic::suggest(wanted, outputs).unwrap_or_default())
+        })?,
+    };
+    let gap = GapSettings {
+        method: arguments.fill.method().unwrap_or_default(),
+        coverage_below: arguments.coverage_below,
+    };
+    let coverage_below = gap.coverage_below(&model);
+    let filled = match arguments.fill.method() {
+        None => None,
+        Some(method) => {
+            let points = match arguments.points {
+                Some(points) => usize::from(points),
+                None => flagred::estimator::points_along(model.inputs.len()),
+            };
+            let grid = Grid::new(&engine, points).map_err(|error| {
+                unusable(&error).help("ask for fewer `--points`, or for `--fill none`")
+            })?;
+            let map = DecisionMap::new(&engine, grid, output).map_err(|error| unusable(&error))?;
+            Some(FilledMap::new(map, coverage_below, method))
+        }
+    };
+    Ok(Evaluated {
+        model,
+        engine,
+        output,
+        coverage_below,
+        filled,
+    })
+}
+
+/// Every cell of the map over all inputs.
+fn write_whole(out: &mut impl Write, evaluated: &Evaluated) -> Result<(), Failure> {
+    let Some(filled) = &evaluated.filled else {
+        return Err(
+            Failure::usage("the whole map of more than two inputs is filled")
+                .help("fix inputs with `--fix`, or name the axes with `--x` and `--y`"),
+        );
+    };
+    let mut out = std::io::BufWriter::new(out);
+    let map = filled.map();
+    for axis in map.grid().axes() {
+        write!(out, "{},", axis.name)?;
+    }
+    writeln!(out, "{},coverage,rule,filled,distance", map.output())?;
+    for cell in 0..map.grid().cells() {
+        for x in map.grid().point(cell) {
+            write!(out, "{},", short(x))?;
+        }
+        let value = filled.value(cell).map(short).unwrap_or_default();
+        let rule = rule_number(map.dominant(cell));
+        let (coverage, distance) = (short(map.coverage(cell)), filled.distance(cell));
+        let is_filled = u8::from(filled.is_filled(cell) && filled.value(cell).is_some());
+        writeln!(
+            out,
+            "{value},{coverage},{rule},{is_filled},{}",
+            short(distance)
+        )?;
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// Every cell of a slice.
+fn write_slice(out: &mut impl Write, slice: &Slice) -> std::io::Result<()> {
+    let mut out = std::io::BufWriter::new(out);
+    write!(out, "{},", slice.x.name)?;
+    if let Some(y) = &slice.y {
+        write!(out, "{},", y.name)?;
+    }
+    writeln!(out, "{},coverage,rule,filled,distance", slice.output)?;
+    for (i, x) in slice.x.places.iter().enumerate() {
+        let rows = slice.y.as_ref().map_or(1, |y| y.places.len());
+        for j in 0..rows {
+            write!(out, "{},", short(*x))?;
+            if let Some(y) = slice.y.as_ref().and_then(|y| y.places.get(j)) {
+                write!(out, "{},", short(*y))?;
+            }
+            let cell = slice.cell(i, j);
+            writeln!(
+                out,
+                "{},{},{},{},{}",
+                cell.value.map(short).unwrap_or_default(),
+                short(cell.coverage),
+                rule_number(cell.rule),
+                u8::from(cell.filled_from.is_some()),
+                short(cell.filled_from.unwrap_or(0.0))
+            )?;
+        }
+    }
+    out.flush()
+}
+
+/// Rules are counted from 1, as in the messages about them; nothing where none fired.
+fn rule_number(rule: Option<usize>) -> String {
+    rule.map(|rule| (rule + 1).to_string()).unwrap_or_default()
+}
+
+/// At most 6 decimals, without zeros behind; nothing for what is infinite.
+fn short(x: f64) -> String {
+    if !x.is_finite() {
+        return String::new();
+    }
+    let text = format!("{x:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
+}

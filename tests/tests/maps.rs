@@ -1,0 +1,199 @@
+//! Decision maps: a picture of every rule set in `rules/`, and `flagred map` as its users meet it.
+
+use std::fs;
+
+use flagred_tests::flagred;
+use fuzzy::{
+    Engine,
+    map::{DecisionMap, Grid, picture},
+};
+
+const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml");
+const FLAGRED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred.yaml");
+
+/// A rule set that changes what it decides changes its picture, and someone has to look at it.
+#[test]
+fn a_picture_of_every_rule_set() {
+    insta::glob!("../../rules", "*.yaml", |path| {
+        let model = fuzzy::yaml::parse(&fs::read_to_string(path).unwrap())
+            .unwrap()
+            .model;
+        let engine = Engine::new(&model).unwrap();
+        let points = if model.inputs.len() > 2 { 17 } else { 51 };
+        let mut grid = Grid::new(&engine, points).unwrap();
+        // The rules to fly with are decided near the lower ends of their inputs.
+        for (name, value) in [("load", 0.5), ("at_limit", 0.0)] {
+            if engine.input(name).is_some() {
+                grid = grid.fix(name, value).unwrap();
+            }
+        }
+        for name in ["unsteady_now", "unsteady_lately"] {
+            if engine.input(name).is_some() {
+                grid = grid.points(name, 201).unwrap();
+            }
+        }
+        let map = DecisionMap::new(&engine, grid, 0).unwrap();
+        insta::assert_snapshot!(picture(&map));
+    });
+}
+
+fn map(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output = flagred().arg("map").args(arguments).output().unwrap();
+    (
+        output.status.code(),
+        String::from_utf8(output.stdout).unwrap(),
+        String::from_utf8(output.stderr).unwrap(),
+    )
+}
+
+#[test]
+fn a_map_in_the_terminal_marks_what_was_filled() {
+    let (code, text, _) = map(&[PAPER]);
+    assert_eq!(code, Some(0));
+    insta::assert_snapshot!(text);
+}
+
+#[test]
+fn the_rule_that_dominates_in_the_terminal() {
+    let (code, text, _) = map(&[PAPER, "--activations", "--points", "26"]);
+    assert_eq!(code, Some(0));
+    insta::assert_snapshot!(text);
+}
+
+#[test]
+fn a_table_of_all_cells() {
+    let (code, text, _) = map(&[PAPER, "--csv"]);
+    assert_eq!(code, Some(0));
+    let mut lines = text.lines();
+    assert_eq!(
+        lines.next(),
+        Some("margin,spread,risk,coverage,rule,filled,distance")
+    );
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| {
+            line.split(',')
+                .map(|cell| cell.parse().unwrap_or(f64::NAN))
+                .collect()
+        })
+        .collect();
+    assert_eq!(rows.len(), 51 * 51);
+    // Below 0.15 and 0.05 no rule covers.
+    assert_eq!(rows.iter().filter(|row| row[5] == 1.0).count(), 15 * 5);
+    assert!(rows[0][2] >= 75.0 && rows[0][5] == 1.0 && rows[0][6] > 0.0);
+    let at = |margin: f64, spread: f64| {
+        let near =
+            |row: &&Vec<f64>| (row[0] - margin).abs() < 1e-9 && (row[1] - spread).abs() < 1e-9;
+        rows.iter().find(near).unwrap()[2]
+    };
+    approx::assert_abs_diff_eq!(at(0.1, 0.2), 91.7, epsilon = 0.05);
+    assert!(at(0.02, 0.01) >= 75.0);
+
+    let (code, text, _) = map(&[FLAGRED, "--csv", "--points", "5"]);
+    assert_eq!((code, text.lines().count()), (Some(0), 1 + 5usize.pow(4)));
+}
+
+#[test]
+fn pictures_are_well_formed_and_complete() {
+    let fixed = [
+        "--fix",
+        "load=0.5",
+        "--fix",
+        "at_limit=0",
+        "--x",
+        "unsteady_now:0..0.08",
+    ];
+    for (arguments, expected) in [
+        (
+            vec![PAPER],
+            vec![
+                "margin",
+                "spread",
+                "risk [%]",
+                "filled: no rule covers it (thin_plate)",
+                "60",
+            ],
+        ),
+        (
+            vec![PAPER, "--surface"],
+            vec![
+                "margin",
+                "spread",
+                "risk [%]",
+                "filled: no rule covers it (thin_plate)",
+            ],
+        ),
+        (
+            vec![PAPER, "--activations"],
+            vec!["margin", "10: very_high", "8: medium"],
+        ),
+        (
+            [&[FLAGRED][..], &fixed].concat(),
+            vec![
+                "unsteady_lately",
+                "flagred: risk [%] at load = 0.5, at_limit = 0",
+            ],
+        ),
+        (
+            vec![
+                FLAGRED,
+                "--fix",
+                "load=0.5",
+                "--fix",
+                "at_limit=0",
+                "--fix",
+                "unsteady_now=0",
+            ],
+            vec!["unsteady_lately"],
+        ),
+    ] {
+        let mut arguments = arguments.clone();
+        arguments.extend(["--svg", "-"]);
+        let (code, text, said) = map(&arguments);
+        assert_eq!(code, Some(0), "{arguments:?}: {said}");
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let texts: Vec<&str> = document
+            .descendants()
+            .filter_map(|node| node.text())
+            .collect();
+        for word in expected {
+            assert!(
+                texts.contains(&word),
+                "{arguments:?}: `{word}` of {texts:?}"
+            );
+        }
+        assert!(
+            !text.contains("NaN") && !text.contains("inf"),
+            "{arguments:?}"
+        );
+        assert!(text.len() < 300_000, "{arguments:?}: {}", text.len());
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_told() {
+    for (arguments, expected) in [
+        (vec![PAPER, "--fix", "wind=3"], "has no input `wind`"),
+        (
+            vec![PAPER, "--fix", "margin=3"],
+            "outside its range from 0 to 0.5",
+        ),
+        (
+            vec![PAPER, "--x", "margin", "--y", "margin"],
+            "the same input",
+        ),
+        (
+            vec![PAPER, "--fix", "margin=0.1", "--fix", "spread=0.1"],
+            "nothing is left to draw",
+        ),
+        (vec![PAPER, "--output", "danger"], "has no output `danger`"),
+        (vec![PAPER, "--x", "margin:3..1"], "INPUT:LOW..HIGH"),
+        (
+            vec![PAPER, "--fix", "margin=0.1", "--surface", "--svg", "-"],
+            "needs two inputs",
+        ),
+    ] {
+        let (code, _, said) = map(&arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {said}");
+        assert!(said.contains(expected), "{arguments:?}: {said}");
+    }
+}
