@@ -206,7 +206,7 @@ impl Estimator {
 }
 
 /// How many points the map that fills gaps has along each of so many inputs: 51, or fewer so that there are not more
-/// than [`MAP_CELLS`] in all, but at least 3.
+/// than 100,000 in all, but at least 3.
 pub fn points_along(inputs: usize) -> usize {
     let most = libm::pow(MAP_CELLS as f64, 1.0 / inputs.max(1) as f64);
     (most as usize).clamp(3, 51)

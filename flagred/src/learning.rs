@@ -4,7 +4,7 @@ use alloc::{collections::BTreeMap, vec, vec::Vec};
 
 use fuzzy::{
     Engine, Model,
-    engine::EvaluateError,
+    engine::{EvaluateError, Outcome, Scratch},
     learn::{LearnError, Learner, Refusal, Settings},
     map::{DecisionMap, Grid, GridError},
 };
@@ -109,34 +109,47 @@ pub enum ExamineError {
     },
 }
 
-/// A rule set with its gaps filled, read anywhere.
-struct Predictor {
+/// A rule set read anywhere; its map is filled when the first row lies in a gap.
+struct Predictor<'a> {
+    model: &'a Model,
+    gap: &'a GapSettings,
     engine: Engine,
+    scratch: Scratch,
+    outcomes: Vec<Outcome>,
     coverage_below: f64,
-    filled: FilledMap,
+    filled: Option<FilledMap>,
 }
 
-impl Predictor {
-    fn new(model: &Model, gap: &GapSettings) -> Result<Predictor, ExamineError> {
+impl<'a> Predictor<'a> {
+    fn new(model: &'a Model, gap: &'a GapSettings) -> Result<Predictor<'a>, ExamineError> {
         let engine = Engine::new(model)?;
-        let coverage_below = gap.coverage_below(model);
         Ok(Predictor {
-            filled: FilledMap::new(map(&engine, model)?, coverage_below, gap.method),
+            model,
+            gap,
+            scratch: engine.scratch(),
+            outcomes: vec![Outcome::default(); model.outputs.len()],
             engine,
-            coverage_below,
+            coverage_below: gap.coverage_below(model),
+            filled: None,
         })
     }
 
-    fn predict(&self, inputs: &[f64]) -> Result<Option<f64>, EvaluateError> {
-        let outcome = match self.engine.evaluate(inputs) {
-            Ok(outcomes) => outcomes.first().copied().unwrap_or_default(),
-            Err(EvaluateError::NoRuleFired { .. }) => fuzzy::engine::Outcome::default(),
-            Err(error) => return Err(error),
-        };
-        if is_gap(outcome.coverage, self.coverage_below) {
-            return Ok(self.filled.read(inputs).map(|reading| reading.value));
+    fn predict(&mut self, inputs: &[f64]) -> Result<Option<f64>, ExamineError> {
+        let engine = &self.engine;
+        match engine.evaluate_with(&mut self.scratch, inputs, &mut self.outcomes) {
+            Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
+            Err(error) => return Err(error.into()),
         }
-        Ok(outcome.value())
+        let outcome = self.outcomes.first().copied().unwrap_or_default();
+        if !is_gap(outcome.coverage, self.coverage_below) {
+            return Ok(outcome.value());
+        }
+        if self.filled.is_none() {
+            let map = map(&self.engine, self.model)?;
+            self.filled = Some(FilledMap::new(map, self.coverage_below, self.gap.method));
+        }
+        let reading = self.filled.as_ref().and_then(|filled| filled.read(inputs));
+        Ok(reading.map(|reading| reading.value))
     }
 }
 
@@ -188,7 +201,8 @@ pub fn cross_validate(
         if learned == 0 {
             continue;
         }
-        let predictor = Predictor::new(&learner.finish().model, gap)?;
+        let learned = learner.finish().model;
+        let mut predictor = Predictor::new(&learned, gap)?;
         for row in held_out {
             if let Some((truth, inputs)) = row.values.split_last() {
                 tally.add(predictor.predict(inputs)?, *truth, row.weight);
@@ -296,7 +310,7 @@ pub fn leave_one_rule_out(
                 continue;
             };
             let with_it = engine.evaluate(inputs)?;
-            let with_it = with_it.first().and_then(fuzzy::engine::Outcome::value);
+            let with_it = with_it.first().and_then(Outcome::value);
             let without_it = filled.iter().map(|map| map.read(inputs).map(|r| r.value));
             let predictions = [with_it].into_iter().chain(without_it);
             for ((tally, (total, _)), prediction) in

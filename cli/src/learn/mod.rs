@@ -247,7 +247,8 @@ fn coverage(model: &Model, gap: &GapSettings) -> Result<(f64, f64), Failure> {
     let points = flagred::estimator::points_along(model.inputs.len());
     let grid = Grid::new(&engine, points).map_err(|error| unusable(&error))?;
     let map = DecisionMap::new(&engine, grid, 0).map_err(|error| unusable(&error))?;
-    let filled = FilledMap::new(map, gap.coverage_below(model), gap.method);
+    // Whether a cell can be filled does not depend on how.
+    let filled = FilledMap::new(map, gap.coverage_below(model), GapMethod::Nearest);
     let cells = filled.map().grid().cells();
     let known = (0..cells).filter(|cell| filled.value(*cell).is_some());
     let known = known.count() as f64 / cells.max(1) as f64;
