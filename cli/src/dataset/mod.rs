@@ -79,7 +79,7 @@ enum Cut {
     Flights,
     /// One row for every so many seconds.
     Windows { length_s: f64 },
-    /// A row every [`flight::STEP_S`], the truth in the seconds that follow.
+    /// A row every half second, the truth in the seconds that follow.
     Ahead { horizon_s: f64 },
 }
 
