@@ -8,12 +8,14 @@ mod convert;
 mod dataset;
 mod diagnostics;
 mod eval;
+mod evaluate;
 mod explain;
 mod failure;
 mod inspect;
 mod learn;
 mod map;
 mod new;
+mod parallel;
 mod profile;
 mod report;
 mod rule_set;
@@ -49,6 +51,8 @@ enum Command {
     Explain(explain::Arguments),
     /// Turn flights into rows to learn from: inputs, attitude error, risk
     Dataset(dataset::Arguments),
+    /// Measure how well profiles tell what comes, beside predictors that need no rules
+    Evaluate(evaluate::Arguments),
     /// Show what is in a flight log, and where each value came from
     Inspect(inspect::Arguments),
     /// Learn the rules of a rule set from rows of data
@@ -68,6 +72,7 @@ impl Command {
             Command::Eval(arguments) => eval::run(&arguments),
             Command::Explain(arguments) => explain::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
+            Command::Evaluate(arguments) => evaluate::run(&arguments),
             Command::Inspect(arguments) => inspect::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Map(arguments) => map::run(&arguments),

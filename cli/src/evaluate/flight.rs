@@ -1,0 +1,250 @@
+//! One flight under evaluation: its steps with the scores of every estimator, its episodes and the warnings on them.
+
+use std::path::Path;
+
+use flagred::{
+    attitude::Attitude,
+    evaluation::{ErrorRecord, Judged, Span, judge},
+    monitor::Monitor,
+    source::Observer,
+    verdict::Level,
+};
+use flightlog::{Flight, Gap};
+
+use super::estimators::Estimators;
+use crate::{failure::Failure, samples};
+
+/// How far apart steps are, in seconds.
+const STEP_S: f64 = 0.5;
+
+/// Without times in the header, so much at either end of a time in the air is taking off and landing, in seconds.
+const ENDS_S: f64 = 10.0;
+
+/// A baseline forgets what was before so long a time without a sample, in seconds.
+const LONGEST_GAP_S: f64 = 2.0;
+
+/// Sums of time steps are off by less than this.
+const ROUNDING_S: f64 = 1e-6;
+
+const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
+
+/// What became of a flight.
+pub(super) struct Record {
+    pub(super) file: String,
+    pub(super) vehicle: String,
+    /// What the flight was about, as its header says: `gusts`, `calm`, `manoeuvre`.
+    pub(super) kind: String,
+    pub(super) judged_s: f64,
+    pub(super) steps: Vec<Step>,
+    /// For each profile.
+    pub(super) judged: Vec<Judged>,
+}
+
+/// A moment and what was said of it.
+pub(super) struct Step {
+    pub(super) is_critical: bool,
+    /// For each estimator; NaN is unknown.
+    pub(super) scores: Vec<f64>,
+}
+
+/// Evaluates a flight.
+///
+/// # Errors
+///
+/// A file that cannot be read or is no flight log, and a flight that lacks motors, attitude or times in the air.
+pub(super) fn evaluate(
+    path: &Path,
+    estimators: &Estimators,
+    horizon_s: f64,
+) -> Result<Record, Failure> {
+    let names = estimators.signals();
+    let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
+    let options = flightlog::Options {
+        signals: Some(wanted.collect()),
+    };
+    let flight = flightlog::open(path, &options)?;
+    let file = path.display().to_string();
+    let gaps = flight.gaps();
+    if let Some(gap) = gaps.iter().find(|gap| !matches!(gap, Gap::TooSlow { .. })) {
+        let failure = Failure::unreadable(format!("`{file}` cannot be evaluated: {gap}"));
+        return Err(gap.help().into_iter().fold(failure, Failure::help));
+    }
+    let header = |key: &str| {
+        let found = flight.header.iter().find(|(k, _)| k == key);
+        found.map(|(_, value)| value.clone())
+    };
+    let judged = judged_times(&flight);
+    let errors = ErrorRecord::new(attitudes(&flight));
+    let times: Vec<(f64, bool)> = judged
+        .iter()
+        .flat_map(step_times)
+        .filter_map(|t_s| Some((t_s, errors.critical_within(t_s, horizon_s)?)))
+        .collect();
+    let followed = follow(&flight, estimators, &times)?;
+    let lost_s = flight
+        .in_air
+        .iter()
+        .filter_map(|air| air.spans.last())
+        .find(|span| span.ends_with_log)
+        .map(|span| span.end_s);
+    Ok(Record {
+        vehicle: header("vehicle")
+            .or_else(|| flight.vehicle.frame.clone())
+            .unwrap_or_else(|| file.clone()),
+        kind: header("kind").unwrap_or_else(|| "unnamed".to_owned()),
+        file,
+        judged_s: judged.iter().map(Span::length_s).sum(),
+        steps: followed.steps,
+        judged: followed
+            .warnings
+            .iter()
+            .map(|warnings| judge(warnings, errors.episodes(), &judged, lost_s))
+            .collect(),
+    })
+}
+
+/// From when to when a flight counts: as its header says, else all its time in the air but the ends.
+fn judged_times(flight: &Flight) -> Vec<Span> {
+    let number = |key: &str| {
+        let found = flight.header.iter().find(|(k, _)| k == key);
+        found.and_then(|(_, value)| value.parse::<f64>().ok())
+    };
+    if let (Some(from_s), Some(to_s)) = (number("judged_from_s"), number("judged_to_s")) {
+        return vec![Span { from_s, to_s }];
+    }
+    let spans = flight.in_air.iter().flat_map(|air| &air.spans);
+    spans
+        .map(|span| Span {
+            from_s: span.start_s + ENDS_S,
+            to_s: span.end_s - ENDS_S,
+        })
+        .filter(|span| span.length_s() > 0.0)
+        .collect()
+}
+
+fn step_times(span: &Span) -> impl Iterator<Item = f64> + use<> {
+    let (from_s, to_s) = (span.from_s, span.to_s);
+    (0_u32..)
+        .map(move |i| from_s + f64::from(i) * STEP_S)
+        .take_while(move |t_s| *t_s <= to_s + ROUNDING_S)
+}
+
+/// The attitude over time, as often as roll was logged.
+fn attitudes(flight: &Flight) -> impl Iterator<Item = (f64, Attitude)> + '_ {
+    let mut holds = ATTITUDE.map(|name| flight.signal(name).map(|signal| signal.hold()));
+    let times = flight.signal("roll_deg").map_or(&[][..], |roll| roll.t_s);
+    times.iter().map(move |&t_s| {
+        let [roll_des_deg, roll_deg, pitch_des_deg, pitch_deg] = holds.each_mut().map(|hold| {
+            let held = hold.as_mut().and_then(|hold| hold.at(t_s));
+            held.unwrap_or(f64::NAN)
+        });
+        let attitude = Attitude {
+            roll_des_deg,
+            roll_deg,
+            pitch_des_deg,
+            pitch_deg,
+        };
+        (t_s, attitude)
+    })
+}
+
+struct Followed {
+    steps: Vec<Step>,
+    /// When each profile warned.
+    warnings: Vec<Vec<Span>>,
+}
+
+/// A profile on its way through a flight.
+struct Running<'a> {
+    /// `None` where the flight lacks a signal that the profile needs.
+    monitor: Option<Monitor<'a>>,
+    risk_pct: f64,
+    warnings: Vec<Span>,
+    is_warning: bool,
+}
+
+/// Sends the samples of a flight through all estimators; what they say at a time is what they said after the newest sample.
+fn follow(
+    flight: &Flight,
+    estimators: &Estimators,
+    times: &[(f64, bool)],
+) -> Result<Followed, Failure> {
+    let names = samples::carried(flight, &estimators.signals());
+    let mut running: Vec<Running> = estimators
+        .profiles
+        .iter()
+        .map(|profile| Running {
+            monitor: Monitor::new(&profile.estimator, flight.motors.len(), &names).ok(),
+            risk_pct: f64::NAN,
+            warnings: Vec::new(),
+            is_warning: false,
+        })
+        .collect();
+    let baselines = estimators.carried_baselines(&names);
+    let sources = baselines.iter().flatten().map(|baseline| &baseline.source);
+    let mut observer = Observer::new(sources, &names).map_err(Failure::unreadable)?;
+
+    let mut steps = Vec::with_capacity(times.len());
+    let mut last_s = None;
+    samples::each(flight, &names, |sample| {
+        while let Some((_, is_critical)) = times
+            .get(steps.len())
+            .filter(|(t_s, _)| *t_s < sample.t_s - ROUNDING_S)
+        {
+            steps.push(step(*is_critical, &running, &baselines, &observer));
+        }
+        let held_s = last_s.map_or(0.0, |last_s| sample.t_s - last_s);
+        last_s = Some(sample.t_s);
+        if !sample.in_air || !(0.0..=LONGEST_GAP_S).contains(&held_s) {
+            observer.clear();
+        } else if held_s > 0.0 {
+            observer.push(sample.t_s, held_s, sample.motors, sample.signals);
+        }
+        for running in &mut running {
+            let Some(monitor) = &mut running.monitor else {
+                continue;
+            };
+            let assessment = monitor.push(sample);
+            running.risk_pct = assessment.risk.map_or(f64::NAN, |risk| risk.risk_pct);
+            let warns = assessment.level > Some(Level::Good);
+            Span::follow(
+                &mut running.warnings,
+                &mut running.is_warning,
+                sample.t_s,
+                warns,
+            );
+        }
+    });
+    while let Some((_, is_critical)) = times.get(steps.len()) {
+        steps.push(step(*is_critical, &running, &baselines, &observer));
+    }
+    Ok(Followed {
+        steps,
+        warnings: running.into_iter().map(|r| r.warnings).collect(),
+    })
+}
+
+fn step(
+    is_critical: bool,
+    running: &[Running<'_>],
+    baselines: &[Option<&flagred::evaluation::Baseline>],
+    observer: &Observer,
+) -> Step {
+    let mut observed = 0;
+    let baselines = baselines.iter().map(|baseline| {
+        let Some(baseline) = baseline else {
+            return f64::NAN;
+        };
+        observed += 1;
+        let value = observer.value(observed - 1);
+        value.map_or(f64::NAN, |observation| baseline.score(observation.value))
+    });
+    Step {
+        is_critical,
+        scores: running
+            .iter()
+            .map(|r| r.risk_pct)
+            .chain(baselines)
+            .collect(),
+    }
+}

@@ -1,0 +1,185 @@
+//! `flagred evaluate`: how good are the risks of profiles, beside predictors that need no rules?
+
+mod document;
+mod estimators;
+mod flight;
+mod scores;
+mod warnings;
+mod words;
+
+use std::{
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+use crate::{
+    failure::{Exit, Failure},
+    parallel,
+};
+use estimators::Estimators;
+use flight::Record;
+use scores::{APART, Case, Evaluated};
+use warnings::Warnings;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Flight logs with attitude (ArduPilot, PX4, flight CSV; plain or gzipped), and folders of them
+    #[arg(required = true, value_name = "FLIGHT")]
+    flights: Vec<PathBuf>,
+
+    /// Another profile to compare: a file; may be given several times
+    #[arg(long = "profile", value_name = "NAME|FILE")]
+    profiles: Vec<String>,
+
+    /// How far ahead a risk should tell, in seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = horizon)]
+    horizon: f64,
+
+    /// One JSON document instead of words
+    #[arg(long)]
+    json: bool,
+}
+
+fn horizon(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(horizon_s) if horizon_s > 0.0 && horizon_s.is_finite() => Ok(horizon_s),
+        _ => Err("a horizon is a number of seconds above 0".to_owned()),
+    }
+}
+
+/// What came of it all.
+struct Evaluation {
+    /// What the cases are: `steps` or `flights`.
+    cases: &'static str,
+    horizon_s: Option<f64>,
+    flights: usize,
+    critical: usize,
+    left_out: usize,
+    estimators: Vec<Evaluated>,
+    /// Of each profile: over all flights, and by kind.
+    warnings: Vec<(Warnings, Vec<(String, Warnings)>)>,
+    records: Vec<Record>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let estimators = Estimators::new(&arguments.profiles)?;
+    let (evaluation, exit) = flights(arguments, &estimators)?;
+    let mut out = anstream::stdout().lock();
+    if arguments.json {
+        let document = document::document(&evaluation);
+        serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        words::write(&mut out, &evaluation)?;
+    }
+    out.flush()?;
+    Ok(exit)
+}
+
+/// Evaluates every flight; one that cannot be read stops no other.
+fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation, Exit), Failure> {
+    let files = files(&arguments.flights)?;
+    let mut records = Vec::new();
+    let (mut left_out, mut exit) = (0, Exit::Clean);
+    parallel::in_order(
+        &files,
+        "flights",
+        |file| flight::evaluate(&file.path, estimators, arguments.horizon),
+        |file, evaluated| {
+            match evaluated {
+                Ok(record) => records.push(record),
+                Err(failure) => {
+                    left_out += 1;
+                    // A folder may hold other things than flights.
+                    if file.is_named {
+                        failure.report();
+                        exit = Exit::Unreadable;
+                    }
+                }
+            }
+            true
+        },
+    );
+    let cases: Vec<Case> = records
+        .iter_mut()
+        .zip(0..)
+        .flat_map(|(record, group)| {
+            let (vehicle, kind) = (record.vehicle.clone(), record.kind.clone());
+            record.steps.iter_mut().map(move |step| Case {
+                group,
+                vehicle: vehicle.clone(),
+                kind: kind.clone(),
+                is_critical: step.is_critical,
+                scores: std::mem::take(&mut step.scores),
+            })
+        })
+        .collect();
+    if cases.is_empty() {
+        return Err(Failure::unreadable("there is no step to evaluate in these files").help(
+            "`flagred inspect` shows what is in a log: it takes motors, attitude, and 20 s in the air",
+        ));
+    }
+    let main = records.iter().filter(|record| record.kind != APART);
+    let evaluation = Evaluation {
+        cases: "steps",
+        horizon_s: Some(arguments.horizon),
+        flights: main.count(),
+        critical: cases
+            .iter()
+            .filter(|case| case.kind != APART && case.is_critical)
+            .count(),
+        left_out,
+        estimators: scores::score(estimators.names(), estimators.profiles.len(), &cases),
+        warnings: (0..estimators.profiles.len())
+            .map(|profile| Warnings::by_kind(profile, &records))
+            .collect(),
+        records,
+    };
+    Ok((evaluation, exit))
+}
+
+/// A file to evaluate.
+struct Candidate {
+    path: PathBuf,
+    /// Whether the user named it, and not only a folder that it is in.
+    is_named: bool,
+}
+
+/// The files, and those in the folders and their folders, in the order of their names.
+fn files(paths: &[PathBuf]) -> Result<Vec<Candidate>, Failure> {
+    let mut found = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            let mut inside = Vec::new();
+            walk(path, &mut inside)?;
+            inside.sort();
+            found.extend(inside.into_iter().map(|path| Candidate {
+                path,
+                is_named: false,
+            }));
+        } else {
+            found.push(Candidate {
+                path: path.clone(),
+                is_named: true,
+            });
+        }
+    }
+    Ok(found)
+}
+
+fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    let unreadable =
+        |error| Failure::unreadable(format!("`{}` cannot be read: {error}", folder.display()));
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let entry = entry.map_err(unreadable)?;
+        // A link could lead back to where it came from.
+        let kind = entry.file_type().map_err(unreadable)?;
+        if kind.is_dir() {
+            walk(&entry.path(), found)?;
+        } else {
+            found.push(entry.path());
+        }
+    }
+    Ok(())
+}
