@@ -10,6 +10,9 @@ use std::{
     thread,
 };
 
+/// To the start of the line, and nothing on it.
+const CLEAR_LINE: &str = "\r\x1b[K";
+
 /// Works on all items on all cores and takes the results in the order of the items, whatever came first; `take` says
 /// whether to go on. Not more results than a few for each core are held at a time.
 ///
@@ -44,16 +47,11 @@ pub(crate) fn in_order<T: Sync, R: Send>(
         let mut early = BTreeMap::new();
         let mut taken = 0;
         for (done, (i, result)) in receive.into_iter().enumerate() {
-            if shown {
-                // Nothing is left to tell a user whose standard error is closed.
-                let _ = write!(
-                    std::io::stderr(),
-                    "\r{} of {} {unit}",
-                    done + 1,
-                    items.len()
-                );
-            }
             early.insert(i, result);
+            if shown {
+                // What is taken may have something to say. Nothing is left to tell a user whose standard error is closed.
+                let _ = write!(std::io::stderr(), "{CLEAR_LINE}");
+            }
             while let Some(result) = early.remove(&taken) {
                 let goes_on = items.get(taken).is_some_and(|item| take(item, result));
                 taken += 1;
@@ -61,9 +59,9 @@ pub(crate) fn in_order<T: Sync, R: Send>(
                     stop.store(true, Ordering::Relaxed);
                 }
             }
-        }
-        if shown {
-            let _ = write!(std::io::stderr(), "\r\x1b[K");
+            if shown && done + 1 < items.len() {
+                let _ = write!(std::io::stderr(), "{} of {} {unit}", done + 1, items.len());
+            }
         }
     });
 }

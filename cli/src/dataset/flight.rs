@@ -2,10 +2,10 @@
 
 use flagred::{
     attitude::{Attitude, AttitudeError, risk_pct},
+    evaluation::{ErrorRecord, Span},
     source::{Observer, Source},
-    window::{Moments, Window},
 };
-use flightlog::{Flight, Gap};
+use flightlog::Flight;
 
 use super::{Cut, Plan, Row, Rows};
 use crate::{failure::Failure, samples};
@@ -13,37 +13,14 @@ use crate::{failure::Failure, samples};
 /// How far apart the moments are from which [`Cut::Ahead`] looks ahead, in seconds.
 const STEP_S: f64 = 0.5;
 
-/// Without times in the header, so much at either end of a time in the air is taking off and landing, in seconds.
-const ENDS_S: f64 = 10.0;
-
-/// The attitude error that counts as one is over so many seconds: a shorter one is a twitch.
-const ERROR_WINDOW_S: f64 = 1.0;
-
-const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
-
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     let names = plan.profile.signals();
-    let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
-    let options = flightlog::Options {
-        signals: Some(wanted.collect()),
-    };
-    let flight = flightlog::open(log, &options)?;
-    let said = |key: &str| {
-        let found = flight.header.iter().find(|(k, _)| k == key);
-        found.map(|(_, value)| value.as_str())
-    };
+    let flight = samples::open_complete(log, &names, "makes no rows")?;
+    let said = |key: &str| samples::header(&flight, key);
     if let Some((key, value)) = plan.skip.iter().find(|(k, v)| said(k) == Some(v)) {
         return Ok(Rows {
             rows: Vec::new(),
             notes: vec![format!("left out: {key} is {value}")],
-        });
-    }
-    let gaps = flight.gaps();
-    if let Some(gap) = gaps.iter().find(|gap| !matches!(gap, Gap::TooSlow { .. })) {
-        let failure = Failure::unreadable(format!("`{log}` makes no rows: {gap}"));
-        return Err(match gap.help() {
-            Some(help) => failure.help(help),
-            None => failure,
         });
     }
     let carried = samples::carried(&flight, &names);
@@ -53,26 +30,14 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
         ))
         .help("`flagred inspect` lists the signals a log carries"));
     }
-    let number = |key: &str| said(key).and_then(|text| text.parse::<f64>().ok());
-    let spans: Vec<(f64, f64)> = match (number("judged_from_s"), number("judged_to_s")) {
-        (Some(from_s), Some(to_s)) => vec![(from_s, to_s)],
-        _ => flight
-            .in_air
-            .iter()
-            .flat_map(|air| &air.spans)
-            .map(|span| (span.start_s + ENDS_S, span.end_s - ENDS_S))
-            .collect(),
-    };
-    let errors = squared_errors(&flight);
+    let errors: Vec<(f64, Attitude)> = samples::attitudes(&flight).collect();
+    let record = ErrorRecord::new(errors.iter().copied());
     let mut made = Rows {
         rows: Vec::new(),
         notes: Vec::new(),
     };
     let mut refused = 0;
-    for (from_s, to_s) in spans {
-        if to_s <= from_s {
-            continue;
-        }
+    for Span { from_s, to_s } in samples::judged_times(&flight) {
         let moments = moments(plan.cut, from_s, to_s);
         let length_s = match plan.cut {
             Cut::Flights => Some(to_s - from_s),
@@ -82,7 +47,7 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
         let inputs = inputs(&flight, plan, &carried, length_s, &moments);
         for (t_s, inputs) in moments.into_iter().zip(inputs) {
             let error_deg = match plan.cut {
-                Cut::Ahead { horizon_s } => largest_ahead(&errors, t_s, horizon_s),
+                Cut::Ahead { horizon_s } => record.largest_within(t_s, horizon_s),
                 _ => rmse(&errors, t_s - length_s.unwrap_or(0.0), t_s),
             };
             let known = inputs.iter().all(|value| value.is_finite());
@@ -176,65 +141,13 @@ fn inputs(
     rows
 }
 
-/// The squared attitude error in square degrees over time.
-fn squared_errors(flight: &Flight) -> Vec<(f64, Attitude)> {
-    let Some(roll) = flight.signal("roll_deg") else {
-        return Vec::new();
-    };
-    let mut holds: Vec<_> = ATTITUDE
-        .iter()
-        .map(|name| flight.signal(name).map(|signal| signal.hold()))
-        .collect();
-    roll.t_s
-        .iter()
-        .map(|&t_s| {
-            let mut at = |i: usize| {
-                let hold = holds.get_mut(i).and_then(Option::as_mut);
-                hold.and_then(|hold| hold.at(t_s)).unwrap_or(f64::NAN)
-            };
-            let attitude = Attitude {
-                roll_des_deg: at(0),
-                roll_deg: at(1),
-                pitch_des_deg: at(2),
-                pitch_deg: at(3),
-            };
-            (t_s, attitude)
-        })
-        .collect()
-}
-
-fn within(errors: &[(f64, Attitude)], after_s: f64, to_s: f64) -> &[(f64, Attitude)] {
-    let first = errors.partition_point(|(t_s, _)| *t_s <= after_s + 1e-6);
-    let end = errors.partition_point(|(t_s, _)| *t_s <= to_s + 1e-6);
-    errors.get(first..end).unwrap_or(&[])
-}
-
 /// The root mean square over `(from_s, to_s]`.
 fn rmse(errors: &[(f64, Attitude)], from_s: f64, to_s: f64) -> Option<f64> {
+    let first = errors.partition_point(|(t_s, _)| *t_s <= from_s + 1e-6);
+    let end = errors.partition_point(|(t_s, _)| *t_s <= to_s + 1e-6);
     let mut rmse = AttitudeError::default();
-    for (_, attitude) in within(errors, from_s, to_s) {
+    for (_, attitude) in errors.get(first..end).unwrap_or(&[]) {
         rmse.push(attitude);
     }
     rmse.rmse_deg()
-}
-
-/// The largest root mean square over a second that ends within `(t_s, t_s + horizon_s]`.
-fn largest_ahead(errors: &[(f64, Attitude)], t_s: f64, horizon_s: f64) -> Option<f64> {
-    let mut second = Window::new(ERROR_WINDOW_S);
-    let mut last_s = None;
-    let mut largest: Option<f64> = None;
-    for (at_s, attitude) in within(errors, t_s - ERROR_WINDOW_S, t_s + horizon_s) {
-        let held_s = last_s.map_or(0.0, |last_s| at_s - last_s);
-        last_s = Some(*at_s);
-        let square = attitude.squared_error_deg2();
-        if square.is_finite() && held_s > 0.0 {
-            second.push(*at_s, held_s, &Moments::of(square, held_s));
-        }
-        if *at_s > t_s + 1e-6
-            && let Some(mean) = second.total().mean()
-        {
-            largest = Some(largest.unwrap_or(0.0).max(mean.sqrt()));
-        }
-    }
-    largest
 }

@@ -3,15 +3,7 @@
 mod flight;
 mod summary;
 
-use std::{
-    io::{IsTerminal, Write},
-    path::Path,
-    sync::{
-        Mutex,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
-};
+use std::{io::Write, path::Path};
 
 use flagred::{
     attitude::CRITICAL_ERROR_DEG,
@@ -21,7 +13,7 @@ use flagred::{
 
 use crate::{
     failure::{Exit, Failure},
-    profile,
+    parallel, profile,
 };
 
 #[derive(clap::Args)]
@@ -124,8 +116,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut exit = Exit::Clean;
     let mut written = 0;
     let mut failed = None;
-    in_order(
+    parallel::in_order(
         &arguments.logs,
+        "files",
         |log| rows_of(log, &plan),
         |log, made| {
             match made {
@@ -205,56 +198,4 @@ fn write_row(out: &mut impl Write, log: &str, row: &Row) -> std::io::Result<()> 
 fn say(note: &str) {
     // Nothing is left to tell a user whose standard error is closed.
     let _ = writeln!(anstream::stderr(), "{note}");
-}
-
-/// Works on all items on all cores, and hands over the results in the order of the items; `take` says whether to go
-/// on. Shows how far it is, where someone is watching.
-fn in_order<R: Send>(
-    items: &[String],
-    work: impl Fn(&str) -> R + Sync,
-    mut take: impl FnMut(&str, R) -> bool,
-) {
-    let next = AtomicUsize::new(0);
-    let stop = AtomicUsize::new(0);
-    let done = Mutex::new(0usize);
-    let watched = std::io::stderr().is_terminal() && items.len() > 1;
-    let threads = thread::available_parallelism().map_or(1, usize::from);
-    let (send, receive) = std::sync::mpsc::sync_channel(2 * threads);
-    thread::scope(|scope| {
-        for _ in 0..threads.min(items.len()) {
-            let send = send.clone();
-            scope.spawn(|| {
-                let send = send;
-                loop {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(item) = items.get(i) else {
-                        break;
-                    };
-                    if stop.load(Ordering::Relaxed) > 0 || send.send((i, work(item))).is_err() {
-                        break;
-                    }
-                    if let (true, Ok(mut done)) = (watched, done.lock()) {
-                        *done += 1;
-                        let _ = write!(anstream::stderr(), "\r{} of {} files", *done, items.len());
-                        if *done == items.len() {
-                            let _ = writeln!(anstream::stderr());
-                        }
-                    }
-                }
-            });
-        }
-        drop(send);
-        let mut waiting: std::collections::BTreeMap<usize, R> = std::collections::BTreeMap::new();
-        let mut turn = 0;
-        for (i, result) in receive {
-            waiting.insert(i, result);
-            while let Some(result) = waiting.remove(&turn) {
-                let item = items.get(turn).map_or("", String::as_str);
-                turn += 1;
-                if !take(item, result) {
-                    stop.store(1, Ordering::Relaxed);
-                }
-            }
-        }
-    });
 }

@@ -3,13 +3,12 @@
 use std::path::Path;
 
 use flagred::{
-    attitude::Attitude,
     evaluation::{ErrorRecord, Judged, Span, judge},
     monitor::Monitor,
     source::Observer,
     verdict::Level,
 };
-use flightlog::{Flight, Gap};
+use flightlog::Flight;
 
 use super::estimators::Estimators;
 use crate::{failure::Failure, samples};
@@ -17,16 +16,11 @@ use crate::{failure::Failure, samples};
 /// How far apart steps are, in seconds.
 const STEP_S: f64 = 0.5;
 
-/// Without times in the header, so much at either end of a time in the air is taking off and landing, in seconds.
-const ENDS_S: f64 = 10.0;
-
 /// A baseline forgets what was before so long a time without a sample, in seconds.
 const LONGEST_GAP_S: f64 = 2.0;
 
 /// Sums of time steps are off by less than this.
 const ROUNDING_S: f64 = 1e-6;
-
-const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
 
 /// What became of a flight.
 pub(super) struct Record {
@@ -57,24 +51,11 @@ pub(super) fn evaluate(
     estimators: &Estimators,
     horizon_s: f64,
 ) -> Result<Record, Failure> {
-    let names = estimators.signals();
-    let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
-    let options = flightlog::Options {
-        signals: Some(wanted.collect()),
-    };
-    let flight = flightlog::open(path, &options)?;
+    let flight = samples::open_complete(path, &estimators.signals(), "cannot be evaluated")?;
     let file = path.display().to_string();
-    let gaps = flight.gaps();
-    if let Some(gap) = gaps.iter().find(|gap| !matches!(gap, Gap::TooSlow { .. })) {
-        let failure = Failure::unreadable(format!("`{file}` cannot be evaluated: {gap}"));
-        return Err(gap.help().into_iter().fold(failure, Failure::help));
-    }
-    let header = |key: &str| {
-        let found = flight.header.iter().find(|(k, _)| k == key);
-        found.map(|(_, value)| value.clone())
-    };
-    let judged = judged_times(&flight);
-    let errors = ErrorRecord::new(attitudes(&flight));
+    let header = |key| samples::header(&flight, key).map(str::to_owned);
+    let judged = samples::judged_times(&flight);
+    let errors = ErrorRecord::new(samples::attitudes(&flight));
     let times: Vec<(f64, bool)> = judged
         .iter()
         .flat_map(step_times)
@@ -103,49 +84,11 @@ pub(super) fn evaluate(
     })
 }
 
-/// From when to when a flight counts: as its header says, else all its time in the air but the ends.
-fn judged_times(flight: &Flight) -> Vec<Span> {
-    let number = |key: &str| {
-        let found = flight.header.iter().find(|(k, _)| k == key);
-        found.and_then(|(_, value)| value.parse::<f64>().ok())
-    };
-    if let (Some(from_s), Some(to_s)) = (number("judged_from_s"), number("judged_to_s")) {
-        return vec![Span { from_s, to_s }];
-    }
-    let spans = flight.in_air.iter().flat_map(|air| &air.spans);
-    spans
-        .map(|span| Span {
-            from_s: span.start_s + ENDS_S,
-            to_s: span.end_s - ENDS_S,
-        })
-        .filter(|span| span.length_s() > 0.0)
-        .collect()
-}
-
 fn step_times(span: &Span) -> impl Iterator<Item = f64> + use<> {
     let (from_s, to_s) = (span.from_s, span.to_s);
     (0_u32..)
         .map(move |i| from_s + f64::from(i) * STEP_S)
         .take_while(move |t_s| *t_s <= to_s + ROUNDING_S)
-}
-
-/// The attitude over time, as often as roll was logged.
-fn attitudes(flight: &Flight) -> impl Iterator<Item = (f64, Attitude)> + '_ {
-    let mut holds = ATTITUDE.map(|name| flight.signal(name).map(|signal| signal.hold()));
-    let times = flight.signal("roll_deg").map_or(&[][..], |roll| roll.t_s);
-    times.iter().map(move |&t_s| {
-        let [roll_des_deg, roll_deg, pitch_des_deg, pitch_deg] = holds.each_mut().map(|hold| {
-            let held = hold.as_mut().and_then(|hold| hold.at(t_s));
-            held.unwrap_or(f64::NAN)
-        });
-        let attitude = Attitude {
-            roll_des_deg,
-            roll_deg,
-            pitch_des_deg,
-            pitch_deg,
-        };
-        (t_s, attitude)
-    })
 }
 
 struct Followed {

@@ -17,7 +17,7 @@ const SHORTEST_EPISODE_S: f64 = 1.0;
 /// Time stamps are in microseconds.
 const ROUNDING_S: f64 = 1e-6;
 
-/// When the attitude error of a flight was known, and when it was critical.
+/// The attitude error of a flight over time, and when it was critical.
 ///
 /// # Example: three seconds of a lost attitude
 ///
@@ -39,8 +39,8 @@ const ROUNDING_S: f64 = 1e-6;
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct ErrorRecord {
-    known_s: Vec<f64>,
-    critical_s: Vec<f64>,
+    /// Times in seconds, with the error over the second before in degrees.
+    errors: Vec<(f64, f64)>,
     episodes: Vec<Span>,
 }
 
@@ -71,11 +71,9 @@ impl ErrorRecord {
             let Some(mean) = second.total().mean() else {
                 continue;
             };
-            record.known_s.push(t_s);
-            let is_critical = libm::sqrt(mean) > CRITICAL_ERROR_DEG;
-            if is_critical {
-                record.critical_s.push(t_s);
-            }
+            let error_deg = libm::sqrt(mean);
+            record.errors.push((t_s, error_deg));
+            let is_critical = error_deg > CRITICAL_ERROR_DEG;
             let span = excursion.filter(|_| is_critical).unwrap_or(Span {
                 from_s: t_s,
                 to_s: t_s,
@@ -93,14 +91,23 @@ impl ErrorRecord {
         record
     }
 
+    /// The largest error after `t_s` and within `horizon_s`, in degrees; `None` where nothing is known of it then.
+    pub fn largest_within(&self, t_s: f64, horizon_s: f64) -> Option<f64> {
+        let after = |t_s: f64| {
+            self.errors
+                .partition_point(|(time, _)| *time <= t_s + ROUNDING_S)
+        };
+        let ahead = self.errors.get(after(t_s)..after(t_s + horizon_s));
+        ahead?
+            .iter()
+            .map(|(_, error_deg)| *error_deg)
+            .reduce(f64::max)
+    }
+
     /// Whether the error becomes critical after `t_s` and within `horizon_s`; `None` where nothing is known of it then.
     pub fn critical_within(&self, t_s: f64, horizon_s: f64) -> Option<bool> {
-        let any = |times: &[f64]| {
-            let next = times.partition_point(|time| *time <= t_s + ROUNDING_S);
-            let next = times.get(next);
-            next.is_some_and(|time| *time <= t_s + horizon_s + ROUNDING_S)
-        };
-        any(&self.known_s).then(|| any(&self.critical_s))
+        let largest_deg = self.largest_within(t_s, horizon_s)?;
+        Some(largest_deg > CRITICAL_ERROR_DEG)
     }
 
     /// The times over the limit, each for a second at least.
