@@ -15,6 +15,7 @@ mod inspect;
 mod learn;
 mod map;
 mod new;
+mod output;
 mod parallel;
 mod profile;
 mod report;

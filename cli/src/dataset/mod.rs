@@ -1,7 +1,7 @@
 //! `flagred dataset`: flights as rows to learn from.
 
 mod flight;
-mod summary;
+pub(crate) mod summary;
 
 use std::{io::Write, path::Path};
 

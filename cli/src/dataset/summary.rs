@@ -59,27 +59,12 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
         notes: Vec::new(),
     };
     for row in 0..table.len() {
-        let cell = |name: &str| {
-            let column = table.column(name).unwrap_or(usize::MAX);
-            table.number(row, column).map_err(|bad| refuse(table, &bad))
-        };
-        let low = table
-            .column("c_limit_low")
-            .map_or(Ok(0.0), |_| cell("c_limit_low"))?;
-        let high = table
-            .column("c_limit_high")
-            .map_or(Ok(1.0), |_| cell("c_limit_high"))?;
-        let att_rmse_deg = table
-            .number(row, error)
-            .map_err(|bad| refuse(table, &bad))?;
-        let inputs = recipes
-            .iter()
-            .map(|recipe| {
-                let values = recipe.columns.iter().map(|column| cell(column));
-                let values = values.collect::<Result<Vec<f64>, Failure>>()?;
-                Ok((recipe.make)(&values, low, high))
-            })
-            .collect::<Result<Vec<f64>, Failure>>()?;
+        let refused = |bad: BadCell| refuse(table, &bad);
+        let att_rmse_deg = table.number(row, error).map_err(refused)?;
+        let inputs = recipes.iter().map(|recipe| recipe.value(table, row));
+        let inputs = inputs
+            .collect::<Result<Vec<f64>, BadCell>>()
+            .map_err(refused)?;
         let has_crashed = crashed.is_some_and(|column| table.text(row, column) == "1");
         made.rows.push(Row {
             vehicle: vehicle
@@ -100,7 +85,8 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
     Ok(made)
 }
 
-fn refuse(table: &Table, bad: &BadCell) -> Failure {
+/// A cell that cannot be used, told with its place.
+pub(crate) fn refuse(table: &Table, bad: &BadCell) -> Failure {
     Failure::unreadable(format!(
         "`{}`, line {}, column `{}`: {}",
         table.file, bad.line, bad.column, bad.problem
@@ -109,14 +95,30 @@ fn refuse(table: &Table, bad: &BadCell) -> Failure {
 }
 
 /// How an input is made of columns, and of the limits of the effective range.
-struct Recipe {
-    columns: &'static [&'static str],
+pub(crate) struct Recipe {
+    pub(crate) columns: &'static [&'static str],
     make: Make,
 }
 
 type Make = fn(&[f64], f64, f64) -> f64;
 
-fn recipe(source: &Source) -> Option<Recipe> {
+impl Recipe {
+    /// The value in a row of a table that has the columns; without limits the effective range is the full one.
+    pub(crate) fn value(&self, table: &Table, row: usize) -> Result<f64, BadCell> {
+        let cell = |name: &str| match table.column(name) {
+            Some(column) => table.number(row, column).map(Some),
+            None => Ok(None),
+        };
+        let low = cell("c_limit_low")?.unwrap_or(0.0);
+        let high = cell("c_limit_high")?.unwrap_or(1.0);
+        let values = self.columns.iter().map(|name| cell(name));
+        let values = values.collect::<Result<Option<Vec<f64>>, BadCell>>()?;
+        Ok(values.map_or(f64::NAN, |values| (self.make)(&values, low, high)))
+    }
+}
+
+/// The recipe of a source, where such tables tell it.
+pub(crate) fn recipe(source: &Source) -> Option<Recipe> {
     let spread: Make = |values, low, high| values[0] / (high - low);
     let (columns, make): (&'static [&'static str], Make) =
         match (source.statistic, source.motors, &source.signal) {
@@ -135,16 +137,11 @@ fn recipe(source: &Source) -> Option<Recipe> {
                     square.max(0.0).sqrt() / (high - low)
                 },
             ),
-            // Exact where all commands lie on one side of the middle of both ranges.
             (Statistic::Mean, Motors::Pooled, Signal::MotorMargin) => {
-                (&["margin_mean", "c_mean"], |values, low, high| {
-                    let nearer = if values[1] < 0.5 {
-                        values[0] - low
-                    } else {
-                        high - (1.0 - values[0])
-                    };
-                    (nearer / (high - low)).clamp(0.0, 0.5)
-                })
+                (&["margin_mean", "c_mean"], effective_margin)
+            }
+            (Statistic::Mean, Motors::Min, Signal::MotorMargin) => {
+                (&["margin_min_mean", "c_mean"], effective_margin)
             }
             (Statistic::ShareBelow(limit), Motors::Pooled, Signal::MotorMargin)
                 if (0.004..0.01).contains(&limit) =>
@@ -154,4 +151,14 @@ fn recipe(source: &Source) -> Option<Recipe> {
             _ => return None,
         };
     Some(Recipe { columns, make })
+}
+
+/// A mean margin on the effective range; exact where all commands lie on one side of the middle of both ranges.
+fn effective_margin(values: &[f64], low: f64, high: f64) -> f64 {
+    let nearer = if values[1] < 0.5 {
+        values[0] - low
+    } else {
+        high - (1.0 - values[0])
+    };
+    (nearer / (high - low)).clamp(0.0, 0.5)
 }

@@ -3,7 +3,9 @@
 mod document;
 mod estimators;
 mod flight;
+mod rows;
 mod scores;
+mod svg;
 mod warnings;
 mod words;
 
@@ -15,7 +17,7 @@ use std::{
 
 use crate::{
     failure::{Exit, Failure},
-    parallel,
+    output, parallel,
 };
 use estimators::Estimators;
 use flight::Record;
@@ -25,8 +27,12 @@ use warnings::Warnings;
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Flight logs with attitude (ArduPilot, PX4, flight CSV; plain or gzipped), and folders of them
-    #[arg(required = true, value_name = "FLIGHT")]
+    #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
     flights: Vec<PathBuf>,
+
+    /// Whole flights instead: a table with a row for each (`att_rmse_deg`, `c_mean`, `c_std`, ...), or of `flagred dataset`
+    #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
+    rows: Option<PathBuf>,
 
     /// Another profile to compare: a file; may be given several times
     #[arg(long = "profile", value_name = "NAME|FILE")]
@@ -39,6 +45,10 @@ pub(crate) struct Arguments {
     /// One JSON document instead of words
     #[arg(long)]
     json: bool,
+
+    /// Draw the receiver operating characteristic and the reliability into a file
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
 }
 
 fn horizon(text: &str) -> Result<f64, String> {
@@ -64,7 +74,13 @@ struct Evaluation {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let estimators = Estimators::new(&arguments.profiles)?;
-    let (evaluation, exit) = flights(arguments, &estimators)?;
+    let (evaluation, exit) = match &arguments.rows {
+        Some(table) => (rows(table, &estimators)?, Exit::Clean),
+        None => flights(arguments, &estimators)?,
+    };
+    if let Some(picture) = &arguments.svg {
+        output::write(picture, &svg::draw(&evaluation))?;
+    }
     let mut out = anstream::stdout().lock();
     if arguments.json {
         let document = document::document(&evaluation);
@@ -125,18 +141,41 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
         cases: "steps",
         horizon_s: Some(arguments.horizon),
         flights: main.count(),
-        critical: cases
-            .iter()
-            .filter(|case| case.kind != APART && case.is_critical)
-            .count(),
         left_out,
-        estimators: scores::score(estimators.names(), estimators.profiles.len(), &cases),
         warnings: (0..estimators.profiles.len())
             .map(|profile| Warnings::by_kind(profile, &records))
             .collect(),
         records,
+        ..Evaluation::of(estimators, &cases)
     };
     Ok((evaluation, exit))
+}
+
+/// Evaluates a table with a row for each flight.
+fn rows(table: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
+    let (cases, notes) = rows::cases(table, estimators)?;
+    for note in notes {
+        // Nothing is left to tell a user whose standard error is closed.
+        let _ = writeln!(anstream::stderr(), "{note}");
+    }
+    Ok(Evaluation::of(estimators, &cases))
+}
+
+impl Evaluation {
+    /// Of cases that are flights.
+    fn of(estimators: &Estimators, cases: &[Case]) -> Evaluation {
+        let main = || cases.iter().filter(|case| case.kind != APART);
+        Evaluation {
+            cases: "flights",
+            horizon_s: None,
+            flights: main().count(),
+            critical: main().filter(|case| case.is_critical).count(),
+            left_out: 0,
+            estimators: scores::score(estimators.names(), estimators.profiles.len(), cases),
+            warnings: Vec::new(),
+            records: Vec::new(),
+        }
+    }
 }
 
 /// A file to evaluate.

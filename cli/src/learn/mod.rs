@@ -4,7 +4,6 @@ mod data;
 pub(crate) mod report;
 
 use std::{
-    fs,
     io::Write,
     path::{Path, PathBuf},
 };
@@ -24,6 +23,7 @@ use fuzzy::{
 use crate::{
     diagnostics::{read_text, refuse},
     failure::{Exit, Failure},
+    output,
 };
 
 #[derive(clap::Args)]
@@ -169,7 +169,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         },
         learned,
     };
-    write(arguments, &report::rule_set(arguments, &outcome, &text))?;
+    output::write(
+        &arguments.output,
+        &report::rule_set(arguments, &outcome, &text),
+    )?;
     let mut out: Box<dyn Write> = if arguments.output == Path::new("-") {
         Box::new(anstream::stderr())
     } else {
@@ -253,24 +256,4 @@ fn coverage(model: &Model, gap: &GapSettings) -> Result<(f64, f64), Failure> {
     let known = (0..cells).filter(|cell| filled.value(*cell).is_some());
     let known = known.count() as f64 / cells.max(1) as f64;
     Ok((1.0 - filled.filled_share(), known))
-}
-
-/// Writes the rule set beside its place first, so that there is never half of one.
-fn write(arguments: &Arguments, text: &str) -> Result<(), Failure> {
-    if arguments.output == Path::new("-") {
-        write!(std::io::stdout().lock(), "{text}")?;
-        return Ok(());
-    }
-    let mut beside = arguments.output.clone().into_os_string();
-    beside.push(".partial");
-    let beside = PathBuf::from(beside);
-    fs::write(&beside, text)
-        .and_then(|()| fs::rename(&beside, &arguments.output))
-        .map_err(|error| {
-            // What is left of it is of no use; that it cannot be removed either is no news.
-            let _ = fs::remove_file(&beside);
-            let shown = arguments.output.display();
-            Failure::unreadable(format!("`{shown}` cannot be written: {error}"))
-                .help("check the folder and its permissions")
-        })
 }
