@@ -1,0 +1,275 @@
+//! `flagred evaluate` as its users meet it, and what the shipped rules are worth on the simulated flights.
+
+use std::{
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+    process::Output,
+};
+
+use flagred_tests::{flagred, shared_data};
+use serde_json::Value;
+
+/// A folder of this test's own, gone when the test is.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("flagred-{}-{name}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    fn file(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.0.join(name);
+        fs::write(&path, text).unwrap();
+        path
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A minute of flight at 25 Hz: from 30 to 40 s the motors swing ever harder, from 34 to 40 s the attitude is off.
+fn flight(kind: &str, in_trouble: bool) -> String {
+    let mut text = format!(
+        "# vehicle: {kind} quad\n# kind: {kind}\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n\
+         # judged_from_s: 10\n# judged_to_s: 55\n\
+         t_s,pwm1,pwm2,pwm3,pwm4,roll_des_deg,roll_deg,pitch_des_deg,pitch_deg,in_air\n"
+    );
+    for i in 0..1500 {
+        let t_s = f64::from(i) / 25.0;
+        let swing = if in_trouble && (30.0..40.0).contains(&t_s) {
+            300.0 * (t_s * 5.0).sin().powi(2) * ((t_s - 30.0) / 4.0).min(1.0)
+        } else {
+            4.0 * (t_s * 7.0).sin()
+        };
+        let off = if in_trouble && (34.0..40.0).contains(&t_s) {
+            12.0
+        } else {
+            0.1
+        };
+        let (up, down) = (1550.0 + swing, 1550.0 - swing);
+        writeln!(
+            text,
+            "{t_s},{up:.0},{down:.0},{up:.0},{down:.0},0,{off},0,0,1"
+        )
+        .unwrap();
+    }
+    text
+}
+
+fn evaluate(arguments: &[&Path]) -> Output {
+    let mut command = flagred();
+    command.arg("evaluate").args(arguments).output().unwrap()
+}
+
+fn json(output: &Output) -> Value {
+    let said = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {said}"))
+}
+
+fn estimator<'a>(document: &'a Value, name: &str) -> &'a Value {
+    let all = document["estimators"].as_array().unwrap();
+    all.iter().find(|e| e["name"] == name).unwrap()
+}
+
+#[test]
+fn flights_are_compared_step_by_step_and_episode_by_episode() {
+    let folder = Folder::new("evaluate");
+    folder.file("a-calm.csv", &flight("calm", false));
+    folder.file("b-gusts.csv", &flight("gusts", true));
+    folder.file("c-manoeuvre.csv", &flight("manoeuvre", true));
+    // A folder may hold other things than flights.
+    folder.file("README.md", "Not a flight.\n");
+    let output = evaluate(&[Path::new("--json"), &folder.0]);
+    assert_eq!(output.status.code(), Some(0));
+    let document = json(&output);
+    let names: Vec<&Value> = document["estimators"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|e| &e["name"])
+        .collect();
+    assert_eq!(
+        names,
+        [
+            "flagred",
+            "flagred-paper",
+            "margin_mean",
+            "lowest_motor",
+            "spread",
+            "saturated_share",
+            "ekf_wind",
+            "true_wind"
+        ]
+    );
+    // 45 s in steps of half a second, both ends included; the manoeuvre is apart.
+    assert_eq!(document["steps"], 2 * 91);
+    assert_eq!(
+        (&document["flights"], &document["left_out"]),
+        (&2.into(), &1.into())
+    );
+    // The error of a second is over the limit from 34.2 to 40.8 s: critical within 5 s from 29.5 s on.
+    let flagred = estimator(&document, "flagred");
+    assert_eq!(flagred["critical"], 23);
+    assert!(flagred["auc"].as_f64().unwrap() > 0.9, "{flagred}");
+    assert!(flagred["pr_auc"].as_f64().unwrap() > 0.75, "{flagred}");
+    let unknown = estimator(&document, "ekf_wind");
+    assert_eq!(
+        (&unknown["auc"], &unknown["unknown"]),
+        (&Value::Null, &182.into())
+    );
+    assert_eq!(unknown["reliability"], Value::Null);
+    let cases = flagred["reliability"].as_array().unwrap().iter();
+    assert_eq!(
+        cases.map(|b| b["cases"].as_u64().unwrap()).sum::<u64>(),
+        182
+    );
+
+    let warnings = &flagred["warnings"];
+    assert_eq!(
+        (
+            &warnings["episodes"],
+            &warnings["announced"],
+            &warnings["false_warnings"]
+        ),
+        (&1.into(), &1.into(), &0.into())
+    );
+    let lead_s = warnings["lead_s_median"].as_f64().unwrap();
+    assert!((0.5..4.2).contains(&lead_s), "{lead_s}");
+    let kinds: Vec<&Value> = warnings["by_kind"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|k| &k["kind"])
+        .collect();
+    assert_eq!(kinds, ["calm", "gusts", "manoeuvre"]);
+    let episode = &document["records"][1]["profiles"]["flagred"]["episodes"][0];
+    assert!(
+        (episode["from_s"].as_f64().unwrap() - 34.2).abs() < 0.1,
+        "{episode}"
+    );
+}
+
+#[test]
+fn a_file_that_is_no_flight_stops_no_other() {
+    let folder = Folder::new("bad-flight");
+    let good = folder.file("good.csv", &flight("gusts", true));
+    let bad = folder.file("notes.txt", "took off at noon\n");
+    let picture = folder.0.join("curves.svg");
+    let output = evaluate(&[&bad, &good, Path::new("--svg"), &picture]);
+    assert_eq!(output.status.code(), Some(3));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("notes.txt") && said.contains("help:"),
+        "{said}"
+    );
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        text.starts_with("1 flights of 1 vehicles, 91 steps"),
+        "{text}"
+    );
+    assert!(
+        text.contains("warnings of flagred") && text.contains("reliability of"),
+        "{text}"
+    );
+    assert!(
+        fs::read_to_string(&picture)
+            .unwrap()
+            .contains("true_wind unknown")
+    );
+
+    let nothing = evaluate(&[&bad]);
+    assert_eq!(nothing.status.code(), Some(3));
+    assert!(nothing.stdout.is_empty());
+}
+
+#[test]
+fn whole_flights_are_evaluated_from_a_table() {
+    let folder = Folder::new("rows");
+    let table = folder.file(
+        "rows.csv",
+        "frame,c_limit_low,c_limit_high,margin_mean,margin_min_mean,c_mean,c_std,c_std_time,c_std_motors,sat_lim_frac,wind_mean,att_rmse_deg,crashed\n\
+         a,0,1,0.4,0.39,0.6,0.011,0.01,0.003,0,3,0.2,0\n\
+         a,0,1,0.35,0.3,0.65,0.075,0.02,0.07,0.02,9,3.1,0\n\
+         b,0,1,0.2,0.1,0.8,0.16,0.04,0.12,0.1,12,6.2,0\n\
+         b,0,1,0.1,0.02,0.9,0.2,0.05,0.14,0.2,7,4.0,1\n",
+    );
+    let output = evaluate(&[Path::new("--json"), Path::new("--rows"), &table]);
+    let document = json(&output);
+    assert_eq!(document["cases"], "flights");
+    for (name, auc) in [("flagred", 1.0), ("lowest_motor", 1.0), ("true_wind", 0.75)] {
+        let estimator = estimator(&document, name);
+        assert_eq!(estimator["critical"], 2, "{name}");
+        assert_eq!(estimator["auc"], auc, "{name}");
+    }
+    assert_eq!(estimator(&document, "flagred")["warnings"], Value::Null);
+
+    let bad = folder.file("bad.csv", "c_mean,att_rmse_deg\nhalf,1\n");
+    let output = evaluate(&[Path::new("--rows"), &bad]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    // Nothing but the load is in it, and nobody asks for the load alone.
+    assert!(
+        said.contains("does not tell its input `unsteady_now`"),
+        "{said}"
+    );
+    let output = evaluate(&[Path::new("--rows"), &bad, &bad]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+/// What the documentation says of the shipped rules: on the flights they were learned from; `leave_vehicles_out.rs` has
+/// the other half.
+#[test]
+fn the_shipped_rules_on_the_simulated_flights() {
+    let Some(data) = shared_data() else { return };
+    let rows = json(&evaluate(&[
+        Path::new("--json"),
+        Path::new("--rows"),
+        &data.join("sitl/runs.csv"),
+    ]));
+    let series = json(&evaluate(&[
+        Path::new("--json"),
+        &data.join("sitl2/timeseries"),
+    ]));
+    assert_eq!(series["steps"], 44_369);
+    for (document, least) in [(&rows, 0.96), (&series, 0.88)] {
+        let flagred = estimator(document, "flagred")["auc"].as_f64().unwrap();
+        assert!(flagred >= least, "{flagred}");
+        for other in document["estimators"].as_array().unwrap() {
+            if let Some(auc) = other["auc"].as_f64().filter(|_| other["name"] != "flagred") {
+                assert!(auc < flagred, "{other}");
+            }
+        }
+    }
+    // The same from Python (roc_auc_score over the same steps and rows).
+    for (document, name, auc) in [
+        (&series, "true_wind", 0.801),
+        (&series, "ekf_wind", 0.791),
+        (&series, "lowest_motor", 0.780),
+        (&series, "spread", 0.852),
+        (&series, "saturated_share", 0.727),
+        (&series, "flagred-paper", 0.694),
+        (&rows, "true_wind", 0.802),
+        (&rows, "saturated_share", 0.941),
+    ] {
+        let found = estimator(document, name)["auc"].as_f64().unwrap();
+        assert!((found - auc).abs() < 0.0015, "{name}: {found} not {auc}");
+    }
+    let warnings = &estimator(&series, "flagred")["warnings"];
+    let of = |kind: &str| {
+        let kinds = warnings["by_kind"].as_array().unwrap();
+        kinds.iter().find(|k| k["kind"] == kind).unwrap()
+    };
+    assert_eq!(warnings["episodes"], 268);
+    assert!(
+        warnings["false_per_hour"].as_f64().unwrap() <= 6.0,
+        "{warnings}"
+    );
+    assert_eq!(of("calm")["warnings"], 0);
+    assert!(of("rising")["announced_share"].as_f64().unwrap() >= 0.85);
+    assert!(of("rising")["lead_s_median"].as_f64().unwrap() > 5.0);
+}
