@@ -1,6 +1,7 @@
 //! What the tests across packages share; the tests themselves are in `tests/tests/`.
 
 pub mod log_writer;
+pub mod simulated;
 
 use std::{path::PathBuf, process::Command, sync::OnceLock};
 

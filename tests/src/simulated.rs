@@ -1,0 +1,223 @@
+//! The simulated flights of the reference data, and what a profile says of them.
+
+use std::{
+    collections::HashMap,
+    fs,
+    path::{Path, PathBuf},
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering},
+    },
+    thread,
+};
+
+use flagred::{
+    attitude::Attitude,
+    estimator::Estimator,
+    evaluation::{ErrorRecord, Span},
+    monitor::{Monitor, Sample},
+    verdict::Level,
+};
+use flightlog::Flight;
+
+/// How far apart steps are, and how far they look ahead, in seconds.
+const STEP_S: f64 = 0.5;
+const HORIZON_S: f64 = 5.0;
+
+const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
+
+/// A flight in changing conditions, with what became of it.
+pub struct Simulated {
+    /// Such as `f000`.
+    pub id: String,
+    /// The vehicle, two that are the same craft under one name.
+    pub vehicle: String,
+    /// `gusts`, `rising`, `calm`, `fault` or `manoeuvre`.
+    pub kind: String,
+    /// When the flight counts.
+    pub judged: Span,
+    /// The attitude error.
+    pub errors: ErrorRecord,
+    /// When it ended in the air.
+    pub lost_s: Option<f64>,
+    /// Its steps, with whether the error becomes critical after them.
+    pub steps: Vec<(f64, bool)>,
+    /// What was done to it and when: time in seconds, event, time constant of the wind in seconds.
+    pub events: Vec<(f64, String, f64)>,
+    flight: Flight,
+}
+
+/// How a flight is replayed.
+#[derive(Clone, Copy)]
+pub struct Replay {
+    /// Only every so manyth motor sample is seen.
+    pub every: usize,
+    /// By how much the lower and upper end of the effective range are taken wrongly.
+    pub wrong_by: (f64, f64),
+}
+
+/// As it was flown.
+pub const AS_FLOWN: Replay = Replay {
+    every: 1,
+    wrong_by: (0.0, 0.0),
+};
+
+/// What a profile says of a flight.
+pub struct Said {
+    /// At each step: the inputs, and the risk in %; NaN is unknown.
+    pub steps: Vec<(Vec<f64>, f64)>,
+    /// The risk over time, where it is known: seconds and %.
+    pub risks: Vec<(f64, f64)>,
+    /// When it warned.
+    pub warnings: Vec<Span>,
+}
+
+/// The vehicle a name stands for: one craft goes by two.
+pub fn vehicle(name: &str) -> String {
+    name.replace("lin_tw125_z12", "lin_c80_z12")
+}
+
+/// Works on all items on all cores; the results are in the order of the items.
+pub fn on_all_cores<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let done = Mutex::new(Vec::new());
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some((i, item)) = {
+                    let i = next.fetch_add(1, Ordering::Relaxed);
+                    items.get(i).map(|item| (i, item))
+                } {
+                    let result = work(item);
+                    done.lock().unwrap().push((i, result));
+                }
+            });
+        }
+    });
+    let mut done = done.into_inner().unwrap();
+    done.sort_by_key(|(i, _)| *i);
+    done.into_iter().map(|(_, result)| result).collect()
+}
+
+/// Reads every flight of `sitl2`.
+pub fn flights(data: &Path) -> Vec<Simulated> {
+    let mut events: HashMap<String, Vec<(f64, String, f64)>> = HashMap::new();
+    for line in fs::read_to_string(data.join("sitl2/events.csv"))
+        .unwrap()
+        .lines()
+        .skip(1)
+    {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |i: usize| cells[i].parse().unwrap_or(f64::NAN);
+        let event = (number(1), cells[2].to_owned(), number(7));
+        events.entry(cells[0].to_owned()).or_default().push(event);
+    }
+    let folder = fs::read_dir(data.join("sitl2/timeseries")).unwrap();
+    let mut paths: Vec<PathBuf> = folder.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let mut all = on_all_cores(&paths, |path| read(path));
+    for simulated in &mut all {
+        simulated.events = events.remove(&simulated.id).unwrap_or_default();
+    }
+    all
+}
+
+fn read(path: &Path) -> Simulated {
+    let options = flightlog::Options {
+        signals: Some(ATTITUDE.map(str::to_owned).to_vec()),
+    };
+    let flight = flightlog::open(path, &options).unwrap();
+    let said = |key: &str| {
+        let found = flight.header.iter().find(|(k, _)| k == key);
+        found.map(|(_, value)| value.as_str()).unwrap()
+    };
+    let judged = Span {
+        from_s: said("judged_from_s").parse().unwrap(),
+        to_s: said("judged_to_s").parse().unwrap(),
+    };
+    let signals = ATTITUDE.map(|name| flight.signal(name).unwrap());
+    let errors = ErrorRecord::new((0..signals[0].t_s.len()).map(|i| {
+        let [roll_des_deg, roll_deg, pitch_des_deg, pitch_deg] = signals.map(|s| s.values[i]);
+        let attitude = Attitude {
+            roll_des_deg,
+            roll_deg,
+            pitch_des_deg,
+            pitch_deg,
+        };
+        (signals[0].t_s[i], attitude)
+    }));
+    let times = (0..).map(|i| judged.from_s + f64::from(i) * STEP_S);
+    let steps = times
+        .take_while(|t_s| *t_s <= judged.to_s + 1e-6)
+        .filter_map(|t_s| Some((t_s, errors.critical_within(t_s, HORIZON_S)?)))
+        .collect();
+    let last_air = flight.in_air.as_ref().and_then(|air| air.spans.last());
+    Simulated {
+        id: path.file_name().unwrap().to_string_lossy()[..4].to_owned(),
+        vehicle: vehicle(said("vehicle")),
+        kind: said("kind").to_owned(),
+        lost_s: last_air
+            .filter(|air| air.ends_with_log)
+            .map(|air| air.end_s),
+        steps,
+        events: Vec::new(),
+        judged,
+        errors,
+        flight,
+    }
+}
+
+impl Simulated {
+    /// The largest error after a time, over the horizon of the steps, in degrees.
+    pub fn error_ahead_deg(&self, t_s: f64) -> f64 {
+        self.errors
+            .largest_within(t_s, HORIZON_S)
+            .unwrap_or(f64::NAN)
+    }
+
+    /// Sends the flight through a monitor.
+    pub fn replay(&self, estimator: &Estimator, replay: Replay) -> Said {
+        let flight = &self.flight;
+        let (low, high) = (
+            flight.effective.low + replay.wrong_by.0,
+            flight.effective.high + replay.wrong_by.1,
+        );
+        let mut monitor = Monitor::new(estimator, flight.motors.len(), &[]).unwrap();
+        let mut said = Said {
+            steps: Vec::new(),
+            risks: Vec::new(),
+            warnings: Vec::new(),
+        };
+        let mut is_warning = false;
+        let mut now = (vec![f64::NAN; estimator.profile().inputs.len()], f64::NAN);
+        for (t_s, row) in flight.commands.rows().step_by(replay.every) {
+            while self
+                .steps
+                .get(said.steps.len())
+                .is_some_and(|(at_s, _)| *at_s < t_s - 1e-6)
+            {
+                said.steps.push(now.clone());
+            }
+            let effective = |raw: &f64| {
+                let c = flight.command(*raw).unwrap_or(f64::NAN);
+                ((c - low) / (high - low)).clamp(0.0, 1.0)
+            };
+            let motors: Vec<f64> = row.iter().map(effective).collect();
+            let assessment = monitor.push(&Sample {
+                t_s,
+                motors: &motors,
+                in_air: flight.is_in_air(t_s) == Some(true),
+                signals: &[],
+            });
+            let risk = assessment.risk.map_or(f64::NAN, |risk| risk.risk_pct);
+            if risk.is_finite() {
+                said.risks.push((t_s, risk));
+            }
+            now = (monitor.inputs().to_vec(), risk);
+            let warns = assessment.level > Some(Level::Good);
+            Span::follow(&mut said.warnings, &mut is_warning, t_s, warns);
+        }
+        said.steps.resize(self.steps.len(), now);
+        said
+    }
+}
