@@ -6,14 +6,17 @@ mod assess;
 mod check;
 mod convert;
 mod dataset;
+mod completions;
 mod diagnostics;
 mod eval;
 mod evaluate;
 mod explain;
 mod failure;
+mod help;
 mod inspect;
 mod learn;
 mod map;
+mod man;
 mod new;
 mod output;
 mod parallel;
@@ -32,7 +35,7 @@ use failure::{Exit, Failure};
 ///
 /// Exit codes: 0 nothing found, 1 findings, 2 wrong usage, 3 unreadable or not a multirotor.
 #[derive(Parser)]
-#[command(name = "flagred", version, max_term_width = 100)]
+#[command(name = "flagred", version, max_term_width = 100, after_help = help::FLAGRED)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -41,26 +44,38 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Say how risky a flight was: verdict, findings, risk over time
+    #[command(after_help = help::ASSESS)]
     Assess(assess::Arguments),
     /// Say what is wrong with a rule set, and what its author should know about it
+    #[command(after_help = help::CHECK)]
     Check(check::Arguments),
     /// Write a flight log as flight CSV
     Convert(convert::Arguments),
+    /// Write completions for a shell
+    #[command(after_help = help::COMPLETIONS)]
+    Completions(completions::Arguments),
     /// Evaluate a rule set at the points of a CSV file
+    #[command(after_help = help::EVAL)]
     Eval(eval::Arguments),
     /// Say why the outputs of a rule set are what they are
+    #[command(after_help = help::EXPLAIN)]
     Explain(explain::Arguments),
     /// Turn flights into rows to learn from: inputs, attitude error, risk
     Dataset(dataset::Arguments),
     /// Measure how well profiles tell what comes, beside predictors that need no rules
     Evaluate(evaluate::Arguments),
     /// Show what is in a flight log, and where each value came from
+    #[command(after_help = help::INSPECT)]
     Inspect(inspect::Arguments),
     /// Learn the rules of a rule set from rows of data
     Learn(learn::Arguments),
     /// Draw what a rule set decides over its inputs
     Map(map::Arguments),
+    /// Print the manual
+    #[command(after_help = help::MAN)]
+    Man(man::Arguments),
     /// Write a rule set to start from
+    #[command(after_help = help::NEW)]
     New(new::Arguments),
 }
 
@@ -70,6 +85,7 @@ impl Command {
             Command::Assess(arguments) => assess::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
+            Command::Completions(arguments) => completions::run(&arguments),
             Command::Eval(arguments) => eval::run(&arguments),
             Command::Explain(arguments) => explain::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
@@ -77,6 +93,7 @@ impl Command {
             Command::Inspect(arguments) => inspect::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Map(arguments) => map::run(&arguments),
+            Command::Man(arguments) => man::run(&arguments),
             Command::New(arguments) => new::run(&arguments),
         }
     }

@@ -1,0 +1,102 @@
+//! What to type: the examples under the help of each command. Every line is tried by a test.
+
+pub(crate) const FLAGRED: &str = "\
+What to type:
+  flagred assess flight.bin                      how risky was that flight, when, and which motor
+  flagred assess flight.bin --html report.html   the same to look at: opens offline, prints
+  flagred assess *.bin --html all.html           several flights compared
+  flagred inspect flight.bin                     what is in a log, and what it lacks
+  flagred new my-rules                           a commented rule set to start from
+  flagred check my-rules.yaml                    what is wrong with it, what it leaves open
+  flagred explain my-rules.yaml temperature=24 humidity=70   why the answer is what it is
+  flagred completions bash                       completions for your shell
+
+Each command has its own help: flagred assess --help";
+
+pub(crate) const ASSESS: &str = "\
+What to type:
+  flagred assess flight.bin
+  flagred assess flight.bin --html report.html --svg risk.svg
+  flagred assess --json flight.ulg
+  flagred assess --csv --step 1 flight.tlog.gz
+  flagred assess --fail-on fail *.bin
+  flagred assess --profile flagred-paper flight.bin
+  flagred assess --profile my-profile.yaml flight.csv";
+
+pub(crate) const CHECK: &str = "\
+What to type:
+  flagred check my-rules.yaml
+  flagred check my-rules.yaml --monotone temperature:increasing
+  flagred check --deny warnings rules/*.yaml
+  flagred check --json my-rules.yaml";
+
+pub(crate) const EVAL: &str = "\
+What to type:
+  flagred eval my-rules.yaml points.csv
+  flagred eval my-rules.yaml";
+
+pub(crate) const EXPLAIN: &str = "\
+What to type:
+  flagred explain my-rules.yaml temperature=24 humidity=70
+  flagred explain --json my-rules.yaml temperature=24 humidity=70";
+
+pub(crate) const INSPECT: &str = "\
+What to type:
+  flagred inspect flight.bin
+  flagred inspect --json flight.ulg";
+
+pub(crate) const NEW: &str = "\
+What to type:
+  flagred new my-rules
+  flagred new --output - my-rules";
+
+pub(crate) const COMPLETIONS: &str = "\
+What to type:
+  flagred completions bash
+  flagred completions zsh
+  flagred completions fish
+
+Where it goes: for bash ~/.local/share/bash-completion/completions/flagred, for fish
+~/.config/fish/completions/flagred.fish, for zsh a file _flagred in a folder of $fpath.";
+
+pub(crate) const MAN: &str = "\
+What to type:
+  flagred man
+  flagred man assess
+  flagred man --all man1";
+
+#[cfg(test)]
+mod tests {
+    use clap::{CommandFactory, Parser};
+
+    use crate::Arguments;
+
+    /// Every line that begins with the program is a command line that the program takes.
+    #[test]
+    fn what_help_says_to_type_can_be_typed() {
+        let mut tried = 0;
+        let mut commands = vec![Arguments::command()];
+        commands.extend(Arguments::command().get_subcommands().cloned());
+        for command in &commands {
+            let help = command.get_after_help().map(ToString::to_string);
+            let help = help.unwrap_or_else(|| panic!("`{}` has no examples", command.get_name()));
+            for line in help
+                .lines()
+                .filter_map(|line| line.strip_prefix("  flagred "))
+            {
+                let words = line.split("   ").next().unwrap().split_whitespace();
+                let typed = std::iter::once("flagred").chain(words);
+                if let Err(error) = Arguments::try_parse_from(typed) {
+                    panic!("flagred {line}: {error}");
+                }
+                tried += 1;
+            }
+        }
+        assert!(tried > 20, "{tried}");
+    }
+
+    #[test]
+    fn the_definitions_are_sound() {
+        Arguments::command().debug_assert();
+    }
+}

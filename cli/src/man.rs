@@ -1,0 +1,63 @@
+//! `flagred man`: the manual, made of the same definitions as the help.
+
+use std::{fs, io::Write, path::PathBuf};
+
+use clap::{Command, CommandFactory};
+
+use crate::{
+    failure::{Exit, Failure},
+    report::write_whole,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The command whose page to print; of flagred itself where none is named
+    #[arg(value_name = "COMMAND")]
+    command: Option<String>,
+    /// Write all pages into a folder instead
+    #[arg(long, value_name = "FOLDER", conflicts_with = "command")]
+    all: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut flagred = crate::Arguments::command().propagate_version(true);
+    // Gives the commands the names of their pages: flagred-assess.
+    flagred.build();
+    let commands = || {
+        let commands = flagred.get_subcommands();
+        commands.filter(|command| command.get_name() != "help")
+    };
+    if let Some(folder) = &arguments.all {
+        fs::create_dir_all(folder).map_err(|error| {
+            Failure::unreadable(format!("`{}` cannot be made: {error}", folder.display()))
+        })?;
+        for command in std::iter::once(&flagred).chain(commands()) {
+            let page = page(command)?;
+            let name = command
+                .get_display_name()
+                .unwrap_or_else(|| command.get_name());
+            write_whole(&folder.join(format!("{name}.1")), &page)?;
+        }
+        return Ok(Exit::Clean);
+    }
+    let command = match &arguments.command {
+        None => &flagred,
+        Some(name) => commands()
+            .find(|command| command.get_name() == name)
+            .ok_or_else(|| {
+                let names: Vec<&str> = commands().map(Command::get_name).collect();
+                Failure::usage(format!("`{name}` is no command"))
+                    .help(format!("the commands are {}", names.join(", ")))
+            })?,
+    };
+    let page = page(command)?;
+    std::io::stdout().lock().write_all(page.as_bytes())?;
+    Ok(Exit::Clean)
+}
+
+/// A page in the language of `man`.
+fn page(command: &Command) -> Result<String, Failure> {
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command.clone()).render(&mut page)?;
+    Ok(String::from_utf8_lossy(&page).into_owned())
+}
