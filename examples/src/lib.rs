@@ -1,1 +1,0 @@
-//! The numbered examples; each one is a page and a test.

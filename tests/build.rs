@@ -1,0 +1,58 @@
+//! Makes a test of every Rust block of every document, so that what is printed is what runs.
+
+use std::{env, fmt::Write as _, fs, path::Path};
+
+fn main() -> std::io::Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    println!("cargo::rerun-if-changed=build.rs");
+    let mut tests = String::new();
+    for folder in ["", "docs", "examples"] {
+        let folder = root.join(folder);
+        println!("cargo::rerun-if-changed={}", folder.display());
+        let Ok(entries) = fs::read_dir(&folder) else {
+            continue;
+        };
+        let mut pages: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+        pages.sort();
+        for page in pages {
+            if page.extension().is_some_and(|extension| extension == "md") {
+                println!("cargo::rerun-if-changed={}", page.display());
+                let name = page.file_stem().unwrap_or_default().to_string_lossy();
+                add(&mut tests, &name, &fs::read_to_string(&page)?);
+            }
+        }
+    }
+    let out = env::var_os("OUT_DIR").unwrap_or_default();
+    fs::write(Path::new(&out).join("documents.rs"), tests)
+}
+
+/// A test for each block that is fenced as `rust`. The tests run at the root of the repository, where a reader stands.
+fn add(tests: &mut String, page: &str, text: &str) {
+    let name: String = page
+        .chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_lowercase()
+            } else {
+                '_'
+            }
+        })
+        .collect();
+    for (i, rest) in text.split("\n```rust\n").skip(1).enumerate() {
+        let Some((code, _)) = rest.split_once("\n```") else {
+            continue;
+        };
+        let call = if code.contains("fn main()") {
+            "main()?;"
+        } else {
+            ""
+        };
+        let _ = writeln!(
+            tests,
+            "#[test]\nfn page_{name}_{}() -> Result<(), Box<dyn std::error::Error>> {{\n\
+             std::env::set_current_dir(concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/..\"))?;\n\
+             {code}\n{call}Ok(())\n}}\n",
+            i + 1
+        );
+    }
+}

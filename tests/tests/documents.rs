@@ -1,0 +1,259 @@
+//! Every block of every document runs as printed: commands with their output, rule sets, profiles, and Rust.
+//!
+//! A `console` block holds commands behind `$ ` and what they print; a line of `...` stands for any lines. The commands
+//! of a document run one after the other in a folder that looks like the repository, so that what one writes the next
+//! can read. A YAML block whose first line is a comment with a file name is written there under that name.
+//!
+//! `UPDATE_DOCUMENTS=1 cargo test -p flagred-tests --test documents` writes what the commands print into the documents;
+//! look at the difference before you keep it.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use flagred_tests::flagred;
+
+/// What a reader types that a test has no business running: it builds the whole workspace, or installs.
+const NOT_RUN: [&str; 6] = [
+    "cargo test",
+    "cargo install",
+    "cargo build",
+    "cargo bench",
+    "git clone",
+    ".ci/run",
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The Markdown files of the repository's root, of `docs/` and of `examples/`.
+fn documents() -> Vec<PathBuf> {
+    let folders = ["", "docs", "examples"].map(|folder| root().join(folder));
+    let files = folders
+        .iter()
+        .filter_map(|folder| fs::read_dir(folder).ok());
+    let mut pages: Vec<PathBuf> = files
+        .flat_map(|entries| entries.map(|entry| entry.unwrap().path()))
+        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
+        .collect();
+    pages.sort();
+    assert!(pages.len() >= 5, "{pages:?}");
+    pages
+}
+
+struct Block {
+    language: String,
+    text: String,
+    line: usize,
+}
+
+/// The fenced blocks of a document.
+fn blocks(text: &str) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut open: Option<Block> = None;
+    for (i, line) in text.lines().enumerate() {
+        match (line.strip_prefix("```"), &mut open) {
+            (Some(_), Some(_)) => blocks.extend(open.take()),
+            (Some(language), None) => {
+                open = Some(Block {
+                    language: language.trim().to_owned(),
+                    text: String::new(),
+                    line: i + 1,
+                });
+            }
+            (None, Some(block)) => {
+                block.text += line;
+                block.text.push('\n');
+            }
+            (None, None) => {}
+        }
+    }
+    assert!(open.is_none(), "a block is not closed");
+    blocks
+}
+
+/// A folder with what the repository holds, in which documents may write.
+struct Desk(PathBuf);
+
+impl Desk {
+    fn new(name: &str) -> Self {
+        let desk = std::env::temp_dir().join(format!("flagred-{}-{name}", std::process::id()));
+        for folder in ["bin", "repository"] {
+            fs::create_dir_all(desk.join(folder)).unwrap();
+        }
+        for shared in ["examples", "rules", "tests", "docs"] {
+            let there = root().join(shared);
+            if there.exists() {
+                std::os::unix::fs::symlink(
+                    there.canonicalize().unwrap(),
+                    desk.join("repository").join(shared),
+                )
+                .unwrap();
+            }
+        }
+        let binary = flagred().get_program().to_owned();
+        std::os::unix::fs::symlink(&binary, desk.join("bin/flagred")).unwrap();
+        // `cargo run --release -- assess LOG` is the program with these arguments.
+        let cargo =
+            "#!/bin/sh\nwhile [ \"$1\" != -- ]; do shift; done; shift; exec flagred \"$@\"\n";
+        fs::write(desk.join("bin/cargo"), cargo).unwrap();
+        let executable = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+        fs::set_permissions(desk.join("bin/cargo"), executable).unwrap();
+        Desk(desk)
+    }
+
+    /// What a command prints, standard error and all.
+    fn run(&self, command: &str) -> String {
+        let path = format!(
+            "{}:{}",
+            self.0.join("bin").display(),
+            std::env::var("PATH").unwrap()
+        );
+        let output = Command::new("sh")
+            .args(["-c", &format!("{{ {command}\n}} 2>&1")])
+            .current_dir(self.0.join("repository"))
+            .env("PATH", path)
+            .output()
+            .unwrap();
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    }
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Whether what was printed is what the document says, where `...` stands for any lines.
+fn matches(said: &[&str], printed: &[&str]) -> bool {
+    match said {
+        [] => printed.is_empty(),
+        ["...", rest @ ..] => (0..=printed.len()).any(|skip| matches(rest, &printed[skip..])),
+        [line, rest @ ..] => {
+            printed
+                .first()
+                .is_some_and(|first| first.trim_end() == line.trim_end())
+                && matches(rest, &printed[1..])
+        }
+    }
+}
+
+/// Runs the commands of a block: the block as it should be, and which commands print something else.
+fn run_console(desk: &Desk, block: &Block) -> (String, Vec<String>) {
+    let (mut text, mut wrong) = (String::new(), Vec::new());
+    let mut lines = block.text.lines().peekable();
+    while let Some(line) = lines.next() {
+        let Some(command) = line.strip_prefix("$ ") else {
+            wrong.push(format!(
+                "`{line}` is no command: write `$ ` before the first line"
+            ));
+            break;
+        };
+        let mut said = Vec::new();
+        while let Some(line) = lines.next_if(|line| !line.starts_with("$ ")) {
+            said.push(line);
+        }
+        text += &format!("{line}\n");
+        if NOT_RUN.iter().any(|known| command.starts_with(known)) {
+            text.extend(said.iter().map(|line| format!("{line}\n")));
+            continue;
+        }
+        let printed = desk.run(command);
+        let printed: Vec<&str> = printed.trim_end().lines().map(str::trim_end).collect();
+        if matches(&said, &printed) {
+            text.extend(said.iter().map(|line| format!("{line}\n")));
+        } else {
+            text.extend(printed.iter().map(|line| format!("{line}\n")));
+            let (printed, said) = (printed.join("\n"), said.join("\n"));
+            wrong.push(format!(
+                "`{command}` prints\n{printed}\nbut the document says\n{said}"
+            ));
+        }
+    }
+    (text, wrong)
+}
+
+/// A YAML block is a rule set, a profile, or a part of one.
+fn check_yaml(desk: &Desk, block: &Block) -> Result<(), String> {
+    let named = block
+        .text
+        .lines()
+        .next()
+        .and_then(|line| line.strip_prefix("# "));
+    if let Some(name) = named.filter(|name| name.ends_with(".yaml") && !name.contains(' ')) {
+        fs::write(desk.0.join("repository").join(name), &block.text).unwrap();
+    }
+    let starts = |word: &str| block.text.lines().any(|line| line.starts_with(word));
+    if starts("fuzzy: ") {
+        let document = fuzzy::yaml::parse(&block.text).map_err(|findings| findings.to_string())?;
+        fuzzy::Engine::new(&document.model).map_err(|error| error.to_string())?;
+    } else if starts("flagred: ") {
+        flagred::profile::Profile::from_yaml(&block.text)
+            .map_err(|findings| findings.to_string())?;
+    }
+    Ok(())
+}
+
+#[test]
+fn every_block_runs_as_printed() {
+    let mut failures = Vec::new();
+    for page in documents() {
+        let text = fs::read_to_string(&page).unwrap();
+        let name = page.file_name().unwrap().to_string_lossy().into_owned();
+        let desk = Desk::new(&name);
+        let mut updated = text.clone();
+        for block in blocks(&text) {
+            let wrong = match block.language.as_str() {
+                "console" => {
+                    let (text, wrong) = run_console(&desk, &block);
+                    updated = updated.replacen(&block.text, &text, 1);
+                    wrong
+                }
+                "yaml" => check_yaml(&desk, &block).err().into_iter().collect(),
+                "json" => serde_json::from_str::<serde_json::Value>(&block.text)
+                    .err()
+                    .map(|error| error.to_string())
+                    .into_iter()
+                    .collect(),
+                _ => Vec::new(),
+            };
+            let place = format!("{name}, line {}", block.line);
+            failures.extend(wrong.into_iter().map(|what| format!("{place}: {what}")));
+        }
+        if std::env::var_os("UPDATE_DOCUMENTS").is_some() && updated != text {
+            fs::write(&page, updated).unwrap();
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n\n"));
+}
+
+/// Links within the repository lead somewhere.
+#[test]
+fn every_link_to_a_file_leads_to_one() {
+    let mut broken = Vec::new();
+    for page in documents() {
+        let text = fs::read_to_string(&page).unwrap();
+        let prose: String = text.split("```").step_by(2).collect();
+        for target in prose
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+        {
+            let file = target.split('#').next().unwrap_or_default();
+            let outside = target.contains("://") || file.is_empty() || file.contains(' ');
+            if !outside && !page.parent().unwrap().join(file).exists() {
+                broken.push(format!("{}: {target}", page.display()));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+mod rust {
+    #![allow(unused, reason = "what a page shows need not be used")]
+    include!(concat!(env!("OUT_DIR"), "/documents.rs"));
+}
