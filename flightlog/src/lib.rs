@@ -35,7 +35,6 @@ mod gap;
 mod input;
 mod interval;
 mod mav_type;
-#[cfg(feature = "mavlink")]
 pub mod mavlink;
 mod outputs;
 mod parameters;

@@ -3,17 +3,25 @@
 //!
 //! Nothing here opens a port: bytes come in, packets and bytes to send go out, and time is passed in.
 
-mod packet;
-//mod requests;
+mod checksum;
+pub(crate) mod packet;
+#[cfg(feature = "mavlink")]
+mod requests;
+#[cfg(feature = "mavlink")]
 mod send;
 mod stream;
-//mod vehicle;
+#[cfg(feature = "mavlink")]
+mod telemetry;
 
 /// The messages, as the MAVLink project defines them for ArduPilot; they hold those common to all autopilots.
+#[cfg(feature = "mavlink")]
 pub use ::mavlink::dialects::ardupilotmega as dialect;
 
 pub use packet::{Next, Packet, Version, Why, next_packet};
-//pub use requests::{MOTOR_RATE_HZ, Requests};
+#[cfg(feature = "mavlink")]
+pub use requests::{MOTOR_RATE_HZ, Requests, parameters_known};
+#[cfg(feature = "mavlink")]
 pub use send::Sender;
 pub use stream::{Skipped, Stream};
-//pub use vehicle::{News, Setup, Vehicle, is_in_air, vehicle_of};
+#[cfg(feature = "mavlink")]
+pub use telemetry::{News, Setup, Telemetry, is_in_air, vehicle_of};

@@ -1,11 +1,11 @@
 //! From MAVLink packets to a `Flight`.
 
-use super::packet::Packet;
 use super::signals::{SPECS, Spec};
 use crate::ardupilot::{self, Mode};
 use crate::clock::Latest;
 use crate::interval::both_hold;
 use crate::mav_type::{MavType, mav_type};
+use crate::mavlink::packet::Packet;
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
 use crate::place::{Kind, Place};

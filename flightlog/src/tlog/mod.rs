@@ -1,21 +1,19 @@
 //! MAVLink telemetry logs (`.tlog`): the microseconds since 1970 (8 bytes, big-endian)
 //! before each packet, versions 1 and 2 mixed.
 
-mod checksum;
 mod collect;
-mod packet;
 mod signals;
 
 use std::io;
 
 use self::collect::Collector;
-use self::packet::Packet;
 use crate::input::Input;
+use crate::mavlink::packet::{LONGEST as LONGEST_PACKET, Packet};
 use crate::{Flight, Options};
 
 /// Bytes of a time stamp.
 const STAMP: usize = 8;
-const LONGEST: usize = STAMP + packet::LONGEST;
+const LONGEST: usize = STAMP + LONGEST_PACKET;
 /// Microseconds since 1970 of the years 2000 and 2100.
 const STAMPS_US: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
 
@@ -49,7 +47,7 @@ fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
             Some((stamp_us, packet)) => {
                 collector.report.messages += 1;
                 collector.packet(stamp_us, &packet);
-                at += STAMP + packet.length;
+                at += STAMP + packet.bytes.len();
             }
             None => {
                 let skip = match at_end {
@@ -59,7 +57,8 @@ fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
                 };
                 let report = &mut collector.report;
                 // A packet that is whole but for its checksum was damaged.
-                let broken = record(rest).is_some_and(|(_, packet)| STAMP + packet.length == skip);
+                let broken =
+                    record(rest).is_some_and(|(_, packet)| STAMP + packet.bytes.len() == skip);
                 report.bad_messages += u64::from(broken);
                 report.skipped_bytes += skip as u64;
                 if skip == rest.len() && !broken {
@@ -86,7 +85,7 @@ fn record(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
 fn believed(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
     let (stamp_us, packet) = record(bytes)?;
     let believed = packet.sound.unwrap_or_else(|| {
-        let rest = &bytes[STAMP + packet.length..];
+        let rest = &bytes[STAMP + packet.bytes.len()..];
         let next = rest
             .get(STAMP)
             .is_none_or(|magic| matches!(magic, 0xfd | 0xfe));

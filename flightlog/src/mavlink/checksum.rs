@@ -2,7 +2,7 @@
 
 /// CRC-16/MCRF4XX of the packet from its length on, and of the number that stands for the
 /// definition of its message.
-pub(super) fn accumulate(bytes: &[u8], extra: u8) -> u16 {
+pub(crate) fn accumulate(bytes: &[u8], extra: u8) -> u16 {
     bytes.iter().chain([&extra]).fold(0xffff, |sum, &byte| {
         (sum >> 8) ^ TABLE[usize::from(byte ^ sum as u8)]
     })
@@ -30,7 +30,7 @@ const TABLE: [u16; 256] = {
 };
 
 /// CRC_EXTRA of a message; `None` for one that is not in the dialect.
-pub(super) fn extra(id: u32) -> Option<u8> {
+pub(crate) fn extra(id: u32) -> Option<u8> {
     let index = EXTRA.binary_search_by_key(&id, |(id, _)| *id).ok()?;
     EXTRA.get(index).map(|(_, extra)| *extra)
 }

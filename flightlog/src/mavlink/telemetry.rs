@@ -1,0 +1,420 @@
+//! What the packets of one vehicle tell about its motors.
+
+use ::mavlink::Message;
+
+use super::{
+    Packet, Version,
+    dialect::{
+        COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd,
+        MavLandedState, MavMessage, MavModeFlag, MavParamType, MavResult, MavState,
+        PARAM_VALUE_DATA, SERVO_OUTPUT_RAW_DATA,
+    },
+};
+use crate::{
+    Motor, Range, Vehicle, VehicleKind, ardupilot,
+    clock::{Clock, Placed},
+    mav_type::{MavType, mav_type},
+    parameters::Parameters,
+};
+
+impl Packet<'_> {
+    /// The message; `None` where a field holds a value that the dialect does not know.
+    pub fn message(&self) -> Option<MavMessage> {
+        MavMessage::parse(self.version.into(), self.id, self.payload).ok()
+    }
+}
+
+impl From<Version> for ::mavlink::MavlinkVersion {
+    fn from(version: Version) -> Self {
+        match version {
+            Version::V1 => Self::V1,
+            Version::V2 => Self::V2,
+        }
+    }
+}
+
+/// The component that is the autopilot.
+const AUTOPILOT: u8 = 1;
+/// Outputs in one SERVO_OUTPUT_RAW.
+const OUTPUTS: usize = 16;
+/// What an output that is not driven, or not known, reads.
+const NO_PULSE: [u16; 2] = [0, u16::MAX];
+/// No output and no limit of one is longer, in us; what is longer is damaged.
+const LONGEST_PULSE_US: f64 = 3000.0;
+
+/// The vehicle that a heartbeat speaks for; `None` for other messages and for what is no vehicle, such as ground
+/// stations, gimbals and radios, whose heartbeats have an armed flag too.
+pub fn vehicle_of(packet: &Packet<'_>) -> Option<Vehicle> {
+    if packet.component != AUTOPILOT || packet.id != 0 {
+        return None;
+    }
+    let Some(MavMessage::HEARTBEAT(heartbeat)) = packet.message() else {
+        return None;
+    };
+    if heartbeat.autopilot == MavAutopilot::MAV_AUTOPILOT_INVALID {
+        return None;
+    }
+    let number = heartbeat.mavtype as i64;
+    let firmware = match heartbeat.autopilot {
+        MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA => Some("ArduPilot".to_owned()),
+        MavAutopilot::MAV_AUTOPILOT_PX4 => Some("PX4".to_owned()),
+        _ => None,
+    };
+    let mut vehicle = Vehicle {
+        source: format!("HEARTBEAT, type {number}"),
+        firmware,
+        ..Vehicle::default()
+    };
+    if let Some(MavType { kind, name, motors }) = mav_type(number) {
+        vehicle.kind = kind;
+        vehicle.frame = Some(name.to_owned());
+        vehicle.motors = motors;
+    }
+    Some(vehicle)
+}
+
+/// Whether a vehicle is in the air, by what it says of itself.
+///
+/// EXTENDED_SYS_STATE says so in words. Without it, the state of the heartbeat is what tells: ArduPilot's is
+/// "standby" while landed and "active", or "critical" after a failsafe, while not.
+pub fn is_in_air(armed: bool, state: Option<MavState>, landed: Option<MavLandedState>) -> bool {
+    use MavLandedState::{
+        MAV_LANDED_STATE_IN_AIR as IN_AIR, MAV_LANDED_STATE_LANDING as LANDING,
+        MAV_LANDED_STATE_ON_GROUND as ON_GROUND, MAV_LANDED_STATE_TAKEOFF as TAKE_OFF,
+    };
+    use MavState::{
+        MAV_STATE_ACTIVE as ACTIVE, MAV_STATE_CRITICAL as CRITICAL,
+        MAV_STATE_EMERGENCY as EMERGENCY,
+    };
+    armed
+        && match landed {
+            Some(IN_AIR | LANDING | TAKE_OFF) => true,
+            Some(ON_GROUND) => false,
+            _ => matches!(state, Some(ACTIVE | CRITICAL | EMERGENCY)),
+        }
+}
+
+/// What a packet changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum News {
+    /// Nothing that matters here.
+    Nothing,
+    /// A parameter became known.
+    Parameter,
+    /// New motor commands, at this time in seconds since the vehicle booted.
+    Commands {
+        /// The time.
+        t_s: f64,
+    },
+    /// The vehicle started anew: all that was known of it is forgotten, and this packet with it.
+    Rebooted,
+    /// The message could not be understood: a field holds a value that the dialect does not know.
+    NotUnderstood,
+}
+
+/// Motors and the range of their commands, with where each is known from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// The motors in order of their number.
+    pub motors: Vec<Motor>,
+    /// Range of the commands, 0 % to 100 %.
+    pub range: Range,
+    /// The part of the range that is used in flight, as fractions of it.
+    pub effective: Range,
+    /// What is assumed because the vehicle did not tell, in words; empty where it told everything.
+    pub assumed: Vec<String>,
+    /// The output of each motor, from 1.
+    outputs: Vec<usize>,
+}
+
+/// Follows one vehicle by its packets.
+#[derive(Debug)]
+pub struct Telemetry {
+    system: u8,
+    vehicle: Vehicle,
+    version: Version,
+    parameters: Parameters,
+    parameters_changed: bool,
+    is_px4: bool,
+    is_armed: bool,
+    state: Option<MavState>,
+    landed: Option<MavLandedState>,
+    clock: Clock,
+    boot_clock: Clock,
+    outputs: [u16; OUTPUTS],
+    commands_seen: u64,
+    interval_refused: bool,
+}
+
+impl Telemetry {
+    /// Starts with the heartbeat that [`vehicle_of`] told the vehicle from.
+    pub fn new(heartbeat: &Packet<'_>, vehicle: Vehicle) -> Telemetry {
+        Telemetry {
+            system: heartbeat.system,
+            is_px4: vehicle.firmware.as_deref() == Some("PX4"),
+            vehicle,
+            version: heartbeat.version,
+            parameters: Parameters::default(),
+            parameters_changed: false,
+            is_armed: false,
+            state: None,
+            landed: None,
+            clock: Clock::default(),
+            boot_clock: Clock::default(),
+            outputs: [u16::MAX; OUTPUTS],
+            commands_seen: 0,
+            interval_refused: false,
+        }
+    }
+
+    /// The system it follows.
+    pub fn system(&self) -> u8 {
+        self.system
+    }
+
+    /// The vehicle as its heartbeat describes it.
+    pub fn vehicle(&self) -> &Vehicle {
+        &self.vehicle
+    }
+
+    /// The version of the protocol that it speaks.
+    pub fn version(&self) -> Version {
+        self.version
+    }
+
+    /// Whether the motors are armed.
+    pub fn is_armed(&self) -> bool {
+        self.is_armed
+    }
+
+    /// Whether it is in the air.
+    pub fn is_in_air(&self) -> bool {
+        is_in_air(self.is_armed, self.state, self.landed)
+    }
+
+    /// How many SERVO_OUTPUT_RAW came so far.
+    pub fn commands_seen(&self) -> u64 {
+        self.commands_seen
+    }
+
+    /// Whether it refused MAV_CMD_SET_MESSAGE_INTERVAL.
+    pub fn interval_refused(&self) -> bool {
+        self.interval_refused
+    }
+
+    /// The value of a parameter, where it is known.
+    pub fn parameter(&self, name: &str) -> Option<f64> {
+        self.parameters.get(name)
+    }
+
+    /// Whether parameters came since this was last asked.
+    pub fn take_parameters_changed(&mut self) -> bool {
+        std::mem::take(&mut self.parameters_changed)
+    }
+
+    /// Takes in a packet; those of other systems tell nothing.
+    pub fn receive(&mut self, packet: &Packet<'_>) -> News {
+        if packet.system != self.system {
+            return News::Nothing;
+        }
+        let Some(message) = packet.message() else {
+            return News::NotUnderstood;
+        };
+        match message {
+            // A parameter may come through another component of the vehicle.
+            MavMessage::PARAM_VALUE(parameter) => return self.learn(&parameter),
+            _ if packet.component != AUTOPILOT => return News::Nothing,
+            MavMessage::HEARTBEAT(heartbeat) => self.beat(packet, &heartbeat),
+            MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA { landed_state, .. }) => {
+                self.landed = Some(landed_state);
+            }
+            MavMessage::ATTITUDE(attitude) => return self.check_boot(attitude.time_boot_ms),
+            MavMessage::SERVO_OUTPUT_RAW(servo) if servo.port == 0 => return self.command(&servo),
+            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
+                command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+                result,
+                ..
+            }) => self.interval_refused |= result != MavResult::MAV_RESULT_ACCEPTED,
+            _ => {}
+        }
+        News::Nothing
+    }
+
+    fn beat(&mut self, packet: &Packet<'_>, heartbeat: &HEARTBEAT_DATA) {
+        self.version = packet.version;
+        self.is_armed = heartbeat
+            .base_mode
+            .contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
+        self.state = Some(heartbeat.system_status);
+    }
+
+    fn learn(&mut self, parameter: &PARAM_VALUE_DATA) -> News {
+        let Ok(name) = parameter.param_id.to_str() else {
+            return News::NotUnderstood;
+        };
+        // ArduPilot sends numbers; PX4 sends the bytes of an integer in the place of the number.
+        let value = match parameter.param_type {
+            MavParamType::MAV_PARAM_TYPE_INT32 if self.is_px4 => {
+                f64::from(parameter.param_value.to_bits() as i32)
+            }
+            _ => f64::from(parameter.param_value),
+        };
+        let is_known = self.parameters.get(name).is_some();
+        if is_known || !is_plausible(name, value) {
+            return News::Nothing;
+        }
+        self.parameters.insert(name, value);
+        self.parameters_changed = true;
+        News::Parameter
+    }
+
+    /// Attitude has a clock of its own, which goes on over 49 days where that of the commands starts over.
+    fn check_boot(&mut self, boot_ms: u32) -> News {
+        self.boot_clock.place(f64::from(boot_ms) * 1e-3);
+        match self.boot_clock.boots_s() {
+            [] => News::Nothing,
+            _ => self.forget(),
+        }
+    }
+
+    fn command(&mut self, servo: &SERVO_OUTPUT_RAW_DATA) -> News {
+        self.commands_seen += 1;
+        let t_s = match self
+            .clock
+            .place(seconds(servo.time_usec, self.clock.now_s()))
+        {
+            Placed::At(t_s) | Placed::Refuted(t_s) | Placed::Confirmed(_, t_s) => t_s,
+            Placed::Wait | Placed::RefutedWait => return News::Nothing,
+        };
+        if !self.clock.boots_s().is_empty() {
+            return self.forget();
+        }
+        self.outputs = [
+            servo.servo1_raw,
+            servo.servo2_raw,
+            servo.servo3_raw,
+            servo.servo4_raw,
+            servo.servo5_raw,
+            servo.servo6_raw,
+            servo.servo7_raw,
+            servo.servo8_raw,
+            servo.servo9_raw,
+            servo.servo10_raw,
+            servo.servo11_raw,
+            servo.servo12_raw,
+            servo.servo13_raw,
+            servo.servo14_raw,
+            servo.servo15_raw,
+            servo.servo16_raw,
+        ];
+        News::Commands { t_s }
+    }
+
+    fn forget(&mut self) -> News {
+        self.parameters = Parameters::default();
+        self.is_armed = false;
+        self.state = None;
+        self.landed = None;
+        self.clock = Clock::default();
+        self.boot_clock = Clock::default();
+        self.interval_refused = false;
+        News::Rebooted
+    }
+
+    /// Motors and ranges from what is known; what is not is assumed, and said to be.
+    ///
+    /// Without SERVOn_FUNCTION the motors are the first outputs, as many as the type of vehicle has; without limits
+    /// they are those ArduPilot has when nobody changed them.
+    pub fn setup(&self) -> Setup {
+        let mut assumed = Vec::new();
+        let name = |output| format!("servo{output}_raw");
+        let (motors, outputs): (Vec<Motor>, Vec<u16>) =
+            ardupilot::motors(&self.parameters, &self.vehicle, name)
+                .into_iter()
+                .unzip();
+        let numbered = self.parameters.get("SERVO1_FUNCTION").is_none();
+        if numbered && !motors.is_empty() {
+            assumed.push(format!(
+                "motors 1 to {n} on outputs 1 to {n}",
+                n = motors.len()
+            ));
+        }
+        if let Some(expected) = self.vehicle.motors
+            && usize::from(expected) != motors.len()
+        {
+            assumed.push(format!(
+                "the {} motors whose outputs are known are all that matter, of {expected}",
+                motors.len()
+            ));
+        }
+        let default = |low: f64, high: f64, unit, source: &str| Range {
+            low,
+            high,
+            unit,
+            source: source.to_owned(),
+        };
+        let range = ardupilot::pwm_range(&self.parameters).unwrap_or_else(|| {
+            assumed.push("commands from 1000 to 2000 us".to_owned());
+            default(1000.0, 2000.0, "us", "assumed")
+        });
+        let effective = match self.parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
+            None if self.parameters.get("THR_MIN").is_none() => {
+                assumed.push("flown between 0.15 and 0.95 of that".to_owned());
+                default(0.15, 0.95, "1", "assumed")
+            }
+            _ => ardupilot::effective_range(&self.parameters),
+        };
+        Setup {
+            outputs: outputs.iter().map(|&output| usize::from(output)).collect(),
+            motors,
+            range,
+            effective,
+            assumed,
+        }
+    }
+
+    /// The latest commands on the effective range, 0..1, a value a motor; NaN where it is not known.
+    pub fn effective_commands(&self, setup: &Setup, commands: &mut [f64]) {
+        for (command, &output) in commands.iter_mut().zip(&setup.outputs) {
+            let index = output.checked_sub(1);
+            *command = match index.and_then(|index| self.outputs.get(index)) {
+                Some(pulse)
+                    if !NO_PULSE.contains(pulse) && f64::from(*pulse) <= LONGEST_PULSE_US =>
+                {
+                    let fraction = setup.range.fraction(f64::from(*pulse));
+                    setup.effective.fraction(fraction)
+                }
+                _ => f64::NAN,
+            };
+        }
+    }
+
+    /// Whether the vehicle is one that FLAGRED knows about; a generic vehicle may be.
+    pub fn may_be_multirotor(&self) -> bool {
+        matches!(
+            self.vehicle.kind,
+            VehicleKind::Multirotor | VehicleKind::Unknown
+        )
+    }
+}
+
+/// Damaged limits would make every command look like one at a limit.
+fn is_plausible(name: &str, value: f64) -> bool {
+    let most = if name.starts_with("MOT_SPIN_") {
+        1.0
+    } else if name.starts_with("MOT_PWM_") || name.starts_with("RC") {
+        LONGEST_PULSE_US
+    } else {
+        return value.is_finite();
+    };
+    (0.0..=most).contains(&value)
+}
+
+/// Seconds since boot from microseconds in 32 bits, which start over after 71 minutes: the time nearest to the last
+/// one that was believed.
+fn seconds(micros: u32, last_s: Option<f64>) -> f64 {
+    const ROUND_S: f64 = 4_294.967_296;
+    let t_s = f64::from(micros) * 1e-6;
+    let rounds = last_s.map_or(0.0, |last_s| ((last_s - t_s) / ROUND_S).round().max(0.0));
+    t_s + rounds * ROUND_S
+}
