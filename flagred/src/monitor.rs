@@ -7,7 +7,7 @@ use crate::{
     estimator::{Estimate, Estimator, Memory},
     profile::Profile,
     source::{Motors, Observer, Signal, Source, Statistic},
-    verdict::{Alert, Ended, Level, Step},
+    verdict::{Alert, Ended, Finding, Level, Step},
 };
 
 /// A moment of a flight.
@@ -277,6 +277,11 @@ impl<'a> Monitor<'a> {
     /// The values of the inputs after the latest sample, in the order of the profile; NaN is unknown.
     pub fn inputs(&self) -> &[f64] {
         &self.inputs
+    }
+
+    /// The finding that the level rests on, as it stands so far; `None` while the level is good.
+    pub fn open_finding(&self) -> Option<Finding> {
+        self.alert.open()
     }
 
     /// Ends the flight: the findings that were still open.

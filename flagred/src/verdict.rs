@@ -220,6 +220,16 @@ impl Alert {
         self.level
     }
 
+    /// The finding that the level rests on, as it stands; `None` while there is nothing to say.
+    pub(crate) fn open(&self) -> Option<Finding> {
+        let watch = self
+            .watches
+            .iter()
+            .find(|watch| watch.level == self.level)?;
+        let motor = watch.weakest_motor();
+        watch.finding.map(|finding| Finding { motor, ..finding })
+    }
+
     /// Adds a moment of known risk.
     pub(crate) fn push(
         &mut self,
