@@ -25,6 +25,7 @@ mod report;
 mod rule_set;
 mod samples;
 mod table;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -74,6 +75,8 @@ enum Command {
     /// Print the manual
     #[command(after_help = help::MAN)]
     Man(man::Arguments),
+    /// Say how risky a flight is while it is flown, to you and to the ground station
+    Watch(watch::Arguments),
     /// Write a rule set to start from
     #[command(after_help = help::NEW)]
     New(new::Arguments),
@@ -94,6 +97,7 @@ impl Command {
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Map(arguments) => map::run(&arguments),
             Command::Man(arguments) => man::run(&arguments),
+            Command::Watch(arguments) => watch::run(&arguments),
             Command::New(arguments) => new::run(&arguments),
         }
     }

@@ -3,6 +3,7 @@
 use flagred::{
     estimator::{Estimate, Estimator},
     monitor::{Assessment, Monitor, MonitorError, Unknown},
+    profile::Profile,
     verdict::{Finding, Level, VerdictSettings},
 };
 use flightlog::{Flight, Gap};
@@ -137,21 +138,12 @@ pub(crate) fn follow(flight: &Flight, estimator: &Estimator, step_s: f64) -> Ass
         .map(|finding| finding.level)
         .max()
         .unwrap_or(Level::Good);
-    let verdict = if worst == Level::Good && !tally.knows_enough() {
-        let slow = flight
-            .gaps()
-            .into_iter()
-            .find(|gap| matches!(gap, Gap::TooSlow { .. }));
-        Verdict::NotAvailable {
-            reason: tally.main_reason().map_or_else(
-                || "hardly any motor command was logged in the air".to_owned(),
-                |unknown| unknown.explain(estimator.profile()),
-            ),
-            help: slow.and_then(|gap| gap.help()).map(str::to_owned),
-        }
-    } else {
-        Verdict::Known(worst)
-    };
+    let slow = flight
+        .gaps()
+        .into_iter()
+        .find(|gap| matches!(gap, Gap::TooSlow { .. }));
+    let help = slow.and_then(|gap| gap.help());
+    let verdict = tally.verdict(worst, estimator.profile(), help);
     Assessed {
         verdict,
         findings,
@@ -171,7 +163,7 @@ fn not_available(reason: String, help: Option<String>) -> Assessed {
 
 /// What adds up over a flight.
 #[derive(Default)]
-struct Tally {
+pub(crate) struct Tally {
     last_s: Option<f64>,
     in_air_s: f64,
     assessed_s: f64,
@@ -187,7 +179,7 @@ struct Tally {
 
 impl Tally {
     /// Adds a sample in the air; risks count where they are judged.
-    fn add(&mut self, assessment: &Assessment, is_judged: bool, motors: &[f64]) {
+    pub(crate) fn add(&mut self, assessment: &Assessment, is_judged: bool, motors: &[f64]) {
         let t_s = assessment.t_s;
         let held_s = self
             .last_s
@@ -233,6 +225,20 @@ impl Tally {
     fn main_reason(&self) -> Option<Unknown> {
         let longest = self.unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1));
         longest.map(|(reason, _)| *reason)
+    }
+
+    /// What the worst level means: nothing found is no clean bill where hardly anything was known.
+    pub(crate) fn verdict(&self, worst: Level, profile: &Profile, help: Option<&str>) -> Verdict {
+        if worst > Level::Good || self.knows_enough() {
+            return Verdict::Known(worst);
+        }
+        Verdict::NotAvailable {
+            reason: self.main_reason().map_or_else(
+                || "hardly any motor command was known in the air".to_owned(),
+                |unknown| unknown.explain(profile),
+            ),
+            help: help.map(str::to_owned),
+        }
     }
 
     fn summary(&self) -> Summary {

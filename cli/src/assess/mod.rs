@@ -15,7 +15,9 @@ use crate::{
     profile,
     report::{self, Subject},
 };
-use follow::{Assessed, Verdict};
+use follow::Assessed;
+pub(crate) use follow::{Tally, Verdict, word};
+pub(crate) use words::level_style;
 
 /// How long a step of the shown risk is where nothing else is asked for, in seconds.
 const STEP_S: f64 = 0.1;

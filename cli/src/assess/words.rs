@@ -209,7 +209,7 @@ fn style(verdict: &Verdict) -> Style {
     }
 }
 
-fn level_style(level: Level) -> Style {
+pub(crate) fn level_style(level: Level) -> Style {
     match level {
         Level::Good => AnsiColor::Green,
         Level::Warn => AnsiColor::Yellow,

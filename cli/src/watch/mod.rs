@@ -1,0 +1,344 @@
+//! `flagred watch`: the risk of a flight while it is flown.
+
+mod endpoint;
+mod lines;
+mod port;
+mod printer;
+mod screen;
+mod session;
+mod tlog;
+mod voice;
+
+use std::{
+    io::{self, IsTerminal},
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use flagred::{estimator::Estimator, verdict::Level};
+use flightlog::mavlink::{Skipped, Stream};
+use serde_json::{Value, json};
+
+use crate::{
+    failure::{Exit, Failure},
+    profile,
+};
+use endpoint::Endpoint;
+use port::{Port, Received};
+use printer::Printer;
+use screen::Screen;
+use session::{Event, Out, Session};
+
+/// The version of the lines' layout; it grows when a name changes its meaning or goes.
+const SCHEMA: &str = "flagred.watch/1";
+/// The component that is spoken as: the first of those for onboard computers.
+const COMPONENT: u8 = 191;
+/// The largest datagram there is.
+const DATAGRAM: usize = 65_536;
+/// How often the screen is drawn, and how many frames may wait for the terminal.
+const FRAME: Duration = Duration::from_millis(100);
+const FRAMES: usize = 2;
+/// How many lines may wait for whoever reads them: half an hour of the vehicle's samples.
+const LINES: usize = 50_000;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Where the vehicle is: udpin:0.0.0.0:14550, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:0.0.0.0:PORT or /dev/ttyACM0:57600
+    #[arg(value_name = "ENDPOINT")]
+    endpoint: Endpoint,
+
+    /// What the motors mean to the rules and the risk to the pilot: a shipped profile's name, or a file
+    #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
+    profile: String,
+
+    /// One JSON object a line instead of words
+    #[arg(long)]
+    jsonl: bool,
+
+    /// Only listen: ask the vehicle for nothing, and tell it nothing
+    #[arg(long)]
+    no_send: bool,
+
+    /// Speak as this component of the vehicle's system
+    #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
+    component: u8,
+
+    /// Keep what is received in a telemetry log, a new file
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+}
+
+/// Watches until it is interrupted.
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let estimator = profile::load(&arguments.profile)?.estimator;
+    if let Some(signal) = estimator.profile().signals().first() {
+        return Err(Failure::usage(format!(
+            "profile `{}` needs the signal `{signal}`, which is not known live",
+            arguments.profile
+        ))
+        .help("watch takes profiles whose inputs come from the motors alone"));
+    }
+    if arguments.no_send && matches!(arguments.endpoint, Endpoint::UdpOut(_)) {
+        return Err(Failure::usage(
+            "`udpout:` sends first and waits for answers, which `--no-send` rules out",
+        )
+        .help("have the packets sent here, and listen with `udpin:`"));
+    }
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+        .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
+    let mut port = Port::open(&arguments.endpoint)?;
+    let mut recording = match &arguments.record {
+        Some(path) => Some(tlog::Recording::create(path)?),
+        None => None,
+    };
+    let mut session = Session::new(
+        &estimator,
+        (!arguments.no_send).then_some(arguments.component),
+    );
+    let title = match port.listens_at() {
+        Some(address) if matches!(arguments.endpoint, Endpoint::UdpIn(_) | Endpoint::TcpIn(_)) => {
+            format!("listening at {address}")
+        }
+        _ => arguments.endpoint.to_string(),
+    };
+    let mut display = Display::new(arguments.jsonl, &title, &estimator)?;
+    let mut stream = Stream::new();
+    let mut buffer = vec![0; DATAGRAM];
+    let mut out = Out::default();
+    let start = Instant::now();
+    while !stop.load(Ordering::Relaxed) {
+        let received = port.receive(&mut buffer);
+        let is_datagram = matches!(received, Received::Datagram(_));
+        let now_s = start.elapsed().as_secs_f64();
+        match received {
+            Received::Bytes(count) | Received::Datagram(count) => {
+                stream.push(buffer.get(..count).unwrap_or_default());
+            }
+            Received::Nothing => {}
+            Received::Opened => {
+                stream.end();
+                let text = "the link is open".to_owned();
+                out.events.push(Event::Note { text });
+            }
+            Received::Closed(why) => {
+                let text = format!("the link is closed: {why}; waiting for it to come back");
+                out.events.push(Event::Note { text });
+            }
+        }
+        while let Some(packet) = stream.packet() {
+            if let Some(recording) = &mut recording {
+                recording.add(packet.bytes)?;
+            }
+            if session.receive(now_s, &packet, &mut out) {
+                port.answer();
+            }
+            // At once: what is sent must not wait for what is shown.
+            out.packets.drain(..).for_each(|packet| port.send(&packet));
+            display.show(now_s, &mut out.events, &session, &estimator)?;
+        }
+        if is_datagram {
+            stream.end();
+        }
+        session.tick(now_s, &mut out);
+        out.packets.drain(..).for_each(|packet| port.send(&packet));
+        display.skipped(stream.skipped(), &mut out.events);
+        display.show(now_s, &mut out.events, &session, &estimator)?;
+        display.refresh(&session, &estimator)?;
+        if let Some(recording) = &mut recording {
+            recording.flush()?;
+        }
+    }
+    let worst = session.finish(&mut out);
+    let now_s = start.elapsed().as_secs_f64();
+    display.show(now_s, &mut out.events, &session, &estimator)?;
+    let totals = Totals {
+        skipped: stream.skipped(),
+        not_understood: session.not_understood(),
+        unsent: port.unsent(),
+    };
+    display.end(now_s, worst, &totals)?;
+    Ok(if worst > Level::Good {
+        Exit::Findings
+    } else {
+        Exit::Clean
+    })
+}
+
+/// What the link cost.
+struct Totals {
+    skipped: Skipped,
+    not_understood: u64,
+    unsent: u64,
+}
+
+impl Totals {
+    fn json(&self) -> Value {
+        json!({
+            "skipped_bytes": self.skipped.bytes,
+            "bad_checksums": self.skipped.checksums,
+            "unknown_messages": self.skipped.unknown,
+            "signed": self.skipped.signed,
+            "not_understood": self.not_understood,
+            "unsent": self.unsent,
+        })
+    }
+
+    fn words(&self) -> String {
+        format!(
+            "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets left out, {} messages not understood, {} packets not sent",
+            self.skipped.bytes,
+            self.skipped.checksums,
+            self.skipped.unknown,
+            self.skipped.signed,
+            self.not_understood,
+            self.unsent
+        )
+    }
+}
+
+/// Where it is told.
+struct Display {
+    face: Face,
+    printer: Printer,
+    told: Skipped,
+    drawn: Option<Instant>,
+}
+
+enum Face {
+    Json,
+    Words(lines::Words),
+    Screen(Screen),
+}
+
+impl Display {
+    fn new(jsonl: bool, title: &str, estimator: &Estimator) -> Result<Display, Failure> {
+        let profile = &estimator.profile().name;
+        let is_screen = !jsonl && io::stdout().is_terminal();
+        let mut printer = Printer::new(if is_screen { FRAMES } else { LINES });
+        let face = if jsonl {
+            let fields = json!({ "schema": SCHEMA, "endpoint": title, "profile": profile });
+            printer.print(json_line(&lines::line("started", 0.0, fields)))?;
+            Face::Json
+        } else if is_screen {
+            let title = format!("{title}, profile {profile}");
+            printer.print(screen::ENTER.to_owned())?;
+            Face::Screen(Screen::new(title))
+        } else {
+            printer.print(lines::words(0.0, &format!("{title}, profile {profile}")))?;
+            Face::Words(lines::Words::default())
+        };
+        Ok(Display {
+            face,
+            printer,
+            told: Skipped::default(),
+            drawn: None,
+        })
+    }
+
+    /// Tells the events, and takes them away.
+    fn show(
+        &mut self,
+        at_s: f64,
+        events: &mut Vec<Event>,
+        session: &Session<'_>,
+        estimator: &Estimator,
+    ) -> Result<(), Failure> {
+        for event in events.drain(..) {
+            let line = match &mut self.face {
+                Face::Json => {
+                    lines::json(at_s, &event, session, estimator).map(|line| json_line(&line))
+                }
+                Face::Words(words) => words.line(at_s, &event, session, estimator),
+                Face::Screen(screen) => {
+                    screen.add(at_s, &event);
+                    None
+                }
+            };
+            if let Some(line) = line {
+                self.printer.print(line)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Says once of each kind that something is passed over; how much of it is told at the end.
+    fn skipped(&mut self, now: Skipped, events: &mut Vec<Event>) {
+        let told = std::mem::replace(&mut self.told, now);
+        let kinds = [
+            (
+                told.signed,
+                now.signed,
+                "signed packets are left out: without the key nobody can tell whether they are genuine",
+            ),
+            (
+                told.unknown,
+                now.unknown,
+                "some messages are not known here and are left out",
+            ),
+            (
+                told.bytes,
+                now.bytes,
+                "some bytes are no MAVLink packets and are left out",
+            ),
+        ];
+        for (before, after, text) in kinds {
+            if before == 0 && after > 0 {
+                let text = text.to_owned();
+                events.push(Event::Note { text });
+            }
+        }
+    }
+
+    fn refresh(&mut self, session: &Session<'_>, estimator: &Estimator) -> Result<(), Failure> {
+        if let Face::Screen(screen) = &self.face
+            && self.drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME)
+        {
+            self.drawn = Some(Instant::now());
+            let frame = screen.frame(session.view().as_ref(), estimator);
+            self.printer.print(frame)?;
+        }
+        Ok(())
+    }
+
+    fn end(mut self, at_s: f64, worst: Level, totals: &Totals) -> Result<(), Failure> {
+        let worst = crate::assess::word(worst);
+        let last = if let Face::Json = self.face {
+            let mut fields = totals.json();
+            fields["dropped_lines"] = json!(self.printer.dropped());
+            fields["worst"] = json!(worst);
+            json_line(&lines::line("ended", at_s, fields))
+        } else {
+            lines::words(at_s, &format!("{worst} at worst; {}", totals.words()))
+        };
+        self.leave();
+        self.printer.print(last)
+    }
+
+    /// The screen goes before the last words, which are to stay.
+    fn leave(&mut self) {
+        if let Face::Screen(_) = self.face {
+            // Frames that wait go first.
+            std::thread::sleep(FRAME);
+            // Nothing is left to tell a user whose terminal is gone.
+            let _ = self.printer.print(screen::LEAVE.to_owned());
+            self.face = Face::Words(lines::Words::default());
+        }
+    }
+}
+
+/// The terminal is as it was before, however the watch ends.
+impl Drop for Display {
+    fn drop(&mut self) {
+        self.leave();
+    }
+}
+
+fn json_line(line: &Value) -> String {
+    format!("{line}\n")
+}

@@ -1,0 +1,370 @@
+use flagred::{profile::Profile, shipped};
+use flightlog::mavlink::{
+    Next,
+    dialect::{
+        COMMAND_ACK_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavMessage, MavModeFlag,
+        MavParamType, MavResult, MavState, MavType, PARAM_VALUE_DATA, SERVO_OUTPUT_RAW_DATA,
+    },
+    next_packet,
+};
+
+use super::*;
+
+/// A session, the vehicle's side of the link, and the clock of both.
+struct Bench<'e> {
+    session: Session<'e>,
+    vehicle: Sender,
+    now_s: f64,
+    events: Vec<Event>,
+    sent: Vec<MavMessage>,
+}
+
+fn estimator() -> Estimator {
+    let profile: Profile = shipped::profile("flagred-paper").unwrap().unwrap();
+    let rules = shipped::rule_set(&profile.rules).unwrap().unwrap();
+    Estimator::new(&profile, &rules).unwrap()
+}
+
+impl<'e> Bench<'e> {
+    fn new(estimator: &'e Estimator, component: Option<u8>) -> Bench<'e> {
+        Bench {
+            session: Session::new(estimator, component),
+            vehicle: Sender::new(1),
+            now_s: 0.0,
+            events: Vec::new(),
+            sent: Vec::new(),
+        }
+    }
+
+    fn take(&mut self, out: Out) {
+        self.events.extend(out.events);
+        self.sent
+            .extend(out.packets.iter().map(|bytes| match next_packet(bytes) {
+                Next::Packet(packet) => packet.message().unwrap(),
+                other => panic!("{other:?}"),
+            }));
+    }
+
+    fn hear(&mut self, message: &MavMessage) {
+        let bytes = self.vehicle.packet(Version::V2, 1, message);
+        let Next::Packet(packet) = next_packet(&bytes) else {
+            panic!("{bytes:?}");
+        };
+        let mut out = Out::default();
+        self.session.receive(self.now_s, &packet, &mut out);
+        self.take(out);
+    }
+
+    fn beat(&mut self, in_air: bool) {
+        let mut base_mode = MavModeFlag::empty();
+        base_mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, in_air);
+        self.hear(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            custom_mode: 0,
+            mavtype: MavType::MAV_TYPE_QUADROTOR,
+            autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+            base_mode,
+            system_status: MavState::MAV_STATE_ACTIVE,
+            mavlink_version: 3,
+        }));
+    }
+
+    /// Lets time pass in steps of 20 ms.
+    fn wait(&mut self, seconds: f64) {
+        let end_s = self.now_s + seconds;
+        while self.now_s < end_s {
+            self.now_s += 0.02;
+            let mut out = Out::default();
+            self.session.tick(self.now_s, &mut out);
+            self.take(out);
+        }
+    }
+
+    /// Lets time pass with a heartbeat a second.
+    fn wait_beating(&mut self, seconds: u32, in_air: bool) {
+        for _ in 0..seconds {
+            self.beat(in_air);
+            self.wait(1.0);
+        }
+    }
+
+    fn parameter(&mut self, name: &str, value: f32) {
+        self.hear(&MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+            param_value: value,
+            param_count: 900,
+            param_index: u16::MAX,
+            param_id: name.into(),
+            param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+        }));
+    }
+
+    fn all_parameters(&mut self) {
+        for (name, value) in [
+            ("MOT_PWM_MIN", 1000.0),
+            ("MOT_PWM_MAX", 2000.0),
+            ("MOT_SPIN_MIN", 0.1),
+            ("MOT_SPIN_MAX", 0.9),
+        ] {
+            self.parameter(name, value);
+        }
+        for output in 1..=16_u8 {
+            let function = if output <= 4 { 32 + output } else { 0 };
+            self.parameter(&format!("SERVO{output}_FUNCTION"), f32::from(function));
+        }
+    }
+
+    /// Hovers at 25 Hz from a time of the vehicle's clock on.
+    fn hover(&mut self, from_s: f64, seconds: f64, pulse: u16) {
+        for i in 0..(seconds * 25.0) as u32 {
+            if i % 25 == 0 {
+                self.beat(true);
+            }
+            let t_s = from_s + f64::from(i) / 25.0;
+            let wiggle = (i % 5) as u16;
+            self.hear(&MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+                time_usec: ((t_s * 1e6) as u64 % (1 << 32)) as u32,
+                servo1_raw: pulse + wiggle,
+                servo2_raw: pulse,
+                servo3_raw: pulse - wiggle,
+                servo4_raw: pulse,
+                ..SERVO_OUTPUT_RAW_DATA::default()
+            }));
+            self.wait(0.03);
+        }
+    }
+
+    fn setups(&self) -> Vec<&Setup> {
+        let setups = self.events.iter().filter_map(|event| match event {
+            Event::Ready { setup } => Some(setup),
+            _ => None,
+        });
+        setups.collect()
+    }
+
+    fn count(&self, is: impl Fn(&Event) -> bool) -> usize {
+        self.events.iter().filter(|event| is(event)).count()
+    }
+
+    fn count_sent(&self, is: impl Fn(&MavMessage) -> bool) -> usize {
+        self.sent.iter().filter(|message| is(message)).count()
+    }
+}
+
+#[test]
+fn parameters_that_never_come_are_assumed_and_those_that_come_late_are_taken() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.wait_beating(9, false);
+    assert!(bench.setups().is_empty(), "too early to assume");
+    bench.wait_beating(3, false);
+    let assumed = bench.setups()[0].assumed.clone();
+    assert_eq!(
+        assumed,
+        [
+            "motors 1 to 4 on outputs 1 to 4",
+            "commands from 1000 to 2000 us",
+            "flown between 0.15 and 0.95 of that",
+        ]
+    );
+    let asked = |message: &MavMessage| match message {
+        MavMessage::PARAM_REQUEST_READ(request) => request.param_id.to_str() == Ok("MOT_PWM_MIN"),
+        _ => false,
+    };
+    assert_eq!(bench.count_sent(asked), 20);
+
+    bench.all_parameters();
+    bench.wait(0.1);
+    let last = bench.setups()[1];
+    assert_eq!(last.assumed, [] as [&str; 0]);
+    assert_eq!(
+        (last.effective.low, last.effective.high),
+        (f64::from(0.1_f32), f64::from(0.9_f32))
+    );
+    assert_eq!(last.motors[2].source, "SERVO3_FUNCTION = 35");
+    // The same once more is no news.
+    bench.all_parameters();
+    bench.wait(0.1);
+    assert_eq!(bench.setups().len(), 2);
+}
+
+#[test]
+fn damaged_parameters_are_not_believed() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    for value in [f32::NAN, f32::INFINITY, 65535.0, -1.0] {
+        for name in ["MOT_SPIN_MIN", "MOT_SPIN_MAX", "MOT_PWM_MIN", "MOT_PWM_MAX"] {
+            bench.parameter(name, value);
+        }
+    }
+    bench.all_parameters();
+    bench.wait(0.1);
+    let setup = bench.setups()[0];
+    assert_eq!((setup.range.low, setup.range.high), (1000.0, 2000.0));
+    assert_eq!(setup.assumed, [] as [&str; 0]);
+}
+
+#[test]
+fn listening_only_sends_nothing() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, None);
+    bench.wait_beating(9, false);
+    assert!(bench.setups().is_empty());
+    bench.wait_beating(2, false);
+    assert_eq!(bench.setups().len(), 1);
+    bench.hover(100.0, 12.0, 1950);
+    assert!(bench.count(|event| matches!(event, Event::Level { .. })) > 0);
+    assert!(bench.sent.is_empty());
+}
+
+#[test]
+fn a_flight_at_the_limit_is_told_once_a_level() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    bench.hover(10.0, 10.0, 1500);
+    let texts = |message: &MavMessage| matches!(message, MavMessage::STATUSTEXT(_));
+    assert_eq!(bench.count_sent(texts), 0, "calm");
+    bench.hover(20.0, 20.0, 1895);
+    let levels = bench.count(|event| matches!(event, Event::Level { .. }));
+    assert!((1..=2).contains(&levels), "{levels}");
+    assert_eq!(bench.count_sent(texts), levels);
+    let Some(Event::Level { text, .. }) = bench
+        .events
+        .iter()
+        .rfind(|event| matches!(event, Event::Level { .. }))
+    else {
+        panic!("no level");
+    };
+    assert!(text.contains("upper limit") && text.len() <= 50, "{text}");
+    // Sent for half a minute of the receiver's clock, twice a second.
+    let values = bench.count_sent(|message| matches!(message, MavMessage::NAMED_VALUE_FLOAT(_)));
+    assert!((80..=130).contains(&values), "{values}");
+    let mut out = Out::default();
+    assert!(bench.session.finish(&mut out) > Level::Good);
+}
+
+#[test]
+fn silence_takes_the_risk_away_and_is_told_once() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    bench.hover(10.0, 10.0, 1500);
+    assert!(bench.session.view().unwrap().latest.unwrap().risk.is_ok());
+    bench.wait(1.5);
+    assert_eq!(bench.count(|event| matches!(event, Event::Lost { .. })), 0);
+    bench.wait(5.0);
+    let lost = |what: Silent| move |event: &Event| matches!(event, Event::Lost { what: of } if *of == what);
+    assert_eq!(bench.count(lost(Silent::Link)), 1);
+    assert_eq!(bench.count(lost(Silent::Motors)), 0);
+    let view = bench.session.view().unwrap();
+    assert!(view.latest.is_none() && view.margin.is_none() && view.motors.is_empty());
+    let asked = bench.sent.len();
+    bench.wait(0.5);
+    assert!(
+        bench.sent.len() <= asked + 1,
+        "it is not asked while it is not there"
+    );
+
+    // Heartbeats alone: the link is back, the motors are not.
+    bench.wait_beating(4, true);
+    assert_eq!(bench.count(lost(Silent::Motors)), 1);
+    assert!(bench.session.view().unwrap().latest.is_none());
+    bench.hover(40.0, 1.0, 1500);
+    assert_eq!(bench.count(|event| matches!(event, Event::Back { .. })), 2);
+    let now = bench.session.view().unwrap().latest.unwrap();
+    assert!(
+        now.risk.is_err(),
+        "what was before the silence is forgotten"
+    );
+}
+
+#[test]
+fn rates_are_asked_for_until_they_come_in_the_old_way_too() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    let new_way = |message: &MavMessage| matches!(message, MavMessage::COMMAND_LONG(_));
+    #[expect(deprecated, reason = "what old vehicles understand")]
+    let old_way = |message: &MavMessage| matches!(message, MavMessage::REQUEST_DATA_STREAM(_));
+    bench.wait_beating(3, false);
+    assert_eq!(
+        (bench.count_sent(new_way), bench.count_sent(old_way)),
+        (6, 0)
+    );
+    bench.wait_beating(2, false);
+    assert_eq!(
+        (bench.count_sent(new_way), bench.count_sent(old_way)),
+        (6, 3)
+    );
+    // They come: nothing more is asked for.
+    bench.all_parameters();
+    bench.hover(10.0, 8.0, 1500);
+    let asked = bench.count_sent(new_way) + bench.count_sent(old_way);
+    bench.hover(18.0, 20.0, 1500);
+    assert_eq!(bench.count_sent(new_way) + bench.count_sent(old_way), asked);
+
+    // A vehicle that refuses is asked in the old way at once.
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.wait(0.1);
+    bench.hear(&MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
+        command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+        result: MavResult::MAV_RESULT_UNSUPPORTED,
+        ..COMMAND_ACK_DATA::default()
+    }));
+    bench.wait(0.1);
+    assert_eq!(
+        (bench.count_sent(new_way), bench.count_sent(old_way)),
+        (3, 3)
+    );
+}
+
+/// The microseconds since boot start over after 71 minutes; that is no reboot, and nothing is forgotten.
+#[test]
+fn a_clock_that_starts_over_goes_on() {
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    bench.hover(4290.0, 10.0, 1500);
+    assert_eq!(bench.count(|event| matches!(event, Event::Rebooted)), 0);
+    let latest = bench.session.view().unwrap().latest.unwrap();
+    assert!(latest.risk.is_ok() && latest.t_s > 4299.0, "{latest:?}");
+}
+
+/// A day in the air, as fast as it goes: `cargo test --release -p flagred-cli -- --ignored a_day`.
+#[test]
+#[ignore = "a day of samples"]
+fn a_day_takes_no_more_memory_than_a_minute() {
+    let resident_kb = || -> u64 {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap();
+        let line = status
+            .lines()
+            .find(|line| line.starts_with("VmRSS:"))
+            .unwrap();
+        line.split_whitespace().nth(1).unwrap().parse().unwrap()
+    };
+    let estimator = estimator();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    let mut first_kb = None;
+    let start = std::time::Instant::now();
+    for minute in 0..24 * 60 {
+        // Calm and at the limit by turns, so that levels come and go.
+        let pulse = if minute % 3 == 0 { 1895 } else { 1500 };
+        bench.hover(10.0 + 60.0 * f64::from(minute), 60.0, pulse);
+        bench.events.clear();
+        bench.sent.clear();
+        if minute == 9 {
+            first_kb = Some(resident_kb());
+        }
+    }
+    let (first_kb, last_kb) = (first_kb.unwrap(), resident_kb());
+    eprintln!(
+        "{first_kb} kB after 10 minutes, {last_kb} kB after a day; {:?}",
+        start.elapsed()
+    );
+    assert!(last_kb < first_kb + 512, "{first_kb} kB, {last_kb} kB");
+}

@@ -1,0 +1,120 @@
+//! What is said to the vehicle and its ground station.
+
+use flagred::{
+    margin::Side,
+    monitor::Assessment,
+    verdict::{Finding, Level, Measure},
+};
+use flightlog::mavlink::{
+    Setup,
+    dialect::{
+        HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavSeverity, MavState, MavType,
+        NAMED_VALUE_FLOAT_DATA, STATUSTEXT_DATA,
+    },
+};
+
+use crate::assess::word;
+
+/// The names of the values that are sent.
+pub(crate) const RISK: &str = "FR_RISK";
+pub(crate) const ELEVATED: &str = "FR_ELEV";
+/// The system that is spoken as until a vehicle is found: a ground station's.
+pub(crate) const NOBODY: u8 = 255;
+/// The longest text of a STATUSTEXT.
+const TEXT: usize = 50;
+
+/// This component is there, and well.
+pub(crate) fn heartbeat() -> MavMessage {
+    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        custom_mode: 0,
+        mavtype: MavType::MAV_TYPE_ONBOARD_CONTROLLER,
+        autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
+        base_mode: MavModeFlag::empty(),
+        system_status: MavState::MAV_STATE_ACTIVE,
+        mavlink_version: 3,
+    })
+}
+
+/// A value at a time of the vehicle's clock.
+pub(crate) fn value(t_s: f64, name: &str, value: f64) -> MavMessage {
+    MavMessage::NAMED_VALUE_FLOAT(NAMED_VALUE_FLOAT_DATA {
+        time_boot_ms: (t_s * 1e3).round() as u32,
+        value: value as f32,
+        name: name.into(),
+    })
+}
+
+/// A text that ground stations show and speak.
+pub(crate) fn status(level: Level, text: &str) -> MavMessage {
+    let mut bytes = [0; TEXT];
+    for (byte, letter) in bytes.iter_mut().zip(text.bytes()) {
+        *byte = letter;
+    }
+    MavMessage::STATUSTEXT(STATUSTEXT_DATA {
+        severity: match level {
+            Level::Good => MavSeverity::MAV_SEVERITY_INFO,
+            Level::Warn => MavSeverity::MAV_SEVERITY_WARNING,
+            Level::Fail => MavSeverity::MAV_SEVERITY_CRITICAL,
+        },
+        text: bytes.into(),
+        ..STATUSTEXT_DATA::default()
+    })
+}
+
+/// A change of level in at most 50 characters: `FLAGRED: WARN risk 78 %, motor 3 upper limit`. A level that ends
+/// because nothing is known any more is no good news.
+pub(crate) fn say(
+    level: Level,
+    assessment: &Assessment,
+    finding: Option<Finding>,
+    setup: &Setup,
+) -> String {
+    if level == Level::Good && assessment.risk.is_err() {
+        return "FLAGRED: risk unknown".to_owned();
+    }
+    let mut text = format!("FLAGRED: {}", word(level));
+    let measure = finding.map_or(Measure::Risk, |finding| finding.measure);
+    let (name, value) = match measure {
+        Measure::Risk => (
+            "risk",
+            assessment.risk.ok().map(|estimate| estimate.risk_pct),
+        ),
+        Measure::ElevatedRisk => ("elevated", assessment.elevated_risk_pct),
+    };
+    if let Some(value) = value {
+        text += &format!(" {name} {value:.0} %");
+    }
+    if level > Level::Good
+        && let Some(weakest) = finding.and_then(|finding| finding.motor)
+        && let Some(motor) = setup.motors.get(weakest.motor)
+    {
+        let side = match weakest.side {
+            Side::Low => "lower",
+            Side::High => "upper",
+        };
+        text += &format!(", motor {} {side} limit", motor.number);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flightlog::mavlink::{Next, Sender, Version, next_packet};
+
+    #[test]
+    fn a_text_of_any_length_fits() {
+        for length in [0, 30, 49, 50, 51, 90] {
+            let text = "x".repeat(length);
+            let bytes = Sender::new(191).packet(Version::V1, 1, &status(Level::Fail, &text));
+            let Next::Packet(packet) = next_packet(&bytes) else {
+                panic!("{bytes:?}");
+            };
+            let Some(MavMessage::STATUSTEXT(read)) = packet.message() else {
+                panic!("{packet:?}");
+            };
+            assert_eq!(read.text.to_str().unwrap().len(), length.min(50));
+            assert_eq!(read.severity, MavSeverity::MAV_SEVERITY_CRITICAL);
+        }
+    }
+}
