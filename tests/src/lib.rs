@@ -2,6 +2,7 @@
 
 pub mod log_writer;
 pub mod simulated;
+pub mod vehicle;
 
 use std::{path::PathBuf, process::Command, sync::OnceLock};
 

@@ -1,0 +1,474 @@
+//! A stand-in vehicle: flies a log again, as MAVLink.
+
+use std::{
+    collections::VecDeque,
+    io::{ErrorKind, Read, Write},
+    net::{SocketAddr, TcpStream, UdpSocket},
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use flightlog::{
+    Flight,
+    mavlink::{
+        Sender, Stream, Version,
+        dialect::{
+            ATTITUDE_DATA, COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavAutopilot,
+            MavCmd, MavLandedState, MavMessage, MavModeFlag, MavParamType, MavResult, MavState,
+            MavType, PARAM_VALUE_DATA, SERVO_OUTPUT_RAW_DATA,
+        },
+    },
+};
+
+/// What a link does to packets, both ways for what it loses, and to those of the vehicle else.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Link {
+    /// The share that is lost.
+    pub loss: f64,
+    /// The share that arrives after later ones.
+    pub reordered: f64,
+    /// The share that arrives twice.
+    pub repeated: f64,
+}
+
+/// How fast a flight is flown again.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Speed {
+    /// As fast as it goes.
+    Fastest,
+    /// So many times as fast as it was.
+    Times(f64),
+}
+
+/// The wire to the other side.
+pub enum Wire {
+    /// Datagrams.
+    Udp(UdpSocket),
+    /// A connection.
+    Tcp(TcpStream),
+}
+
+impl Wire {
+    /// Datagrams to `address`.
+    ///
+    /// # Panics
+    ///
+    /// Where the machine has no loopback.
+    pub fn udp(address: SocketAddr) -> Wire {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        socket.connect(address).unwrap();
+        socket.set_nonblocking(true).unwrap();
+        Wire::Udp(socket)
+    }
+
+    /// An open connection.
+    ///
+    /// # Panics
+    ///
+    /// Where it cannot be set up.
+    pub fn tcp(stream: TcpStream) -> Wire {
+        stream.set_nodelay(true).unwrap();
+        stream
+            .set_read_timeout(Some(Duration::from_micros(1)))
+            .unwrap();
+        Wire::Tcp(stream)
+    }
+
+    /// Sends some bytes as they are. A link may fail; what comes of it is what is tested.
+    pub fn send(&mut self, bytes: &[u8]) {
+        match self {
+            Wire::Udp(socket) => drop(socket.send(bytes)),
+            Wire::Tcp(stream) => drop(stream.write_all(bytes)),
+        }
+    }
+
+    fn receive(&mut self, stream: &mut Stream) -> bool {
+        let mut buffer = [0; 2048];
+        let read = match self {
+            Wire::Udp(socket) => socket.recv(&mut buffer),
+            Wire::Tcp(stream) => stream.read(&mut buffer),
+        };
+        match read {
+            Ok(0) => false,
+            Ok(count) => {
+                stream.push(&buffer[..count]);
+                true
+            }
+            Err(error) => {
+                assert!(
+                    !matches!(error.kind(), ErrorKind::InvalidInput),
+                    "the wire is broken: {error}"
+                );
+                false
+            }
+        }
+    }
+}
+
+/// What the other side said.
+#[derive(Debug, Default)]
+pub struct Heard {
+    /// Its messages, each with when it came, the system and the component that sent it.
+    pub messages: Vec<(Instant, u8, u8, MavMessage)>,
+}
+
+impl Heard {
+    /// The texts, with their severity.
+    pub fn texts(&self) -> Vec<(u8, String)> {
+        let texts = self
+            .messages
+            .iter()
+            .filter_map(|(_, _, _, message)| match message {
+                MavMessage::STATUSTEXT(text) => {
+                    Some((text.severity as u8, text.text.to_str().unwrap().to_owned()))
+                }
+                _ => None,
+            });
+        texts.collect()
+    }
+
+    /// The values of this name, each with when it came and the vehicle's time it is for, in ms.
+    pub fn values(&self, name: &str) -> Vec<(Instant, u32, f32)> {
+        let values = self
+            .messages
+            .iter()
+            .filter_map(|(at, _, _, message)| match message {
+                MavMessage::NAMED_VALUE_FLOAT(value) if value.name.to_str() == Ok(name) => {
+                    Some((*at, value.time_boot_ms, value.value))
+                }
+                _ => None,
+            });
+        values.collect()
+    }
+}
+
+/// A vehicle that flies a log again.
+pub struct StandIn {
+    wire: Wire,
+    link: Link,
+    version: Version,
+    system: u8,
+    parameters: Vec<(String, f64)>,
+    kind: MavType,
+    sender: Sender,
+    random: u64,
+    stream: Stream,
+    late: VecDeque<(u32, Vec<u8>)>,
+    /// What came from the other side.
+    pub heard: Heard,
+    /// When the motor commands of a time, in ms of the vehicle's clock, were sent.
+    pub sent: Vec<(u32, Instant)>,
+    /// The vehicle's time, in ms, up to which the other side is known to have followed; kept by whoever reads what
+    /// it says. A flight that goes as fast as it can waits for it, or the machine's own buffers would lose packets.
+    pub followed_ms: Option<Arc<AtomicU64>>,
+    /// Whether requests are answered.
+    pub answers: bool,
+    last_request: Instant,
+    asked: bool,
+}
+
+impl StandIn {
+    /// A vehicle with the motors and limits of a flight.
+    pub fn new(flight: &Flight, wire: Wire, link: Link, version: Version) -> StandIn {
+        StandIn {
+            wire,
+            link,
+            version,
+            system: 1,
+            parameters: parameters(flight),
+            kind: match flight.motors.len() {
+                4 => MavType::MAV_TYPE_QUADROTOR,
+                6 => MavType::MAV_TYPE_HEXAROTOR,
+                _ => MavType::MAV_TYPE_OCTOROTOR,
+            },
+            sender: Sender::new(1),
+            random: 0x9e37_79b9_7f4a_7c15,
+            stream: Stream::new(),
+            late: VecDeque::new(),
+            heard: Heard::default(),
+            sent: Vec::new(),
+            followed_ms: None,
+            answers: true,
+            last_request: Instant::now(),
+            asked: false,
+        }
+    }
+
+    /// Beats until it was asked for its parameters and has not been asked for a while: they are known then.
+    pub fn meet(&mut self) {
+        let start = Instant::now();
+        // Longer than until a parameter is asked for again.
+        let quiet = Duration::from_millis(if self.link.loss > 0.0 { 1100 } else { 150 });
+        while !self.asked || self.last_request.elapsed() < quiet {
+            assert!(
+                start.elapsed() < Duration::from_secs(20),
+                "nobody asks for parameters"
+            );
+            self.beat(false, false);
+            self.listen();
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Flies a log from `from_s` on; gives the time at which it ended.
+    pub fn fly(&mut self, flight: &Flight, speed: Speed, from_s: f64, to_s: f64) {
+        let outputs: Vec<usize> = flight.motors.iter().map(|m| output(&m.output)).collect();
+        let mut state = None;
+        let mut next_beat_s = f64::NEG_INFINITY;
+        let mut next_state_s = f64::NEG_INFINITY;
+        let (start, mut first_s, mut count) = (Instant::now(), None, 0);
+        for (t_s, row) in flight.commands.rows() {
+            if t_s < from_s || t_s > to_s {
+                continue;
+            }
+            if let Speed::Times(times) = speed {
+                let first_s = *first_s.get_or_insert(t_s);
+                let due = Duration::from_secs_f64((t_s - first_s) / times);
+                while start.elapsed() < due {
+                    self.listen();
+                    std::thread::sleep(Duration::from_micros(200));
+                }
+            }
+            let armed = flight
+                .armed
+                .as_ref()
+                .is_none_or(|armed| armed.contains(t_s));
+            let now = (armed, flight.is_in_air(t_s) == Some(true));
+            let changed = state.replace(now) != Some(now);
+            if changed || t_s >= next_beat_s {
+                next_beat_s = t_s + 1.0;
+                self.beat(now.0, now.1);
+            }
+            if changed || t_s >= next_state_s {
+                next_state_s = t_s + 0.25;
+                self.tell_state(t_s, now.1);
+            }
+            let mut pulses = [0; 16];
+            for (&output, &raw) in outputs.iter().zip(row) {
+                pulses[output] = raw as u16;
+            }
+            self.sent.push(((t_s * 1e3).round() as u32, Instant::now()));
+            self.send(&servo((t_s * 1e6).round() as u32, &pulses));
+            count += 1;
+            self.listen();
+            if speed == Speed::Fastest && count % 16 == 0 {
+                self.wait_for_the_other_side(t_s, now.1);
+            }
+        }
+        while let Some((_, packet)) = self.late.pop_front() {
+            self.wire.send(&packet);
+        }
+        self.linger(Duration::from_millis(200));
+    }
+
+    /// At most two seconds of commands are on their way at once.
+    fn wait_for_the_other_side(&mut self, t_s: f64, in_air: bool) {
+        let Some(followed_ms) = self.followed_ms.clone().filter(|_| in_air) else {
+            std::thread::sleep(Duration::from_millis(8));
+            return;
+        };
+        let start = Instant::now();
+        let behind = || (followed_ms.load(Ordering::Relaxed) as f64) < (t_s - 2.0) * 1e3;
+        while behind() && start.elapsed() < Duration::from_millis(500) {
+            self.listen();
+            std::thread::sleep(Duration::from_micros(200));
+        }
+    }
+
+    /// Listens for a while.
+    pub fn linger(&mut self, time: Duration) {
+        let start = Instant::now();
+        while start.elapsed() < time {
+            self.listen();
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// Sends a heartbeat.
+    pub fn beat(&mut self, armed: bool, in_air: bool) {
+        let mut mode = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
+        mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, armed);
+        let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            custom_mode: 0,
+            mavtype: self.kind,
+            autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+            base_mode: mode,
+            system_status: if in_air {
+                MavState::MAV_STATE_ACTIVE
+            } else {
+                MavState::MAV_STATE_STANDBY
+            },
+            mavlink_version: 3,
+        });
+        self.send(&heartbeat);
+    }
+
+    /// Sends bytes as they are, past the link.
+    pub fn raw(&mut self, bytes: &[u8]) {
+        self.wire.send(bytes);
+    }
+
+    fn tell_state(&mut self, t_s: f64, in_air: bool) {
+        self.send(&MavMessage::ATTITUDE(ATTITUDE_DATA {
+            time_boot_ms: (t_s * 1e3) as u32,
+            ..ATTITUDE_DATA::default()
+        }));
+        self.send(&MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+            landed_state: if in_air {
+                MavLandedState::MAV_LANDED_STATE_IN_AIR
+            } else {
+                MavLandedState::MAV_LANDED_STATE_ON_GROUND
+            },
+            ..EXTENDED_SYS_STATE_DATA::default()
+        }));
+    }
+
+    /// Sends a message over the link, with what the link does to it.
+    pub fn send(&mut self, message: &MavMessage) {
+        let packet = self.sender.packet(self.version, self.system, message);
+        if self.chance(self.link.loss) {
+            return;
+        }
+        if self.chance(self.link.reordered) {
+            let after = 1 + (self.random >> 20) as u32 % 3;
+            self.late.push_back((after, packet));
+            return;
+        }
+        self.wire.send(&packet);
+        if self.chance(self.link.repeated) {
+            self.wire.send(&packet);
+        }
+        for (after, _) in &mut self.late {
+            *after = after.saturating_sub(1);
+        }
+        while self.late.front().is_some_and(|(after, _)| *after == 0) {
+            if let Some((_, packet)) = self.late.pop_front() {
+                self.wire.send(&packet);
+            }
+        }
+    }
+
+    fn chance(&mut self, share: f64) -> bool {
+        self.random ^= self.random << 13;
+        self.random ^= self.random >> 7;
+        self.random ^= self.random << 17;
+        ((self.random >> 11) as f64 / (1_u64 << 53) as f64) < share
+    }
+
+    /// Takes in what came, and answers requests.
+    pub fn listen(&mut self) {
+        while self.wire.receive(&mut self.stream) {
+            let mut messages = Vec::new();
+            while let Some(packet) = self.stream.packet() {
+                let message = packet.message().unwrap();
+                messages.push((Instant::now(), packet.system, packet.component, message));
+            }
+            for (at, system, component, message) in messages {
+                if !self.chance(self.link.loss) {
+                    self.answer(&message);
+                }
+                self.heard.messages.push((at, system, component, message));
+            }
+        }
+    }
+
+    fn answer(&mut self, message: &MavMessage) {
+        if !self.answers {
+            self.asked = true;
+            return;
+        }
+        match message {
+            MavMessage::PARAM_REQUEST_READ(request) => {
+                (self.asked, self.last_request) = (true, Instant::now());
+                let name = request.param_id.to_str().unwrap();
+                let known = self.parameters.iter().find(|(known, _)| known == name);
+                if let Some((name, value)) = known {
+                    let reply = MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+                        param_value: *value as f32,
+                        param_count: 900,
+                        param_index: u16::MAX,
+                        param_id: name.as_str().into(),
+                        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+                    });
+                    self.send(&reply);
+                }
+            }
+            MavMessage::COMMAND_LONG(_) => {
+                self.send(&MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
+                    command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
+                    result: MavResult::MAV_RESULT_ACCEPTED,
+                    ..COMMAND_ACK_DATA::default()
+                }));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// SERVO_OUTPUT_RAW of 16 outputs.
+pub fn servo(time_usec: u32, pulses: &[u16; 16]) -> MavMessage {
+    let p = pulses;
+    MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+        time_usec,
+        servo1_raw: p[0],
+        servo2_raw: p[1],
+        servo3_raw: p[2],
+        servo4_raw: p[3],
+        servo5_raw: p[4],
+        servo6_raw: p[5],
+        servo7_raw: p[6],
+        servo8_raw: p[7],
+        port: 0,
+        servo9_raw: p[8],
+        servo10_raw: p[9],
+        servo11_raw: p[10],
+        servo12_raw: p[11],
+        servo13_raw: p[12],
+        servo14_raw: p[13],
+        servo15_raw: p[14],
+        servo16_raw: p[15],
+    })
+}
+
+/// The flight of a log, with what a stand-in needs of it.
+///
+/// # Panics
+///
+/// Where it cannot be read.
+pub fn flight(log: &Path) -> Flight {
+    let signals = Some(Vec::new());
+    flightlog::open(log, &flightlog::Options { signals }).unwrap()
+}
+
+fn output(name: &str) -> usize {
+    let digits = name.trim_start_matches(|c: char| !c.is_ascii_digit());
+    digits.parse::<usize>().unwrap() - 1
+}
+
+fn parameters(flight: &Flight) -> Vec<(String, f64)> {
+    let range = flight.range.as_ref().unwrap();
+    let own = range.source.starts_with("MOT_PWM");
+    let or_zero = |value: f64| if own { value } else { 0.0 };
+    let mut parameters = vec![
+        ("MOT_PWM_MIN".to_owned(), or_zero(range.low)),
+        ("MOT_PWM_MAX".to_owned(), or_zero(range.high)),
+        ("MOT_SPIN_MIN".to_owned(), flight.effective.low),
+        ("MOT_SPIN_MAX".to_owned(), flight.effective.high),
+        ("RCMAP_THROTTLE".to_owned(), 3.0),
+        ("RC3_MIN".to_owned(), range.low),
+        ("RC3_MAX".to_owned(), range.high),
+    ];
+    for number in 0..16 {
+        let motor = flight
+            .motors
+            .iter()
+            .find(|motor| output(&motor.output) == number);
+        let function = motor.map_or(0.0, |motor| f64::from(motor.number) + 32.0);
+        parameters.push((format!("SERVO{}_FUNCTION", number + 1), function));
+    }
+    parameters
+}
