@@ -4,9 +4,9 @@
 
 mod assess;
 mod check;
+mod completions;
 mod convert;
 mod dataset;
-mod completions;
 mod diagnostics;
 mod eval;
 mod evaluate;
@@ -15,8 +15,8 @@ mod failure;
 mod help;
 mod inspect;
 mod learn;
-mod map;
 mod man;
+mod map;
 mod new;
 mod output;
 mod parallel;

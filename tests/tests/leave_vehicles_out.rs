@@ -367,7 +367,7 @@ fn last_event(flight: &Simulated, before_s: f64) -> Option<&(f64, String, f64)> 
     ];
     let done =
         |(t_s, event, _): &&(f64, String, f64)| *t_s <= before_s && DONE.contains(&event.as_str());
-    flight.events.iter().filter(done).next_back()
+    flight.events.iter().rfind(done)
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

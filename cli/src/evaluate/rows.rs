@@ -115,9 +115,7 @@ pub(super) fn cases(
                 .flatten()
                 .map(read)
                 .collect::<Result<Vec<f64>, Failure>>()?;
-            let risk = columns
-                .as_ref()
-                .and_then(|_| named.estimator.at(&inputs));
+            let risk = columns.as_ref().and_then(|_| named.estimator.at(&inputs));
             scores.push(risk.map_or(f64::NAN, |estimate| estimate.risk_pct));
         }
         for (baseline, column) in &baselines {
