@@ -3,14 +3,31 @@
 /// CRC-16/MCRF4XX of the packet from its length on, and of the number that stands for the
 /// definition of its message.
 pub(crate) fn accumulate(bytes: &[u8], extra: u8) -> u16 {
-    bytes.iter().chain([&extra]).fold(0xffff, |sum, &byte| {
-        (sum >> 8) ^ TABLE[usize::from(byte ^ sum as u8)]
-    })
+    let mut eights = bytes.chunks_exact(8);
+    let sum = eights.by_ref().fold(0xffff_u16, |sum, eight| {
+        let [low, high] = sum.to_le_bytes();
+        // Each byte alone, as it is after the bytes behind it: the sum is linear.
+        let first = [low, high, 0, 0, 0, 0, 0, 0];
+        let tables = TABLES.iter().rev();
+        tables
+            .zip(eight.iter().zip(first))
+            .fold(0, |sum, (table, (byte, first))| {
+                sum ^ table[usize::from(byte ^ first)]
+            })
+    });
+    eights
+        .remainder()
+        .iter()
+        .chain([&extra])
+        .fold(sum, |sum, &byte| {
+            (sum >> 8) ^ TABLES[0][usize::from(byte ^ sum as u8)]
+        })
 }
 
-/// The checksum of each byte alone: polynomial 0x1021, bits reversed.
-const TABLE: [u16; 256] = {
-    let mut table = [0; 256];
+/// The checksum of each byte alone (polynomial 0x1021, bits reversed), and of each byte with
+/// one to seven zeros behind it.
+const TABLES: [[u16; 256]; 8] = {
+    let mut tables = [[0; 256]; 8];
     let mut byte = 0;
     while byte < 256 {
         let mut sum = byte as u16;
@@ -23,10 +40,20 @@ const TABLE: [u16; 256] = {
             };
             bit += 1;
         }
-        table[byte] = sum;
+        tables[0][byte] = sum;
         byte += 1;
     }
-    table
+    let mut zeros = 1;
+    while zeros < 8 {
+        let mut byte = 0;
+        while byte < 256 {
+            let sum: u16 = tables[zeros - 1][byte];
+            tables[zeros][byte] = (sum >> 8) ^ tables[0][(sum & 0xff) as usize];
+            byte += 1;
+        }
+        zeros += 1;
+    }
+    tables
 };
 
 /// CRC_EXTRA of a message; `None` for one that is not in the dialect.
@@ -88,6 +115,17 @@ mod tests {
     fn the_check_value_of_the_algorithm() {
         // CRC-16/MCRF4XX of "123456789" is 0x6f91.
         assert_eq!(accumulate(b"12345678", b'9'), 0x6f91);
+        // Eight bytes at a time are as one at a time.
+        let one_by_one = |bytes: &[u8]| {
+            bytes.iter().fold(0xffff_u16, |sum, &byte| {
+                (sum >> 8) ^ TABLES[0][usize::from(byte ^ sum as u8)]
+            })
+        };
+        let bytes: Vec<u8> = (0..60).map(|byte| byte * 4 + 3).collect();
+        for length in 0..bytes.len() {
+            let expected = one_by_one(&bytes[..=length]);
+            assert_eq!(accumulate(&bytes[..length], bytes[length]), expected);
+        }
     }
 
     #[test]

@@ -31,6 +31,8 @@ const STATUSTEXT: u32 = 253;
 
 pub(super) struct Collector<'o> {
     options: &'o Options,
+    /// Numbers of the messages that are read.
+    wanted: Vec<u32>,
     pub(super) report: Report,
     /// Time of the first packet of the log, microseconds since 1970.
     zero_us: Option<u64>,
@@ -57,8 +59,22 @@ struct Heard {
 
 impl<'o> Collector<'o> {
     pub(super) fn new(options: &'o Options) -> Self {
+        let always = [
+            HEARTBEAT,
+            PARAM_VALUE,
+            SERVO_OUTPUT_RAW,
+            AUTOPILOT_VERSION,
+            EXTENDED_SYS_STATE,
+            STATUSTEXT,
+        ];
+        let asked_for = |spec: &&Spec| {
+            let mut signals = spec.signals.iter();
+            signals.any(|(_, name, _)| options.wants(name))
+        };
+        let asked_for = SPECS.iter().filter(asked_for).map(|spec| spec.id);
         Self {
             options,
+            wanted: always.into_iter().chain(asked_for).collect(),
             report: Report::default(),
             zero_us: None,
             latest: Latest::new(LONGEST_PAUSE_S),
@@ -74,7 +90,9 @@ impl<'o> Collector<'o> {
             return self.report.bad("a time that no other agrees with");
         }
         // Ground stations store parameters under the number of another component.
-        if packet.component != AUTOPILOT && packet.id != PARAM_VALUE {
+        if packet.component != AUTOPILOT && packet.id != PARAM_VALUE
+            || !self.wanted.contains(&packet.id)
+        {
             return;
         }
         // Version 2 leaves out the zeros at the end of a payload.
