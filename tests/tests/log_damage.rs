@@ -88,6 +88,13 @@ fn check(flight: &Flight, log: &[u8]) {
         let ends = |span: &flightlog::Interval| span.end_s >= span.start_s;
         assert!(intervals.spans.iter().all(ends), "{intervals:?}");
     }
+    // What is written as CSV can be read again.
+    let mut csv = Vec::new();
+    flight.write_csv(&mut csv).unwrap();
+    if !flight.commands.is_empty() {
+        let again = flightlog::read(&csv[..], &Options::default()).unwrap();
+        assert_eq!(again.commands.len(), flight.commands.len());
+    }
     if let Ok(statistics) = flight.statistics() {
         for value in [
             statistics.margin_mean,
