@@ -109,6 +109,24 @@ def speed(binary, logs):
     return missed
 
 
+@contextlib.contextmanager
+def silence():
+    """The peers tell every damaged byte, pymavlink's C part around Python's own streams."""
+    sys.stdout.flush()
+    kept = [os.dup(stream) for stream in (1, 2)]
+    nothing = os.open(os.devnull, os.O_WRONLY)
+    for stream in (1, 2):
+        os.dup2(nothing, stream)
+    try:
+        yield
+    finally:
+        sys.stdout.flush()
+        for stream, old in zip((1, 2), kept):
+            os.dup2(old, stream)
+            os.close(old)
+        os.close(nothing)
+
+
 def damaged(log, seed):
     """A copy with twenty holes of up to 512 bytes behind its first tenth, where definitions are."""
     choose = random.Random(seed)
@@ -132,9 +150,7 @@ def damage(binary, logs, copies):
                 copy.write(damaged(log, seed))
                 copy.flush()
                 try:
-                    # Both peers tell every damaged byte.
-                    with open(os.devnull, "w") as silence, contextlib.redirect_stdout(silence), \
-                            contextlib.redirect_stderr(silence):
+                    with silence():
                         counts = read(copy.name)
                     theirs = max(counts[c] for c in commands) + counts[attitude]
                 except Exception:  # the peer gives up
