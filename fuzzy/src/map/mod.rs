@@ -7,11 +7,13 @@ use crate::engine::{EvaluateError, Outcome, Scratch, State};
 
 mod grid;
 mod picture;
+mod table;
 #[cfg(test)]
 mod tests;
 
 pub use grid::{Axis, Fixed, Grid, GridError};
 pub use picture::picture;
+pub use table::{DecisionTable, TableError};
 
 /// One output of an engine on every cell of a grid.
 ///
