@@ -21,3 +21,8 @@ pub mod yaml;
 
 pub use engine::Engine;
 pub use model::Model;
+
+/// The example of COMPARE.md, run.
+#[cfg(all(doctest, feature = "yaml"))]
+#[doc = include_str!("../../COMPARE.md")]
+struct Compare;

@@ -1,0 +1,164 @@
+//! The reference systems as files for other programs, and our own side of the comparison with them.
+//!
+//! `write FOLDER`: each system in fuzzylite's language, points, and the exact values there.
+//! `time`: our time for each system, as `system,program,ns`.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use flagred_benches::{four_inputs, points, published, tipper};
+use fuzzy::engine::Outcome;
+use fuzzy::map::{DecisionMap, Grid};
+use fuzzy::model::{Model, Shape, Variable};
+use fuzzy::{Engine, rule::Condition, rule::Rule};
+
+const POINTS: usize = 1024;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let systems = [
+        ("a", tipper()),
+        ("bw", published(true)),
+        ("c", four_inputs()),
+    ];
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["write", folder] => {
+            for (name, model) in &systems {
+                write(Path::new(folder), name, model)?;
+            }
+        }
+        ["time"] => {
+            for (name, model) in &systems {
+                time(name, model)?;
+            }
+        }
+        _ => return Err("use `write FOLDER` or `time`".into()),
+    }
+    Ok(())
+}
+
+fn write(folder: &Path, name: &str, model: &Model) -> Result<(), Box<dyn std::error::Error>> {
+    std::fs::write(folder.join(format!("{name}.fll")), fll(model))?;
+    let engine = Engine::new(model)?;
+    let mut text = String::new();
+    for point in points(model, POINTS) {
+        let numbers: Vec<String> = point.iter().map(f64::to_string).collect();
+        let value = engine.evaluate(&point)?[0].value().unwrap_or(f64::NAN);
+        writeln!(text, "{} {value}", numbers.join(" "))?;
+    }
+    std::fs::write(folder.join(format!("{name}.points")), text)?;
+    Ok(())
+}
+
+/// The model in fuzzylite's language.
+fn fll(model: &Model) -> String {
+    let mut text = format!("Engine: {}\n", model.name.replace(' ', "_"));
+    let variable = |v: &Variable| {
+        let mut text = format!(
+            "  enabled: true\n  range: {} {}\n  lock-range: false\n",
+            v.low, v.high
+        );
+        if let Some(output) = model.outputs.iter().find(|o| o.variable.name == v.name) {
+            let _ = output;
+            text += "  aggregation: Maximum\n  defuzzifier: Centroid 100\n  default: nan\n  lock-previous: false\n";
+        }
+        for term in &v.terms {
+            let shape = match term.shape {
+                Shape::Triangle { left, peak, right } => format!("Triangle {left} {peak} {right}"),
+                Shape::Trapezoid {
+                    left,
+                    left_top,
+                    right_top,
+                    right,
+                } => {
+                    format!("Trapezoid {left} {left_top} {right_top} {right}")
+                }
+                Shape::RightShoulder { foot, top } => {
+                    format!("Trapezoid {foot} {top} {} {}", v.high, v.high + 0.1)
+                }
+                Shape::Gaussian { mean, sd } => format!("Gaussian {mean} {sd}"),
+                ref other => format!("{other:?}"),
+            };
+            text += &format!("  term: {} {shape}\n", term.name);
+        }
+        text
+    };
+    for input in &model.inputs {
+        text += &format!("InputVariable: {}\n{}", input.name, variable(input));
+    }
+    for output in &model.outputs {
+        text += &format!(
+            "OutputVariable: {}\n{}",
+            output.variable.name,
+            variable(&output.variable)
+        );
+    }
+    text += "RuleBlock: rules\n  enabled: true\n  conjunction: Minimum\n  disjunction: Maximum\n  implication: Minimum\n  activation: General\n";
+    for rule in &model.rules {
+        text += &format!("  rule: {}\n", sentence(&rule.rule));
+    }
+    text
+}
+
+fn sentence(rule: &Rule) -> String {
+    let is = |condition: &Condition| match condition {
+        Condition::Is(p) => {
+            let term = p.term.as_ref().map_or("", |term| &term.text);
+            format!("{} is {term}", p.variable.text)
+        }
+        other => format!("{other:?}"),
+    };
+    let condition = match &rule.condition {
+        Condition::And(all) => all.iter().map(is).collect::<Vec<_>>().join(" and "),
+        Condition::Or(any) => any.iter().map(is).collect::<Vec<_>>().join(" or "),
+        one => is(one),
+    };
+    let then = &rule.consequents[0];
+    format!(
+        "if {condition} then {} is {} with {}",
+        then.output.text, then.term.text, rule.weight
+    )
+}
+
+/// The fastest of many rounds, in ns a call: what the machine can do when others leave it alone.
+fn fastest(calls: usize, mut round: impl FnMut()) -> f64 {
+    let mut best = f64::INFINITY;
+    let started = Instant::now();
+    while started.elapsed().as_millis() < 700 {
+        let begun = Instant::now();
+        round();
+        best = best.min(begun.elapsed().as_secs_f64());
+    }
+    best * 1e9 / calls as f64
+}
+
+fn time(name: &str, model: &Model) -> Result<(), Box<dyn std::error::Error>> {
+    let engine = Engine::new(model)?;
+    let points = points(model, POINTS);
+    let mut scratch = engine.scratch();
+    let mut outcome = [Outcome::default()];
+    let single = fastest(POINTS, || {
+        for point in &points {
+            let _ = engine.evaluate_with(&mut scratch, std::hint::black_box(point), &mut outcome);
+        }
+    });
+    println!("{name},ours,{single},0");
+    let columns: Vec<Vec<f64>> = (0..model.inputs.len())
+        .map(|input| points.iter().map(|point| point[input]).collect())
+        .collect();
+    let columns: Vec<&[f64]> = columns.iter().map(|column| &**column).collect();
+    let mut outcomes = vec![Outcome::default(); POINTS];
+    let batch = fastest(POINTS, || {
+        let _ = engine.evaluate_batch_into(std::hint::black_box(&columns), &mut outcomes);
+    });
+    println!("{name},ours in a batch,{batch},0");
+    if model.inputs.len() == 2 {
+        let grid = Grid::new(&engine, 501)?;
+        let map = fastest(1, || {
+            let _ = std::hint::black_box(DecisionMap::new(&engine, grid.clone(), 0));
+        });
+        println!("{name},ours: map of 501 x 501,{map},0");
+    }
+    Ok(())
+}
