@@ -22,6 +22,8 @@ use crate::{
 mod rules;
 mod schema;
 mod shapes;
+#[cfg(test)]
+mod tests;
 mod variables;
 mod words;
 mod write;
