@@ -19,7 +19,7 @@ fn sample(i: u32, motors: &mut [f64; 8]) -> (f64, bool) {
         let gust = (t_s * 1.3).sin().max(0.0) * 0.4;
         *motor = (0.55 + gust * (t_s * 9.0 + n as f64).sin()).clamp(0.0, 1.0);
     }
-    if i % 97 == 0 {
+    if i.is_multiple_of(97) {
         motors[3] = f64::NAN;
     }
     (t_s, !(4000..4300).contains(&i))

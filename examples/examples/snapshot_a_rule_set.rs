@@ -1,0 +1,46 @@
+//! Keep a picture of your rule set beside your tests: a change of what it decides then shows in review.
+//!
+//! `cargo run -p flagred-examples --example snapshot_a_rule_set`
+
+use std::error::Error;
+
+use fuzzy::{
+    Engine,
+    map::{DecisionMap, Grid, picture},
+};
+
+const RULES: &str = "
+fuzzy: 1
+name: battery
+inputs:
+  charge: {unit: '%', range: [0, 100], partition: {empty: 0, low: 20, full: 60}}
+  distance: {unit: m, range: [0, 2000], partition: {near: 0, far: 1000}}
+outputs:
+  urgency: {range: [0, 1], partition: [none, some, high]}
+rules:
+  - IF charge IS empty OR charge IS low AND distance IS far THEN urgency IS high
+  - IF charge IS low AND distance IS near THEN urgency IS some
+  - IF charge IS full THEN urgency IS none
+";
+
+/// The picture of the rule set, as text.
+fn decisions() -> Result<String, Box<dyn Error>> {
+    let model = fuzzy::yaml::parse(RULES)?.model;
+    let engine = Engine::new(&model)?;
+    let map = DecisionMap::new(&engine, Grid::new(&engine, 41)?, 0)?;
+    Ok(picture(&map))
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    #[expect(clippy::print_stdout, reason = "an example shows what it does")]
+    {
+        println!("{}", decisions()?);
+    }
+    Ok(())
+}
+
+#[test]
+fn the_decisions_are_those_that_were_reviewed() -> Result<(), Box<dyn Error>> {
+    insta::assert_snapshot!(decisions()?);
+    Ok(())
+}
