@@ -88,6 +88,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "COLUMN")]
     group_by: Option<String>,
 
+    /// Learn once only: do not estimate the error on rows left out
+    #[arg(long, conflicts_with = "group_by")]
+    no_validation: bool,
+
     /// Go on without rows that cannot be learned from
     #[arg(long)]
     skip_bad_rows: bool,
@@ -119,7 +123,7 @@ struct Outcome {
     refused_count: usize,
     coverage: f64,
     after_filling: f64,
-    errors: Errors,
+    errors: Option<Errors>,
     gaps: Option<GapComparison>,
 }
 
@@ -159,7 +163,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         refused,
         coverage,
         after_filling,
-        errors: cross_validate(&model, &settings, &gap, &rows).map_err(examined)?,
+        errors: match arguments.no_validation {
+            true => None,
+            false => Some(cross_validate(&model, &settings, &gap, &rows).map_err(examined)?),
+        },
         gaps: match arguments.compare_gaps {
             true => {
                 let compared = leave_one_rule_out(&learned.model, &rows, &GapMethod::ALL, None);

@@ -99,15 +99,16 @@ pub(super) fn words(
         Some(column) => format!("groups of `{column}` left out in turn"),
         None => "tenths of the rows left out in turn".to_owned(),
     };
-    let errors = &outcome.errors;
-    if errors.rows == 0 {
-        writeln!(out, "error      unknown: too few rows to leave any out")?;
-    } else {
-        writeln!(
+    match &outcome.errors {
+        None => {}
+        Some(errors) if errors.rows == 0 => {
+            writeln!(out, "error      unknown: too few rows to leave any out")?;
+        }
+        Some(errors) => writeln!(
             out,
             "error      {:.2} RMS, {:.2} mean, {:+.2} bias over {} rows ({parts})",
             errors.rmse, errors.mean_absolute, errors.bias, errors.rows
-        )?;
+        )?,
     }
     if let Some(gaps) = &outcome.gaps {
         writeln!(
@@ -165,7 +166,7 @@ pub(super) fn json(arguments: &Arguments, outcome: &Outcome) -> Value {
             "after_filling": outcome.after_filling,
             "gap_method": method_name(GapMethod::default()),
         },
-        "cross_validation": (outcome.errors.rows > 0).then(|| errors(&outcome.errors)),
+        "cross_validation": outcome.errors.as_ref().filter(|e| e.rows > 0).map(errors),
         "gap_methods": outcome.gaps.as_ref().map(|gaps| json!({
             "rules_left_out": gaps.rules,
             "with_the_rule": errors(&gaps.with_the_rule.by_row),
