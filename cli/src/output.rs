@@ -1,29 +1,22 @@
 //! Files that are written.
 
-use std::{
-    fs,
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::{fs, io::Write, path::Path};
 
 use crate::failure::Failure;
 
-/// Writes a file beside its place first, so that there is never half of one; `-` is standard output.
+/// Writes a file so that it is there whole or not at all: beside its place first, then renamed; `-` is standard output.
 pub(crate) fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if path == Path::new("-") {
         write!(std::io::stdout().lock(), "{text}")?;
         return Ok(());
     }
-    let mut beside = path.to_owned().into_os_string();
-    beside.push(".partial");
-    let beside = PathBuf::from(beside);
-    fs::write(&beside, text)
-        .and_then(|()| fs::rename(&beside, path))
-        .map_err(|error| {
-            // What is left of it is of no use; that it cannot be removed either is no news.
-            let _ = fs::remove_file(&beside);
-            let shown = path.display();
-            Failure::unreadable(format!("`{shown}` cannot be written: {error}"))
-                .help("check the folder and its permissions")
-        })
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let draft = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
+    let written = fs::write(&draft, text).and_then(|()| fs::rename(&draft, path));
+    written.map_err(|error| {
+        // What is left of it is of no use; that it cannot be removed either is no news.
+        let _ = fs::remove_file(&draft);
+        Failure::unreadable(format!("`{}` cannot be written: {error}", path.display()))
+            .help("check that its folder exists and can be written to")
+    })
 }

@@ -12,7 +12,7 @@ use flagred::verdict::Level;
 
 use crate::{
     failure::{Exit, Failure},
-    profile,
+    output, profile,
     report::{self, Subject},
 };
 use follow::Assessed;
@@ -154,7 +154,7 @@ fn write_reports(
         several => report::comparison(several, loaded),
     };
     if let Some(path) = &arguments.html {
-        report::write_whole(path, &text)?;
+        output::write(path, &text)?;
     }
     if let (Some(path), [subject]) = (&arguments.svg, subjects) {
         let text = report::svg(subject, loaded).ok_or_else(|| {
@@ -163,7 +163,7 @@ fn write_reports(
                 subject.name
             ))
         })?;
-        report::write_whole(path, &text)?;
+        output::write(path, &text)?;
     }
     Ok(())
 }

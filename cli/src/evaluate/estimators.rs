@@ -25,7 +25,7 @@ impl Estimators {
             if profiles.iter().any(|p| p.name == wanted) {
                 continue;
             }
-            let estimator = profile::load(&wanted)?;
+            let estimator = profile::load(&wanted)?.estimator;
             let own = &estimator.profile().name;
             // A file may call itself what another is called already.
             let name = match profiles.iter().any(|p| p.name == *own) {
