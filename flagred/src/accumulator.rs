@@ -29,13 +29,14 @@ pub struct AccumulatorSettings {
 }
 
 impl Default for AccumulatorSettings {
+    /// Calibrated on simulated flights.
     fn default() -> Self {
         AccumulatorSettings {
             window_s: 10.0,
             high_pct: 50.0,
             low_pct: 20.0,
-            rise_pct_per_s: 2.0,
-            fall_pct_per_s: 3.0,
+            rise_pct_per_s: 1.5,
+            fall_pct_per_s: 2.0,
         }
     }
 }

@@ -1,0 +1,245 @@
+//! What becomes of the shipped rules where the log is coarse, the limits are wrong, or something breaks.
+//!
+//! `FLAGRED_SHARED=... cargo test -p flagred-tests --test robustness -- --nocapture` prints the figures.
+
+use flagred::{
+    accumulator::Accumulator,
+    estimator::Estimator,
+    evaluation::{Prediction, Ranking},
+    shipped,
+};
+use flagred_tests::{
+    shared_data,
+    simulated::{self, AS_FLOWN, Replay, Said, Simulated, on_all_cores},
+};
+
+fn estimator() -> Estimator {
+    let profile = shipped::profile("flagred").unwrap().unwrap();
+    let rules = shipped::rule_set("flagred").unwrap().unwrap();
+    Estimator::new(&profile, &rules).unwrap()
+}
+
+#[test]
+fn coarse_logs_wrong_limits_and_faults() {
+    let Some(data) = shared_data() else { return };
+    let flights = simulated::flights(&data);
+    let estimator = estimator();
+    let replay = |how: Replay| on_all_cores(&flights, |flight| flight.replay(&estimator, how));
+    let as_flown = replay(AS_FLOWN);
+
+    println!(
+        "area under ROC on steps, mean change of the risk in points, share of steps without a risk"
+    );
+    let table = [
+        ("as flown, 25 Hz", AS_FLOWN, 0.90, 0.001),
+        (
+            "12.5 Hz",
+            Replay {
+                every: 2,
+                ..AS_FLOWN
+            },
+            0.90,
+            0.5,
+        ),
+        (
+            "8.3 Hz",
+            Replay {
+                every: 3,
+                ..AS_FLOWN
+            },
+            0.90,
+            1.0,
+        ),
+        (
+            "4.2 Hz",
+            Replay {
+                every: 6,
+                ..AS_FLOWN
+            },
+            0.89,
+            1.5,
+        ),
+        (
+            "effective range 0.05 too low",
+            Replay {
+                wrong_by: (-0.05, 0.0),
+                ..AS_FLOWN
+            },
+            0.88,
+            3.5,
+        ),
+        (
+            "lower end 0.05 too high",
+            Replay {
+                wrong_by: (0.05, 0.0),
+                ..AS_FLOWN
+            },
+            0.88,
+            3.5,
+        ),
+        (
+            "upper end 0.05 too high",
+            Replay {
+                wrong_by: (0.0, 0.05),
+                ..AS_FLOWN
+            },
+            0.88,
+            3.5,
+        ),
+        (
+            "upper end 0.05 too low",
+            Replay {
+                wrong_by: (0.0, -0.05),
+                ..AS_FLOWN
+            },
+            0.88,
+            3.5,
+        ),
+    ];
+    for (name, how, least, most) in table {
+        let (auc, change, unknown) = compare(&flights, &as_flown, &replay(how));
+        println!("{name:30} {auc:.4} {change:6.2} {:5.1} %", 100.0 * unknown);
+        assert!(
+            auc >= least && change <= most && unknown < 0.01,
+            "{name}: {auc} {change} {unknown}"
+        );
+    }
+    // Two samples in a window say nothing of what varies: no number is better than a wrong one.
+    let (_, _, unknown) = compare(
+        &flights,
+        &as_flown,
+        &replay(Replay {
+            every: 25,
+            ..AS_FLOWN
+        }),
+    );
+    println!(
+        "{:30} {:.0} % of the steps without a risk",
+        "1 Hz",
+        100.0 * unknown
+    );
+    assert_eq!(unknown, 1.0);
+
+    faults(&flights, &as_flown);
+}
+
+/// Area, mean change of the risk against `as_flown`, and the share of steps without a risk.
+fn compare(flights: &[Simulated], as_flown: &[Said], said: &[Said]) -> (f64, f64, f64) {
+    let mut predictions = Vec::new();
+    let (mut change, mut known, mut unknown) = (0.0, 0.0, 0.0);
+    for (i, flight) in flights
+        .iter()
+        .enumerate()
+        .filter(|(_, f)| f.kind != "manoeuvre")
+    {
+        let steps = flight
+            .steps
+            .iter()
+            .zip(&as_flown[i].steps)
+            .zip(&said[i].steps);
+        for (((_, critical), (_, before)), (_, score)) in steps {
+            if score.is_finite() {
+                known += 1.0;
+                change += (score - before).abs();
+            } else {
+                unknown += 1.0;
+            }
+            predictions.push(Prediction {
+                score: *score,
+                critical: *critical,
+                group: i as u32,
+            });
+        }
+    }
+    let areas = Ranking::new(predictions).areas();
+    (
+        areas.map_or(f64::NAN, |a| a.roc),
+        change / known,
+        unknown / (known + unknown),
+    )
+}
+
+/// From the fault of a flight to the first warning, by what failed.
+fn faults(flights: &[Simulated], said: &[Said]) {
+    println!(
+        "faults: seconds from the fault to the warning, `-` where none came before the end of the judged time"
+    );
+    for (flight, said) in flights.iter().zip(said).filter(|(f, _)| f.kind == "fault") {
+        let Some((fault_s, ..)) = flight.events.iter().find(|(_, event, _)| event == "fault")
+        else {
+            continue;
+        };
+        let warned = said
+            .warnings
+            .iter()
+            .find(|w| w.to_s >= *fault_s && w.from_s <= flight.judged.to_s);
+        let answer = warned.map_or("-".to_owned(), |w| format!("{:.1}", w.from_s - fault_s));
+        let lost = flight.lost_s.map_or(String::new(), |t_s| {
+            format!(", lost {:.1} s after it", t_s - fault_s)
+        });
+        let episodes = flight.errors.episodes().len();
+        println!(
+            "{} {:12} {answer:>6}, {episodes} episodes{lost}",
+            flight.id, flight.vehicle
+        );
+        // Whoever is lost was warned of.
+        assert!(flight.lost_s.is_none() || warned.is_some(), "{}", flight.id);
+    }
+}
+
+#[test]
+fn the_elevated_risk_is_that_of_any_rate() {
+    let Some(data) = shared_data() else { return };
+    let flights = simulated::flights(&data);
+    let estimator = estimator();
+    let differences = on_all_cores(&flights, |flight| {
+        let risks = flight.replay(&estimator, AS_FLOWN).risks;
+        let as_flown = elevated(&estimator, &risks, 25);
+        [1, 10, 400].map(|rate_hz| {
+            let other = elevated(&estimator, &risks, rate_hz);
+            let pairs = other.iter().zip(&as_flown);
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        })
+    });
+    for (i, rate_hz) in [1, 10, 400].into_iter().enumerate() {
+        let mut of_rate: Vec<f64> = differences.iter().map(|d| d[i]).collect();
+        of_rate.sort_by(f64::total_cmp);
+        let largest = of_rate[of_rate.len() - 1];
+        let of_most = of_rate[of_rate.len() * 95 / 100];
+        println!(
+            "{rate_hz} Hz against 25 Hz: largest difference of a flight, median {:.2}, 95 % {of_most:.2}, of all {largest:.2} points",
+            of_rate[of_rate.len() / 2]
+        );
+        // Where the risk jumps, a second without a sample leaves open when; no way of adding up knows it either.
+        assert!(of_most < 2.0, "{rate_hz} Hz: {of_most}");
+        assert!(
+            largest < if rate_hz == 1 { 3.5 } else { 0.5 },
+            "{rate_hz} Hz: {largest}"
+        );
+    }
+}
+
+/// The elevated risk once a second, from the risk seen so many times a second.
+fn elevated(estimator: &Estimator, risks: &[(f64, f64)], rate_hz: u32) -> Vec<f64> {
+    let (first_s, last_s) = (risks[0].0, risks[risks.len() - 1].0);
+    let at = |t_s: f64| {
+        let next = risks
+            .partition_point(|risk| risk.0 <= t_s)
+            .clamp(1, risks.len() - 1);
+        let (a, b) = (risks[next - 1], risks[next]);
+        a.1 + (b.1 - a.1) * ((t_s - a.0) / (b.0 - a.0)).clamp(0.0, 1.0)
+    };
+    let mut accumulator = Accumulator::new(estimator.profile().elevated_risk);
+    let step_s = 1.0 / f64::from(rate_hz);
+    let samples = ((last_s - first_s) * f64::from(rate_hz)) as u32;
+    let mut once_a_second = Vec::new();
+    for i in 0..=samples {
+        let t_s = first_s + f64::from(i) * step_s;
+        let held_s = if i == 0 { 0.0 } else { step_s };
+        let elevated = accumulator.push(t_s, held_s, at(t_s));
+        if i % rate_hz == 0 {
+            once_a_second.push(elevated);
+        }
+    }
+    once_a_second
+}
