@@ -50,6 +50,10 @@ pub struct Scalar {
 pub(crate) enum Places {
     /// All in a row from here on.
     Row(usize),
+    #[cfg_attr(
+        not(feature = "yaml"),
+        allow(dead_code, reason = "only text has escapes")
+    )]
     /// Character by character, since escapes, line breaks and indentation are resolved in the text.
     Table(Vec<Letter>),
 }
