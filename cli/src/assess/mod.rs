@@ -5,7 +5,10 @@ pub(crate) mod follow;
 mod picture;
 pub(crate) mod words;
 
-use std::{io::Write, path::PathBuf};
+use std::{
+    io::{IsTerminal, Write},
+    path::PathBuf,
+};
 
 use clap::ValueEnum;
 use flagred::verdict::Level;
@@ -91,16 +94,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut exit = Exit::Clean;
     let mut documents = Vec::new();
     let mut head = true;
+    let mut progress = Progress::new(arguments.logs.len());
     for log in &arguments.logs {
+        progress.show(log);
         let flight = match flightlog::open(log, &options) {
             Ok(flight) => flight,
             Err(error) => {
+                progress.clear();
                 Failure::from(error).report();
                 exit = Exit::Unreadable;
                 continue;
             }
         };
         let assessed = follow::follow(&flight, estimator, arguments.step);
+        progress.clear();
         exit = exit.max(exit_of(&assessed, arguments.fail_on));
         if arguments.json {
             documents.push(document::document(log, &flight, estimator, &assessed));
@@ -140,6 +147,37 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     out.flush()?;
     write_reports(arguments, &subjects, &loaded)?;
     Ok(exit)
+}
+
+/// Says on the terminal which of several logs is being read, in a line that goes again.
+struct Progress {
+    done: usize,
+    logs: usize,
+    shown: bool,
+}
+
+impl Progress {
+    fn new(logs: usize) -> Self {
+        Progress {
+            done: 0,
+            logs,
+            shown: logs > 1 && std::io::stderr().is_terminal(),
+        }
+    }
+
+    fn show(&mut self, log: &str) {
+        self.done += 1;
+        if self.shown {
+            // Nothing is lost where it cannot be shown.
+            let _ = write!(std::io::stderr(), "{} of {}: {log}", self.done, self.logs);
+        }
+    }
+
+    fn clear(&self) {
+        if self.shown {
+            let _ = write!(std::io::stderr(), "\r\x1b[K");
+        }
+    }
 }
 
 /// Writes the files that were asked for; where no log could be read, there is nothing to write.
