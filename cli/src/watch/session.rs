@@ -5,23 +5,21 @@
 
 use flagred::{
     estimator::Estimator,
-    monitor::{Assessment, Monitor, Sample, Unknown},
-    verdict::{Ended, Finding, Level},
+    monitor::{Assessment, Sample, Unknown},
+    verdict::{Finding, Level},
 };
 use flightlog::{
     Vehicle,
-    mavlink::{
-        News, Packet, Requests, Sender, Setup, Telemetry, Version, parameters_known, vehicle_of,
-    },
+    mavlink::{News, Packet, Sender, Setup, Telemetry, Version, vehicle_of},
 };
 
-use super::voice;
-use crate::assess::{Tally, Verdict};
+mod tracked;
 
-/// A link, or the motor commands on it, that are silent for this long are lost.
-const SILENT_S: f64 = 2.0;
-/// Listening without asking, this long until what is not known is assumed.
-const LISTEN_S: f64 = 10.0;
+use super::voice;
+use crate::assess::Verdict;
+pub(crate) use tracked::View;
+use tracked::{Flight, Tracked, tell, worst};
+
 /// Seconds between two heartbeats, and between two risks sent.
 const HEARTBEAT_S: f64 = 1.0;
 const RISK_S: f64 = 0.5;
@@ -90,39 +88,6 @@ pub(crate) struct Session<'e> {
     not_understood: u64,
 }
 
-struct Tracked<'e> {
-    telemetry: Telemetry,
-    requests: Requests,
-    found_s: f64,
-    heard_s: f64,
-    link_lost: bool,
-    set_up_tried: bool,
-    watch: Option<Watch<'e>>,
-    received: u64,
-    missed: u64,
-    sequence: Option<u8>,
-}
-
-/// A vehicle whose motors are known.
-struct Watch<'e> {
-    setup: Setup,
-    monitor: Monitor<'e>,
-    motors: Vec<f64>,
-    commands_s: f64,
-    commands_lost: bool,
-    risk_sent_s: Option<f64>,
-    flight: Option<Flight>,
-    latest: Option<Assessment>,
-}
-
-/// The flight that is on.
-#[derive(Default)]
-struct Flight {
-    tally: Tally,
-    worst: Option<Level>,
-    since_s: f64,
-}
-
 impl<'e> Session<'e> {
     /// Speaks as `component` of the vehicle's system; listens only where that is `None`.
     pub(crate) fn new(estimator: &'e Estimator, component: Option<u8>) -> Session<'e> {
@@ -156,12 +121,8 @@ impl<'e> Session<'e> {
             News::Nothing | News::Parameter => {}
             News::NotUnderstood => self.not_understood += 1,
             News::Rebooted => {
-                self.worst = self.worst.max(tracked.end_flight(self.estimator, out));
-                out.events.push(Event::Rebooted);
-                tracked.watch = None;
-                tracked.set_up_tried = false;
-                tracked.requests = Requests::new();
-                tracked.found_s = now_s;
+                let worst = tracked.start_anew(now_s, self.estimator, out);
+                self.worst = self.worst.max(worst);
             }
             News::Commands { t_s } => self.assess(now_s, t_s, out),
         }
@@ -175,7 +136,8 @@ impl<'e> Session<'e> {
         let Some(tracked) = &mut self.tracked else {
             return;
         };
-        tracked.set_up(now_s, self.sender.is_some(), self.estimator, out);
+        let worst = tracked.set_up(now_s, self.sender.is_some(), self.estimator, out);
+        self.worst = self.worst.max(worst);
         tracked.listen(now_s, out);
     }
 
@@ -203,18 +165,7 @@ impl<'e> Session<'e> {
             return;
         }
         out.events.push(Event::Found { system, vehicle });
-        self.tracked = Some(Tracked {
-            telemetry,
-            requests: Requests::new(),
-            found_s: now_s,
-            heard_s: now_s,
-            link_lost: false,
-            set_up_tried: false,
-            watch: None,
-            received: 0,
-            missed: 0,
-            sequence: None,
-        });
+        self.tracked = Some(Tracked::new(telemetry, now_s));
         self.heartbeat_s = None;
     }
 
@@ -342,185 +293,13 @@ impl<'e> Session<'e> {
 
     /// How things stand, for a screen.
     pub(crate) fn view(&self) -> Option<View<'_>> {
-        let tracked = self.tracked.as_ref()?;
-        let watch = tracked.watch.as_ref();
-        let fresh = watch.filter(|watch| !tracked.link_lost && !watch.commands_lost);
-        Some(View {
-            system: tracked.telemetry.system(),
-            vehicle: tracked.telemetry.vehicle(),
-            is_armed: tracked.telemetry.is_armed(),
-            is_in_air: tracked.telemetry.is_in_air(),
-            link_lost: tracked.link_lost,
-            motors_lost: watch.is_some_and(|watch| watch.commands_lost),
-            lost_share: tracked.missed as f64 / (tracked.missed + tracked.received).max(1) as f64,
-            setup: watch.map(|watch| &watch.setup),
-            motors: fresh.map_or(&[], |watch| &watch.motors),
-            margin: fresh.and_then(|watch| watch.monitor.margin()),
-            spread: fresh.and_then(|watch| watch.monitor.spread()),
-            latest: fresh.and_then(|watch| watch.latest),
-        })
+        self.tracked.as_ref().map(Tracked::view)
     }
 
     /// Messages whose fields hold what the dialect does not know.
     pub(crate) fn not_understood(&self) -> u64 {
         self.not_understood
     }
-}
-
-/// How things stand; what is lost is not shown as if it were known.
-pub(crate) struct View<'a> {
-    pub(crate) system: u8,
-    pub(crate) vehicle: &'a Vehicle,
-    pub(crate) is_armed: bool,
-    pub(crate) is_in_air: bool,
-    pub(crate) link_lost: bool,
-    pub(crate) motors_lost: bool,
-    /// The share of the vehicle's packets that did not arrive.
-    pub(crate) lost_share: f64,
-    pub(crate) setup: Option<&'a Setup>,
-    /// Effective commands; NaN is unknown.
-    pub(crate) motors: &'a [f64],
-    pub(crate) margin: Option<f64>,
-    pub(crate) spread: Option<f64>,
-    pub(crate) latest: Option<Assessment>,
-}
-
-impl<'e> Tracked<'e> {
-    /// How it is spoken to.
-    fn address(&self) -> (Version, u8) {
-        (self.telemetry.version(), self.telemetry.system())
-    }
-
-    /// Counts what the sequence numbers of the autopilot tell to be missing; a late packet was counted as such.
-    fn count(&mut self, packet: &Packet<'_>) {
-        if packet.component != 1 {
-            return;
-        }
-        self.received += 1;
-        let step = self
-            .sequence
-            .map_or(1, |last| packet.sequence.wrapping_sub(last));
-        match step {
-            0 => {}
-            1..=127 => {
-                self.missed += u64::from(step) - 1;
-                self.sequence = Some(packet.sequence);
-            }
-            _ => self.missed = self.missed.saturating_sub(1),
-        }
-    }
-
-    fn hear(&mut self, now_s: f64, out: &mut Out) {
-        if self.link_lost {
-            self.link_lost = false;
-            self.sequence = None;
-            if let Some(watch) = &mut self.watch {
-                // Their silence was the link's.
-                watch.commands_s = now_s;
-            }
-            out.events.push(Event::Back {
-                what: Silent::Link,
-                after_s: now_s - self.heard_s,
-            });
-        }
-        self.heard_s = now_s;
-    }
-
-    /// Makes a monitor as soon as the motors are known, and a new one where they become known better.
-    fn set_up(&mut self, now_s: f64, asks: bool, estimator: &'e Estimator, out: &mut Out) {
-        let done = if asks {
-            self.requests.parameters_done()
-        } else {
-            parameters_known(&self.telemetry) || now_s - self.found_s >= LISTEN_S
-        };
-        // Parameters that came late are not waited for, but looked at.
-        if !done || !self.telemetry.take_parameters_changed() && self.set_up_tried {
-            return;
-        }
-        self.set_up_tried = true;
-        let setup = self.telemetry.setup();
-        if self
-            .watch
-            .as_ref()
-            .is_some_and(|watch| watch.setup == setup)
-        {
-            return;
-        }
-        match Monitor::new(estimator, setup.motors.len(), &[]) {
-            Ok(monitor) => {
-                self.end_flight(estimator, out);
-                out.events.push(Event::Ready {
-                    setup: setup.clone(),
-                });
-                self.watch = Some(Watch {
-                    motors: vec![f64::NAN; setup.motors.len()],
-                    setup,
-                    monitor,
-                    commands_s: now_s,
-                    commands_lost: false,
-                    risk_sent_s: None,
-                    flight: None,
-                    latest: None,
-                });
-            }
-            Err(error) => {
-                let text = format!("no risk can be told: {error}");
-                out.events.push(Event::Note { text });
-            }
-        }
-    }
-
-    /// Notices silence.
-    fn listen(&mut self, now_s: f64, out: &mut Out) {
-        if !self.link_lost && now_s - self.heard_s >= SILENT_S {
-            self.link_lost = true;
-            out.events.push(Event::Lost { what: Silent::Link });
-        }
-        if let Some(watch) = &mut self.watch
-            && !self.link_lost
-            && !watch.commands_lost
-            && now_s - watch.commands_s >= SILENT_S
-        {
-            watch.commands_lost = true;
-            let what = Silent::Motors;
-            out.events.push(Event::Lost { what });
-        }
-    }
-
-    fn end_flight(&mut self, estimator: &Estimator, out: &mut Out) -> Level {
-        let Some(watch) = &mut self.watch else {
-            return Level::Good;
-        };
-        let ended = watch.monitor.finish();
-        tell(ended, out);
-        match watch.flight.take() {
-            Some(flight) => flight.end(ended, estimator, out),
-            None => Level::Good,
-        }
-    }
-}
-
-impl Flight {
-    fn end(self, ended: Ended, estimator: &Estimator, out: &mut Out) -> Level {
-        let worst = self.worst.max(worst(ended)).unwrap_or(Level::Good);
-        let verdict = self.tally.verdict(worst, estimator.profile(), None);
-        out.events.push(Event::Landed { verdict });
-        worst
-    }
-}
-
-fn tell(ended: Ended, out: &mut Out) {
-    let findings = ended.into_iter().flatten();
-    out.events
-        .extend(findings.map(|finding| Event::Ended { finding }));
-}
-
-fn worst(ended: Ended) -> Option<Level> {
-    ended
-        .into_iter()
-        .flatten()
-        .map(|finding| finding.level)
-        .max()
 }
 
 #[cfg(test)]
