@@ -6,7 +6,7 @@ use clap::{Command, CommandFactory};
 
 use crate::{
     failure::{Exit, Failure},
-    report::write_whole,
+    output,
 };
 
 #[derive(clap::Args)]
@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             let name = command
                 .get_display_name()
                 .unwrap_or_else(|| command.get_name());
-            write_whole(&folder.join(format!("{name}.1")), &page)?;
+            output::write(&folder.join(format!("{name}.1")), &page)?;
         }
         return Ok(Exit::Clean);
     }

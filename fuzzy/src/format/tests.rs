@@ -5,8 +5,7 @@ use proptest::{collection::vec, option, prelude::*, sample::select};
 use super::*;
 use crate::{
     model::{
-        Aggregation, Beaten, Conjunction, Disjunction, Implication, NoRuleFires, Operators, Output,
-        Rule, Sampling, SamplingRule, Shape, Term, Variable,
+        Beaten, NoRuleFires, Operators, Output, Rule, Sampling, SamplingRule, Shape, Term, Variable,
     },
     rule::{self, Condition},
 };
@@ -102,25 +101,16 @@ fn any_variable(name: String) -> impl Strategy<Value = Variable> {
 }
 
 fn any_operators() -> impl Strategy<Value = Operators> {
-    (
-        select(&words::CONJUNCTIONS[..]),
-        select(&words::DISJUNCTIONS[..]),
-        select(&words::IMPLICATIONS[..]),
-        select(&words::AGGREGATIONS[..]),
-    )
-        .prop_map(
-            |(and, or, implication, aggregation): (
-                (&str, Conjunction),
-                (&str, Disjunction),
-                (&str, Implication),
-                (&str, Aggregation),
-            )| Operators {
-                and: and.1,
-                or: or.1,
-                implication: implication.1,
-                aggregation: aggregation.1,
-            },
-        )
+    let and = select(&words::CONJUNCTIONS[..]);
+    let or = select(&words::DISJUNCTIONS[..]);
+    let implication = select(&words::IMPLICATIONS[..]);
+    let aggregation = select(&words::AGGREGATIONS[..]);
+    (and, or, implication, aggregation).prop_map(|words| Operators {
+        and: words.0.1,
+        or: words.1.1,
+        implication: words.2.1,
+        aggregation: words.3.1,
+    })
 }
 
 fn any_model() -> impl Strategy<Value = Model> {
