@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use flagred_tests::shared_data;
-use fuzzy::model::{Model, Output, Shape, Variable};
+use fuzzy::model::{Model, Output, Sampling, SamplingRule, Shape, Variable};
 use fuzzy::rule::{Condition, Rule};
 use fuzzy::{Engine, engine::State};
 
@@ -109,5 +109,51 @@ fn centroids_equal_the_closed_form() {
     assert_eq!((points.len(), exact.len()), (1024, 1024));
     for (point, exact) in points.iter().zip(&exact) {
         compare(&engine, point, exact[0], 1e-10);
+    }
+}
+
+/// With the same midpoints we are fuzzylite, but for what it drops: it takes firing strengths of 1e-6 and less
+/// as 0, and we drop nothing. What that can move is bounded by the strengths it drops.
+#[test]
+fn a_thousand_midpoints_equal_fuzzylite() {
+    let Some(folder) = parity() else { return };
+    for name in ["a", "b", "bw", "c"] {
+        let text = std::fs::read_to_string(folder.join(format!("{name}.sys"))).unwrap();
+        let mut model = system(&text);
+        model.outputs[0].samples = Some(Sampling {
+            samples: 1000,
+            rule: SamplingRule::Midpoint,
+        });
+        let engine = Engine::new(&model).unwrap();
+        let mut rows = rows(&folder, &format!("{name}.fuzzylite_cpp.1000.csv"));
+        if name == "c" {
+            let points = self::rows(&folder, "c.points.csv");
+            rows = points
+                .into_iter()
+                .zip(rows)
+                .map(|(p, value)| [p, value].concat())
+                .collect();
+        }
+        let mut compared = 0;
+        for row in rows {
+            let (expected, point) = row.split_last().unwrap();
+            let outcome = engine.evaluate(point).unwrap()[0];
+            if outcome.coverage <= 1e-6 {
+                continue;
+            }
+            let value = outcome.value().unwrap();
+            let dropped = model.inputs.iter().zip(point).any(|(variable, x)| {
+                let mut degrees = variable.terms.iter().map(|term| term.membership(*x));
+                degrees.any(|degree| degree > 0.0 && degree <= 1e-6)
+            });
+            let range = model.outputs[0].variable.high - model.outputs[0].variable.low;
+            let tolerance = if dropped { 1e-6 * range } else { 1e-9 };
+            assert!(
+                (value - expected).abs() <= tolerance,
+                "({name}) at {point:?}: {value} instead of {expected}"
+            );
+            compared += usize::from(!dropped);
+        }
+        assert!(compared > 300, "({name}) {compared} points");
     }
 }
