@@ -303,3 +303,55 @@ fn decision_maps_have_the_bits_of_single_calls() {
         }
     }
 }
+
+/// `flagred eval` prints numbers that read back to the same bits.
+#[test]
+fn the_command_line_has_the_bits_of_single_calls() {
+    let folder = std::env::temp_dir().join(format!("flagred-conformance-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    // One run for all cases of a rule set with the same operators.
+    let mut runs: Vec<(String, Vec<Case>)> = Vec::new();
+    for case in corpus() {
+        let rule_set = fuzzy::yaml::to_string(&case.model);
+        match runs.iter_mut().find(|(text, _)| *text == rule_set) {
+            Some((_, cases)) => cases.push(case),
+            None => runs.push((rule_set, vec![case])),
+        }
+    }
+    for (rule_set, cases) in runs {
+        let (model, points) = (folder.join("model.yaml"), folder.join("points.csv"));
+        std::fs::write(&model, rule_set).unwrap();
+        let engine = Engine::new(&cases[0].model).unwrap();
+        let mut csv = engine.input_names().collect::<Vec<_>>().join(",") + "\n";
+        for case in &cases {
+            let row: Vec<String> = case.point.iter().map(f64::to_string).collect();
+            csv += &(row.join(",") + "\n");
+        }
+        std::fs::write(&points, csv).unwrap();
+        let output = flagred_tests::flagred()
+            .arg("eval")
+            .arg(&model)
+            .arg(&points)
+            .output()
+            .unwrap();
+        let printed = String::from_utf8(output.stdout).unwrap();
+        let lines: Vec<&str> = printed.lines().skip(1).collect();
+        assert_eq!(
+            lines.len(),
+            cases.len(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        for (case, line) in cases.iter().zip(lines) {
+            let single = engine.evaluate(&case.point).unwrap();
+            let cells = line.split(',').skip(case.point.len());
+            let read: Vec<Option<u64>> = cells
+                .map(|cell| cell.parse().ok().map(f64::to_bits))
+                .collect();
+            let expected: Vec<Option<u64>> =
+                single.iter().map(|o| o.value().map(f64::to_bits)).collect();
+            assert_eq!(read, expected, "{}", case.place);
+        }
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
