@@ -109,6 +109,18 @@ fn examine(
         Ok(document) => document,
         Err(findings) => return Ok((findings, None)),
     };
+    // An empty list is for `flagred learn` to fill; what is checked is meant to be used.
+    if document.model.rules.is_empty() {
+        let mut findings = document.warnings;
+        for finding in findings
+            .0
+            .iter_mut()
+            .filter(|finding| finding.code == "no-rules")
+        {
+            finding.severity = Severity::Error;
+        }
+        return Ok((findings, None));
+    }
     let engine = match Engine::new(&document.model) {
         Ok(engine) => engine,
         Err(error) => return Ok((Findings(not_compiled(&error)), None)),

@@ -52,6 +52,8 @@ pub(super) fn pieces(
 /// Joins pieces that meet into lines.
 pub(super) fn lines(mut pieces: Vec<Piece>) -> Vec<Vec<(f64, f64)>> {
     let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).abs() + (a.1 - b.1).abs() < 1e-9;
+    // Where a line runs through a node of the grid, cells beside it have pieces of no length.
+    pieces.retain(|[first, second]| !near(*first, *second));
     let mut lines = Vec::new();
     while let Some([first, second]) = pieces.pop() {
         let mut line = std::collections::VecDeque::from([first, second]);
