@@ -77,7 +77,7 @@ impl Curves {
         room: &mut Room,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
-        let cuts = &mut room.cuts;
+        let (cuts, most_cuts) = (&mut room.cuts, room.most_cuts);
         cuts.clear();
         let active = |term: usize| heights.of(term).iter().any(|h| *h > 0.0);
         for &(x, term) in &self.cuts {
@@ -90,7 +90,7 @@ impl Curves {
             let (Some(&a), Some(&b)) = (cuts.get(i - 1), cuts.get(i)) else {
                 break;
             };
-            self.kinks(heights, joint, (a, b), cuts);
+            self.kinks(heights, joint, (a, b), cuts, most_cuts);
         }
         cuts.sort_unstable_by(f64::total_cmp);
         let degree = |x: f64| self.degree(heights, joint, x);
@@ -111,11 +111,18 @@ impl Curves {
     /// Adds the places between two cuts where a term meets one of its plateaus, two terms cross (maximum)
     /// or the sum reaches 1 (bounded sum). One that is missed, because shapes meet twice between two cuts or
     /// because room is short, costs time in the integration, not exactness.
-    fn kinks(&self, heights: Heights<'_>, joint: Joint, (a, b): (f64, f64), cuts: &mut Vec<f64>) {
+    fn kinks(
+        &self,
+        heights: Heights<'_>,
+        joint: Joint,
+        (a, b): (f64, f64),
+        cuts: &mut Vec<f64>,
+        most_cuts: usize,
+    ) {
         let (a, b) = (a.next_up(), b.next_down());
         let mut cut_at_sign_change = |f: &dyn Fn(f64) -> f64| {
             let (fa, fb) = (f(a), f(b));
-            if fa * fb < 0.0 && cuts.len() < cuts.capacity() {
+            if fa * fb < 0.0 && cuts.len() < most_cuts {
                 cuts.push(root(a, b, f));
             }
         };

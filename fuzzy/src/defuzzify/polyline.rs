@@ -43,10 +43,12 @@ pub(crate) struct Segment {
 }
 
 /// Room to work in, owned by the caller's scratch: never grows while evaluating.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug)]
 pub(crate) struct Room {
     active: Vec<Activated>,
     pub(super) cuts: Vec<f64>,
+    /// The most cuts that may be made. Not the vector's capacity, which is up to the allocator.
+    pub(super) most_cuts: usize,
     segments: Vec<Segment>,
 }
 
@@ -61,11 +63,20 @@ struct Activated {
 impl Room {
     /// Room for `activations` and `cuts` at once.
     pub(crate) fn new(activations: usize, cuts: usize) -> Self {
+        let most_cuts = cuts.max(activations + 2);
         Room {
             active: Vec::with_capacity(activations),
-            cuts: Vec::with_capacity(cuts.max(activations + 2)),
+            cuts: Vec::with_capacity(most_cuts),
+            most_cuts,
             segments: Vec::with_capacity(activations),
         }
+    }
+}
+
+/// As much room, empty: the clone of a vector has no room for more than it holds.
+impl Clone for Room {
+    fn clone(&self) -> Self {
+        Room::new(self.active.capacity(), self.most_cuts)
     }
 }
 

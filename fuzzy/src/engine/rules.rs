@@ -119,13 +119,26 @@ pub(super) struct Draft {
 }
 
 /// Room for firing.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct FiringRoom {
     alive: Vec<(f64, u32)>,
     partial: Vec<(f64, u32)>,
     next: Vec<(f64, u32)>,
     stack: Vec<f64>,
     path: Vec<(f64, u32)>,
+}
+
+/// As much room: the clone of a vector alone has no room for more than it holds.
+impl Clone for FiringRoom {
+    fn clone(&self) -> Self {
+        FiringRoom {
+            alive: self.alive.clone(),
+            partial: self.partial.clone(),
+            next: self.next.clone(),
+            stack: Vec::with_capacity(self.stack.capacity()),
+            path: Vec::with_capacity(self.path.capacity()),
+        }
+    }
 }
 
 /// A dense table takes at most this many cells, and at most this many for each rule.
