@@ -13,7 +13,6 @@ use alloc::{vec, vec::Vec};
 use super::piece::Integrals;
 use super::polyline::Polylines;
 use crate::engine::operators::smaller;
-use crate::engine::{FROM_TINY, TINY};
 
 #[derive(Debug, Clone)]
 pub(crate) struct Ramps {
@@ -140,31 +139,16 @@ impl Ramps {
         }
     }
 
-    /// The centroids of several sets at once; `strongest` is the largest height of each. The same
-    /// operations in the same order as one at a time.
+    /// The centroids of several sets at once: the same operations in the same order as one at a time.
     #[inline(always)]
-    pub(crate) fn centroids<const N: usize>(
-        &self,
-        heights: &[[f64; N]],
-        strongest: &[f64; N],
-        origin: f64,
-    ) -> [f64; N] {
-        let mut scale = [1.0; N];
-        for lane in 0..N {
-            scale[lane] = if strongest[lane] < TINY {
-                FROM_TINY
-            } else {
-                1.0
-            };
-        }
+    pub(crate) fn centroids<const N: usize>(&self, heights: &[[f64; N]], origin: f64) -> [f64; N] {
         let (mut area, mut moment) = ([[0.0; N]; 2], [[0.0; N]; 2]);
         for (pair, i) in self.pairs.iter().zip((0..).step_by(2)) {
             let heights: &[[f64; N]] = &heights[i..i + 3];
             for side in 0..2 {
                 let (here, right) = (&heights[side], &heights[side + 1]);
                 for lane in 0..N {
-                    let scale = scale[lane];
-                    let (a, m) = pair.add(side, here[lane] * scale, right[lane] * scale);
+                    let (a, m) = pair.add(side, here[lane], right[lane]);
                     area[side][lane] += a;
                     moment[side][lane] += m;
                 }

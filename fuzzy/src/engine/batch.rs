@@ -1,6 +1,7 @@
 //! Many evaluations at once, over columns.
 
 use alloc::{vec, vec::Vec};
+use core::ops::Range;
 
 use super::{Engine, EvaluateError, Outcome, Scratch};
 
@@ -91,17 +92,6 @@ impl Engine {
         Ok(())
     }
 
-    /// Evaluates the first rows of columns, as many as `outcomes` has room for, on this thread.
-    pub(crate) fn evaluate_rows(
-        &self,
-        scratch: &mut Scratch,
-        columns: &[Vec<f64>],
-        outcomes: &mut [Outcome],
-    ) {
-        let columns: Vec<&[f64]> = columns.iter().map(|column| &**column).collect();
-        self.rows(scratch, &columns, 0, outcomes);
-    }
-
     /// Evaluates the rows from `first` on, as many as `outcomes` has room for.
     fn rows(
         &self,
@@ -110,16 +100,35 @@ impl Engine {
         first: usize,
         outcomes: &mut [Outcome],
     ) {
+        let mut rows = outcomes.chunks_exact_mut(self.outputs.len());
+        let range = first..first + rows.len();
+        self.evaluate_rows(scratch, columns, range, |outcomes| {
+            if let Some(row) = rows.next() {
+                row.copy_from_slice(outcomes);
+            }
+        });
+    }
+
+    /// Evaluates the rows of `range` and calls `put` with the outcomes of each.
+    pub(crate) fn evaluate_rows(
+        &self,
+        scratch: &mut Scratch,
+        columns: &[&[f64]],
+        range: Range<usize>,
+        mut put: impl FnMut(&[Outcome]),
+    ) {
         if let Some(lanes) = &self.lanes {
-            lanes.rows(columns, first, outcomes);
+            lanes.rows(columns, range, |outcome| put(&[outcome]));
             return;
         }
         let mut row = vec![0.0; columns.len()];
-        for (i, outcomes) in outcomes.chunks_exact_mut(self.outputs.len()).enumerate() {
+        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
+        for i in range {
             for (value, column) in row.iter_mut().zip(columns) {
-                *value = column[first + i];
+                *value = column[i];
             }
-            self.outcomes(scratch, &row, outcomes);
+            self.outcomes(scratch, &row, &mut outcomes);
+            put(&outcomes);
         }
     }
 }

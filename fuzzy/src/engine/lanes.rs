@@ -7,12 +7,13 @@
 //! must be few.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::literal::{Line, Literal, lines};
 use super::operators::{larger, smaller};
 use super::outcome::{Outcome, State};
 use super::rules::Draft;
-use super::{CompiledOutput, Input};
+use super::{CompiledOutput, FROM_TINY, Input, TINY};
 use crate::defuzzify::Ramps;
 use crate::model::{Conjunction, NoRuleFires};
 
@@ -24,12 +25,17 @@ type Row = [f64; LANES];
 const MOST_OPERATIONS: usize = 600;
 const MOST_TERMS: usize = 32;
 const MOST_PLACES: usize = 33;
+const MOST_RULES: usize = 64;
 
 #[derive(Debug, Clone)]
 pub(super) struct Lanes {
-    inputs: Vec<Range>,
+    inputs: Vec<Span>,
     slopes: Vec<Slopes>,
+    /// By place, so that each height is made at once.
     rules: Vec<Rule>,
+    literals: Vec<usize>,
+    /// Where, in the rules, those of each place begin, and where the last one's end.
+    places: Vec<usize>,
     ramps: Ramps,
     low: f64,
     high: f64,
@@ -38,11 +44,10 @@ pub(super) struct Lanes {
 }
 
 #[derive(Debug, Clone)]
-struct Range {
+struct Span {
     low: f64,
     high: f64,
-    first_literal: usize,
-    end_literal: usize,
+    literals: Range<usize>,
 }
 
 /// A term that rises up to `split` at the latest and falls from there at the earliest:
@@ -56,10 +61,19 @@ struct Slopes {
 
 #[derive(Debug, Clone)]
 struct Rule {
-    literals: Vec<usize>,
-    place: usize,
+    literal: usize,
+    /// Where its other literals stand among all of these.
+    others: Range<usize>,
     weight: f64,
-    index: f64,
+    /// The index in the model, with a minus.
+    below_0: f64,
+}
+
+/// What a block is computed in.
+struct Room {
+    degrees: [Row; MOST_TERMS],
+    strengths: [Row; MOST_RULES],
+    heights: [Row; MOST_PLACES],
 }
 
 impl Lanes {
@@ -82,37 +96,48 @@ impl Lanes {
             for literal in literals {
                 slopes.push(Slopes::new(&lines(literal)?, input.low, input.high)?);
             }
-            ranges.push(Range {
+            ranges.push(Span {
                 low: input.low,
                 high: input.high,
-                first_literal,
-                end_literal: slopes.len(),
+                literals: first_literal..slopes.len(),
             });
         }
-        let mut rules = Vec::new();
+        let mut actions = Vec::new();
         for draft in drafts {
             let literals = draft.literals.as_ref()?;
-            for action in &draft.actions {
-                rules.push(Rule {
-                    literals: literals.iter().map(|literal| *literal as usize).collect(),
-                    place: action.place as usize,
-                    weight: action.weight,
-                    index: f64::from(action.rule),
-                });
-            }
+            actions.extend(draft.actions.iter().map(|action| (action, literals)));
         }
-        // In the order of the model, so that of several as strong the first is kept.
-        rules.sort_by(|a, b| f64::total_cmp(&a.index, &b.index));
-        let ands: usize = rules.iter().map(|rule| rule.literals.len()).sum();
-        let operations = 12 * slopes.len() + ands + 8 * rules.len() + 20 * ramps.places();
+        actions.sort_by_key(|(action, _)| (action.place, action.rule));
+        let ands: usize = actions.iter().map(|(_, literals)| literals.len()).sum();
+        let operations = 12 * slopes.len() + ands + 6 * actions.len() + 20 * ramps.places();
         let fits = and == Conjunction::Minimum
             && operations <= MOST_OPERATIONS
             && slopes.len() <= MOST_TERMS
+            && actions.len() <= MOST_RULES
             && ramps.places() <= MOST_PLACES;
-        fits.then(|| Lanes {
+        if !fits {
+            return None;
+        }
+        let (mut rules, mut all_literals) = (Vec::new(), Vec::new());
+        for (action, literals) in &actions {
+            let (literal, others) = literals.split_first()?;
+            let start = all_literals.len();
+            all_literals.extend(others.iter().map(|literal| *literal as usize));
+            rules.push(Rule {
+                literal: *literal as usize,
+                others: start..all_literals.len(),
+                weight: action.weight,
+                below_0: -f64::from(action.rule),
+            });
+        }
+        let before = |place: usize| actions.partition_point(|(a, _)| (a.place as usize) < place);
+        let places = (0..=ramps.places()).map(before).collect();
+        Some(Lanes {
             inputs: ranges,
             slopes,
             rules,
+            literals: all_literals,
+            places,
             ramps: ramps.clone(),
             low: output.low,
             high: output.high,
@@ -124,43 +149,39 @@ impl Lanes {
         })
     }
 
-    /// Evaluates the rows from `first` on, as many as `outcomes` has room for.
-    pub(super) fn rows(&self, columns: &[&[f64]], first: usize, outcomes: &mut [Outcome]) {
-        // With the widest vectors of the processor at hand; the operations, and so the bits, are the same.
-        #[cfg(feature = "std")]
-        pulp::Arch::new().dispatch(Blocks {
+    /// Evaluates the rows of `range` and calls `put` with each one's outcome, in their order.
+    pub(super) fn rows(&self, columns: &[&[f64]], range: Range<usize>, put: impl FnMut(Outcome)) {
+        let blocks = Blocks {
             lanes: self,
             columns,
-            first,
-            outcomes,
-        });
+            range,
+            put,
+        };
+        // With the widest vectors of the processor at hand; the operations, and so the bits, are the same.
+        #[cfg(feature = "std")]
+        pulp::Arch::new().dispatch(blocks);
         #[cfg(not(feature = "std"))]
-        self.blocks(columns, first, outcomes);
+        blocks.evaluate();
     }
 
-    #[inline(always)]
-    fn blocks(&self, columns: &[&[f64]], first: usize, outcomes: &mut [Outcome]) {
-        let mut degrees = [[0.0; LANES]; MOST_TERMS];
-        let mut heights = [[0.0; LANES]; MOST_PLACES];
-        let heights = &mut heights[..self.ramps.places()];
-        for (i, outcomes) in outcomes.chunks_mut(LANES).enumerate() {
-            let start = first + i * LANES;
-            self.block(columns, start, outcomes, &mut degrees, heights);
-        }
-    }
-
+    /// Evaluates the rows of `range`, at most [`LANES`].
     #[inline(always)]
     fn block(
         &self,
         columns: &[&[f64]],
-        start: usize,
-        outcomes: &mut [Outcome],
-        degrees: &mut [Row; MOST_TERMS],
-        heights: &mut [Row],
+        range: Range<usize>,
+        room: &mut Room,
+        put: &mut impl FnMut(Outcome),
     ) {
-        let (mut finite, mut clamped) = ([true; LANES], [false; LANES]);
+        let Room {
+            degrees,
+            strengths,
+            heights,
+        } = room;
+        let heights = &mut heights[..self.ramps.places()];
+        let (mut infinite, mut clamped) = ([0; LANES], [0; LANES]);
         for (input, column) in self.inputs.iter().zip(columns) {
-            let rows = &column[start..start + outcomes.len()];
+            let rows = &column[range.clone()];
             let values = Row::try_from(rows).unwrap_or_else(|_| {
                 let mut values = [input.low; LANES];
                 values[..rows.len()].copy_from_slice(rows);
@@ -168,74 +189,114 @@ impl Lanes {
             });
             let mut x = [0.0; LANES];
             for lane in 0..LANES {
-                finite[lane] &= values[lane].is_finite();
+                infinite[lane] |= mask(!values[lane].is_finite());
                 x[lane] = larger(input.low, smaller(input.high, values[lane]));
-                clamped[lane] |= x[lane] != values[lane];
+                clamped[lane] |= mask(x[lane] != values[lane]);
             }
-            let range = input.first_literal..input.end_literal;
-            for (slopes, degrees) in self.slopes[range.clone()].iter().zip(&mut degrees[range]) {
+            let literals = input.literals.clone();
+            for (slopes, degrees) in self.slopes[literals.clone()]
+                .iter()
+                .zip(&mut degrees[literals])
+            {
                 slopes.degrees(&x, degrees);
             }
         }
-        heights.fill([0.0; LANES]);
-        let (mut strongest, mut dominant) = ([0.0; LANES], [-1.0; LANES]);
-        for rule in &self.rules {
-            let mut strength = [1.0; LANES];
-            for literal in &rule.literals {
-                let degrees = &degrees[*literal];
-                for lane in 0..LANES {
-                    strength[lane] = smaller(strength[lane], degrees[lane]);
+        let mut strongest = [0.0; LANES];
+        let places = self.places.iter().zip(self.places.iter().skip(1));
+        for ((first, end), place) in places.zip(&mut *heights) {
+            let mut height = [0.0; LANES];
+            let rules = *first..*end;
+            for (rule, kept) in self.rules[rules.clone()].iter().zip(&mut strengths[rules]) {
+                let mut strength = degrees[rule.literal];
+                for literal in &self.literals[rule.others.clone()] {
+                    let degrees = &degrees[*literal];
+                    for lane in 0..LANES {
+                        strength[lane] = smaller(strength[lane], degrees[lane]);
+                    }
                 }
+                for lane in 0..LANES {
+                    strength[lane] *= rule.weight;
+                    height[lane] = larger(height[lane], strength[lane]);
+                }
+                *kept = strength;
             }
-            let height = &mut heights[rule.place];
             for lane in 0..LANES {
-                let strength = rule.weight * strength[lane];
-                height[lane] = larger(height[lane], strength);
-                dominant[lane] = choose(strength > strongest[lane], rule.index, dominant[lane]);
-                strongest[lane] = larger(strength, strongest[lane]);
+                strongest[lane] = larger(strongest[lane], height[lane]);
+            }
+            *place = height;
+        }
+        // Of several as strong the first in the model: the largest of the indices below 0.
+        let mut first = [f64::NEG_INFINITY; LANES];
+        for (rule, strength) in self.rules.iter().zip(&*strengths) {
+            for lane in 0..LANES {
+                let is_strongest = strength[lane] == strongest[lane];
+                let index = choose(is_strongest, rule.below_0, f64::NEG_INFINITY);
+                first[lane] = larger(first[lane], index);
             }
         }
-        let values = self.ramps.centroids(heights, &strongest, self.origin);
-        for (lane, outcome) in outcomes.iter_mut().enumerate() {
-            if !finite[lane] {
-                *outcome = Outcome {
+        if strongest.iter().any(|strength| *strength < TINY) {
+            for height in &mut *heights {
+                for lane in 0..LANES {
+                    height[lane] *= choose(strongest[lane] < TINY, FROM_TINY, 1.0);
+                }
+            }
+        }
+        let values = self.ramps.centroids(heights, self.origin);
+        for lane in 0..range.len().min(LANES) {
+            if infinite[lane] != 0 {
+                put(Outcome {
                     state: State::InputNotFinite,
                     ..Outcome::default()
-                };
+                });
                 continue;
             }
             let fired = strongest[lane] > 0.0;
             let value = larger(self.low, smaller(self.high, values[lane]));
-            *outcome = Outcome {
+            put(Outcome {
                 state: if fired {
                     State::Defined(value)
                 } else {
                     self.otherwise
                 },
                 coverage: strongest[lane],
-                dominant: fired.then_some(dominant[lane] as usize),
-                clamped: clamped[lane],
-            };
+                dominant: fired.then_some(-first[lane] as usize),
+                clamped: clamped[lane] != 0,
+            });
         }
     }
 }
 
-/// The arguments of [`Lanes::blocks`], for a call compiled for wider vectors.
-#[cfg(feature = "std")]
-struct Blocks<'a> {
+/// The arguments of [`Lanes::rows`], for a call compiled for wider vectors.
+struct Blocks<'a, Put> {
     lanes: &'a Lanes,
     columns: &'a [&'a [f64]],
-    first: usize,
-    outcomes: &'a mut [Outcome],
+    range: Range<usize>,
+    put: Put,
+}
+
+impl<Put: FnMut(Outcome)> Blocks<'_, Put> {
+    #[inline(always)]
+    fn evaluate(mut self) {
+        let mut room = Room {
+            degrees: [[0.0; LANES]; MOST_TERMS],
+            strengths: [[0.0; LANES]; MOST_RULES],
+            heights: [[0.0; LANES]; MOST_PLACES],
+        };
+        for start in self.range.clone().step_by(LANES) {
+            let end = self.range.end.min(start + LANES);
+            self.lanes
+                .block(self.columns, start..end, &mut room, &mut self.put);
+        }
+    }
 }
 
 #[cfg(feature = "std")]
-impl pulp::WithSimd for Blocks<'_> {
+impl<Put: FnMut(Outcome)> pulp::WithSimd for Blocks<'_, Put> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.lanes.blocks(self.columns, self.first, self.outcomes);
+        self.evaluate();
     }
 }
 
@@ -290,11 +351,17 @@ impl Slopes {
     }
 }
 
+/// All bits or none: a truth as wide as a number.
+#[inline(always)]
+fn mask(truth: bool) -> u64 {
+    0u64.wrapping_sub(u64::from(truth))
+}
+
 /// One of two numbers by their bits, which the compiler does for all lanes at once: an `if` it may turn into
 /// a branch for each.
 #[inline(always)]
 fn choose(first: bool, a: f64, b: f64) -> f64 {
-    let mask = 0u64.wrapping_sub(u64::from(first));
+    let mask = mask(first);
     f64::from_bits((a.to_bits() & mask) | (b.to_bits() & !mask))
 }
 

@@ -43,17 +43,14 @@ pub struct DecisionMap {
     /// NaN where there is no value; never shown.
     values: Vec<f64>,
     coverage: Vec<f64>,
-    /// `u32::MAX` where no rule fired.
+    /// One more than the rule's index; 0 where no rule fired.
     dominant: Vec<u32>,
 }
-
-const NO_RULE: u32 = u32::MAX;
 
 /// Cells that are evaluated at a time: a batch that stays in the cache.
 const CELLS_A_TASK: usize = 512;
 
 /// What fills cells: the engine, and room for a batch.
-#[derive(Clone)]
 struct Worker<'a> {
     engine: &'a Engine,
     grid: &'a Grid,
@@ -61,7 +58,6 @@ struct Worker<'a> {
     scratch: Scratch,
     /// One column of coordinates for each input.
     columns: Vec<Vec<f64>>,
-    outcomes: Vec<Outcome>,
 }
 
 impl<'a> Worker<'a> {
@@ -78,7 +74,6 @@ impl<'a> Worker<'a> {
             output,
             scratch: engine.scratch(),
             columns,
-            outcomes: vec![Outcome::default(); CELLS_A_TASK * engine.output_names().len()],
         }
     }
 
@@ -98,19 +93,19 @@ impl<'a> Worker<'a> {
                 axis.coordinates(first, stride, column.get_mut(..cells).unwrap_or_default());
             }
         }
-        let outputs = self.engine.output_names().len();
-        let outcomes = self.outcomes.get_mut(..cells * outputs).unwrap_or_default();
+        let columns: Vec<&[f64]> = self.columns.iter().map(|column| &**column).collect();
+        let mut cells = values.iter_mut().zip(coverage).zip(dominant);
+        let range = 0..cells.len();
+        let put = |outcomes: &[Outcome]| {
+            let cell = cells.next().zip(outcomes.get(self.output));
+            if let Some((((value, coverage), dominant), outcome)) = cell {
+                *value = outcome.value().unwrap_or(f64::NAN);
+                *coverage = outcome.coverage;
+                *dominant = outcome.dominant.map_or(0, |rule| rule as u32 + 1);
+            }
+        };
         self.engine
-            .evaluate_rows(&mut self.scratch, &self.columns, outcomes);
-        let cells = values.iter_mut().zip(coverage).zip(dominant);
-        for (((value, coverage), dominant), outcome) in
-            cells.zip(outcomes.iter().skip(self.output).step_by(outputs))
-        {
-            *value = outcome.value().unwrap_or(f64::NAN);
-            *coverage = outcome.coverage;
-            let rule = outcome.dominant.and_then(|rule| u32::try_from(rule).ok());
-            *dominant = rule.unwrap_or(NO_RULE);
-        }
+            .evaluate_rows(&mut self.scratch, &columns, range, put);
     }
 }
 
@@ -141,9 +136,10 @@ impl DecisionMap {
         let mut map = DecisionMap {
             output: Arc::clone(name),
             range: (low, high),
-            values: vec![f64::NAN; cells],
+            // Zeros come from the system for nothing; every cell is written below.
+            values: vec![0.0; cells],
             coverage: vec![0.0; cells],
-            dominant: vec![NO_RULE; cells],
+            dominant: vec![0; cells],
             grid,
         };
         let tasks = map
@@ -151,13 +147,13 @@ impl DecisionMap {
             .chunks_mut(CELLS_A_TASK)
             .zip(map.coverage.chunks_mut(CELLS_A_TASK))
             .zip(map.dominant.chunks_mut(CELLS_A_TASK));
-        let worker = Worker::new(engine, &map.grid, output);
+        let worker = || Worker::new(engine, &map.grid, output);
         #[cfg(feature = "parallel")]
         {
             use rayon::prelude::*;
             let tasks: Vec<_> = tasks.enumerate().collect();
             tasks.into_par_iter().for_each_init(
-                || worker.clone(),
+                worker,
                 |worker, (task, ((values, coverage), dominant))| {
                     worker.fill(task * CELLS_A_TASK, values, coverage, dominant);
                 },
@@ -165,7 +161,7 @@ impl DecisionMap {
         }
         #[cfg(not(feature = "parallel"))]
         {
-            let mut worker = worker;
+            let mut worker = worker();
             for (task, ((values, coverage), dominant)) in tasks.enumerate() {
                 worker.fill(task * CELLS_A_TASK, values, coverage, dominant);
             }
@@ -200,9 +196,8 @@ impl DecisionMap {
 
     /// The rule of the largest firing strength in a cell, as its index in the model.
     pub fn dominant(&self, cell: usize) -> Option<usize> {
-        let rule = self.dominant.get(cell).copied();
-        rule.filter(|rule| *rule != NO_RULE)
-            .map(|rule| rule as usize)
+        let rule = self.dominant.get(cell)?.checked_sub(1)?;
+        Some(rule as usize)
     }
 
     /// The map read N-linearly between its cells; `None` where a cell that counts there has no value.
