@@ -4,22 +4,45 @@
 //! `check` (findings), to `engine` (compiled, immutable), to an outcome with its reasons.
 #![cfg_attr(not(feature = "std"), no_std)]
 
+#[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(feature = "alloc")]
 pub mod check;
+#[cfg(feature = "alloc")]
 mod defuzzify;
+#[cfg(feature = "alloc")]
 pub mod diagnostic;
+#[cfg(feature = "alloc")]
 pub mod engine;
+#[cfg(feature = "alloc")]
 pub mod format;
+#[cfg(feature = "alloc")]
 pub mod learn;
+#[cfg(feature = "alloc")]
 pub mod map;
+#[cfg(feature = "alloc")]
 pub mod model;
+#[cfg(feature = "alloc")]
 pub mod rule;
+pub mod scale;
+#[cfg_attr(
+    not(feature = "alloc"),
+    allow(
+        dead_code,
+        unused_imports,
+        reason = "what only compiling a model needs"
+    )
+)]
+pub mod table;
+#[cfg(feature = "alloc")]
 pub mod tree;
 #[cfg(feature = "yaml")]
 pub mod yaml;
 
+#[cfg(feature = "alloc")]
 pub use engine::Engine;
+#[cfg(feature = "alloc")]
 pub use model::Model;
 
 /// The example of COMPARE.md, run.

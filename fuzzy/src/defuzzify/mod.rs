@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use crate::engine::operators::{larger, smaller};
 use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Sampling};
+use crate::table::{self, Moment, Pair};
 use curves::Curves;
 use maxima::{Highest, Maxima};
 use piece::{Integrals, Piece};
@@ -55,6 +56,19 @@ impl<'a> Heights<'a> {
     }
 }
 
+/// The closed form of an output, as a table holds it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Closed<'a> {
+    /// None.
+    Open,
+    /// The centroid of minimum and maximum over a partition.
+    Partition(&'a [Pair]),
+    /// The centroid of a sum of products.
+    Moments(&'a [Moment]),
+    /// Takagi-Sugeno.
+    Weighted(table::Set, &'a [Consequence]),
+}
+
 /// One output, compiled.
 #[derive(Debug, Clone)]
 pub(crate) struct Defuzzify {
@@ -73,7 +87,7 @@ enum Set {
     Curves(Curves),
     Sampled(Sampling, Curves),
     /// Sum of products: the area and moment of each term at full height.
-    Moments(Vec<(f64, f64)>),
+    Moments(Vec<Moment>),
     Weighted(Vec<Consequence>),
 }
 
@@ -152,7 +166,7 @@ impl Defuzzify {
     }
 
     /// Area and moment of each term alone at full height.
-    fn moments(&self, terms: usize) -> Vec<(f64, f64)> {
+    fn moments(&self, terms: usize) -> Vec<Moment> {
         let places: Vec<usize> = (0..=terms).collect();
         let mut room = Room::new(terms, self.cuts());
         let mut moments = Vec::new();
@@ -164,7 +178,10 @@ impl Defuzzify {
             };
             let mut integrals = self.integrals();
             self.pieces(heights, &mut room, &mut |piece| integrals.add(piece));
-            moments.push((integrals.area, integrals.moment));
+            moments.push(Moment {
+                area: integrals.area,
+                moment: integrals.moment,
+            });
         }
         moments
     }
@@ -197,44 +214,39 @@ impl Defuzzify {
             Set::Lines(lines) => lines.is_empty(term),
             Set::Curves(curves) | Set::Sampled(_, curves) => curves.is_empty(term),
             Set::Ramps(ramps) => ramps.is_empty(term),
-            Set::Moments(moments) => moments.get(term).is_none_or(|(area, _)| *area <= 0.0),
+            Set::Moments(moments) => moments.get(term).is_none_or(|m| m.area <= 0.0),
             Set::Weighted(_) => false,
         }
     }
 
-    /// Whether sets are integrated, whose ratios alone count.
-    pub(crate) fn is_fuzzy(&self) -> bool {
-        !matches!(self.set, Set::Weighted(_))
+    /// The closed form, where there is one.
+    pub(crate) fn closed(&self) -> Closed<'_> {
+        match &self.set {
+            Set::Ramps(ramps) => Closed::Partition(ramps.pairs()),
+            Set::Moments(moments) => Closed::Moments(moments),
+            Set::Weighted(consequences) => {
+                let set = match self.defuzzifier {
+                    Defuzzifier::WeightedSum => table::Set::WEIGHTED_SUM,
+                    _ => table::Set::WEIGHTED_AVERAGE,
+                };
+                Closed::Weighted(set, consequences)
+            }
+            Set::Lines(_) | Set::Curves(_) | Set::Sampled(..) => Closed::Open,
+        }
     }
 
-    /// The number; `None` where no rule fired. `inputs` are those of Takagi-Sugeno consequents.
-    #[inline(always)]
-    pub(crate) fn value(
-        &self,
-        heights: Heights<'_>,
-        inputs: &[f64],
-        room: &mut Room,
-    ) -> Option<f64> {
+    /// The number of an output without a closed form; `None` where no rule fired. A call, which costs nothing beside what it
+    /// does, and keeps it out of the way of outputs that have one.
+    #[inline(never)]
+    pub(crate) fn value(&self, heights: Heights<'_>, room: &mut Room) -> Option<f64> {
         let value = match &self.set {
-            // Not held to the range: the consequents are the author's own numbers.
-            Set::Weighted(consequences) => {
-                return weighted::value(consequences, heights.heights, inputs, self.defuzzifier);
-            }
-            Set::Ramps(ramps) => ramps.integrals(heights.heights, self.middle()).centroid(),
-            Set::Moments(moments) => {
-                let mut integrals = self.integrals();
-                for ((area, moment), height) in moments.iter().zip(heights.heights) {
-                    integrals.area += height * area;
-                    integrals.moment += height * moment;
-                }
-                integrals.centroid()
-            }
             Set::Sampled(sampling, curves) => {
                 sampling.value(self.defuzzifier, (self.low, self.high), |x| {
                     curves.degree(heights, self.joint, x)
                 })
             }
             Set::Lines(_) | Set::Curves(_) => self.exact(heights, room),
+            Set::Ramps(_) | Set::Moments(_) | Set::Weighted(_) => None,
         }?;
         Some(larger(self.low, smaller(self.high, value)))
     }

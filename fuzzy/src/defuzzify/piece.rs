@@ -1,6 +1,7 @@
 //! Stretches of an aggregated set, and integrals over them.
 
 use crate::engine::operators::larger;
+use crate::table::centroid;
 
 /// A stretch on which the aggregated set is a straight line, or a smooth curve.
 pub(crate) struct Piece<'a> {
@@ -55,7 +56,7 @@ impl Integrals {
 
     /// The centre of gravity; `None` without area.
     pub(crate) fn centroid(&self) -> Option<f64> {
-        (self.area > 0.0).then(|| self.origin + self.moment / self.area)
+        centroid(self.area, self.moment, self.origin)
     }
 }
 

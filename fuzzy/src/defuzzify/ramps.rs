@@ -2,17 +2,12 @@
 //! that rise straight from 0 to 1, stay there and fall straight to 0, of which two overlap only where one
 //! falls from 1 to 0 while the other rises from 0 to 1.
 //!
-//! A term cut at height h has, on a slope of width w around its middle m (from the middle of the range),
-//! area `w (h - h^2 / 2)` and first moment `m area + s w^2 (h^2 / 4 - h^3 / 6)`, with s = 1 rising and -1
-//! falling; on a plateau `w h` and `m w h`. Both sum over the term's stretches to polynomials in h. Where a
-//! falling and a rising slope overlap, the minimum of the two cut terms has area `w v (1 - v)` with
-//! `v = min(h_falling, h_rising, 1/2)`, symmetric about m. The union's area is the sum less the overlaps.
+//! The formulas stand at [`Pair`].
 
 use alloc::{vec, vec::Vec};
 
-use super::piece::Integrals;
 use super::polyline::Polylines;
-use crate::engine::operators::smaller;
+use crate::table::Pair;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Ramps {
@@ -20,20 +15,6 @@ pub(crate) struct Ramps {
     pairs: Vec<Pair>,
     /// The rank of each term from left to right.
     ranks: Vec<usize>,
-}
-
-/// The coefficients of two neighbouring terms, and of the overlap of each with the term to its right.
-/// Two at a time, because that is how many every processor computes at once.
-#[derive(Debug, Clone, Copy, Default)]
-struct Pair {
-    /// `area = area[0] h + area[1] h^2`.
-    area: [[f64; 2]; 2],
-    /// `moment = moment[0] h + moment[1] h^2 + moment[2] h^3`.
-    moment: [[f64; 2]; 3],
-    /// The width of the overlap; 0 without one.
-    width: [f64; 2],
-    /// The overlap's middle, from the middle of the range.
-    middle: [f64; 2],
 }
 
 impl Ramps {
@@ -120,23 +101,9 @@ impl Ramps {
         self.ranks.get(term).is_none_or(|rank| area(*rank) <= 0.0)
     }
 
-    /// Area and moment of the aggregated set.
-    #[inline(always)]
-    pub(crate) fn integrals(&self, heights: &[f64], origin: f64) -> Integrals {
-        let (mut area, mut moment) = ([0.0; 2], [0.0; 2]);
-        for (pair, i) in self.pairs.iter().zip((0..).step_by(2)) {
-            let heights: &[f64] = &heights[i..i + 3];
-            for side in 0..2 {
-                let (a, m) = pair.add(side, heights[side], heights[side + 1]);
-                area[side] += a;
-                moment[side] += m;
-            }
-        }
-        Integrals {
-            area: area[0] + area[1],
-            moment: moment[0] + moment[1],
-            origin,
-        }
+    /// The closed form.
+    pub(crate) fn pairs(&self) -> &[Pair] {
+        &self.pairs
     }
 
     /// The centroids of several sets at once: the same operations in the same order as one at a time.
@@ -166,25 +133,14 @@ impl Ramps {
     }
 }
 
-impl Pair {
-    /// Area and moment that one of the two terms adds, at its height and the one to its right.
-    #[inline(always)]
-    fn add(&self, side: usize, h: f64, right: f64) -> (f64, f64) {
-        let v = smaller(smaller(h, right), 0.5);
-        let common = self.width[side] * (v * (1.0 - v));
-        let area = h * (self.area[0][side] + h * self.area[1][side]) - common;
-        let cubic = self.moment[1][side] + h * self.moment[2][side];
-        let alone = h * (self.moment[0][side] + h * cubic);
-        (area, alone - self.middle[side] * common)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::defuzzify::piece::Integrals;
     use crate::defuzzify::polyline::Room;
     use crate::defuzzify::{Heights, Joint};
     use crate::model::{Aggregation, Implication, Shape, Variable};
+    use crate::table::centroid;
     use proptest::prelude::*;
 
     /// The partition of the example risks, an unsymmetric one, and one with plateaus and gaps.
@@ -252,7 +208,8 @@ mod tests {
             for (height, rank) in heights.iter().zip(ramps.ranks()) {
                 ranked[*rank] = *height;
             }
-            let fast = ramps.integrals(&ranked, origin);
+            let fast = Pair::integrals(ramps.pairs(), &ranked);
+            let fast = centroid(fast.area, fast.moment, origin);
             let places: Vec<usize> = (0..=count).collect();
             let mut slow = Integrals::about(origin);
             let joint = Joint {
@@ -261,7 +218,7 @@ mod tests {
             };
             let heights = Heights { heights, places: &places };
             lines.pieces(heights, joint, &mut Room::new(count, 0), &mut |piece| slow.add(piece));
-            match (fast.centroid(), slow.centroid()) {
+            match (fast, slow.centroid()) {
                 (Some(fast), Some(slow)) => {
                     prop_assert!((fast - slow).abs() <= 1e-12 * (variable.high - variable.low));
                 }

@@ -2,14 +2,14 @@
 
 use alloc::vec::Vec;
 
-use crate::model::{Defuzzifier, Shape};
+use crate::model::Shape;
 
 /// `z = constant + sum(coefficient input)`.
 #[derive(Debug, Clone)]
 pub(crate) struct Consequence {
-    constant: f64,
+    pub(crate) constant: f64,
     /// Input and coefficient.
-    coefficients: Vec<(usize, f64)>,
+    pub(crate) coefficients: Vec<(usize, f64)>,
 }
 
 impl Consequence {
@@ -46,32 +46,4 @@ impl Consequence {
             coefficients,
         })
     }
-
-    fn z(&self, inputs: &[f64]) -> f64 {
-        self.coefficients
-            .iter()
-            .fold(self.constant, |sum, (input, coefficient)| {
-                sum + coefficient * inputs.get(*input).copied().unwrap_or(0.0)
-            })
-    }
-}
-
-/// `sum(w z) / sum(w)` or `sum(w z)`; `None` where no weight is over 0.
-pub(crate) fn value(
-    consequences: &[Consequence],
-    weights: &[f64],
-    inputs: &[f64],
-    defuzzifier: Defuzzifier,
-) -> Option<f64> {
-    let (mut sum, mut total) = (0.0, 0.0);
-    for (consequence, &weight) in consequences.iter().zip(weights) {
-        if weight > 0.0 {
-            sum += weight * consequence.z(inputs);
-            total += weight;
-        }
-    }
-    (total > 0.0).then_some(match defuzzifier {
-        Defuzzifier::WeightedSum => sum,
-        _ => sum / total,
-    })
 }

@@ -9,16 +9,18 @@ use alloc::{
     vec::Vec,
 };
 
+use super::arrays::Arrays;
 use super::condition::Step;
 use super::lanes::Lanes;
 use super::literal::{Literal, Literals};
 use super::problem::{CompileError, Problem};
-use super::rules::{Action, Draft, Rules};
+use super::rules::{Draft, Rules};
 use super::{CompiledOutput, Engine, Input};
 use crate::defuzzify::weighted::Consequence;
 use crate::defuzzify::{Defuzzify, Merging};
 use crate::model::{Model, NoRuleFires, Output, Shape, Term, Variable};
 use crate::rule::{Condition, Hedge, Proposition};
+use crate::table::Action;
 
 impl Engine {
     /// Compiles a model: names become indices, rules a table, output terms closed forms.
@@ -250,7 +252,7 @@ impl Compiler<'_> {
                     place: term as u32,
                     output: output as u32,
                     rule: index as u32,
-                    sums: false,
+                    sums: 0,
                 });
             }
             drafts.push(Draft {
@@ -345,14 +347,12 @@ impl Compiler<'_> {
             });
         }
         let operators = model.operators;
+        let rules = Rules::new(&drafts, &literals, first_place);
         Engine {
             lanes: Lanes::new(operators.and, &inputs, &by_input, &drafts, &outputs),
-            rules: Rules::new(operators.and, operators.or, &drafts, &literals, first_place),
+            arrays: Arrays::new(operators, &inputs, &literals, rules, &outputs),
             inputs,
-            literals,
-            literal_count: first as usize,
             outputs,
-            places: first_place,
         }
     }
 
@@ -390,7 +390,7 @@ impl Compiler<'_> {
             if action.output as usize == index {
                 let term = action.place as usize;
                 action.place = (first_place + next[term]) as u32;
-                action.sums = merging == Merging::Sum;
+                action.sums = u32::from(merging == Merging::Sum);
                 if merging == Merging::Apart {
                     next[term] += 1;
                 }

@@ -1,9 +1,6 @@
-//! Conditions as flat programs: no recursion and no allocation when they are evaluated.
+//! Conditions as flat programs, on their way into a table.
 
-use alloc::vec::Vec;
-
-use super::operators::{larger, smaller};
-use crate::model::{Conjunction, Disjunction};
+use crate::table::{self, Op};
 
 /// One step of a condition, on a stack of degrees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,29 +19,17 @@ pub(crate) enum Step {
     Not,
 }
 
-/// The degree of a condition. `stack` has room for the program's depth.
-pub(crate) fn run(
-    steps: &[Step],
-    degrees: &[f64],
-    and: Conjunction,
-    or: Disjunction,
-    stack: &mut Vec<f64>,
-) -> f64 {
-    let degree = |literal: u32| degrees.get(literal as usize).copied().unwrap_or(0.0);
-    stack.clear();
-    let mut top = 0.0;
-    for step in steps {
-        top = match *step {
-            Step::Push(literal) => {
-                stack.push(top);
-                degree(literal)
-            }
-            Step::AndLiteral(literal) => and.of(top, degree(literal)),
-            Step::OrLiteral(literal) => or.of(top, degree(literal)),
-            Step::And => and.of(stack.pop().unwrap_or(0.0), top),
-            Step::Or => or.of(stack.pop().unwrap_or(0.0), top),
-            Step::Not => 1.0 - top,
+impl Step {
+    /// As it stands in a table.
+    pub(super) fn compiled(self) -> table::Step {
+        let (op, literal) = match self {
+            Step::Push(literal) => (Op::PUSH, literal),
+            Step::AndLiteral(literal) => (Op::AND_LITERAL, literal),
+            Step::OrLiteral(literal) => (Op::OR_LITERAL, literal),
+            Step::And => (Op::AND, 0),
+            Step::Or => (Op::OR, 0),
+            Step::Not => (Op::NOT, 0),
         };
+        table::Step { op, literal }
     }
-    larger(0.0, smaller(1.0, top))
 }

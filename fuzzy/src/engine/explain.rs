@@ -11,7 +11,7 @@ use super::{
     Engine, EvaluateError, Outcome, State,
     operators::{larger, smaller},
 };
-use crate::model::{Aggregation, Model, NoRuleFires, Operators, Output, Shape, Term, Variable};
+use crate::model::{Aggregation, Model, Operators, Output, Shape, Term, Variable};
 use crate::rule::{Condition, Proposition};
 
 /// All that an evaluation rests on.
@@ -125,14 +125,15 @@ impl Engine {
         if !names.eq(self.input_names()) || !outputs.eq(self.output_names()) {
             return Err(EvaluateError::OtherModel);
         }
-        // Where no rule fires, this is the answer to "why", not a reason to give none.
-        let mut engine = self.clone();
-        for output in &mut engine.outputs {
-            if let NoRuleFires::Error = output.when_no_rule_fires {
-                output.when_no_rule_fires = NoRuleFires::Undefined;
-            }
+        if inputs.len() != self.inputs.len() {
+            return Err(EvaluateError::WrongNumberOfInputs {
+                expected: self.inputs.len(),
+                got: inputs.len(),
+            });
         }
-        let outcomes = engine.evaluate(inputs)?;
+        // Where no rule fires, this is the answer to "why", not a reason to give none.
+        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
+        self.outcomes(&mut self.scratch(), inputs, &mut outcomes);
         if let Some(Outcome {
             state: State::InputNotFinite,
             ..

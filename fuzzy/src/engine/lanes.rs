@@ -9,13 +9,13 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::literal::{Line, Literal, lines};
+use super::literal::{Literal, lines};
 use super::operators::{larger, smaller};
-use super::outcome::{Outcome, State};
 use super::rules::Draft;
-use super::{CompiledOutput, FROM_TINY, Input, TINY};
+use super::{CompiledOutput, FROM_TINY, Input, Outcome, State, TINY};
 use crate::defuzzify::Ramps;
 use crate::model::{Conjunction, NoRuleFires};
+use crate::table::Line;
 
 /// Rows at a time: the width of the widest vectors.
 const LANES: usize = 8;

@@ -1,23 +1,16 @@
-//! From an input's value to the degrees of the literals on it.
+//! The literals of an input, cut into straight lines, on their way into a table.
 
 use alloc::vec::Vec;
 
 use crate::model::{Shape, Term};
 use crate::rule::Hedge;
+use crate::table::Line;
 
 /// A hedged term of an input. Hedges stand in the order in which they apply.
 #[derive(Debug, Clone)]
 pub(super) struct Literal {
     pub(super) term: Term,
     pub(super) hedges: Vec<Hedge>,
-}
-
-impl Literal {
-    pub(super) fn degree(&self, x: f64) -> f64 {
-        self.hedges
-            .iter()
-            .fold(self.term.membership(x), |degree, hedge| hedge.of(degree))
-    }
 }
 
 /// The literals of one input. Straight ones are cut into intervals, so that only those alive at a
@@ -31,39 +24,9 @@ pub(super) struct Literals {
     /// Where intervals begin; values before the first cut lie in interval 0.
     pub(super) cuts: Vec<f64>,
     /// The lines alive on interval i are `lines[starts[i]..starts[i + 1]]`.
-    starts: Vec<u32>,
-    lines: Vec<Line>,
-    curved: Vec<(u32, Literal)>,
-}
-
-/// `base + rise ((x - foot) / run)`.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Line {
-    pub(super) literal: u32,
-    pub(super) foot: f64,
-    pub(super) run: f64,
-    pub(super) base: f64,
-    pub(super) rise: f64,
-}
-
-impl Line {
-    /// The same degree everywhere.
-    pub(super) fn flat(literal: u32, degree: f64) -> Self {
-        Line {
-            literal,
-            foot: 0.0,
-            run: f64::INFINITY,
-            base: degree,
-            rise: 0.0,
-        }
-    }
-
-    /// Measured from the lower end of a slope: exactly 0 at its foot, exactly 1 at its top, and as exact
-    /// as the value itself near the foot.
-    #[inline(always)]
-    pub(super) fn degree(&self, x: f64) -> f64 {
-        self.base + self.rise * ((x - self.foot) / self.run)
-    }
+    pub(super) starts: Vec<u32>,
+    pub(super) lines: Vec<Line>,
+    pub(super) curved: Vec<(u32, Literal)>,
 }
 
 impl Literals {
@@ -115,30 +78,6 @@ impl Literals {
 
     pub(super) fn has_curved(&self) -> bool {
         !self.curved.is_empty()
-    }
-
-    /// The interval in which a value of the range lies.
-    #[inline(always)]
-    fn interval(&self, x: f64) -> usize {
-        if self.cuts.len() <= 16 {
-            self.cuts.iter().map(|cut| usize::from(x >= *cut)).sum()
-        } else {
-            self.cuts.partition_point(|cut| x >= *cut)
-        }
-    }
-
-    /// Calls `visit` with each literal that may be alive at `x`, by its place among this input's
-    /// literals, and its degree, which may be 0.
-    #[inline(always)]
-    pub(super) fn degrees(&self, x: f64, mut visit: impl FnMut(u32, f64)) {
-        let interval = self.interval(x);
-        let (start, end) = (self.starts[interval], self.starts[interval + 1]);
-        for line in &self.lines[start as usize..end as usize] {
-            visit(line.literal, line.degree(x));
-        }
-        for (index, literal) in &self.curved {
-            visit(*index, literal.degree(x));
-        }
     }
 
     /// The most literals that can be alive at once.
@@ -211,6 +150,8 @@ fn after(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::arrays::Arrays;
+    use crate::table;
     use alloc::{string::String, vec};
     use proptest::prelude::*;
 
@@ -293,11 +234,14 @@ mod tests {
             let mut all: Vec<Literal> =
                 shapes().into_iter().map(|shape| literal(shape, &[])).collect();
             all.push(literal(Shape::LeftShoulder { top: 0.2, foot: 0.6 }, &[Hedge::Very, Hedge::Not]));
-            let table = Literals::new(0, all.clone(), 0.0, 1.0);
+            let mut arrays = Arrays::default();
+            arrays.input(&Literals::new(0, all.clone(), 0.0, 1.0), 0.0, 1.0);
             let mut degrees = vec![0.0; all.len()];
-            table.degrees(x, |literal, degree| degrees[literal as usize] = degree);
+            table::degrees(&arrays, &arrays.inputs[0], x, |literal, degree| degrees[literal as usize] = degree);
             for (literal, degree) in all.iter().zip(degrees) {
-                prop_assert_eq!(degree, literal.degree(x), "{:?} at {}", literal, x);
+                let plain = literal.term.membership(x);
+                let expected = literal.hedges.iter().fold(plain, |degree, hedge| hedge.of(degree));
+                prop_assert_eq!(degree, expected, "{:?} at {}", literal, x);
             }
         }
     }

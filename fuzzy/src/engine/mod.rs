@@ -6,37 +6,35 @@ use core::ops::Range;
 use crate::defuzzify::polyline::Room;
 use crate::defuzzify::{Defuzzify, Heights};
 use crate::model::NoRuleFires;
+use crate::table::{self, Partial, Rooms, Strongest, Table};
+use arrays::Arrays;
 use lanes::Lanes;
-use literal::Literals;
-use operators::{larger, smaller};
-use rules::{FiringRoom, Rules, Strongest};
 
+mod arrays;
 mod batch;
 mod compile;
 mod condition;
+mod error;
 mod explain;
 mod lanes;
 mod literal;
-pub(crate) mod operators;
-mod outcome;
 mod problem;
 mod rules;
 mod uniform;
 
+pub(crate) use crate::table::{FROM_TINY, TINY, operators};
+pub use crate::table::{Outcome, State};
+pub use error::EvaluateError;
 pub use explain::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share};
-pub use outcome::{EvaluateError, Outcome, State};
 pub use problem::{CompileError, Problem};
 
 /// A compiled model. It holds indices only, never changes, and can be shared between threads.
 #[derive(Debug, Clone)]
 pub struct Engine {
     inputs: Vec<Input>,
-    literals: Vec<Literals>,
-    literal_count: usize,
-    rules: Rules,
     outputs: Vec<CompiledOutput>,
-    /// How many heights there are over all outputs.
-    places: usize,
+    /// What is evaluated.
+    arrays: Arrays,
     /// The batch form of a common kind of model.
     lanes: Option<Lanes>,
 }
@@ -64,11 +62,8 @@ struct CompiledOutput {
 /// What an evaluation works in: made once by [`Engine::scratch`], used again and again.
 #[derive(Debug, Clone)]
 pub struct Scratch {
-    values: Vec<f64>,
-    degrees: Vec<f64>,
-    firing: FiringRoom,
-    heights: Vec<f64>,
-    strongest: Vec<Strongest>,
+    table: Rooms<Vec<f64>, Vec<Partial>, Vec<Strongest>>,
+    /// For outputs that have no closed form.
     room: Room,
 }
 
@@ -105,15 +100,28 @@ impl Engine {
 
     /// Room to evaluate in, for [`Engine::evaluate_with`]; one a thread.
     pub fn scratch(&self) -> Scratch {
+        let sizes = self.arrays.sizes;
+        let places = sizes.heights as usize;
         let cuts = self.outputs.iter().map(|output| output.defuzzify.cuts());
         Scratch {
-            values: vec![0.0; self.inputs.len()],
-            degrees: vec![0.0; self.literal_count],
-            firing: self.rules.room(&self.literals),
-            heights: vec![0.0; self.places + 1],
-            strongest: vec![Strongest::NONE; self.outputs.len()],
-            room: Room::new(self.places, self.places + cuts.max().unwrap_or(0)),
+            table: Rooms {
+                values: vec![0.0; self.inputs.len()],
+                degrees: vec![0.0; sizes.degrees as usize],
+                alive: vec![Partial::NONE; sizes.alive as usize],
+                partial: vec![Partial::NONE; sizes.partial as usize],
+                next: vec![Partial::NONE; sizes.partial as usize],
+                stack: vec![0.0; sizes.stack as usize],
+                heights: vec![0.0; places],
+                strongest: vec![Strongest::NONE; self.outputs.len()],
+            },
+            room: Room::new(places, places + cuts.max().unwrap_or(0)),
         }
+    }
+
+    /// The compiled arrays, to be evaluated without this engine or written out: see [`table`]. Outputs whose set is
+    /// [`Set::OPEN`](table::Set::OPEN) have no closed form, and only the engine knows their values.
+    pub fn table(&self) -> Table<'_> {
+        self.arrays.table()
     }
 
     /// Evaluates one value for each input, and gives one outcome for each output.
@@ -167,86 +175,23 @@ impl Engine {
     /// Evaluates as many values as there are inputs into as many outcomes as there are outputs.
     #[inline(always)]
     fn outcomes(&self, scratch: &mut Scratch, inputs: &[f64], outcomes: &mut [Outcome]) {
-        let mut clamped = false;
-        for ((&value, input), place) in inputs.iter().zip(&self.inputs).zip(&mut scratch.values) {
-            if !value.is_finite() {
-                outcomes.fill(Outcome {
-                    state: State::InputNotFinite,
-                    ..Outcome::default()
-                });
-                return;
-            }
-            *place = larger(input.low, smaller(input.high, value));
-            clamped |= *place != value;
-        }
-        self.fire(scratch);
-        for (index, (output, outcome)) in self.outputs.iter().zip(outcomes).enumerate() {
-            let (coverage, dominant) = scratch.strongest[index].rule();
-            *outcome = Outcome {
-                state: self.state(output, coverage, scratch),
-                coverage,
-                dominant,
-                clamped,
-            };
-        }
-    }
-
-    /// Fires all rules on the values in the scratch.
-    #[inline(always)]
-    fn fire(&self, scratch: &mut Scratch) {
-        scratch.heights.fill(0.0);
-        scratch.strongest.fill(Strongest::NONE);
-        if self.rules.needs_degrees {
-            scratch.degrees.fill(0.0);
-            for (literals, &value) in self.literals.iter().zip(&scratch.values) {
-                literals.degrees(value, |literal, degree| {
-                    scratch.degrees[(literals.first + literal) as usize] = degree;
-                });
-            }
-        }
-        self.rules.fire(
-            &self.literals,
-            &scratch.values,
-            &scratch.degrees,
-            &mut scratch.firing,
-            &mut scratch.heights,
-            &mut scratch.strongest,
+        let Scratch { table: rooms, room } = scratch;
+        table::evaluate(
+            &self.arrays,
+            rooms,
+            inputs,
+            outcomes,
+            |index, heights, _| {
+                let output = self.outputs.get(index)?;
+                let heights = Heights {
+                    heights,
+                    places: &output.places,
+                };
+                output.defuzzify.value(heights, room)
+            },
         );
     }
-
-    #[inline(always)]
-    fn state(&self, output: &CompiledOutput, strongest: f64, scratch: &mut Scratch) -> State {
-        if strongest > 0.0 {
-            let heights = &mut scratch.heights[output.heights.clone()];
-            if strongest < TINY && output.defuzzify.is_fuzzy() {
-                for height in heights.iter_mut() {
-                    *height *= FROM_TINY;
-                }
-            }
-            let heights = Heights {
-                heights,
-                places: &output.places,
-            };
-            let value = output
-                .defuzzify
-                .value(heights, &scratch.values, &mut scratch.room);
-            if let Some(value) = value {
-                return State::Defined(value);
-            }
-        }
-        match output.when_no_rule_fires {
-            NoRuleFires::Value(value) => State::Default(value),
-            NoRuleFires::Undefined | NoRuleFires::Error => State::NoRuleFired,
-        }
-    }
 }
-
-/// Below this, areas would lose digits to underflow. Where all strengths are so small, only their ratios
-/// count: every set is cut so low that its slopes are vertical to the last digit, so all of them can be
-/// multiplied by [`FROM_TINY`].
-pub(crate) const TINY: f64 = 1e-200;
-/// 2^500: multiplying by it rounds nothing.
-pub(crate) const FROM_TINY: f64 = 3.273_390_607_896_142e150;
 
 #[cfg(test)]
 mod tests;

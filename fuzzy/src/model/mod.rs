@@ -6,6 +6,7 @@ use crate::rule;
 
 mod builder;
 mod shape;
+pub use crate::table::{Aggregation, Conjunction, Disjunction, Implication};
 pub use builder::ModelBuilder;
 pub use shape::{Shape, ShapeError};
 
@@ -126,66 +127,6 @@ pub struct Operators {
     pub implication: Implication,
     /// How the consequents of one output join.
     pub aggregation: Aggregation,
-}
-
-/// AND of two degrees: a t-norm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Conjunction {
-    /// `min(a, b)`.
-    Minimum,
-    /// `a b`.
-    Product,
-    /// `max(0, a + b - 1)` (Lukasiewicz).
-    BoundedDifference,
-    /// `min(a, b)` where the other is 1, else 0.
-    Drastic,
-    /// `a b / (2 - (a + b - a b))`.
-    Einstein,
-    /// `a b / (a + b - a b)`, 0 where both are 0.
-    Hamacher,
-    /// `min(a, b)` where `a + b > 1`, else 0.
-    NilpotentMinimum,
-}
-
-/// OR of two degrees: an s-norm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Disjunction {
-    /// `max(a, b)`.
-    Maximum,
-    /// `a + b - a b`.
-    ProbabilisticSum,
-    /// `min(1, a + b)`.
-    BoundedSum,
-    /// `max(a, b)` where the other is 0, else 1.
-    Drastic,
-    /// `(a + b) / (1 + a b)`.
-    Einstein,
-    /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
-    Hamacher,
-    /// `max(a, b)` where `a + b < 1`, else 1.
-    NilpotentMaximum,
-}
-
-/// How a firing strength `h` and a membership `m` make an activated consequent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Implication {
-    /// `min(h, m)` (Mamdani).
-    Minimum,
-    /// `h m` (Larsen).
-    Product,
-}
-
-/// How activated consequents of one output join.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Aggregation {
-    /// `max(a, b)`.
-    Maximum,
-    /// `a + b - a b`.
-    ProbabilisticSum,
-    /// `min(1, a + b)`.
-    BoundedSum,
-    /// `a + b`, unbounded.
-    Sum,
 }
 
 /// A rule and where it came from.

@@ -12,6 +12,7 @@ mod print;
 #[cfg(test)]
 mod tests;
 
+pub use crate::table::Hedge;
 pub use parse::{DEEPEST_NESTING, parse};
 
 /// A name as the author wrote it, with its byte span in the source text.
@@ -82,48 +83,6 @@ pub struct Consequent {
     pub output: Name,
     /// The term of that output.
     pub term: Name,
-}
-
-/// A word that changes a degree of membership `x`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Hedge {
-    /// `1 - x`.
-    Not,
-    /// `x^2` (concentration, Zadeh 1972).
-    Very,
-    /// `x^(1/2)` (dilation, Zadeh 1972).
-    Somewhat,
-    /// `2 x^2` up to 0.5, `1 - 2 (1 - x)^2` above (contrast intensification).
-    Extremely,
-    /// `(x/2)^(1/2)` up to 0.5, `1 - ((1 - x)/2)^(1/2)` above.
-    Seldom,
-    /// 1 whatever `x` is.
-    Any,
-}
-
-impl Hedge {
-    /// All hedges.
-    pub const ALL: [Hedge; 6] = [
-        Hedge::Not,
-        Hedge::Very,
-        Hedge::Somewhat,
-        Hedge::Extremely,
-        Hedge::Seldom,
-        Hedge::Any,
-    ];
-
-    /// The word for it in rules.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Hedge::Not => "NOT",
-            Hedge::Very => "very",
-            Hedge::Somewhat => "somewhat",
-            Hedge::Extremely => "extremely",
-            Hedge::Seldom => "seldom",
-            Hedge::Any => "any",
-        }
-    }
 }
 
 impl Rule {

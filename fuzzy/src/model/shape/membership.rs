@@ -1,7 +1,7 @@
 //! `Shape::membership`: the degree to which a number belongs to a term.
 
 use super::Shape;
-use libm::{cos, exp, fabs, pow};
+use crate::table::{Kind, into_unit, piecewise};
 
 impl Shape {
     /// The degree of membership of `x`, always in [0, 1] and never NaN.
@@ -28,86 +28,75 @@ impl Shape {
     /// assert_eq!(low.membership(f64::NAN), 0.0);
     /// ```
     pub fn membership(&self, x: f64) -> f64 {
-        if x.is_nan() {
-            return 0.0;
+        match self {
+            Shape::Piecewise { points } => piecewise(points.iter().copied(), x),
+            _ => {
+                let (kind, parameters) = self.kind();
+                kind.membership(&parameters, &[], x)
+            }
         }
-        into_unit(match *self {
-            Shape::Triangle { left, peak, right } => trapezoid(x, left, peak, peak, right),
+    }
+
+    /// The shape's formula and its parameters; the points of a piecewise shape are apart.
+    pub(crate) fn kind(&self) -> (Kind, [f64; 4]) {
+        match *self {
+            Shape::Triangle { left, peak, right } => (Kind::TRAPEZOID, [left, peak, peak, right]),
             Shape::Trapezoid {
                 left,
                 left_top,
                 right_top,
                 right,
-            } => trapezoid(x, left, left_top, right_top, right),
-            Shape::LeftShoulder { top, foot } => falling(x, top, foot),
-            Shape::RightShoulder { foot, top } => rising(x, foot, top),
-            Shape::Rectangle { left, right } => indicator(left <= x && x <= right),
-            Shape::Singleton { at } => indicator(x == at),
-            Shape::Piecewise { ref points } => piecewise(points, x),
-            Shape::Gaussian { mean, sd } => gaussian(x, mean, sd),
+            } => (Kind::TRAPEZOID, [left, left_top, right_top, right]),
+            Shape::LeftShoulder { top, foot } => (Kind::LEFT_SHOULDER, [top, foot, 0.0, 0.0]),
+            Shape::RightShoulder { foot, top } => (Kind::RIGHT_SHOULDER, [foot, top, 0.0, 0.0]),
+            Shape::Rectangle { left, right } => (Kind::RECTANGLE, [left, right, 0.0, 0.0]),
+            Shape::Singleton { at } => (Kind::SINGLETON, [at, 0.0, 0.0, 0.0]),
+            Shape::Piecewise { .. } => (Kind::PIECEWISE, [0.0; 4]),
+            Shape::Gaussian { mean, sd } => (Kind::GAUSSIAN, [mean, sd, 0.0, 0.0]),
             Shape::Gaussian2 {
                 left_mean,
                 left_sd,
                 right_mean,
                 right_sd,
-            } => {
-                if x < left_mean {
-                    gaussian(x, left_mean, left_sd)
-                } else if x > right_mean {
-                    gaussian(x, right_mean, right_sd)
-                } else {
-                    1.0
-                }
-            }
+            } => (Kind::GAUSSIAN2, [left_mean, left_sd, right_mean, right_sd]),
             Shape::Bell {
                 center,
                 width,
                 slope,
-            } => 1.0 / (1.0 + pow(fabs((x - center) / width), 2.0 * slope)),
-            Shape::Sigmoid { inflection, slope } => sigmoid(x, inflection, slope),
+            } => (Kind::BELL, [center, width, slope, 0.0]),
+            Shape::Sigmoid { inflection, slope } => (Kind::SIGMOID, [inflection, slope, 0.0, 0.0]),
             Shape::SigmoidDifference {
                 left_inflection,
                 left_slope,
                 right_inflection,
                 right_slope,
-            } => fabs(
-                sigmoid(x, left_inflection, left_slope) - sigmoid(x, right_inflection, right_slope),
+            } => (
+                Kind::SIGMOID_DIFFERENCE,
+                [left_inflection, left_slope, right_inflection, right_slope],
             ),
             Shape::SigmoidProduct {
                 left_inflection,
                 left_slope,
                 right_inflection,
                 right_slope,
-            } => {
-                sigmoid(x, left_inflection, left_slope) * sigmoid(x, right_inflection, right_slope)
-            }
-            Shape::SShape { foot, top } => s_shape(x, foot, top),
-            Shape::ZShape { top, foot } => z_shape(x, top, foot),
+            } => (
+                Kind::SIGMOID_PRODUCT,
+                [left_inflection, left_slope, right_inflection, right_slope],
+            ),
+            Shape::SShape { foot, top } => (Kind::S_SHAPE, [foot, top, 0.0, 0.0]),
+            Shape::ZShape { top, foot } => (Kind::Z_SHAPE, [top, foot, 0.0, 0.0]),
             Shape::PiShape {
                 left,
                 left_top,
                 right_top,
                 right,
-            } => {
-                if x < left_top {
-                    s_shape(x, left, left_top)
-                } else {
-                    z_shape(x, right_top, right)
-                }
-            }
-            Shape::Cosine { center, width } => {
-                if fabs(x - center) <= 0.5 * width {
-                    let turns = (x - center) / width;
-                    0.5 * (1.0 + cos(2.0 * core::f64::consts::PI * turns))
-                } else {
-                    0.0
-                }
-            }
-            Shape::Spike { center, width } => exp(-fabs(10.0 * (x - center) / width)),
-            Shape::Concave { inflection, end } => concave(x, inflection, end),
-            Shape::Constant { value } => value,
-            Shape::Linear { .. } => 0.0,
-        })
+            } => (Kind::PI_SHAPE, [left, left_top, right_top, right]),
+            Shape::Cosine { center, width } => (Kind::COSINE, [center, width, 0.0, 0.0]),
+            Shape::Spike { center, width } => (Kind::SPIKE, [center, width, 0.0, 0.0]),
+            Shape::Concave { inflection, end } => (Kind::CONCAVE, [inflection, end, 0.0, 0.0]),
+            Shape::Constant { value } => (Kind::CONSTANT, [value, 0.0, 0.0, 0.0]),
+            Shape::Linear { .. } => (Kind::CONSTANT, [0.0; 4]),
+        }
     }
 
     /// The corners of a shape made of straight lines, `(x, degree)` with x never falling and the first
@@ -144,123 +133,6 @@ impl Shape {
     }
 }
 
-/// Into [0, 1]; NaN, which only parameters that make no shape can give, becomes 0.
-fn into_unit(degree: f64) -> f64 {
-    if degree >= 1.0 {
-        1.0
-    } else if degree > 0.0 {
-        degree
-    } else {
-        0.0
-    }
-}
-
-fn indicator(inside: bool) -> f64 {
-    if inside { 1.0 } else { 0.0 }
-}
-
-/// 0 up to `foot`, straight up to 1 at `top`; `foot = top` is a step that is 1 at `top`.
-fn rising(x: f64, foot: f64, top: f64) -> f64 {
-    if x >= top {
-        1.0
-    } else if x <= foot {
-        0.0
-    } else {
-        (x - foot) / (top - foot)
-    }
-}
-
-/// 1 up to `top`, straight down to 0 at `foot`; `foot = top` is a step that is 1 at `top`.
-fn falling(x: f64, top: f64, foot: f64) -> f64 {
-    if x <= top {
-        1.0
-    } else if x >= foot {
-        0.0
-    } else {
-        (x - foot) / (top - foot)
-    }
-}
-
-fn trapezoid(x: f64, left: f64, left_top: f64, right_top: f64, right: f64) -> f64 {
-    if x < left_top {
-        rising(x, left, left_top)
-    } else {
-        falling(x, right_top, right)
-    }
-}
-
-/// Straight between the points, measured from the lower one so that small degrees are exact.
-fn piecewise(points: &[(f64, f64)], x: f64) -> f64 {
-    let (mut at_step, mut before) = (f64::NEG_INFINITY, None);
-    for &(px, py) in points {
-        if px > x {
-            return match before {
-                None => py,
-                Some(_) if at_step > f64::NEG_INFINITY => at_step,
-                Some((bx, by)) => between((bx, by), (px, py), x),
-            };
-        }
-        if px == x {
-            at_step = at_step.max(py);
-        }
-        before = Some((px, py));
-    }
-    match before {
-        Some(_) if at_step > f64::NEG_INFINITY => at_step,
-        Some((_, last)) => last,
-        None => 0.0,
-    }
-}
-
-/// The degree at `x` on the line through `a` and `b`.
-fn between(a: (f64, f64), b: (f64, f64), x: f64) -> f64 {
-    let (low, high) = if a.1 <= b.1 { (a, b) } else { (b, a) };
-    low.1 + (high.1 - low.1) * ((x - low.0) / (high.0 - low.0))
-}
-
-fn gaussian(x: f64, mean: f64, sd: f64) -> f64 {
-    let z = (x - mean) / sd;
-    exp(-0.5 * z * z)
-}
-
-fn sigmoid(x: f64, inflection: f64, slope: f64) -> f64 {
-    if slope == 0.0 {
-        return 0.5;
-    }
-    1.0 / (1.0 + exp(-slope * (x - inflection)))
-}
-
-/// 0 up to `foot`, `2 t^2` to the middle, `1 - 2 (1 - t)^2` to `top`, with `t = (x - foot) / (top - foot)`.
-fn s_shape(x: f64, foot: f64, top: f64) -> f64 {
-    smooth_step(rising(x, foot, top))
-}
-
-fn z_shape(x: f64, top: f64, foot: f64) -> f64 {
-    smooth_step(falling(x, top, foot))
-}
-
-fn smooth_step(t: f64) -> f64 {
-    if t <= 0.5 {
-        2.0 * t * t
-    } else {
-        1.0 - 2.0 * (1.0 - t) * (1.0 - t)
-    }
-}
-
-fn concave(x: f64, inflection: f64, end: f64) -> f64 {
-    if inflection <= end {
-        if x < end {
-            (end - inflection) / (2.0 * end - inflection - x)
-        } else {
-            1.0
-        }
-    } else if x > end {
-        (inflection - end) / (inflection - 2.0 * end + x)
-    } else {
-        1.0
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -284,7 +156,7 @@ mod tests {
         if let Some(corners) = shape.corners() {
             for &(x, _) in rows {
                 assert_eq!(
-                    piecewise(&corners, x),
+                    piecewise(corners.iter().copied(), x),
                     shape.membership(x),
                     "{shape:?} at {x}"
                 );

@@ -1,7 +1,107 @@
-//! The operators' formulas. Each stands at its variant in [`crate::model`] and [`crate::rule`].
+//! The operators and hedges, and their formulas.
 
-use crate::model::{Aggregation, Conjunction, Disjunction, Implication};
-use crate::rule::Hedge;
+/// AND of two degrees: a t-norm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Conjunction {
+    /// `min(a, b)`.
+    Minimum,
+    /// `a b`.
+    Product,
+    /// `max(0, a + b - 1)` (Lukasiewicz).
+    BoundedDifference,
+    /// `min(a, b)` where the other is 1, else 0.
+    Drastic,
+    /// `a b / (2 - (a + b - a b))`.
+    Einstein,
+    /// `a b / (a + b - a b)`, 0 where both are 0.
+    Hamacher,
+    /// `min(a, b)` where `a + b > 1`, else 0.
+    NilpotentMinimum,
+}
+
+/// OR of two degrees: an s-norm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Disjunction {
+    /// `max(a, b)`.
+    Maximum,
+    /// `a + b - a b`.
+    ProbabilisticSum,
+    /// `min(1, a + b)`.
+    BoundedSum,
+    /// `max(a, b)` where the other is 0, else 1.
+    Drastic,
+    /// `(a + b) / (1 + a b)`.
+    Einstein,
+    /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
+    Hamacher,
+    /// `max(a, b)` where `a + b < 1`, else 1.
+    NilpotentMaximum,
+}
+
+/// How a firing strength `h` and a membership `m` make an activated consequent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Implication {
+    /// `min(h, m)` (Mamdani).
+    Minimum,
+    /// `h m` (Larsen).
+    Product,
+}
+
+/// How activated consequents of one output join.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Aggregation {
+    /// `max(a, b)`.
+    Maximum,
+    /// `a + b - a b`.
+    ProbabilisticSum,
+    /// `min(1, a + b)`.
+    BoundedSum,
+    /// `a + b`, unbounded.
+    Sum,
+}
+
+/// A word that changes a degree of membership `x`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u32)]
+pub enum Hedge {
+    /// `1 - x`.
+    Not,
+    /// `x^2` (concentration, Zadeh 1972).
+    Very,
+    /// `x^(1/2)` (dilation, Zadeh 1972).
+    Somewhat,
+    /// `2 x^2` up to 0.5, `1 - 2 (1 - x)^2` above (contrast intensification).
+    Extremely,
+    /// `(x/2)^(1/2)` up to 0.5, `1 - ((1 - x)/2)^(1/2)` above.
+    Seldom,
+    /// 1 whatever `x` is.
+    Any,
+}
+
+impl Hedge {
+    /// All hedges.
+    pub const ALL: [Hedge; 6] = [
+        Hedge::Not,
+        Hedge::Very,
+        Hedge::Somewhat,
+        Hedge::Extremely,
+        Hedge::Seldom,
+        Hedge::Any,
+    ];
+
+    /// The word for it in rules.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Hedge::Not => "NOT",
+            Hedge::Very => "very",
+            Hedge::Somewhat => "somewhat",
+            Hedge::Extremely => "extremely",
+            Hedge::Seldom => "seldom",
+            Hedge::Any => "any",
+        }
+    }
+}
 
 /// The smaller of two numbers that are not NaN: one instruction, unlike `f64::min`.
 #[inline(always)]

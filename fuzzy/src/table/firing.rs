@@ -1,0 +1,512 @@
+//! Firing all rules: plain ANDs from a table of cells or a trie, all others as programs.
+//!
+//! A firing strength of 0 counts nowhere, and 0 AND anything is 0. So a plain AND is only followed as long
+//! as its degree is over 0: with terms that sum to 1, 16 of the 625 rules of 4 inputs with 5 terms.
+
+use core::ops::DerefMut;
+
+use super::input::degrees;
+use super::operators::{larger, smaller};
+use super::{Arrays, Conjunction, Conjunctions, Disjunction, Rooms};
+
+/// What a rule does with its degree for one consequent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct Action {
+    /// The rule's weight.
+    pub weight: f64,
+    /// Where its firing strength goes among all heights.
+    pub place: u32,
+    /// The output.
+    pub output: u32,
+    /// The rule's index in the model.
+    pub rule: u32,
+    /// 1 where strengths are summed there, 0 where the largest counts.
+    pub sums: u32,
+}
+
+/// An input of a uniform table: where every input has straight terms only, of which at most two are alive at once, each
+/// interval holds two lines (made up with lines of degree 0), and the same number of cells is visited for every value.
+/// Which terms are alive cannot be predicted, so every branch saved counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
+pub struct Axis {
+    /// The input.
+    pub input: u32,
+    /// Where, in the cuts, its own begin: made up to a multiple of 4 with infinity.
+    pub first_cut: u32,
+    /// Where they end.
+    pub end_cut: u32,
+    /// Where, in the lines, the two of its first interval stand.
+    pub first_line: u32,
+}
+
+/// An input of a dense table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
+pub struct Dimension {
+    /// The input.
+    pub input: u32,
+    /// How many cells apart its neighbouring terms stand.
+    pub stride: u32,
+    /// The coordinate of rules that say nothing of this input; `u32::MAX` where there is none.
+    pub any: u32,
+}
+
+/// A node of a trie of rules, whose paths are literals in ascending order.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct Node {
+    /// Its edges.
+    pub first_edge: u32,
+    /// Where they end.
+    pub end_edge: u32,
+    /// The actions of the rule that ends here.
+    pub first_action: u32,
+    /// Where they end.
+    pub end_action: u32,
+}
+
+/// An edge of a trie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
+pub struct Edge {
+    /// The literal, among all.
+    pub literal: u32,
+    /// The node it leads to.
+    pub node: u32,
+}
+
+/// A rule whose condition is no plain AND.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
+pub struct Program {
+    /// Its steps.
+    pub first_step: u32,
+    /// Where they end.
+    pub end_step: u32,
+    /// Its actions.
+    pub first_action: u32,
+    /// Where they end.
+    pub end_action: u32,
+}
+
+/// One step of a condition, on a stack of degrees: no recursion and no allocation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
+pub struct Step {
+    /// What it does.
+    pub op: Op,
+    /// The literal, among all, of a step that has one.
+    pub literal: u32,
+}
+
+/// What a step does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Op(pub u32);
+
+impl Op {
+    /// Push the degree of a literal.
+    pub const PUSH: Op = Op(0);
+    /// Join the top with a literal by AND.
+    pub const AND_LITERAL: Op = Op(1);
+    /// Join the top with a literal by OR.
+    pub const OR_LITERAL: Op = Op(2);
+    /// Join the two on top by AND.
+    pub const AND: Op = Op(3);
+    /// Join the two on top by OR.
+    pub const OR: Op = Op(4);
+    /// One minus the top.
+    pub const NOT: Op = Op(5);
+}
+
+/// A strength on the way, and the cell or node it is at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Partial {
+    strength: f64,
+    at: u32,
+}
+
+impl Partial {
+    /// None yet.
+    pub const NONE: Partial = Partial {
+        strength: 0.0,
+        at: 0,
+    };
+}
+
+/// The strongest rule of an output: the bits of its strength above those of `u32::MAX` less the rule. For
+/// numbers that are not negative, bits order as the numbers do, so the largest of these is the strongest
+/// rule, of several as strong the first in the model, whatever the order of firing; found without a branch.
+#[derive(Debug, Clone, Copy)]
+pub struct Strongest(u128);
+
+impl Strongest {
+    /// No rule yet.
+    pub const NONE: Strongest = Strongest(0);
+
+    #[inline(always)]
+    fn or(self, strength: f64, rule: u32) -> Self {
+        let bits = u128::from(strength.to_bits()) << 32 | u128::from(u32::MAX - rule);
+        Strongest(if bits > self.0 { bits } else { self.0 })
+    }
+
+    /// The strength, and the rule where it is over 0.
+    #[inline(always)]
+    pub(super) fn rule(self) -> (f64, Option<usize>) {
+        let strength = f64::from_bits((self.0 >> 32) as u64);
+        let rule = u32::MAX - self.0 as u32;
+        (strength, (strength > 0.0).then_some(rule as usize))
+    }
+}
+
+impl Action {
+    /// Of weight 0 for no term: fills up cells.
+    pub(crate) fn none(nowhere: usize) -> Self {
+        Action {
+            weight: 0.0,
+            place: nowhere as u32,
+            output: 0,
+            rule: u32::MAX,
+            sums: 0,
+        }
+    }
+
+    /// Takes the action and gives the strongest rule so far.
+    #[inline(always)]
+    fn act<const SUMS: bool>(
+        &self,
+        degree: f64,
+        heights: &mut [f64],
+        strongest: Strongest,
+    ) -> Strongest {
+        let strength = self.weight * degree;
+        let height = &mut heights[self.place as usize];
+        *height = if SUMS && self.sums != 0 {
+            *height + strength
+        } else {
+            larger(*height, strength)
+        };
+        strongest.or(strength, self.rule)
+    }
+}
+
+/// Where firing strengths go.
+struct Firing<'m> {
+    heights: &'m mut [f64],
+    strongest: &'m mut [Strongest],
+}
+
+impl Firing<'_> {
+    #[inline(always)]
+    fn act(&mut self, actions: &[Action], degree: f64) {
+        for action in actions {
+            let strongest = &mut self.strongest[action.output as usize];
+            *strongest = action.act::<true>(degree, self.heights, *strongest);
+        }
+    }
+}
+
+/// Fires all rules on the values in the scratch into its heights and strongest rules.
+#[inline(always)]
+pub(super) fn fire<A, N, P, S>(table: &A, scratch: &mut Rooms<N, P, S>)
+where
+    A: Arrays,
+    N: DerefMut<Target = [f64]>,
+    P: DerefMut<Target = [Partial]>,
+    S: DerefMut<Target = [Strongest]>,
+{
+    scratch.heights.fill(0.0);
+    scratch.strongest.fill(Strongest::NONE);
+    if !scratch.degrees.is_empty() {
+        scratch.degrees.fill(0.0);
+        for (input, &value) in table.inputs().iter().zip(scratch.values.iter()) {
+            degrees(table, input, value, |literal, degree| {
+                scratch.degrees[(input.first_literal + literal) as usize] = degree;
+            });
+        }
+    }
+    // The usual operators without a choice inside the loops.
+    match table.and() {
+        Conjunction::Minimum => fire_with(table, smaller, scratch),
+        Conjunction::Product => fire_with(table, |a, b| a * b, scratch),
+        and => fire_with(table, |a, b| and.of(a, b), scratch),
+    }
+}
+
+#[inline(always)]
+fn fire_with<A, N, P, S>(table: &A, and: impl Fn(f64, f64) -> f64, scratch: &mut Rooms<N, P, S>)
+where
+    A: Arrays,
+    N: DerefMut<Target = [f64]>,
+    P: DerefMut<Target = [Partial]>,
+    S: DerefMut<Target = [Strongest]>,
+{
+    let Rooms {
+        values,
+        degrees,
+        alive,
+        partial,
+        next,
+        stack,
+        heights,
+        strongest,
+    } = scratch;
+    let mut firing = Firing { heights, strongest };
+    match table.conjunctions() {
+        Conjunctions::Uniform {
+            actions_a_cell,
+            first_action,
+            sums,
+        } => {
+            let cells = Cells {
+                actions: &table.actions()[first_action as usize..],
+                actions_a_cell: actions_a_cell as usize,
+                sums,
+            };
+            fire_uniform(table, &cells, values, partial, and, &mut firing);
+        }
+        Conjunctions::Dense => {
+            fire_dense(table, values, (alive, partial, next), and, &mut firing);
+        }
+        Conjunctions::Trie => fire_trie(table, degrees, partial, and, &mut firing),
+    }
+    for program in table.programs() {
+        let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
+        let degree = run(steps, degrees, table.and(), table.or(), stack);
+        if degree > 0.0 {
+            let range = program.first_action as usize..program.end_action as usize;
+            firing.act(&table.actions()[range], degree);
+        }
+    }
+}
+
+#[inline(always)]
+fn fire_uniform<A: Arrays>(
+    table: &A,
+    cells: &Cells<'_>,
+    values: &[f64],
+    partial: &mut [Partial],
+    and: impl Fn(f64, f64) -> f64,
+    firing: &mut Firing<'_>,
+) {
+    let both = |p: Partial, q: Partial| Partial {
+        strength: and(p.strength, q.strength),
+        at: p.at + q.at,
+    };
+    if let [first, second] = table.axes() {
+        let [a, b] = at(table, first, values);
+        let [c, d] = at(table, second, values);
+        cells.act(&[both(a, c), both(b, c), both(a, d), both(b, d)], firing);
+        return;
+    }
+    partial[0] = Partial {
+        strength: 1.0,
+        at: 0,
+    };
+    let mut count = 1;
+    for axis in table.axes() {
+        let [a, b] = at(table, axis, values);
+        let (first, others) = partial.split_at_mut(count);
+        for (cell, other) in first.iter_mut().zip(others) {
+            *other = both(*cell, b);
+            *cell = both(*cell, a);
+        }
+        count *= 2;
+    }
+    cells.act(&partial[..count], firing);
+}
+
+/// Degrees and offsets of the two lines on the interval in which the axis' input lies.
+#[inline(always)]
+fn at<A: Arrays>(table: &A, axis: &Axis, values: &[f64]) -> [Partial; 2] {
+    let x = values[axis.input as usize];
+    let mut interval = 0;
+    let cuts = &table.cuts()[axis.first_cut as usize..axis.end_cut as usize];
+    for cuts in cuts.chunks_exact(4) {
+        for cut in cuts {
+            interval += usize::from(x >= *cut);
+        }
+    }
+    let first = axis.first_line as usize + 2 * interval;
+    let lines = &table.lines()[first..first + 2];
+    [&lines[0], &lines[1]].map(|line| Partial {
+        strength: line.degree(x),
+        at: line.literal,
+    })
+}
+
+/// Widens partial ANDs input by input; the last input acts at once.
+#[inline(always)]
+fn fire_dense<A: Arrays>(
+    table: &A,
+    values: &[f64],
+    (alive, mut partial, mut next): (&mut [Partial], &mut [Partial], &mut [Partial]),
+    and: impl Fn(f64, f64) -> f64,
+    firing: &mut Firing<'_>,
+) {
+    let actions = |cell: usize| {
+        let (start, end) = (table.cells()[cell], table.cells()[cell + 1]);
+        &table.actions()[start as usize..end as usize]
+    };
+    let Some((last, others)) = table.dimensions().split_last() else {
+        firing.act(actions(0), 1.0);
+        return;
+    };
+    partial[0] = Partial {
+        strength: 1.0,
+        at: 0,
+    };
+    let mut count = 1;
+    for dimension in others {
+        let alive_here = alive_terms(table, dimension, values, alive);
+        let mut widened = 0;
+        for cell in &partial[..count] {
+            for term in &alive[..alive_here] {
+                // Written in any case, counted where it is over 0: no branch to mispredict.
+                let strength = and(cell.strength, term.strength);
+                next[widened] = Partial {
+                    strength,
+                    at: cell.at + term.at,
+                };
+                widened += usize::from(strength > 0.0);
+            }
+        }
+        core::mem::swap(&mut partial, &mut next);
+        count = widened;
+    }
+    let alive_here = alive_terms(table, last, values, alive);
+    for cell in &partial[..count] {
+        for term in &alive[..alive_here] {
+            let strength = and(cell.strength, term.strength);
+            firing.act(actions((cell.at + term.at) as usize), strength);
+        }
+    }
+}
+
+/// Writes the degrees over 0 and their offsets; gives their number.
+#[inline(always)]
+fn alive_terms<A: Arrays>(
+    table: &A,
+    dimension: &Dimension,
+    values: &[f64],
+    alive: &mut [Partial],
+) -> usize {
+    let input = dimension.input as usize;
+    let mut count = 0;
+    degrees(
+        table,
+        &table.inputs()[input],
+        values[input],
+        |literal, degree| {
+            alive[count] = Partial {
+                strength: degree,
+                at: literal * dimension.stride,
+            };
+            count += usize::from(degree > 0.0);
+        },
+    );
+    if dimension.any != u32::MAX {
+        alive[count] = Partial {
+            strength: 1.0,
+            at: dimension.any * dimension.stride,
+        };
+        count += 1;
+    }
+    count
+}
+
+fn fire_trie<A: Arrays>(
+    table: &A,
+    degrees: &[f64],
+    path: &mut [Partial],
+    and: impl Fn(f64, f64) -> f64,
+    firing: &mut Firing<'_>,
+) {
+    path[0] = Partial {
+        strength: 1.0,
+        at: 0,
+    };
+    let mut open = 1;
+    while open > 0 {
+        open -= 1;
+        let Partial { strength, at } = path[open];
+        let node = &table.nodes()[at as usize];
+        let range = node.first_action as usize..node.end_action as usize;
+        firing.act(&table.actions()[range], strength);
+        for edge in &table.edges()[node.first_edge as usize..node.end_edge as usize] {
+            let both = and(strength, degrees[edge.literal as usize]);
+            if both > 0.0 {
+                path[open] = Partial {
+                    strength: both,
+                    at: edge.node,
+                };
+                open += 1;
+            }
+        }
+    }
+}
+
+/// The cells of a uniform table.
+struct Cells<'a> {
+    actions: &'a [Action],
+    actions_a_cell: usize,
+    sums: bool,
+}
+
+impl Cells<'_> {
+    #[inline(always)]
+    fn act(&self, cells: &[Partial], firing: &mut Firing<'_>) {
+        if let ([strongest], 1, false) = (&mut *firing.strongest, self.actions_a_cell, self.sums) {
+            let mut top = *strongest;
+            for cell in cells {
+                let action = &self.actions[cell.at as usize];
+                top = action.act::<false>(cell.strength, firing.heights, top);
+            }
+            *strongest = top;
+            return;
+        }
+        for cell in cells {
+            let first = cell.at as usize * self.actions_a_cell;
+            firing.act(
+                &self.actions[first..first + self.actions_a_cell],
+                cell.strength,
+            );
+        }
+    }
+}
+
+/// The degree of a condition. `stack` has room for the program's depth.
+fn run(
+    steps: &[Step],
+    degrees: &[f64],
+    and: Conjunction,
+    or: Disjunction,
+    stack: &mut [f64],
+) -> f64 {
+    let mut depth = 0;
+    let mut top = 0.0;
+    for step in steps {
+        let degree = || degrees[step.literal as usize];
+        top = match step.op {
+            Op::PUSH => {
+                stack[depth] = top;
+                depth += 1;
+                degree()
+            }
+            Op::AND_LITERAL => and.of(top, degree()),
+            Op::OR_LITERAL => or.of(top, degree()),
+            Op::AND => {
+                depth -= 1;
+                and.of(stack[depth], top)
+            }
+            Op::OR => {
+                depth -= 1;
+                or.of(stack[depth], top)
+            }
+            _ => 1.0 - top,
+        };
+    }
+    larger(0.0, smaller(1.0, top))
+}
