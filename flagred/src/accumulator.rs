@@ -58,8 +58,14 @@ impl Default for AccumulatorSettings {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Accumulator {
-    settings: AccumulatorSettings,
+    sum: RunningSum,
     risks: Window,
+}
+
+/// The elevated risk without the window of risks that it is made of.
+#[derive(Debug, Clone)]
+pub(crate) struct RunningSum {
+    settings: AccumulatorSettings,
     elevated_pct: f64,
     /// Risk in % and rate in % per second at the last sample; between two samples both are taken as straight lines,
     /// which keeps few samples a second as right as many.
@@ -68,28 +74,55 @@ pub struct Accumulator {
 
 impl Accumulator {
     /// An accumulator at 0 %.
-    pub fn new(settings: AccumulatorSettings) -> Accumulator {
+    pub const fn new(settings: AccumulatorSettings) -> Accumulator {
         Accumulator {
-            settings,
             risks: Window::new(settings.window_s),
-            elevated_pct: 0.0,
-            last: None,
+            sum: RunningSum::new(settings),
         }
     }
 
     /// Forgets everything and starts at 0 % again.
     pub fn clear(&mut self) {
-        self.risks.clear();
-        self.elevated_pct = 0.0;
-        self.last = None;
+        self.sum.clear(&mut self.risks);
     }
 
     /// Adds the risk at `t_s`, which stood for the `held_s` seconds before; gives the elevated risk in %.
     pub fn push(&mut self, t_s: f64, held_s: f64, risk_pct: f64) -> f64 {
+        self.sum.push(&mut self.risks, (t_s, held_s), risk_pct)
+    }
+
+    /// The elevated risk in %.
+    pub fn elevated_risk_pct(&self) -> f64 {
+        self.sum.elevated_pct
+    }
+}
+
+impl RunningSum {
+    pub(crate) const fn new(settings: AccumulatorSettings) -> RunningSum {
+        RunningSum {
+            settings,
+            elevated_pct: 0.0,
+            last: None,
+        }
+    }
+
+    pub(crate) fn clear(&mut self, risks: &mut Window) {
+        risks.clear();
+        self.elevated_pct = 0.0;
+        self.last = None;
+    }
+
+    /// [`Accumulator::push`] with the window of risks.
+    pub(crate) fn push(
+        &mut self,
+        risks: &mut Window,
+        (t_s, held_s): (f64, f64),
+        risk_pct: f64,
+    ) -> f64 {
         let last_risk = self.last.map_or(risk_pct, |(risk, _)| risk);
         let between = Moments::between(last_risk, risk_pct, held_s);
-        self.risks.push(t_s, held_s, &between);
-        let total = self.risks.total();
+        risks.push(t_s, held_s, &between);
+        let total = risks.total();
         if let (Some(mean), Some(std)) = (total.mean(), total.std()) {
             let p_high = 1.0 - share_below(self.settings.high_pct, mean, std);
             let p_low = share_below(self.settings.low_pct, mean, std);
@@ -99,11 +132,6 @@ impl Accumulator {
             self.elevated_pct = (self.elevated_pct + step).clamp(0.0, 100.0);
             self.last = Some((risk_pct, rate));
         }
-        self.elevated_pct
-    }
-
-    /// The elevated risk in %.
-    pub fn elevated_risk_pct(&self) -> f64 {
         self.elevated_pct
     }
 }
@@ -125,6 +153,7 @@ fn share_below(x: f64, mean: f64, std: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::vec::Vec;
 
     const SETTINGS: AccumulatorSettings = AccumulatorSettings {
         window_s: 5.0,

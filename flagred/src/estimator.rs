@@ -5,13 +5,21 @@ use alloc::{string::String, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     engine::{CompileError, EvaluateError, Outcome, Scratch},
-    map::{DecisionMap, Grid, GridError},
+    map::{Axis, DecisionMap, Grid, GridError},
+    scale::Scale,
+    table::Set,
 };
 
 use crate::{
-    gap::{FilledMap, is_gap},
+    board::Plan,
+    channel::{Channel, Input},
+    gap::{FilledCells, FilledMap, Run},
+    lookup::Lookup,
     profile::Profile,
+    source::channels,
 };
+
+pub use crate::assessment::Estimate;
 
 /// The most cells a map has that is made to fill gaps; the more inputs, the fewer points along each.
 const MAP_CELLS: usize = 100_000;
@@ -23,26 +31,22 @@ pub struct Estimator {
     engine: Engine,
     output: usize,
     coverage_below: f64,
-    /// `None` where no gap is in reach: every cell is covered.
-    filled: Option<FilledMap>,
+    /// `None` where no gap is in reach: every cell is covered, or there is nothing to fill one from.
+    filled: Option<Filled>,
     /// Which input of the profile each input of the model is.
-    order: Vec<usize>,
+    order: Vec<u32>,
+    /// What is observed, where samples carry the signals of the profile in its order.
+    channels: Vec<Channel>,
+    inputs: Vec<Input>,
 }
 
-/// What is said about a moment whose inputs are known.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// The risk in %, from 0 to 100.
-    pub risk_pct: f64,
-    /// The largest firing strength of a rule, in [0, 1]: how well the rules know such inputs.
-    pub coverage: f64,
-    /// The distance to the nearest inputs that rules cover, in shares of the inputs' ranges, where the risk was
-    /// filled in from there; `None` where rules gave it.
-    pub filled_from: Option<f64>,
-    /// The rule that fired most strongly, as its index in the model.
-    pub dominant_rule: Option<usize>,
-    /// Whether an input lay outside its range and was taken as the range's end.
-    pub clamped: bool,
+/// The filled cells of the map.
+#[derive(Debug, Clone)]
+struct Filled {
+    scales: Vec<Scale>,
+    runs: Vec<Run>,
+    values: Vec<f64>,
+    distances: Vec<f32>,
 }
 
 /// Why a profile and a rule set make no estimator.
@@ -88,6 +92,23 @@ pub enum EstimatorError {
     },
 }
 
+/// The value of an output takes more than a table of numbers, so it cannot fly on board.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the value of output `{output}` has no closed form, so it cannot be written as a table")]
+pub struct NoClosedForm {
+    /// The output.
+    pub output: String,
+}
+
+impl NoClosedForm {
+    /// What has one.
+    pub fn help(&self) -> &'static str {
+        "closed forms have: the centroid over straight terms that overlap only where one falls while the next one rises \
+         (a `partition`), with minimum and maximum; the centroid with `implication: product` and `aggregation: sum`, over \
+         any terms; the Takagi-Sugeno defuzzifiers. All of them without `samples`"
+    }
+}
+
 impl Estimator {
     /// Compiles a rule set for a profile and fills the gaps of its map.
     ///
@@ -125,11 +146,15 @@ impl Estimator {
             .iter()
             .map(|input| {
                 let fed = profile.inputs.iter().position(|i| i.name == input.name);
-                fed.ok_or_else(|| EstimatorError::NoSource {
-                    input: input.name.clone(),
-                })
+                fed.map(|place| place as u32)
+                    .ok_or_else(|| EstimatorError::NoSource {
+                        input: input.name.clone(),
+                    })
             })
-            .collect::<Result<Vec<usize>, EstimatorError>>()?;
+            .collect::<Result<Vec<u32>, EstimatorError>>()?;
+        let sources = profile.inputs.iter().map(|input| &input.source);
+        let (channels, inputs) = channels(sources, &profile.signals())
+            .map_err(|input| EstimatorError::NoSource { input })?;
         let coverage_below = profile.gap.coverage_below(model);
         let grid = Grid::new(&engine, points_along(model.inputs.len()))?;
         let map = DecisionMap::new(&engine, grid, output)?;
@@ -139,8 +164,10 @@ impl Estimator {
             profile: profile.clone(),
             engine,
             output,
-            filled: (filled.filled_share() > 0.0).then_some(filled),
+            filled: Filled::of(&filled),
             order,
+            channels,
+            inputs,
         })
     }
 
@@ -175,33 +202,108 @@ impl Estimator {
 
     /// As [`Estimator::at`], without allocating.
     pub(crate) fn estimate(&self, inputs: &[f64], memory: &mut Memory) -> Option<Estimate> {
-        for (value, from) in memory.inputs.iter_mut().zip(&self.order) {
-            *value = *inputs.get(*from)?;
-        }
-        match self
-            .engine
-            .evaluate_with(&mut memory.scratch, &memory.inputs, &mut memory.outcomes)
-        {
+        let Memory {
+            scratch,
+            point,
+            corner,
+            outcomes,
+        } = memory;
+        let rules = |point: &[f64]| match self.engine.evaluate_with(scratch, point, outcomes) {
             // Where the author calls it an error that no rule fires, the map can still fill the gap.
-            Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
-            Err(_) => return None,
+            Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => outcomes.get(self.output).copied(),
+            Err(_) => None,
+        };
+        self.lookup().estimate(inputs, (point, corner), rules)
+    }
+
+    /// The profile and its rule set as plain data, to fly on board; samples carry the signals of
+    /// [`Profile::signals`], in that order.
+    ///
+    /// # Errors
+    ///
+    /// The output has no closed form.
+    ///
+    /// # Example: how much memory the paper's profile needs for four motors
+    ///
+    /// ```
+    /// use flagred::{estimator::Estimator, shipped};
+    ///
+    /// let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// let estimator = Estimator::new(&profile, &rules)?;
+    /// let plan = estimator.plan()?;
+    /// assert_eq!(plan.check(), Ok(()));
+    /// assert_eq!((plan.sizes().channels, plan.sizes().outputs), (2, 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn plan(&self) -> Result<Plan<'_>, NoClosedForm> {
+        let table = self.engine.table();
+        let open = |output: &fuzzy::table::Output| output.set == Set::OPEN;
+        if table.outputs.get(self.output).is_none_or(open) {
+            return Err(NoClosedForm {
+                output: self.profile.output.clone(),
+            });
         }
-        let outcome = memory.outcomes.get(self.output)?;
-        let reading = self
-            .filled
-            .as_ref()
-            .filter(|_| is_gap(outcome.coverage, self.coverage_below))
-            .and_then(|map| map.read(&memory.inputs));
-        let risk_pct = reading
-            .map(|reading| reading.value)
-            .or_else(|| outcome.value())?;
-        Some(Estimate {
-            risk_pct: risk_pct.clamp(0.0, 100.0),
-            coverage: outcome.coverage,
-            filled_from: reading.map(|reading| reading.distance),
-            dominant_rule: outcome.dominant,
-            clamped: outcome.clamped,
+        Ok(Plan {
+            name: &self.profile.name,
+            table,
+            output: self.output as u32,
+            order: &self.order,
+            channels: &self.channels,
+            inputs: &self.inputs,
+            signals: self.profile.signals().len() as u32,
+            settings: self.profile.settings(),
+            coverage_below: self.coverage_below,
+            filled: self.filled.as_ref().map(Filled::lend),
         })
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        Lookup {
+            order: &self.order,
+            coverage_below: self.coverage_below,
+            filled: self.filled.as_ref().map(Filled::lend),
+        }
+    }
+}
+
+impl Filled {
+    /// `None` where no cell was filled.
+    fn of(map: &FilledMap) -> Option<Filled> {
+        let grid = map.map().grid();
+        let mut filled = Filled {
+            scales: grid.axes().iter().map(Axis::scale).collect(),
+            runs: vec![],
+            values: vec![],
+            distances: vec![],
+        };
+        for cell in (0..grid.cells()).filter(|cell| map.is_filled(*cell)) {
+            let first = filled.values.len() as u32;
+            match filled.runs.last_mut() {
+                Some(run) if run.cell + (run.end - run.first) == cell as u32 => run.end += 1,
+                _ => filled.runs.push(Run {
+                    cell: cell as u32,
+                    first,
+                    end: first + 1,
+                }),
+            }
+            filled.values.push(map.value(cell).unwrap_or(f64::NAN));
+            filled.distances.push(map.distance(cell) as f32);
+        }
+        filled
+            .values
+            .iter()
+            .any(|value| !value.is_nan())
+            .then_some(filled)
+    }
+
+    fn lend(&self) -> FilledCells<'_> {
+        FilledCells {
+            scales: &self.scales,
+            runs: &self.runs,
+            values: &self.values,
+            distances: &self.distances,
+        }
     }
 }
 
@@ -216,16 +318,19 @@ pub fn points_along(inputs: usize) -> usize {
 #[derive(Debug, Clone)]
 pub(crate) struct Memory {
     scratch: Scratch,
-    /// In the order of the model.
-    inputs: Vec<f64>,
+    /// The inputs in the order of the model, and room for others.
+    point: Vec<f64>,
+    corner: Vec<f64>,
     outcomes: Vec<Outcome>,
 }
 
 impl Memory {
     pub(crate) fn of(estimator: &Estimator) -> Memory {
+        let inputs = estimator.order.len();
         Memory {
             scratch: estimator.engine.scratch(),
-            inputs: vec![0.0; estimator.order.len()],
+            point: vec![0.0; inputs],
+            corner: vec![0.0; inputs],
             outcomes: vec![Outcome::default(); estimator.engine.output_names().len()],
         }
     }

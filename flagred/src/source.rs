@@ -2,10 +2,8 @@
 
 use alloc::{string::String, vec, vec::Vec};
 
-use crate::{
-    margin::margin,
-    window::{Moments, Window},
-};
+use crate::channel::{Channel, Input, Observed, Seen, Threshold, push, value};
+pub use crate::channel::{Motors, Observation, Statistic};
 
 /// What is observed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,43 +41,6 @@ impl Signal {
     pub fn is_of_motors(&self) -> bool {
         !matches!(self, Signal::Named(_))
     }
-}
-
-/// A statistic over time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Statistic {
-    /// The mean.
-    Mean,
-    /// The standard deviation.
-    Std,
-    /// The root mean square.
-    Rms,
-    /// The smallest value.
-    Min,
-    /// The largest value.
-    Max,
-    /// The latest value; over motors, their mean.
-    Last,
-    /// The share of time, in [0, 1], spent below a value; over motors, the mean of their shares.
-    ShareBelow(f64),
-    /// The share of time, in [0, 1], spent above a value; over motors, the mean of their shares.
-    ShareAbove(f64),
-}
-
-/// How the motors of one sample become one value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Motors {
-    /// They do not: the statistic is over all motors and the whole window at once.
-    #[default]
-    Pooled,
-    /// Their mean.
-    Mean,
-    /// Their standard deviation: the spread between motors.
-    Std,
-    /// The smallest of them.
-    Min,
-    /// The largest of them.
-    Max,
 }
 
 /// Where a model input comes from.
@@ -124,38 +85,7 @@ pub struct Source {
 pub struct Observer {
     inputs: Vec<Input>,
     channels: Vec<Channel>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Input {
-    channel: usize,
-    statistic: Statistic,
-}
-
-/// One thing observed over one window.
-#[derive(Debug, Clone)]
-struct Channel {
-    observed: Observed,
-    motors: Motors,
-    threshold: Option<Threshold>,
-    window: Window,
-    /// The latest value; over motors, their mean.
-    last: Option<f64>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Threshold {
-    Below(f64),
-    Above(f64),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Observed {
-    Command,
-    Margin,
-    LowSide,
-    HighSide,
-    Named(usize),
+    seen: Vec<Seen>,
 }
 
 impl Observer {
@@ -168,159 +98,76 @@ impl Observer {
         sources: impl IntoIterator<Item = &'a Source>,
         names: &[&str],
     ) -> Result<Observer, String> {
-        let mut observer = Observer {
-            inputs: vec![],
-            channels: vec![],
-        };
-        for source in sources {
-            let observed = match &source.signal {
-                Signal::MotorCommand => Observed::Command,
-                Signal::MotorMargin => Observed::Margin,
-                Signal::MotorMarginLowSide => Observed::LowSide,
-                Signal::MotorMarginHighSide => Observed::HighSide,
-                Signal::Named(name) => Observed::Named(
-                    names
-                        .iter()
-                        .position(|known| known == name)
-                        .ok_or_else(|| name.clone())?,
-                ),
-            };
-            let threshold = match source.statistic {
-                Statistic::ShareBelow(value) => Some(Threshold::Below(value)),
-                Statistic::ShareAbove(value) => Some(Threshold::Above(value)),
-                _ => None,
-            };
-            let same = observer.channels.iter().position(|channel| {
-                channel.observed == observed
-                    && channel.motors == source.motors
-                    && channel.threshold == threshold
-                    && channel.window.length_s() == source.window_s
-            });
-            let channel = same.unwrap_or_else(|| {
-                observer.channels.push(Channel {
-                    observed,
-                    motors: source.motors,
-                    threshold,
-                    window: Window::new(source.window_s),
-                    last: None,
-                });
-                observer.channels.len() - 1
-            });
-            observer.inputs.push(Input {
-                channel,
-                statistic: source.statistic,
-            });
-        }
-        Ok(observer)
+        let (channels, inputs) = channels(sources, names)?;
+        let seen = channels.iter().map(|channel| Seen::new(channel.window_s));
+        Ok(Observer {
+            seen: seen.collect(),
+            inputs,
+            channels,
+        })
     }
 
     /// Forgets everything.
     pub fn clear(&mut self) {
-        for channel in &mut self.channels {
-            channel.window.clear();
-            channel.last = None;
+        for seen in &mut self.seen {
+            seen.clear();
         }
     }
 
     /// Adds a sample at `t_s` that stands for the `held_s` seconds before it: the effective command of each motor, and
     /// the named signals in the order of their names; NaN is unknown.
     pub fn push(&mut self, t_s: f64, held_s: f64, motors: &[f64], named: &[f64]) {
-        for channel in &mut self.channels {
-            let now = channel.reduce(motors, named);
-            channel.last = now.mean();
-            if now.weight() > 0.0 {
-                // A sample weighs its time, however many motors it knows.
-                channel
-                    .window
-                    .push(t_s, held_s, &now.scaled(held_s / now.weight()));
-            } else {
-                channel.window.advance(t_s);
-            }
-        }
+        let motors = motors.iter().copied();
+        push(&self.channels, &mut self.seen, (t_s, held_s), motors, named);
     }
 
     /// The value of an input, and how much of its window is behind it; `None` where nothing is known.
     pub fn value(&self, input: usize) -> Option<Observation> {
-        let Input { channel, statistic } = *self.inputs.get(input)?;
-        let channel = self.channels.get(channel)?;
-        let total = channel.window.total();
-        let value = match statistic {
-            Statistic::Mean | Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => total.mean(),
-            Statistic::Std => total.std(),
-            Statistic::Rms => total.rms(),
-            Statistic::Min => total.min(),
-            Statistic::Max => total.max(),
-            Statistic::Last => channel.last,
+        value(&self.inputs, &self.seen, input)
+    }
+}
+
+/// The channels that sources need, each shared by those that look at the same thing, and which of them each source is
+/// a statistic of. The named signals stand at the places of their names; a name that is not among them is the error.
+pub(crate) fn channels<'a>(
+    sources: impl IntoIterator<Item = &'a Source>,
+    names: &[&str],
+) -> Result<(Vec<Channel>, Vec<Input>), String> {
+    let mut channels: Vec<Channel> = vec![];
+    let mut inputs = vec![];
+    for source in sources {
+        let observed = match &source.signal {
+            Signal::MotorCommand => Observed::Command,
+            Signal::MotorMargin => Observed::Margin,
+            Signal::MotorMarginLowSide => Observed::LowSide,
+            Signal::MotorMarginHighSide => Observed::HighSide,
+            Signal::Named(name) => Observed::Named(
+                names
+                    .iter()
+                    .position(|known| known == name)
+                    .ok_or_else(|| name.clone())?,
+            ),
         };
-        Some(Observation {
-            value: value?,
-            samples: match statistic {
-                Statistic::Last => None,
-                _ => Some(channel.window.samples()),
+        let channel = Channel {
+            observed,
+            motors: source.motors,
+            threshold: match source.statistic {
+                Statistic::ShareBelow(value) => Some(Threshold::Below(value)),
+                Statistic::ShareAbove(value) => Some(Threshold::Above(value)),
+                _ => None,
             },
-            covered_s: total.weight(),
-            window_s: channel.window.length_s(),
-        })
-    }
-}
-
-/// The value of an input, and what is behind it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Observation {
-    /// The value.
-    pub value: f64,
-    /// The samples in the window; `None` for a statistic that needs but one.
-    pub samples: Option<u32>,
-    /// How much time of the window they cover, in seconds.
-    pub covered_s: f64,
-    /// The length of the window in seconds.
-    pub window_s: f64,
-}
-
-impl Channel {
-    /// The values of one sample, each motor known with weight 1.
-    fn reduce(&self, motors: &[f64], named: &[f64]) -> Moments {
-        let observe: fn(f64) -> f64 = match self.observed {
-            Observed::Named(index) => {
-                let value = named.get(index).copied().unwrap_or(f64::NAN);
-                return self.threshold(value);
-            }
-            Observed::Command | Observed::LowSide => |e| e,
-            Observed::Margin => margin,
-            Observed::HighSide => |e| 1.0 - e,
+            window_s: source.window_s,
         };
-        if self.motors == Motors::Pooled {
-            let mut all = Moments::EMPTY;
-            for e in motors {
-                all.merge(&self.threshold(observe(*e)));
-            }
-            return all;
+        let same = channels.iter().position(|known| *known == channel);
+        inputs.push(Input {
+            channel: same.unwrap_or(channels.len()),
+            statistic: source.statistic,
+        });
+        if same.is_none() {
+            channels.push(channel);
         }
-        let mut all = Moments::EMPTY;
-        for e in motors.iter().filter(|e| e.is_finite()) {
-            all.merge(&Moments::of(observe(*e), 1.0));
-        }
-        let one = match self.motors {
-            Motors::Pooled | Motors::Mean => all.mean(),
-            Motors::Std => all.std(),
-            Motors::Min => all.min(),
-            Motors::Max => all.max(),
-        };
-        self.threshold(one.unwrap_or(f64::NAN))
     }
-
-    /// The value itself, or for a share whether it is beyond the threshold.
-    fn threshold(&self, value: f64) -> Moments {
-        if !value.is_finite() {
-            return Moments::EMPTY;
-        }
-        let counted = match self.threshold {
-            None => value,
-            Some(Threshold::Below(limit)) => f64::from(u8::from(value < limit)),
-            Some(Threshold::Above(limit)) => f64::from(u8::from(value > limit)),
-        };
-        Moments::of(counted, 1.0)
-    }
+    Ok((channels, inputs))
 }
 
 #[cfg(test)]

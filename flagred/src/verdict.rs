@@ -3,8 +3,6 @@
 //! Pilots switch off warnings that cry too often, so a level is raised only after its threshold has been reached for
 //! a while, is lowered only after a lower one has not been reached for a while, and is not raised just after take-off.
 
-use alloc::{vec, vec::Vec};
-
 use crate::margin::{Side, margin};
 
 /// How risky it is, or was.
@@ -169,8 +167,34 @@ struct Watch {
     /// Since when the level is reached.
     reached_since_s: Option<f64>,
     finding: Option<Finding>,
-    /// The motors while the level was reached, since it was first.
-    motors: Vec<MotorRecord>,
+}
+
+/// What is kept of one motor.
+#[derive(Debug, Clone, Copy)]
+pub struct Motor {
+    /// Its effective command in the latest sample; NaN is unknown.
+    pub(crate) command: f64,
+    /// Its margins while a level was reached, since it was first: of WARN, of FAIL.
+    records: [MotorRecord; 2],
+}
+
+impl Motor {
+    /// Memory for a motor, all zeros.
+    pub(crate) const IDLE: Motor = Motor {
+        command: 0.0,
+        records: [MotorRecord {
+            samples: 0,
+            mean_margin: 0.0,
+            least_margin: 0.0,
+            side: Side::Low,
+        }; 2],
+    };
+
+    /// A motor of which nothing is known yet.
+    pub const UNKNOWN: Motor = Motor {
+        command: f64::NAN,
+        records: [NO_RECORD; 2],
+    };
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -201,18 +225,12 @@ pub(crate) struct Step {
 }
 
 impl Alert {
-    pub(crate) fn new(settings: VerdictSettings, motors: usize) -> Alert {
-        let watch = |level| Watch {
-            level,
-            reached_since_s: None,
-            finding: None,
-            motors: vec![NO_RECORD; motors],
-        };
+    pub(crate) const fn new(settings: VerdictSettings) -> Alert {
         Alert {
             settings,
             level: Level::Good,
             last_held_s: 0.0,
-            watches: [watch(Level::Warn), watch(Level::Fail)],
+            watches: [Watch::of(Level::Warn), Watch::of(Level::Fail)],
         }
     }
 
@@ -221,12 +239,12 @@ impl Alert {
     }
 
     /// The finding that the level rests on, as it stands; `None` while there is nothing to say.
-    pub(crate) fn open(&self) -> Option<Finding> {
+    pub(crate) fn open(&self, motors: &[Motor]) -> Option<Finding> {
         let watch = self
             .watches
             .iter()
             .find(|watch| watch.level == self.level)?;
-        let motor = watch.weakest_motor();
+        let motor = watch.weakest_motor(motors);
         watch.finding.map(|finding| Finding { motor, ..finding })
     }
 
@@ -236,7 +254,7 @@ impl Alert {
         t_s: f64,
         risk_pct: f64,
         elevated_pct: f64,
-        motors: &[f64],
+        motors: &mut [Motor],
     ) -> Step {
         let settings = self.settings;
         let risk_pct = if idles(motors, &settings.idle) {
@@ -265,7 +283,7 @@ impl Alert {
             step.change = Some(held);
             step.ended = self.watches.each_mut().map(|watch| {
                 let is_over = watch.level > held;
-                is_over.then(|| watch.end()).flatten()
+                is_over.then(|| watch.end(motors)).flatten()
             });
         }
         step
@@ -273,13 +291,13 @@ impl Alert {
 
     /// Ends it all: the flight, or the knowledge of it, is over. What was raised too shortly before a landing
     /// is taken back.
-    pub(crate) fn end(&mut self, t_s: f64, landed: bool) -> Step {
+    pub(crate) fn end(&mut self, t_s: f64, landed: bool, motors: &[Motor]) -> Step {
         let change = (self.level > Level::Good).then_some(Level::Good);
         self.level = Level::Good;
         let quiet_s = self.settings.quiet_before_landing_s;
         let ended = self.watches.each_mut().map(|watch| {
             watch.reached_since_s = None;
-            let finding = watch.end();
+            let finding = watch.end(motors);
             finding.filter(|finding| !landed || t_s - finding.raised_s >= quiet_s)
         });
         Step { change, ended }
@@ -287,6 +305,19 @@ impl Alert {
 }
 
 impl Watch {
+    const fn of(level: Level) -> Watch {
+        Watch {
+            level,
+            reached_since_s: None,
+            finding: None,
+        }
+    }
+
+    /// Which of a motor's records is this level's.
+    fn record(&self) -> usize {
+        usize::from(self.level == Level::Fail)
+    }
+
     /// Takes in whether the level is reached, by what and over which threshold; gives the level where that raises it.
     fn push(
         &mut self,
@@ -294,18 +325,21 @@ impl Watch {
         reached: Option<(Measure, f64)>,
         after_s: f64,
         now: Level,
-        motors: &[f64],
+        motors: &mut [Motor],
     ) -> Option<Level> {
+        let record = self.record();
         let Some((measure, threshold_pct)) = reached else {
             self.reached_since_s = None;
             return None;
         };
         if self.reached_since_s.is_none() && self.finding.is_none() {
-            self.motors.fill(NO_RECORD);
+            for motor in motors.iter_mut() {
+                motor.records[record] = NO_RECORD;
+            }
         }
         let from_s = *self.reached_since_s.get_or_insert(t_s);
-        for (record, e) in self.motors.iter_mut().zip(motors) {
-            record.add(*e);
+        for motor in motors {
+            motor.records[record].add(motor.command);
         }
         if self.level <= now || t_s - from_s < after_s - ROUNDING_S {
             return None;
@@ -337,19 +371,16 @@ impl Watch {
         }
     }
 
-    fn end(&mut self) -> Option<Finding> {
-        let motor = self.weakest_motor();
+    fn end(&mut self, motors: &[Motor]) -> Option<Finding> {
+        let motor = self.weakest_motor(motors);
         self.finding
             .take()
             .map(|finding| Finding { motor, ..finding })
     }
 
-    fn weakest_motor(&self) -> Option<MotorFinding> {
-        let known = self
-            .motors
-            .iter()
-            .enumerate()
-            .filter(|(_, r)| r.samples > 0);
+    fn weakest_motor(&self, motors: &[Motor]) -> Option<MotorFinding> {
+        let records = motors.iter().map(|motor| motor.records[self.record()]);
+        let known = records.enumerate().filter(|(_, r)| r.samples > 0);
         let weakest = known.min_by(|(_, a), (_, b)| a.mean_margin.total_cmp(&b.mean_margin));
         weakest.map(|(motor, record)| MotorFinding {
             motor,
@@ -375,8 +406,9 @@ impl MotorRecord {
     }
 }
 
-fn idles(motors: &[f64], idle: &Idle) -> bool {
-    let known = motors.iter().filter(|e| e.is_finite());
+fn idles(motors: &[Motor], idle: &Idle) -> bool {
+    let commands = motors.iter().map(|motor| motor.command);
+    let known = commands.filter(|e| e.is_finite());
     let (sum, count) = known.fold((0.0, 0.0), |(sum, count), e| (sum + e, count + 1.0));
     count > 0.0 && sum < idle.command_below * count
 }
@@ -384,6 +416,7 @@ fn idles(motors: &[f64], idle: &Idle) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::{vec, vec::Vec};
 
     const fn threshold(risk_pct: Option<f64>, elevated_risk_pct: Option<f64>) -> Threshold {
         Threshold {
@@ -412,25 +445,48 @@ mod tests {
         },
     };
 
+    /// An alert, and the motors it watched.
+    #[derive(Clone)]
+    struct Flown {
+        alert: Alert,
+        motors: [Motor; 2],
+    }
+
+    impl Flown {
+        fn new(commands: [f64; 2]) -> Flown {
+            Flown {
+                alert: Alert::new(SETTINGS),
+                motors: commands.map(|command| Motor {
+                    command,
+                    ..Motor::UNKNOWN
+                }),
+            }
+        }
+
+        fn end(&mut self, t_s: f64, landed: bool) -> Step {
+            self.alert.end(t_s, landed, &self.motors)
+        }
+    }
+
     /// Runs (seconds, risk, elevated risk) at 10 Hz; gives what changed when, and the findings.
-    fn run(phases: &[(f64, f64, f64)]) -> (Vec<(f64, Level)>, Vec<Finding>, Alert) {
-        let mut alert = Alert::new(SETTINGS, 2);
+    fn run(phases: &[(f64, f64, f64)]) -> (Vec<(f64, Level)>, Vec<Finding>, Flown) {
+        let mut flown = Flown::new([0.4, 0.95]);
         let (mut changes, mut findings, mut i) = (vec![], vec![], 0);
         for (seconds, risk, elevated) in phases {
             for _ in 0..(seconds * 10.0) as usize {
                 let t_s = f64::from(i) / 10.0;
-                let step = alert.push(t_s, *risk, *elevated, &[0.4, 0.95]);
+                let step = flown.alert.push(t_s, *risk, *elevated, &mut flown.motors);
                 changes.extend(step.change.map(|level| (t_s, level)));
                 findings.extend(step.ended.into_iter().flatten());
                 i += 1;
             }
         }
-        (changes, findings, alert)
+        (changes, findings, flown)
     }
 
     #[test]
     fn a_spike_shorter_than_the_minimum_says_nothing() {
-        let (changes, findings, alert) = run(&[
+        let (changes, findings, flown) = run(&[
             (1.0, 0.0, 0.0),
             (0.4, 0.0, 60.0),
             (1.0, 0.0, 0.0),
@@ -438,7 +494,7 @@ mod tests {
             (1.0, 0.0, 0.0),
         ]);
         assert_eq!((changes, findings), (vec![], vec![]));
-        assert_eq!(alert.level(), Level::Good);
+        assert_eq!(flown.alert.level(), Level::Good);
     }
 
     #[test]
@@ -471,9 +527,9 @@ mod tests {
 
     #[test]
     fn either_quantity_is_enough() {
-        let (changes, _, mut alert) = run(&[(2.0, 99.0, 0.0)]);
+        let (changes, _, mut flown) = run(&[(2.0, 99.0, 0.0)]);
         assert_eq!(changes, [(0.5, Level::Fail)]);
-        let [warn, fail] = alert.end(2.0, false).ended;
+        let [warn, fail] = flown.end(2.0, false).ended;
         assert_eq!(warn, None);
         assert_eq!(fail.map(|f| f.measure), Some(Measure::Risk));
     }
@@ -485,9 +541,12 @@ mod tests {
             (0.15, Level::Fail),
             (f64::NAN, Level::Fail),
         ] {
-            let mut alert = Alert::new(SETTINGS, 2);
+            let Flown {
+                mut alert,
+                mut motors,
+            } = Flown::new([e, e]);
             for i in 0..10 {
-                alert.push(f64::from(i) / 10.0, 100.0, 0.0, &[e, e]);
+                alert.push(f64::from(i) / 10.0, 100.0, 0.0, &mut motors);
             }
             assert_eq!(alert.level(), level, "{e}");
         }
@@ -495,22 +554,22 @@ mod tests {
 
     #[test]
     fn what_is_raised_just_before_landing_is_taken_back() {
-        let (_, _, mut alert) = run(&[(2.0, 0.0, 90.0)]);
-        let mut later = alert.clone();
-        assert_eq!(alert.end(2.0, true).ended, [None; 2]);
+        let (_, _, mut flown) = run(&[(2.0, 0.0, 90.0)]);
+        let mut later = flown.clone();
+        assert_eq!(flown.end(2.0, true).ended, [None; 2]);
         assert!(later.end(3.0, true).ended.iter().all(Option::is_some));
         // A link that is lost is no landing.
-        let (_, _, mut alert) = run(&[(2.0, 0.0, 90.0)]);
-        assert!(alert.end(2.0, false).ended.iter().all(Option::is_some));
+        let (_, _, mut flown) = run(&[(2.0, 0.0, 90.0)]);
+        assert!(flown.end(2.0, false).ended.iter().all(Option::is_some));
     }
 
     #[test]
     fn falling_from_fail_to_warn_ends_the_one_finding_and_keeps_the_other_open() {
-        let (changes, findings, mut alert) = run(&[(2.0, 0.0, 90.0), (4.0, 0.0, 60.0)]);
+        let (changes, findings, mut flown) = run(&[(2.0, 0.0, 90.0), (4.0, 0.0, 60.0)]);
         assert_eq!(changes, [(0.5, Level::Fail), (3.9, Level::Warn)]);
         let levels: Vec<Level> = findings.iter().map(|f| f.level).collect();
         assert_eq!(levels, [Level::Fail]);
-        let [warn, fail] = alert.end(6.0, false).ended;
+        let [warn, fail] = flown.end(6.0, false).ended;
         assert_eq!(warn.map(|f| f.to_s), Some(5.9));
         assert_eq!(fail, None);
     }

@@ -4,8 +4,6 @@
 //! `(t - length, t]` and do not depend on the sample rate; at an even rate they are the plain statistics of
 //! the samples in the window.
 
-use alloc::{vec, vec::Vec};
-
 /// Over how many slots the samples of a window are spread. See [`Window`].
 const SLOTS: usize = 128;
 
@@ -164,7 +162,7 @@ pub struct Window {
     length_s: f64,
     now_s: f64,
     /// A ring; the `len` entries from `oldest` on are the slots in use, oldest first.
-    slots: Vec<Slot>,
+    slots: [Slot; SLOTS + 2],
     oldest: usize,
     len: usize,
     samples: u32,
@@ -187,26 +185,48 @@ struct Slot {
 }
 
 impl Window {
-    /// An empty window over the last `length_s` seconds (over 0).
-    pub fn new(length_s: f64) -> Window {
-        let free = Slot {
+    /// Memory for a window, all zeros, so that a static one costs no place in firmware; see [`Window::restart`].
+    pub const IDLE: Window = {
+        const NOTHING: Moments = Moments {
+            min: 0.0,
+            max: 0.0,
+            ..Moments::EMPTY
+        };
+        const FREE: Slot = Slot {
             index: 0.0,
             start_s: 0.0,
             end_s: 0.0,
             samples: 0,
-            moments: Moments::EMPTY,
-            and_later: Moments::EMPTY,
+            moments: NOTHING,
+            and_later: NOTHING,
         };
         Window {
-            length_s,
-            now_s: f64::NEG_INFINITY,
-            slots: vec![free; SLOTS + 2],
+            length_s: 0.0,
+            now_s: 0.0,
+            slots: [FREE; SLOTS + 2],
             oldest: 0,
             len: 0,
             samples: 0,
             front: 0,
-            back: Moments::EMPTY,
+            back: NOTHING,
         }
+    };
+
+    /// An empty window over the last `length_s` seconds (over 0).
+    pub const fn new(length_s: f64) -> Window {
+        Window {
+            length_s,
+            now_s: f64::NEG_INFINITY,
+            back: Moments::EMPTY,
+            ..Window::IDLE
+        }
+    }
+
+    /// Makes it an empty window over the last `length_s` seconds, where it is.
+    pub fn restart(&mut self, length_s: f64) {
+        self.length_s = length_s;
+        self.oldest = 0;
+        self.clear();
     }
 
     /// Its length in seconds.
@@ -335,6 +355,7 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::vec::Vec;
     use proptest::prelude::*;
 
     /// The definition itself: the integral over `(t - length, t]` of a signal held between samples.

@@ -3,7 +3,7 @@
 //! Every filled value is the mean of its neighbours (weighted with `1 / step^2` along each axis), so there is no
 //! extreme inside the gap: it cannot overshoot. The outer ends of the grid are free: nothing flows across them.
 
-use super::Lattice;
+use super::fill::Lattice;
 
 /// A sweep that changes no value by more than this share of the span of the known values ends the iteration.
 const TOLERANCE: f64 = 1e-7;

@@ -1,6 +1,6 @@
 //! Inverse distance weighting (Shepard 1968) over the nearest covered nodes at the edge of the gap.
 
-use super::{Lattice, neighbours::Tree};
+use super::{fill::Lattice, neighbours::Tree};
 
 /// Fills the nodes that are not covered.
 pub(super) fn fill(

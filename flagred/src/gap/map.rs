@@ -2,7 +2,8 @@
 
 use fuzzy::map::DecisionMap;
 
-use super::{GapMethod, Lattice, fill, is_gap};
+use super::fill::{Lattice, fill};
+use super::{GapMethod, Reading, is_gap};
 
 /// A decision map without gaps: what rules cover is as they say, what they do not is filled from there.
 #[derive(Debug, Clone)]
@@ -11,15 +12,6 @@ pub struct FilledMap {
     /// NaN where nothing could be filled; never shown.
     values: Vec<f64>,
     distances: Vec<f32>,
-}
-
-/// A value read from a [`FilledMap`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reading {
-    /// The value.
-    pub value: f64,
-    /// How far the nearest covered cell is, in shares of the inputs' ranges; 0 within the covered part.
-    pub distance: f64,
 }
 
 impl FilledMap {

@@ -4,7 +4,7 @@
 //! each node of the line with the distance found so far (Felzenszwalb and Huttenlocher 2012). The cost is
 //! linear in the number of nodes, in any number of dimensions.
 
-use super::Lattice;
+use super::fill::Lattice;
 
 const NONE: u32 = u32::MAX;
 

@@ -6,7 +6,7 @@
 //! gap. The surface follows slopes beyond what is known, so it can overshoot; values are kept within the range of the
 //! output.
 
-use super::{Lattice, neighbours::Tree};
+use super::{fill::Lattice, neighbours::Tree};
 
 /// How many covered cells shape the surface at a place, in two dimensions; twice as many in each further one.
 const NEIGHBOURS: usize = 16;

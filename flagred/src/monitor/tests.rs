@@ -10,7 +10,7 @@ use crate::{
     gap::GapSettings,
     profile::{ProfileInput, Sampling},
     source::{Motors, Signal, Source, Statistic},
-    verdict::{Finding, VerdictSettings},
+    verdict::{Finding, Level, VerdictSettings},
 };
 
 /// The risk falls from 100 % at a mean margin of 0 to 0 % at 0.5, by two rules; `without_low` leaves out the first.

@@ -3,10 +3,13 @@
 use alloc::{string::String, vec::Vec};
 
 use crate::{
-    accumulator::AccumulatorSettings, gap::GapSettings, source::Source, verdict::VerdictSettings,
+    accumulator::AccumulatorSettings, follower::Settings, gap::GapSettings, source::Source,
+    verdict::VerdictSettings,
 };
 
 mod read;
+
+pub use crate::assessment::Sampling;
 
 /// Everything between a flight and its verdict but the rules themselves.
 ///
@@ -66,27 +69,6 @@ pub struct ProfileInput {
     pub source: Source,
 }
 
-/// When an input counts as known.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sampling {
-    /// The fewest samples a window must hold: at a few samples per second a spread means little.
-    pub min_samples: u32,
-    /// How much time a window must cover before it counts, in seconds, or its whole length where that is less.
-    pub warm_up_s: f64,
-    /// Longer than this without a sample, in seconds, and what was before is forgotten.
-    pub longest_gap_s: f64,
-}
-
-impl Default for Sampling {
-    fn default() -> Self {
-        Sampling {
-            min_samples: 5,
-            warm_up_s: 1.0,
-            longest_gap_s: 2.0,
-        }
-    }
-}
-
 impl Profile {
     /// The names of the signals beside the motors that it needs, each once.
     pub fn signals(&self) -> Vec<&str> {
@@ -99,6 +81,15 @@ impl Profile {
             }
         }
         names
+    }
+
+    /// What it says about time.
+    pub fn settings(&self) -> Settings {
+        Settings {
+            sampling: self.sampling,
+            elevated_risk: self.elevated_risk,
+            verdict: self.verdict,
+        }
     }
 
     /// The longest window of an input, in seconds.

@@ -1,0 +1,230 @@
+//! Channels: one thing observed over one window, and the statistics taken of it. What is to be observed is plain data,
+//! which can lie in a table; what was seen is the caller's memory.
+
+use crate::{
+    margin::margin,
+    window::{Moments, Window},
+};
+
+/// A statistic over time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Statistic {
+    /// The mean.
+    Mean,
+    /// The standard deviation.
+    Std,
+    /// The root mean square.
+    Rms,
+    /// The smallest value.
+    Min,
+    /// The largest value.
+    Max,
+    /// The latest value; over motors, their mean.
+    Last,
+    /// The share of time, in [0, 1], spent below a value; over motors, the mean of their shares.
+    ShareBelow(f64),
+    /// The share of time, in [0, 1], spent above a value; over motors, the mean of their shares.
+    ShareAbove(f64),
+}
+
+/// How the motors of one sample become one value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Motors {
+    /// They do not: the statistic is over all motors and the whole window at once.
+    #[default]
+    Pooled,
+    /// Their mean.
+    Mean,
+    /// Their standard deviation: the spread between motors.
+    Std,
+    /// The smallest of them.
+    Min,
+    /// The largest of them.
+    Max,
+}
+
+/// What a sample gives to a channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Observed {
+    /// The effective command of each motor.
+    Command,
+    /// Its margin.
+    Margin,
+    /// Its distance from the lower limit.
+    LowSide,
+    /// Its distance from the upper limit.
+    HighSide,
+    /// The signal at this place among those that samples carry.
+    Named(usize),
+}
+
+/// The values that count, where a share of time is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Threshold {
+    /// Those below.
+    Below(f64),
+    /// Those above.
+    Above(f64),
+}
+
+/// One thing to observe over one window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Channel {
+    /// What.
+    pub observed: Observed,
+    /// How the motors of a sample become one value.
+    pub motors: Motors,
+    /// Which values count, for a share of time.
+    pub threshold: Option<Threshold>,
+    /// Over how many seconds.
+    pub window_s: f64,
+}
+
+/// An input: a statistic of a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Input {
+    /// The channel's place among all.
+    pub channel: usize,
+    /// The statistic.
+    pub statistic: Statistic,
+}
+
+/// What a channel has seen.
+#[derive(Debug, Clone)]
+pub struct Seen {
+    window: Window,
+    /// The latest value; over motors, their mean.
+    last: Option<f64>,
+}
+
+impl Seen {
+    /// Nothing yet, over a window of so many seconds.
+    pub const fn new(window_s: f64) -> Seen {
+        Seen {
+            window: Window::new(window_s),
+            last: None,
+        }
+    }
+
+    /// Memory for what a channel sees, all zeros; see [`Window::IDLE`].
+    pub const IDLE: Seen = Seen {
+        window: Window::IDLE,
+        last: None,
+    };
+
+    /// Nothing yet, over a window of so many seconds, where it is.
+    pub(crate) fn restart(&mut self, window_s: f64) {
+        self.window.restart(window_s);
+        self.last = None;
+    }
+
+    /// Forgets everything.
+    pub(crate) fn clear(&mut self) {
+        self.window.clear();
+        self.last = None;
+    }
+}
+
+/// Adds a sample, of a time and the seconds before it that it stands for, to all channels; NaN is unknown.
+pub(crate) fn push(
+    channels: &[Channel],
+    seen: &mut [Seen],
+    (t_s, held_s): (f64, f64),
+    motors: impl Iterator<Item = f64> + Clone,
+    named: &[f64],
+) {
+    for (channel, seen) in channels.iter().zip(seen) {
+        let now = channel.reduce(motors.clone(), named);
+        seen.last = now.mean();
+        if now.weight() > 0.0 {
+            // A sample weighs its time, however many motors it knows.
+            let moments = now.scaled(held_s / now.weight());
+            seen.window.push(t_s, held_s, &moments);
+        } else {
+            seen.window.advance(t_s);
+        }
+    }
+}
+
+/// The value of an input, and how much of its window is behind it; `None` where nothing is known.
+pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Observation> {
+    let Input { channel, statistic } = *inputs.get(input)?;
+    let Seen { window, last } = seen.get(channel)?;
+    let total = window.total();
+    let value = match statistic {
+        Statistic::Mean | Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => total.mean(),
+        Statistic::Std => total.std(),
+        Statistic::Rms => total.rms(),
+        Statistic::Min => total.min(),
+        Statistic::Max => total.max(),
+        Statistic::Last => *last,
+    };
+    Some(Observation {
+        value: value?,
+        samples: match statistic {
+            Statistic::Last => None,
+            _ => Some(window.samples()),
+        },
+        covered_s: total.weight(),
+        window_s: window.length_s(),
+    })
+}
+
+/// The value of an input, and what is behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// The value.
+    pub value: f64,
+    /// The samples in the window; `None` for a statistic that needs but one.
+    pub samples: Option<u32>,
+    /// How much time of the window they cover, in seconds.
+    pub covered_s: f64,
+    /// The length of the window in seconds.
+    pub window_s: f64,
+}
+
+impl Channel {
+    /// The values of one sample, each motor known with weight 1.
+    fn reduce(&self, motors: impl Iterator<Item = f64>, named: &[f64]) -> Moments {
+        let observe: fn(f64) -> f64 = match self.observed {
+            Observed::Named(index) => {
+                let value = named.get(index).copied().unwrap_or(f64::NAN);
+                return self.threshold(value);
+            }
+            Observed::Command | Observed::LowSide => |e| e,
+            Observed::Margin => margin,
+            Observed::HighSide => |e| 1.0 - e,
+        };
+        if self.motors == Motors::Pooled {
+            let mut all = Moments::EMPTY;
+            for e in motors {
+                all.merge(&self.threshold(observe(e)));
+            }
+            return all;
+        }
+        let mut all = Moments::EMPTY;
+        for e in motors.filter(|e| e.is_finite()) {
+            all.merge(&Moments::of(observe(e), 1.0));
+        }
+        let one = match self.motors {
+            Motors::Pooled | Motors::Mean => all.mean(),
+            Motors::Std => all.std(),
+            Motors::Min => all.min(),
+            Motors::Max => all.max(),
+        };
+        self.threshold(one.unwrap_or(f64::NAN))
+    }
+
+    /// The value itself, or for a share whether it is beyond the threshold.
+    fn threshold(&self, value: f64) -> Moments {
+        if !value.is_finite() {
+            return Moments::EMPTY;
+        }
+        let counted = match self.threshold {
+            None => value,
+            Some(Threshold::Below(limit)) => f64::from(u8::from(value < limit)),
+            Some(Threshold::Above(limit)) => f64::from(u8::from(value > limit)),
+        };
+        Moments::of(counted, 1.0)
+    }
+}

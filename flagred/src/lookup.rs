@@ -1,0 +1,50 @@
+//! From the values of inputs to a risk: the rules where they apply, the filled cells where they do not.
+
+use fuzzy::table::Outcome;
+
+use crate::{
+    assessment::Estimate,
+    gap::{FilledCells, is_gap},
+};
+
+/// What an estimate needs to know beside the rules.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lookup<'a> {
+    /// Which input of the profile each input of the rule set is.
+    pub(crate) order: &'a [u32],
+    /// The coverage below which the rules do not apply.
+    pub(crate) coverage_below: f64,
+    /// `None` where rules apply everywhere.
+    pub(crate) filled: Option<FilledCells<'a>>,
+}
+
+impl Lookup<'_> {
+    /// The risk at values of the inputs, in the order of the profile; `rules` evaluates the rule set, in its own order.
+    /// `None` where rules say nothing and there is nothing to fill from, or a value is not finite.
+    pub(crate) fn estimate(
+        &self,
+        inputs: &[f64],
+        (point, corner): (&mut [f64], &mut [f64]),
+        mut rules: impl FnMut(&[f64]) -> Option<Outcome>,
+    ) -> Option<Estimate> {
+        for (value, from) in point.iter_mut().zip(self.order) {
+            *value = *inputs.get(*from as usize)?;
+        }
+        let outcome = rules(point)?;
+        let reading = self
+            .filled
+            .filter(|_| is_gap(outcome.coverage, self.coverage_below))
+            .filter(|_| point.iter().all(|x| x.is_finite()))
+            .and_then(|cells| cells.read(point, corner, |corner| rules(corner)?.value()));
+        let risk_pct = reading
+            .map(|reading| reading.value)
+            .or_else(|| outcome.value())?;
+        Some(Estimate {
+            risk_pct: risk_pct.clamp(0.0, 100.0),
+            coverage: outcome.coverage,
+            filled_from: reading.map(|reading| reading.distance),
+            dominant_rule: outcome.dominant,
+            clamped: outcome.clamped,
+        })
+    }
+}
