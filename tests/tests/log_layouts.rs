@@ -365,6 +365,61 @@ fn telemetry_of_one_vehicle_among_others() {
     assert!((flight.statistics().unwrap().margin_mean - 0.3).abs() < 1e-9);
 }
 
+/// A PX4 quadrotor of 1.13 or later with two motors on MAIN and two on AUX, which come in port 1 of SERVO_OUTPUT_RAW.
+#[test]
+fn tlog_with_motors_on_both_ports() {
+    const START_US: u64 = 1_700_000_000_000_000;
+    let parameter = |name: &str, value: i32| {
+        let mut payload = value.to_le_bytes().to_vec();
+        payload.extend([0; 4]);
+        payload.extend(name.as_bytes());
+        payload.resize(24, 0);
+        payload.push(6);
+        payload
+    };
+    let mut log = Tlog::default();
+    let heartbeat = [0, 0, 0, 0, 2, 12, 128, 4, 3];
+    log.packet(START_US, 2, (1, 1), HEARTBEAT, &heartbeat);
+    for (name, value) in [
+        ("PWM_MAIN_FUNC1", 101),
+        ("PWM_MAIN_FUNC2", 102),
+        ("PWM_AUX_FUNC1", 103),
+        ("PWM_AUX_FUNC9", 0),
+        ("PWM_AUX_FUNC10", 104),
+        ("PWM_MAIN_MIN1", 1100),
+        ("PWM_MAIN_MAX1", 1900),
+    ] {
+        log.packet(START_US, 2, (1, 1), PARAM_VALUE, &parameter(name, value));
+    }
+    for row in 0..50_u64 {
+        for port in [0, 1_u8] {
+            let mut servos = vec![0; 4];
+            let first = [1500_u16, 1600, 0, 0, 0, 0, 0, 0].map(|us| us + u16::from(port) * 100);
+            servos.extend(first.iter().flat_map(|us| us.to_le_bytes()));
+            servos.push(port);
+            servos.extend([0; 2]);
+            servos.extend(1900_u16.to_le_bytes());
+            let stamp_us = START_US + 100_000 * row + u64::from(port);
+            log.packet(stamp_us, 2, (1, 1), SERVO_OUTPUT_RAW, &servos);
+        }
+    }
+    let flight = read(&log.bytes);
+    assert_eq!(
+        outputs(&flight),
+        [
+            (1, "servo1_raw"),
+            (2, "servo2_raw"),
+            (3, "servo1_raw of port 1"),
+            (4, "servo10_raw of port 1")
+        ]
+    );
+    let range = flight.range.as_ref().unwrap();
+    assert_eq!((range.low, range.high), (1100.0, 1900.0));
+    assert_eq!(flight.commands.len(), 50);
+    let (_, row) = flight.commands.rows().nth(20).unwrap();
+    assert_eq!(row, [1500.0, 1600.0, 1600.0, 1900.0]);
+}
+
 /// The example of the documentation is what it says it is.
 #[test]
 fn the_documented_flight_csv() {

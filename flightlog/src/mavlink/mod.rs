@@ -9,6 +9,9 @@ pub(crate) mod packet;
 mod requests;
 #[cfg(feature = "mavlink")]
 mod send;
+pub(crate) mod servo;
+#[cfg(feature = "mavlink")]
+mod setup;
 mod stream;
 #[cfg(feature = "mavlink")]
 mod telemetry;
@@ -22,6 +25,8 @@ pub use packet::{Next, Packet, Version, Why, next_packet};
 pub use requests::{MOTOR_RATE_HZ, Requests, parameters_known};
 #[cfg(feature = "mavlink")]
 pub use send::Sender;
+#[cfg(feature = "mavlink")]
+pub use setup::Setup;
 pub use stream::{Skipped, Stream};
 #[cfg(feature = "mavlink")]
-pub use telemetry::{News, Setup, Telemetry, is_in_air, vehicle_of};
+pub use telemetry::{News, Telemetry, is_in_air, vehicle_of};

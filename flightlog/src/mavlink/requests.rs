@@ -114,7 +114,7 @@ impl Requests {
     }
 
     fn ask_parameters(&mut self, now_s: f64, telemetry: &Telemetry, out: &mut Vec<MavMessage>) {
-        let missing = missing_parameters(telemetry);
+        let missing = telemetry.missing_parameters();
         if missing.is_empty() {
             self.parameters_done = true;
             return;
@@ -142,24 +142,7 @@ impl Requests {
     }
 }
 
-/// The parameters that the motors and their range depend on, and that are not known yet.
-fn missing_parameters(telemetry: &Telemetry) -> Vec<String> {
-    let fixed = ["MOT_PWM_MIN", "MOT_PWM_MAX", "MOT_SPIN_MIN", "MOT_SPIN_MAX"];
-    let mut names: Vec<String> = fixed.iter().map(|&name| name.to_owned()).collect();
-    names.extend((1..=16).map(|output| format!("SERVO{output}_FUNCTION")));
-    let unset = |name| telemetry.parameter(name).is_some_and(|value| value <= 0.0);
-    if unset("MOT_PWM_MIN") || unset("MOT_PWM_MAX") {
-        // Then the throttle stick gives the range.
-        names.push("RCMAP_THROTTLE".to_owned());
-        if let Some(channel) = telemetry.parameter("RCMAP_THROTTLE") {
-            names.extend(["MIN", "MAX"].map(|end| format!("RC{channel}_{end}")));
-        }
-    }
-    names.retain(|name| telemetry.parameter(name).is_none());
-    names
-}
-
 /// Whether everything is known that the motors and their range depend on.
 pub fn parameters_known(telemetry: &Telemetry) -> bool {
-    missing_parameters(telemetry).is_empty()
+    telemetry.missing_parameters().is_empty()
 }

@@ -3,15 +3,16 @@
 use ::mavlink::Message;
 
 use super::{
-    Packet, Version,
+    Packet, Setup, Version,
     dialect::{
         COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd,
         MavLandedState, MavMessage, MavModeFlag, MavParamType, MavResult, MavState,
         PARAM_VALUE_DATA, SERVO_OUTPUT_RAW_DATA,
     },
 };
+use super::{servo::OUTPUTS_A_PORT, setup::missing};
 use crate::{
-    Motor, Range, Vehicle, VehicleKind, ardupilot,
+    Vehicle, VehicleKind,
     clock::{Clock, Placed},
     mav_type::{MavType, mav_type},
     parameters::Parameters,
@@ -35,8 +36,8 @@ impl From<Version> for ::mavlink::MavlinkVersion {
 
 /// The component that is the autopilot.
 const AUTOPILOT: u8 = 1;
-/// Outputs in one SERVO_OUTPUT_RAW.
-const OUTPUTS: usize = 16;
+/// Ports of SERVO_OUTPUT_RAW: the second has ArduPilot's outputs from 17 on, and PX4's AUX outputs.
+const PORTS: usize = 2;
 /// What an output that is not driven, or not known, reads.
 const NO_PULSE: [u16; 2] = [0, u16::MAX];
 /// No output and no limit of one is longer, in us; what is longer is damaged.
@@ -112,21 +113,6 @@ pub enum News {
     NotUnderstood,
 }
 
-/// Motors and the range of their commands, with where each is known from.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setup {
-    /// The motors in order of their number.
-    pub motors: Vec<Motor>,
-    /// Range of the commands, 0 % to 100 %.
-    pub range: Range,
-    /// The part of the range that is used in flight, as fractions of it.
-    pub effective: Range,
-    /// What is assumed because the vehicle did not tell, in words; empty where it told everything.
-    pub assumed: Vec<String>,
-    /// The output of each motor, from 1.
-    outputs: Vec<usize>,
-}
-
 /// Follows one vehicle by its packets.
 #[derive(Debug)]
 pub struct Telemetry {
@@ -141,7 +127,12 @@ pub struct Telemetry {
     landed: Option<MavLandedState>,
     clock: Clock,
     boot_clock: Clock,
-    outputs: [u16; OUTPUTS],
+    /// The latest time stamps of either clock as they came: a packet that comes twice is no witness of itself.
+    stamps: [Option<u32>; 2],
+    /// The latest pulses of each port, and whether they came since commands were last told.
+    outputs: [([u16; OUTPUTS_A_PORT], bool); PORTS],
+    /// The port that completes the commands of all motors.
+    last_port: usize,
     commands_seen: u64,
     interval_refused: bool,
 }
@@ -161,7 +152,9 @@ impl Telemetry {
             landed: None,
             clock: Clock::default(),
             boot_clock: Clock::default(),
-            outputs: [u16::MAX; OUTPUTS],
+            stamps: [None; 2],
+            outputs: [([u16::MAX; OUTPUTS_A_PORT], false); PORTS],
+            last_port: 0,
             commands_seen: 0,
             interval_refused: false,
         }
@@ -229,7 +222,7 @@ impl Telemetry {
                 self.landed = Some(landed_state);
             }
             MavMessage::ATTITUDE(attitude) => return self.check_boot(attitude.time_boot_ms),
-            MavMessage::SERVO_OUTPUT_RAW(servo) if servo.port == 0 => return self.command(&servo),
+            MavMessage::SERVO_OUTPUT_RAW(servo) => return self.command(&servo),
             MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
                 command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
                 result,
@@ -265,11 +258,15 @@ impl Telemetry {
         }
         self.parameters.insert(name, value);
         self.parameters_changed = true;
+        self.last_port = self.setup().last_port().min(PORTS - 1);
         News::Parameter
     }
 
     /// Attitude has a clock of its own, which goes on over 49 days where that of the commands starts over.
     fn check_boot(&mut self, boot_ms: u32) -> News {
+        if self.stamps[1].replace(boot_ms) == Some(boot_ms) {
+            return News::Nothing;
+        }
         self.boot_clock.place(f64::from(boot_ms) * 1e-3);
         match self.boot_clock.boots_s() {
             [] => News::Nothing,
@@ -278,7 +275,19 @@ impl Telemetry {
     }
 
     fn command(&mut self, servo: &SERVO_OUTPUT_RAW_DATA) -> News {
+        let port = usize::from(servo.port);
+        if port >= PORTS {
+            return News::Nothing;
+        }
+        if port != self.last_port {
+            // Those of the motors at hand follow, with the same time.
+            self.outputs[port] = (pulses(servo), true);
+            return News::Nothing;
+        }
         self.commands_seen += 1;
+        if self.stamps[0].replace(servo.time_usec) == Some(servo.time_usec) {
+            return News::Nothing;
+        }
         let t_s = match self
             .clock
             .place(seconds(servo.time_usec, self.clock.now_s()))
@@ -289,24 +298,13 @@ impl Telemetry {
         if !self.clock.boots_s().is_empty() {
             return self.forget();
         }
-        self.outputs = [
-            servo.servo1_raw,
-            servo.servo2_raw,
-            servo.servo3_raw,
-            servo.servo4_raw,
-            servo.servo5_raw,
-            servo.servo6_raw,
-            servo.servo7_raw,
-            servo.servo8_raw,
-            servo.servo9_raw,
-            servo.servo10_raw,
-            servo.servo11_raw,
-            servo.servo12_raw,
-            servo.servo13_raw,
-            servo.servo14_raw,
-            servo.servo15_raw,
-            servo.servo16_raw,
-        ];
+        self.outputs[port] = (pulses(servo), true);
+        for (pulses, is_new) in &mut self.outputs {
+            // What did not come again is not known any more.
+            if !std::mem::take(is_new) {
+                *pulses = [u16::MAX; OUTPUTS_A_PORT];
+            }
+        }
         News::Commands { t_s }
     }
 
@@ -317,67 +315,31 @@ impl Telemetry {
         self.landed = None;
         self.clock = Clock::default();
         self.boot_clock = Clock::default();
+        self.stamps = [None; 2];
         self.interval_refused = false;
+        self.last_port = 0;
         News::Rebooted
     }
 
     /// Motors and ranges from what is known; what is not is assumed, and said to be.
-    ///
-    /// Without SERVOn_FUNCTION the motors are the first outputs, as many as the type of vehicle has; without limits
-    /// they are those ArduPilot has when nobody changed them.
     pub fn setup(&self) -> Setup {
-        let mut assumed = Vec::new();
-        let name = |output| format!("servo{output}_raw");
-        let (motors, outputs): (Vec<Motor>, Vec<u16>) =
-            ardupilot::motors(&self.parameters, &self.vehicle, name)
-                .into_iter()
-                .unzip();
-        let numbered = self.parameters.get("SERVO1_FUNCTION").is_none();
-        if numbered && !motors.is_empty() {
-            assumed.push(format!(
-                "motors 1 to {n} on outputs 1 to {n}",
-                n = motors.len()
-            ));
-        }
-        if let Some(expected) = self.vehicle.motors
-            && usize::from(expected) != motors.len()
-        {
-            assumed.push(format!(
-                "the {} motors whose outputs are known are all that matter, of {expected}",
-                motors.len()
-            ));
-        }
-        let default = |low: f64, high: f64, unit, source: &str| Range {
-            low,
-            high,
-            unit,
-            source: source.to_owned(),
-        };
-        let range = ardupilot::pwm_range(&self.parameters).unwrap_or_else(|| {
-            assumed.push("commands from 1000 to 2000 us".to_owned());
-            default(1000.0, 2000.0, "us", "assumed")
-        });
-        let effective = match self.parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
-            None if self.parameters.get("THR_MIN").is_none() => {
-                assumed.push("flown between 0.15 and 0.95 of that".to_owned());
-                default(0.15, 0.95, "1", "assumed")
-            }
-            _ => ardupilot::effective_range(&self.parameters),
-        };
-        Setup {
-            outputs: outputs.iter().map(|&output| usize::from(output)).collect(),
-            motors,
-            range,
-            effective,
-            assumed,
-        }
+        Setup::of(&self.parameters, &self.vehicle, self.is_px4)
+    }
+
+    /// The parameters that motors and their range depend on, and that are not known yet.
+    pub(super) fn missing_parameters(&self) -> Vec<String> {
+        missing(&self.parameters, &self.vehicle, self.is_px4)
     }
 
     /// The latest commands on the effective range, 0..1, a value a motor; NaN where it is not known.
     pub fn effective_commands(&self, setup: &Setup, commands: &mut [f64]) {
         for (command, &output) in commands.iter_mut().zip(&setup.outputs) {
             let index = output.checked_sub(1);
-            *command = match index.and_then(|index| self.outputs.get(index)) {
+            let pulse = index.and_then(|index| {
+                let (pulses, _) = self.outputs.get(index / OUTPUTS_A_PORT)?;
+                pulses.get(index % OUTPUTS_A_PORT)
+            });
+            *command = match pulse {
                 Some(pulse)
                     if !NO_PULSE.contains(pulse) && f64::from(*pulse) <= LONGEST_PULSE_US =>
                 {
@@ -398,6 +360,28 @@ impl Telemetry {
     }
 }
 
+/// The pulses of one port.
+fn pulses(servo: &SERVO_OUTPUT_RAW_DATA) -> [u16; OUTPUTS_A_PORT] {
+    [
+        servo.servo1_raw,
+        servo.servo2_raw,
+        servo.servo3_raw,
+        servo.servo4_raw,
+        servo.servo5_raw,
+        servo.servo6_raw,
+        servo.servo7_raw,
+        servo.servo8_raw,
+        servo.servo9_raw,
+        servo.servo10_raw,
+        servo.servo11_raw,
+        servo.servo12_raw,
+        servo.servo13_raw,
+        servo.servo14_raw,
+        servo.servo15_raw,
+        servo.servo16_raw,
+    ]
+}
+
 /// Damaged limits would make every command look like one at a limit.
 fn is_plausible(name: &str, value: f64) -> bool {
     let most = if name.starts_with("MOT_SPIN_") {
@@ -405,7 +389,9 @@ fn is_plausible(name: &str, value: f64) -> bool {
     } else if name.starts_with("MOT_PWM_") || name.starts_with("RC") {
         LONGEST_PULSE_US
     } else {
-        return value.is_finite();
+        // PX4 has -1 for a limit that is the bank's.
+        let is_limit = name.starts_with("PWM_") && !name.contains("FUNC");
+        return value.is_finite() && (!is_limit || (-1.0..=LONGEST_PULSE_US).contains(&value));
     };
     (0.0..=most).contains(&value)
 }

@@ -6,6 +6,7 @@ use crate::clock::Latest;
 use crate::interval::both_hold;
 use crate::mav_type::{MavType, mav_type};
 use crate::mavlink::packet::Packet;
+use crate::mavlink::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
 use crate::place::{Kind, Place};
@@ -49,6 +50,7 @@ struct Heard {
     version: Option<u32>,
     parameters: Parameters,
     outputs: Outputs,
+    has_port_0: bool,
     series: Vec<(usize, Series)>,
     armed: Vec<(f64, bool)>,
     active: Vec<(f64, bool)>,
@@ -196,11 +198,15 @@ impl Heard {
         }
     }
 
-    /// Outputs 1 to 8 of a port, and 9 to 16 in version 2.
+    /// Outputs 1 to 8 of a port, and 9 to 16 in version 2; those of port 1 complete the row that port 0 began.
     fn servos(&mut self, t_s: f64, payload: &[u8; 255]) -> bool {
-        if payload[20] != 0 {
+        let port = payload[20];
+        if port > 1 {
             return false;
         }
+        self.has_port_0 |= port == 0;
+        let first = port == 0 || !self.has_port_0;
+        let before = u16::from(port) * OUTPUTS_A_PORT as u16;
         let offset = |output: u16| match output {
             ..=8 => 2 + 2 * usize::from(output),
             _ => 3 + 2 * usize::from(output),
@@ -208,8 +214,9 @@ impl Heard {
         // Those above 8 are 0 where the sender does not have them.
         let outputs = (1..=16)
             .filter_map(|output| Some((output, number(payload, offset(output), Kind::U16)?)))
-            .filter(|&(output, pulse_us)| output <= 8 || pulse_us > 0.0);
-        self.outputs.add(t_s, true, outputs)
+            .filter(|&(output, pulse_us)| output <= 8 || pulse_us > 0.0)
+            .map(|(output, pulse_us)| (before + output, pulse_us));
+        self.outputs.add(t_s, first, outputs)
     }
 
     fn signals(&mut self, t_s: f64, id: u32, payload: &[u8; 255], options: &Options) -> bool {
@@ -236,19 +243,22 @@ impl Heard {
 
     fn finish(mut self, flight: &mut Flight) {
         self.name_vehicle(flight);
-        let name = |output| format!("servo{output}_raw");
         let motors = match self.autopilot {
-            PX4 => {
-                let source = "MAV_TYPE, the first outputs";
-                let count = flight.vehicle.motors.unwrap_or(0);
-                ardupilot::numbered_motors(count, name, source)
-            }
-            _ => ardupilot::motors(&self.parameters, &flight.vehicle, name),
+            PX4 => match px4_motors(&self.parameters) {
+                none if none.is_empty() => {
+                    let source = "MAV_TYPE, the first outputs";
+                    let count = flight.vehicle.motors.unwrap_or(0);
+                    ardupilot::numbered_motors(count, field, source)
+                }
+                named => named,
+            },
+            _ => ardupilot::motors(&self.parameters, &flight.vehicle, field),
         };
+        let (of_bank, index) = bank(motors.first().map_or(1, |(_, output)| *output));
         let outputs: Vec<u16>;
         (flight.motors, outputs) = motors.into_iter().unzip();
         flight.range = match self.autopilot {
-            PX4 => px4::output_range(&self.parameters, 0, 0, 0.0, ""),
+            PX4 => px4::output_range(&self.parameters, of_bank, index, 0.0, ""),
             _ => ardupilot::pwm_range(&self.parameters),
         };
         if self.autopilot != PX4 {

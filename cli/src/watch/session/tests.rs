@@ -10,6 +10,8 @@ use flightlog::mavlink::{
 
 use super::*;
 
+mod outputs;
+
 /// A session, the vehicle's side of the link, and the clock of both.
 struct Bench<'e> {
     session: Session<'e>,

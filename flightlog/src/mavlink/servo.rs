@@ -1,0 +1,39 @@
+//! The outputs of SERVO_OUTPUT_RAW: those of its port 1 count on from those of port 0.
+
+use crate::{Motor, parameters::Parameters, px4};
+
+/// Outputs of one port.
+pub(crate) const OUTPUTS_A_PORT: usize = 16;
+
+/// The port of an output (from 1), which for PX4 is its bank (0 MAIN, 1 AUX), and the index of the output there.
+pub(crate) fn bank(output: u16) -> (u8, usize) {
+    let index = usize::from(output.saturating_sub(1));
+    let port = u8::try_from(index / OUTPUTS_A_PORT).unwrap_or(u8::MAX);
+    (port, index % OUTPUTS_A_PORT)
+}
+
+/// The field that an output is.
+pub(crate) fn field(output: u16) -> String {
+    match bank(output) {
+        (0, index) => format!("servo{}_raw", index + 1),
+        (port, index) => format!("servo{}_raw of port {port}", index + 1),
+    }
+}
+
+/// The motors that PX4's PWM_MAIN_FUNCn and PWM_AUX_FUNCn name, with the output of each; none before 1.13.
+pub(crate) fn px4_motors(parameters: &Parameters) -> Vec<(Motor, u16)> {
+    let of_bank = |bank: u8| {
+        let motors = px4::actuator_outputs(parameters, bank, None).into_iter();
+        motors.map(move |(motor, index)| {
+            let output = (OUTPUTS_A_PORT * usize::from(bank) + index + 1) as u16;
+            let named = Motor {
+                output: field(output),
+                ..motor
+            };
+            (named, output)
+        })
+    };
+    let mut motors: Vec<_> = of_bank(0).chain(of_bank(1)).collect();
+    motors.sort_by_key(|(motor, output)| (motor.number, *output));
+    motors
+}

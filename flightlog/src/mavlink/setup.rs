@@ -1,0 +1,278 @@
+//! Which outputs drive the motors of a live vehicle and what their limits are, from the parameters it told; and which
+//! parameters those are.
+
+use super::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
+use crate::{Motor, Range, Vehicle, ardupilot, parameters::Parameters, px4};
+
+/// Outputs of PX4's AUX bank that any board has.
+const AUX_OUTPUTS: usize = 8;
+
+/// Motors and the range of their commands, with where each is known from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// The motors in order of their number.
+    pub motors: Vec<Motor>,
+    /// Range of the commands, 0 % to 100 %.
+    pub range: Range,
+    /// The part of the range that is used in flight, as fractions of it.
+    pub effective: Range,
+    /// What is assumed because the vehicle did not tell, in words; empty where it told everything.
+    pub assumed: Vec<String>,
+    /// The output of each motor, from 1.
+    pub(super) outputs: Vec<usize>,
+}
+
+impl Setup {
+    /// Motors and ranges from what is known; what is not is assumed, and said to be.
+    pub(super) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Setup {
+        if is_px4 {
+            of_px4(parameters, vehicle)
+        } else {
+            of_ardupilot(parameters, vehicle)
+        }
+    }
+
+    /// The port of SERVO_OUTPUT_RAW that completes the commands of all motors.
+    pub(super) fn last_port(&self) -> usize {
+        let last = self.outputs.iter().max().copied().unwrap_or(1);
+        last.saturating_sub(1) / OUTPUTS_A_PORT
+    }
+}
+
+fn assumed_range(low: f64, high: f64, unit: &'static str) -> Range {
+    Range {
+        low,
+        high,
+        unit,
+        source: "assumed".to_owned(),
+    }
+}
+
+/// Notes what the type of the vehicle has beside what is known.
+fn compare_count(vehicle: &Vehicle, motors: usize, assumed: &mut Vec<String>) {
+    if let Some(expected) = vehicle.motors
+        && usize::from(expected) != motors
+    {
+        assumed.push(format!(
+            "the {motors} motors whose outputs are known are all that matter, of {expected}"
+        ));
+    }
+}
+
+/// Without SERVOn_FUNCTION the motors are the first outputs, as many as the type of vehicle has; without limits they
+/// are those ArduPilot has when nobody changed them.
+fn of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Setup {
+    let mut assumed = Vec::new();
+    let (motors, outputs): (Vec<Motor>, Vec<u16>) = ardupilot::motors(parameters, vehicle, field)
+        .into_iter()
+        .unzip();
+    let numbered = parameters.get("SERVO1_FUNCTION").is_none();
+    if numbered && !motors.is_empty() {
+        assumed.push(format!(
+            "motors 1 to {n} on outputs 1 to {n}",
+            n = motors.len()
+        ));
+    }
+    compare_count(vehicle, motors.len(), &mut assumed);
+    let range = ardupilot::pwm_range(parameters).unwrap_or_else(|| {
+        assumed.push("commands from 1000 to 2000 us".to_owned());
+        assumed_range(1000.0, 2000.0, "us")
+    });
+    let effective = match parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
+        None if parameters.get("THR_MIN").is_none() => {
+            assumed.push("flown between 0.15 and 0.95 of that".to_owned());
+            assumed_range(0.15, 0.95, "1")
+        }
+        _ => ardupilot::effective_range(parameters),
+    };
+    Setup {
+        outputs: outputs.iter().map(|&output| usize::from(output)).collect(),
+        motors,
+        range,
+        effective,
+        assumed,
+    }
+}
+
+/// Without PWM_MAIN_FUNCn and PWM_AUX_FUNCn (before 1.13) the motors are the first outputs of MAIN. PX4 uses all of the
+/// range that it drives an output over.
+fn of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Setup {
+    let mut assumed = Vec::new();
+    let mut motors = px4_motors(parameters);
+    if motors.is_empty() {
+        let count = vehicle.motors.unwrap_or(0);
+        let source = "the type of vehicle, the first outputs";
+        motors = ardupilot::numbered_motors(count, field, source);
+        if count > 0 {
+            assumed.push(format!("motors 1 to {count} on outputs 1 to {count}"));
+        }
+    }
+    let (bank, index) = bank(motors.first().map_or(1, |(_, output)| *output));
+    let (motors, outputs): (Vec<Motor>, Vec<usize>) = motors
+        .into_iter()
+        .map(|(motor, output)| (motor, usize::from(output)))
+        .unzip();
+    compare_count(vehicle, motors.len(), &mut assumed);
+    let range = px4::output_range(parameters, bank, index, 0.0, "").unwrap_or_else(|| {
+        assumed.push("commands from 1000 to 2000 us".to_owned());
+        assumed_range(1000.0, 2000.0, "us")
+    });
+    Setup {
+        motors,
+        outputs,
+        range,
+        effective: Range {
+            low: 0.0,
+            high: 1.0,
+            unit: "1",
+            source: "PX4 uses the whole range".to_owned(),
+        },
+        assumed,
+    }
+}
+
+/// The parameters that motors and their range depend on, and that are not known yet.
+pub(super) fn missing(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Vec<String> {
+    let mut names = if is_px4 {
+        wanted_of_px4(parameters, vehicle)
+    } else {
+        wanted_of_ardupilot(parameters, vehicle)
+    };
+    names.retain(|name| parameters.get(name).is_none());
+    names
+}
+
+fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
+    let fixed = ["MOT_PWM_MIN", "MOT_PWM_MAX", "MOT_SPIN_MIN", "MOT_SPIN_MAX"];
+    let mut names: Vec<String> = fixed.iter().map(|&name| name.to_owned()).collect();
+    let functions = |outputs: std::ops::RangeInclusive<usize>| {
+        outputs.map(|output| format!("SERVO{output}_FUNCTION"))
+    };
+    names.extend(functions(1..=16));
+    let first_known = functions(1..=16).all(|name| parameters.get(&name).is_some());
+    let found = ardupilot::motors(parameters, vehicle, field).len();
+    if first_known && vehicle.motors.is_some_and(|all| found < usize::from(all)) {
+        // Then the others are on outputs that only some vehicles have.
+        names.extend(functions(17..=32));
+    }
+    let unset = |name| parameters.get(name).is_some_and(|value| value <= 0.0);
+    if unset("MOT_PWM_MIN") || unset("MOT_PWM_MAX") {
+        // Then the throttle stick gives the range.
+        names.push("RCMAP_THROTTLE".to_owned());
+        if let Some(channel) = parameters.get("RCMAP_THROTTLE") {
+            names.extend(["MIN", "MAX"].map(|end| format!("RC{channel}_{end}")));
+        }
+    }
+    names
+}
+
+/// PX4 does not answer for parameters that it does not have, so as soon as all motors are found no more is asked for.
+fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
+    let motors = px4_motors(parameters);
+    let all = vehicle.motors.map_or(usize::MAX, usize::from);
+    let ends = ["MIN", "MAX"];
+    let Some((_, output)) = motors.first().filter(|_| motors.len() >= all) else {
+        let main = (1..=OUTPUTS_A_PORT).map(|output| format!("PWM_MAIN_FUNC{output}"));
+        let aux = (1..=AUX_OUTPUTS).map(|output| format!("PWM_AUX_FUNC{output}"));
+        // Before 1.13 there are these instead, of one bank or of all.
+        let old = ends.map(|end| format!("PWM_MAIN_{end}"));
+        let older = ends.map(|end| format!("PWM_{end}"));
+        return main.chain(aux).chain(old).chain(older).collect();
+    };
+    let (bank, index) = bank(*output);
+    let bank = ["MAIN", "AUX"][usize::from(bank).min(1)];
+    ends.map(|end| format!("PWM_{bank}_{end}{}", index + 1))
+        .into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vehicle(motors: u16) -> Vehicle {
+        Vehicle {
+            motors: Some(motors),
+            ..Vehicle::default()
+        }
+    }
+
+    fn parameters(known: &[(&str, f64)]) -> Parameters {
+        known.iter().copied().collect()
+    }
+
+    #[test]
+    fn px4_names_its_motors_by_function_in_either_bank() {
+        let known = parameters(&[
+            ("PWM_MAIN_FUNC1", 102.0),
+            ("PWM_MAIN_FUNC2", 0.0),
+            ("PWM_MAIN_FUNC4", 101.0),
+            ("PWM_AUX_FUNC3", 103.0),
+            ("PWM_AUX_FUNC4", 201.0),
+            ("PWM_MAIN_MIN4", 1100.0),
+            ("PWM_MAIN_MAX4", 1900.0),
+        ]);
+        assert_eq!(missing(&known, &vehicle(3), true), Vec::<String>::new());
+        let setup = Setup::of(&known, &vehicle(3), true);
+        assert_eq!(setup.outputs, [4, 1, 19]);
+        assert_eq!(setup.last_port(), 1);
+        assert_eq!(setup.motors[2].output, "servo3_raw of port 1");
+        assert_eq!((setup.range.low, setup.range.high), (1100.0, 1900.0));
+        assert_eq!((setup.effective.low, setup.effective.high), (0.0, 1.0));
+        assert_eq!(setup.assumed, Vec::<String>::new());
+    }
+
+    #[test]
+    fn px4_is_asked_for_functions_until_all_motors_are_found_and_then_for_their_limits() {
+        let nothing = missing(&parameters(&[]), &vehicle(4), true);
+        assert!(nothing.contains(&"PWM_MAIN_FUNC16".to_owned()));
+        assert!(nothing.contains(&"PWM_AUX_FUNC8".to_owned()));
+        assert!(nothing.contains(&"PWM_MIN".to_owned()));
+        let functions = [101.0, 102.0, 103.0, 104.0].into_iter().zip(1..);
+        let names: Vec<(String, f64)> = functions
+            .map(|(function, n)| (format!("PWM_AUX_FUNC{n}"), function))
+            .collect();
+        let known: Parameters = names.iter().map(|(name, f)| (name.as_str(), *f)).collect();
+        assert_eq!(
+            missing(&known, &vehicle(4), true),
+            ["PWM_AUX_MIN1", "PWM_AUX_MAX1"]
+        );
+    }
+
+    #[test]
+    fn px4_before_its_functions_has_motors_on_the_first_outputs() {
+        let old = parameters(&[("PWM_MIN", 1075.0), ("PWM_MAX", 1950.0)]);
+        let setup = Setup::of(&old, &vehicle(4), true);
+        assert_eq!(setup.outputs, [1, 2, 3, 4]);
+        assert_eq!((setup.range.low, setup.range.high), (1075.0, 1950.0));
+        assert_eq!(setup.assumed, ["motors 1 to 4 on outputs 1 to 4"]);
+        let unknown = Setup::of(&parameters(&[]), &vehicle(4), true);
+        assert_eq!(unknown.assumed.len(), 2);
+    }
+
+    #[test]
+    fn ardupilot_has_motors_on_outputs_over_16_where_the_first_do_not_have_them_all() {
+        let mut names: Vec<(String, f64)> = (1..=16)
+            .map(|n| {
+                (
+                    format!("SERVO{n}_FUNCTION"),
+                    if n > 12 { f64::from(n) + 20.0 } else { 0.0 },
+                )
+            })
+            .collect();
+        let known = |names: &[(String, f64)]| -> Parameters {
+            names.iter().map(|(name, f)| (name.as_str(), *f)).collect()
+        };
+        let of = |names: &[(String, f64)], motors| missing(&known(names), &vehicle(motors), false);
+        assert!(!of(&names, 4).contains(&"SERVO17_FUNCTION".to_owned()));
+        assert!(of(&names, 6).contains(&"SERVO17_FUNCTION".to_owned()));
+        names.extend([
+            ("SERVO17_FUNCTION".to_owned(), 37.0),
+            ("SERVO18_FUNCTION".to_owned(), 38.0),
+        ]);
+        let setup = Setup::of(&known(&names), &vehicle(6), false);
+        assert_eq!(setup.outputs, [13, 14, 15, 16, 17, 18]);
+        assert_eq!(setup.last_port(), 1);
+        assert_eq!(setup.motors[5].output, "servo2_raw of port 1");
+        assert!(!of(&names, 6).iter().any(|name| name.contains("FUNCTION")));
+    }
+}
