@@ -1,8 +1,10 @@
 //! What the tests across packages share; the tests themselves are in `tests/tests/`.
 
+pub mod board;
 pub mod log_writer;
 pub mod simulated;
 pub mod vehicle;
+pub mod watch;
 
 use std::{path::PathBuf, process::Command, sync::OnceLock};
 

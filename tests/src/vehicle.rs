@@ -7,7 +7,7 @@ use std::{
     path::Path,
     sync::{
         Arc,
-        atomic::{AtomicU64, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
     },
     time::{Duration, Instant},
 };
@@ -48,9 +48,12 @@ pub enum Speed {
 pub enum Wire {
     /// Datagrams.
     Udp(UdpSocket),
-    /// A connection.
-    Tcp(TcpStream),
+    /// A connection, and what is still to be written to it: a radio sends many small packets at once too.
+    Tcp(TcpStream, Vec<u8>),
 }
+
+/// So many bytes are written at once.
+const SEGMENT: usize = 1200;
 
 impl Wire {
     /// Datagrams to `address`.
@@ -72,17 +75,40 @@ impl Wire {
     /// Where it cannot be set up.
     pub fn tcp(stream: TcpStream) -> Wire {
         stream.set_nodelay(true).unwrap();
-        stream
-            .set_read_timeout(Some(Duration::from_micros(1)))
-            .unwrap();
-        Wire::Tcp(stream)
+        // The shortest time-out of a read is a tick of the kernel: milliseconds for every look.
+        stream.set_nonblocking(true).unwrap();
+        Wire::Tcp(stream, Vec::new())
     }
 
     /// Sends some bytes as they are. A link may fail; what comes of it is what is tested.
     pub fn send(&mut self, bytes: &[u8]) {
         match self {
             Wire::Udp(socket) => drop(socket.send(bytes)),
-            Wire::Tcp(stream) => drop(stream.write_all(bytes)),
+            Wire::Tcp(_, waiting) => {
+                waiting.extend(bytes);
+                if waiting.len() >= SEGMENT {
+                    self.flush();
+                }
+            }
+        }
+    }
+
+    /// Writes what waits.
+    fn flush(&mut self) {
+        let Wire::Tcp(stream, waiting) = self else {
+            return;
+        };
+        let bytes = std::mem::take(waiting);
+        let mut rest = bytes.as_slice();
+        while !rest.is_empty() {
+            match stream.write(rest) {
+                Ok(0) => return,
+                Ok(written) => rest = &rest[written..],
+                Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                    std::thread::sleep(Duration::from_micros(100));
+                }
+                Err(_) => return,
+            }
         }
     }
 
@@ -90,7 +116,7 @@ impl Wire {
         let mut buffer = [0; 2048];
         let read = match self {
             Wire::Udp(socket) => socket.recv(&mut buffer),
-            Wire::Tcp(stream) => stream.read(&mut buffer),
+            Wire::Tcp(stream, _) => stream.read(&mut buffer),
         };
         match read {
             Ok(0) => false,
@@ -146,6 +172,17 @@ impl Heard {
     }
 }
 
+/// How far the other side is; kept by whoever reads what it says.
+#[derive(Debug, Default)]
+pub struct Progress {
+    /// The vehicle's time, in ms, of the latest risk that it told.
+    pub followed_ms: AtomicU64,
+    /// Whether it told that it knows the motors.
+    pub is_ready: AtomicBool,
+    /// The last other system that it told of: after a flight a heartbeat of another one marks its end.
+    pub other_system: AtomicU64,
+}
+
 /// A vehicle that flies a log again.
 pub struct StandIn {
     wire: Wire,
@@ -155,21 +192,30 @@ pub struct StandIn {
     parameters: Vec<(String, f64)>,
     kind: MavType,
     sender: Sender,
-    random: u64,
+    /// What becomes of the flight's packets, and of all others: how often somebody asks changes nothing of the flight.
+    random: [u64; 2],
     stream: Stream,
     late: VecDeque<(u32, Vec<u8>)>,
     /// What came from the other side.
     pub heard: Heard,
     /// When the motor commands of a time, in ms of the vehicle's clock, were sent.
     pub sent: Vec<(u32, Instant)>,
-    /// The vehicle's time, in ms, up to which the other side is known to have followed; kept by whoever reads what
-    /// it says. A flight that goes as fast as it can waits for it, or the machine's own buffers would lose packets.
-    pub followed_ms: Option<Arc<AtomicU64>>,
+    /// How far the other side is. A flight that goes as fast as it can waits for it, or the machine's own buffers would
+    /// lose packets.
+    pub progress: Option<Arc<Progress>>,
+    /// How many ends of flights were marked so far.
+    marks: u8,
     /// Whether requests are answered.
     pub answers: bool,
-    last_request: Instant,
     asked: bool,
 }
+
+/// The two kinds of packets in [`StandIn::random`].
+const FLIGHT: usize = 0;
+const TALK: usize = 1;
+
+/// The other side gets so much time for anything: machines that run many tests are slow.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 impl StandIn {
     /// A vehicle with the motors and limits of a flight.
@@ -186,31 +232,29 @@ impl StandIn {
                 _ => MavType::MAV_TYPE_OCTOROTOR,
             },
             sender: Sender::new(1),
-            random: 0x9e37_79b9_7f4a_7c15,
+            random: [0x9e37_79b9_7f4a_7c15, 0xd1b5_4a32_d192_ed03],
             stream: Stream::new(),
             late: VecDeque::new(),
             heard: Heard::default(),
             sent: Vec::new(),
-            followed_ms: None,
+            progress: None,
+            marks: 0,
             answers: true,
-            last_request: Instant::now(),
             asked: false,
         }
     }
 
-    /// Beats until it was asked for its parameters and has not been asked for a while: they are known then.
+    /// Beats until the other side knows the motors; where nobody reads what it says, until it has asked.
     pub fn meet(&mut self) {
         let start = Instant::now();
-        // Longer than until a parameter is asked for again.
-        let quiet = Duration::from_millis(if self.link.loss > 0.0 { 1100 } else { 150 });
-        while !self.asked || self.last_request.elapsed() < quiet {
-            assert!(
-                start.elapsed() < Duration::from_secs(20),
-                "nobody asks for parameters"
-            );
+        let is_met = |vehicle: &StandIn| match &vehicle.progress {
+            Some(progress) => progress.is_ready.load(Ordering::Acquire),
+            None => vehicle.asked,
+        };
+        while !is_met(self) {
+            assert!(start.elapsed() < PATIENCE, "the vehicle is not met");
             self.beat(false, false);
-            self.listen();
-            std::thread::sleep(Duration::from_millis(10));
+            self.linger(Duration::from_millis(10));
         }
     }
 
@@ -241,7 +285,8 @@ impl StandIn {
             let changed = state.replace(now) != Some(now);
             if changed || t_s >= next_beat_s {
                 next_beat_s = t_s + 1.0;
-                self.beat(now.0, now.1);
+                let beat = self.heartbeat(now.0, now.1);
+                self.send(&beat);
             }
             if changed || t_s >= next_state_s {
                 next_state_s = t_s + 0.25;
@@ -254,6 +299,9 @@ impl StandIn {
             self.sent.push(((t_s * 1e3).round() as u32, Instant::now()));
             self.send(&servo((t_s * 1e6).round() as u32, &pulses));
             count += 1;
+            if speed != Speed::Fastest {
+                self.wire.flush();
+            }
             self.listen();
             if speed == Speed::Fastest && count % 16 == 0 {
                 self.wait_for_the_other_side(t_s, now.1);
@@ -262,17 +310,38 @@ impl StandIn {
         while let Some((_, packet)) = self.late.pop_front() {
             self.wire.send(&packet);
         }
-        self.linger(Duration::from_millis(200));
+        self.settle();
+    }
+
+    /// Waits until the other side has followed to the end: packets stay in order, and it tells of another vehicle.
+    fn settle(&mut self) {
+        let Some(progress) = self.progress.clone() else {
+            self.linger(Duration::from_millis(200));
+            return;
+        };
+        let system = 250 - self.marks;
+        self.marks += 1;
+        let mark = self.heartbeat(false, false);
+        let packet = Sender::new(1).packet(self.version, system, &mark);
+        self.wire.send(&packet);
+        let start = Instant::now();
+        while progress.other_system.load(Ordering::Acquire) != u64::from(system) {
+            assert!(start.elapsed() < PATIENCE, "the flight is not followed");
+            self.linger(Duration::from_millis(2));
+        }
+        // What was said of it is on its way.
+        self.linger(Duration::from_millis(20));
     }
 
     /// At most two seconds of commands are on their way at once.
     fn wait_for_the_other_side(&mut self, t_s: f64, in_air: bool) {
-        let Some(followed_ms) = self.followed_ms.clone().filter(|_| in_air) else {
+        self.wire.flush();
+        let Some(progress) = self.progress.clone().filter(|_| in_air) else {
             std::thread::sleep(Duration::from_millis(8));
             return;
         };
         let start = Instant::now();
-        let behind = || (followed_ms.load(Ordering::Relaxed) as f64) < (t_s - 2.0) * 1e3;
+        let behind = || (progress.followed_ms.load(Ordering::Relaxed) as f64) < (t_s - 2.0) * 1e3;
         while behind() && start.elapsed() < Duration::from_millis(500) {
             self.listen();
             std::thread::sleep(Duration::from_micros(200));
@@ -283,6 +352,7 @@ impl StandIn {
     pub fn linger(&mut self, time: Duration) {
         let start = Instant::now();
         while start.elapsed() < time {
+            self.wire.flush();
             self.listen();
             std::thread::sleep(Duration::from_millis(2));
         }
@@ -290,9 +360,14 @@ impl StandIn {
 
     /// Sends a heartbeat.
     pub fn beat(&mut self, armed: bool, in_air: bool) {
+        let beat = self.heartbeat(armed, in_air);
+        self.say(&beat);
+    }
+
+    fn heartbeat(&self, armed: bool, in_air: bool) -> MavMessage {
         let mut mode = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
         mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, armed);
-        let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        MavMessage::HEARTBEAT(HEARTBEAT_DATA {
             custom_mode: 0,
             mavtype: self.kind,
             autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
@@ -303,8 +378,7 @@ impl StandIn {
                 MavState::MAV_STATE_STANDBY
             },
             mavlink_version: 3,
-        });
-        self.send(&heartbeat);
+        })
     }
 
     /// Sends bytes as they are, past the link.
@@ -327,19 +401,27 @@ impl StandIn {
         }));
     }
 
-    /// Sends a message over the link, with what the link does to it.
+    /// Sends a message that is none of the flight: it is lost or it is not.
+    fn say(&mut self, message: &MavMessage) {
+        let packet = self.sender.packet(self.version, self.system, message);
+        if !self.chance(TALK, self.link.loss) {
+            self.wire.send(&packet);
+        }
+    }
+
+    /// Sends a message of a flight over the link, with what the link does to it.
     pub fn send(&mut self, message: &MavMessage) {
         let packet = self.sender.packet(self.version, self.system, message);
-        if self.chance(self.link.loss) {
+        if self.chance(FLIGHT, self.link.loss) {
             return;
         }
-        if self.chance(self.link.reordered) {
-            let after = 1 + (self.random >> 20) as u32 % 3;
+        if self.chance(FLIGHT, self.link.reordered) {
+            let after = 1 + (self.random[FLIGHT] >> 20) as u32 % 3;
             self.late.push_back((after, packet));
             return;
         }
         self.wire.send(&packet);
-        if self.chance(self.link.repeated) {
+        if self.chance(FLIGHT, self.link.repeated) {
             self.wire.send(&packet);
         }
         for (after, _) in &mut self.late {
@@ -352,11 +434,12 @@ impl StandIn {
         }
     }
 
-    fn chance(&mut self, share: f64) -> bool {
-        self.random ^= self.random << 13;
-        self.random ^= self.random >> 7;
-        self.random ^= self.random << 17;
-        ((self.random >> 11) as f64 / (1_u64 << 53) as f64) < share
+    fn chance(&mut self, of: usize, share: f64) -> bool {
+        let random = &mut self.random[of];
+        *random ^= *random << 13;
+        *random ^= *random >> 7;
+        *random ^= *random << 17;
+        ((*random >> 11) as f64 / (1_u64 << 53) as f64) < share
     }
 
     /// Takes in what came, and answers requests.
@@ -368,7 +451,7 @@ impl StandIn {
                 messages.push((Instant::now(), packet.system, packet.component, message));
             }
             for (at, system, component, message) in messages {
-                if !self.chance(self.link.loss) {
+                if !self.chance(TALK, self.link.loss) {
                     self.answer(&message);
                 }
                 self.heard.messages.push((at, system, component, message));
@@ -383,7 +466,7 @@ impl StandIn {
         }
         match message {
             MavMessage::PARAM_REQUEST_READ(request) => {
-                (self.asked, self.last_request) = (true, Instant::now());
+                self.asked = true;
                 let name = request.param_id.to_str().unwrap();
                 let known = self.parameters.iter().find(|(known, _)| known == name);
                 if let Some((name, value)) = known {
@@ -394,11 +477,11 @@ impl StandIn {
                         param_id: name.as_str().into(),
                         param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
                     });
-                    self.send(&reply);
+                    self.say(&reply);
                 }
             }
             MavMessage::COMMAND_LONG(_) => {
-                self.send(&MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
+                self.say(&MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
                     command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
                     result: MavResult::MAV_RESULT_ACCEPTED,
                     ..COMMAND_ACK_DATA::default()

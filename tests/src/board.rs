@@ -1,0 +1,277 @@
+//! What flies on board, beside what it must agree with: profiles, flights, and everything an assessment says as text.
+
+use std::{fmt::Write, path::PathBuf};
+
+use flagred::{
+    assessment::{Assessment, Estimate, Sample},
+    estimator::Estimator,
+    profile::Profile,
+    verdict::{Ended, Finding},
+};
+use flightlog::{Flight, Options};
+
+use crate::shared_data;
+
+/// The profiles that come with the project, by the argument that names each on the command line.
+pub const PROFILES: [&str; 3] = [
+    "flagred",
+    "flagred-paper",
+    concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../rules/profiles/flagred-battery.yaml"
+    ),
+];
+
+/// The estimator of one of [`PROFILES`].
+///
+/// # Panics
+///
+/// Where it does not compile.
+#[expect(
+    clippy::unwrap_used,
+    reason = "a profile of the project that does not compile fails the test"
+)]
+pub fn estimator(profile: &str) -> Estimator {
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules"));
+    let file = match profile {
+        "flagred" => "profiles/multirotor.yaml",
+        "flagred-paper" => "profiles/flagred-paper.yaml",
+        _ => "profiles/flagred-battery.yaml",
+    };
+    let text = std::fs::read_to_string(folder.join(file)).unwrap();
+    let profile = Profile::from_yaml(&text).unwrap();
+    let name = profile.rules.rsplit('/').next().unwrap_or_default();
+    let name = name.trim_end_matches(".yaml");
+    let rules = std::fs::read_to_string(folder.join(format!("{name}.yaml"))).unwrap();
+    let model = fuzzy::yaml::parse(&rules).unwrap().model;
+    Estimator::new(&profile, &model).unwrap()
+}
+
+/// A sample that owns its numbers.
+#[derive(Debug, Clone)]
+pub struct Moment {
+    /// When, in seconds.
+    pub t_s: f64,
+    /// Effective commands.
+    pub motors: Vec<f64>,
+    /// Whether in the air.
+    pub in_air: bool,
+    /// The signals of a profile, in its order.
+    pub signals: Vec<f64>,
+}
+
+impl Moment {
+    /// As a monitor takes it.
+    pub fn sample(&self) -> Sample<'_> {
+        Sample {
+            t_s: self.t_s,
+            motors: &self.motors,
+            in_air: self.in_air,
+            signals: &self.signals,
+        }
+    }
+}
+
+/// The flights that are there: the shipped one, and the reference flights where there are any.
+///
+/// # Panics
+///
+/// Where a folder cannot be read.
+#[expect(
+    clippy::unwrap_used,
+    reason = "a flight that cannot be read fails the test"
+)]
+pub fn logs() -> Vec<PathBuf> {
+    let mut folders = vec![PathBuf::from(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../examples/flights"
+    ))];
+    folders.extend(shared_data().map(|data| data.join("flights")));
+    let mut logs: Vec<PathBuf> = folders
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(folder).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "BIN"))
+        .collect();
+    logs.sort();
+    logs
+}
+
+/// The samples of a flight, with the signals of a profile; what the log lacks is unknown. Then what logs do not hold: time
+/// stamps that repeat or jump, motors that are unknown or at their limits, all of them on the ground and in the air.
+///
+/// # Panics
+///
+/// Where the log cannot be read.
+#[expect(
+    clippy::unwrap_used,
+    reason = "a flight that cannot be read fails the test"
+)]
+pub fn moments(log: &std::path::Path, signals: &[&str]) -> Vec<Moment> {
+    let flight = flightlog::open(log, &Options::default()).unwrap();
+    let mut moments = samples(&flight, signals);
+    let Some(last) = moments.last().cloned() else {
+        return moments;
+    };
+    let odd = [0.0, 1.0, f64::NAN, 0.5, 65535.0, -1.0, f64::INFINITY];
+    for i in 0..1500 {
+        let mut moment = last.clone();
+        moment.in_air = i % 500 > 10;
+        moment.t_s += match i % 100 {
+            7 => 0.02 * f64::from(i - 3),
+            50 => f64::NAN,
+            _ => 0.02 * f64::from(i) + if i > 900 { 30.0 } else { 0.0 },
+        };
+        for (n, motor) in moment.motors.iter_mut().enumerate() {
+            let swing = (f64::from(i) * 0.11 * (n + 1) as f64).sin();
+            *motor = 0.5 + 0.5 * swing;
+            if i % 13 == n as i32 {
+                *motor = odd[i as usize % odd.len()];
+            }
+        }
+        for signal in &mut moment.signals {
+            *signal = if i % 60 == 0 {
+                f64::NAN
+            } else {
+                f64::from(i) / 15.0
+            };
+        }
+        moments.push(moment);
+    }
+    moments
+}
+
+fn samples(flight: &Flight, names: &[&str]) -> Vec<Moment> {
+    let mut holds: Vec<_> = names
+        .iter()
+        .map(|name| flight.signal(name).map(|signal| signal.hold()))
+        .collect();
+    let moment = |(t_s, row): (f64, &[f64])| Moment {
+        t_s,
+        motors: row
+            .iter()
+            .map(|raw| flight.effective_command(*raw).unwrap_or(f64::NAN))
+            .collect(),
+        in_air: flight.is_in_air(t_s) == Some(true),
+        signals: holds
+            .iter_mut()
+            .map(|hold| {
+                let held = hold.as_mut().and_then(|hold| hold.at(t_s));
+                held.unwrap_or(f64::NAN)
+            })
+            .collect(),
+    };
+    flight.commands.rows().map(moment).collect()
+}
+
+/// Points over the ranges of the inputs of a profile, ends and a little beyond included: so many along each.
+pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
+    let plan_inputs = estimator.profile().inputs.len();
+    let ranges: Vec<(f64, f64)> = match estimator.plan() {
+        Ok(plan) => {
+            let mut ranges = vec![(0.0, 1.0); plan_inputs];
+            for (input, place) in plan.table.inputs.iter().zip(plan.order) {
+                ranges[*place as usize] = (input.low, input.high);
+            }
+            ranges
+        }
+        Err(_) => vec![(0.0, 1.0); plan_inputs],
+    };
+    let mut points = vec![vec![]];
+    for (low, high) in ranges {
+        let step = (high - low) / (along - 3) as f64;
+        let at = |i: usize| low + step * (i as f64 - 1.0);
+        points = points
+            .iter()
+            .flat_map(|point| {
+                (0..along).map(move |i| {
+                    let mut point = point.clone();
+                    point.push(at(i));
+                    point
+                })
+            })
+            .collect();
+    }
+    points
+}
+
+/// Everything an assessment says, bit for bit, as the harness in C writes it.
+pub fn told(said: &Assessment) -> String {
+    use flagred::assessment::Unknown;
+    let (unknown, input) = match said.risk {
+        Ok(_) => (0, -1),
+        Err(Unknown::OnGround) => (1, -1),
+        Err(Unknown::OutOfOrder) => (2, -1),
+        Err(Unknown::WarmingUp { input }) => (3, input as i32),
+        Err(Unknown::TooFewSamples { input, .. }) => (4, input as i32),
+        Err(Unknown::NoValue { input }) => (5, input as i32),
+        Err(Unknown::NoRule) => (6, -1),
+    };
+    let level = |level: Option<flagred::verdict::Level>| level.map_or(-1, |level| level as i32);
+    let mut text = moment(said.risk.ok().as_ref());
+    let elevated = bits(said.elevated_risk_pct.unwrap_or(f64::NAN));
+    let (now, change) = (level(said.level), level(said.change));
+    let _ = write!(text, " {elevated} {now} {change} {unknown} {input}");
+    text + &findings(&said.ended)
+}
+
+/// What is said of one moment.
+pub fn moment(said: Option<&Estimate>) -> String {
+    let known = |value: fn(&Estimate) -> f64| bits(said.map_or(f64::NAN, value));
+    format!(
+        "{} {} {} {} {}",
+        known(|said| said.risk_pct),
+        known(|said| said.coverage),
+        known(|said| said.filled_from.unwrap_or(f64::NAN)),
+        said.and_then(|said| said.dominant_rule)
+            .map_or(-1, |rule| rule as i64),
+        i32::from(said.is_some_and(|said| said.clamped))
+    )
+}
+
+/// Findings of WARN and of FAIL.
+pub fn findings(ended: &Ended) -> String {
+    ended
+        .iter()
+        .flatten()
+        .map(|finding| {
+            let Finding {
+                level,
+                from_s,
+                raised_s,
+                to_s,
+                measure,
+                threshold_pct,
+                peak_pct,
+                motor,
+            } = finding;
+            let margin = |value: fn(&flagred::verdict::MotorFinding) -> f64| {
+                bits(motor.as_ref().map_or(f64::NAN, value))
+            };
+            let high = motor.is_some_and(|motor| motor.side == flagred::margin::Side::High);
+            format!(
+                " [{} {} {} {} {} {} {} {} {} {} {}]",
+                *level as i32,
+                bits(*from_s),
+                bits(*raised_s),
+                bits(*to_s),
+                *measure as i32,
+                bits(*threshold_pct),
+                bits(*peak_pct),
+                motor.map_or(-1, |motor| motor.motor as i64),
+                i32::from(high),
+                margin(|motor| motor.mean_margin),
+                margin(|motor| motor.least_margin)
+            )
+        })
+        .collect()
+}
+
+/// The bits of a number; all that are not a number are one.
+fn bits(value: f64) -> String {
+    if value.is_nan() {
+        "nan".into()
+    } else {
+        format!("{:016x}", value.to_bits())
+    }
+}

@@ -1,0 +1,224 @@
+//! A running `flagred watch`, and what it said.
+#![expect(
+    clippy::unwrap_used,
+    clippy::missing_panics_doc,
+    missing_docs,
+    reason = "helpers of tests: what does not hold fails the test"
+)]
+
+use std::{
+    io::{BufRead, BufReader},
+    net::SocketAddr,
+    path::Path,
+    process::{Child, Command, Output, Stdio},
+    sync::{Arc, atomic::Ordering},
+    thread::JoinHandle,
+};
+
+use flightlog::{Flight, mavlink::Version};
+use serde_json::Value;
+
+use crate::{
+    flagred,
+    vehicle::{Heard, Link, Progress, Speed, StandIn, Wire},
+};
+
+pub const STEADY: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../examples/flights/steady.BIN"
+);
+
+/// A running watch, and where it listens.
+pub struct Watch {
+    child: Child,
+    address: Option<SocketAddr>,
+    /// Reads along: a watch whose output nobody takes would have to wait.
+    reader: JoinHandle<Vec<Value>>,
+    progress: Arc<Progress>,
+}
+
+impl Watch {
+    pub fn start(endpoint: &str, options: &[&str]) -> Watch {
+        let mut child = flagred()
+            .args(["watch", endpoint, "--jsonl"])
+            .args(options)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap());
+        let mut first = String::new();
+        lines.read_line(&mut first).unwrap();
+        let started: Value = serde_json::from_str(&first).unwrap();
+        assert_eq!(started["schema"], "flagred.watch/1");
+        let endpoint = started["endpoint"].as_str().unwrap();
+        let address = endpoint.strip_prefix("listening at ");
+        let progress = Arc::new(Progress::default());
+        let made = Arc::clone(&progress);
+        Watch {
+            child,
+            address: address.map(|address| address.parse().unwrap()),
+            reader: std::thread::spawn(move || {
+                let events = lines.lines().map(|line| {
+                    let event: Value = serde_json::from_str(&line.unwrap()).unwrap();
+                    match event["event"].as_str() {
+                        Some("ready") => made.is_ready.store(true, Ordering::Release),
+                        Some("another_vehicle") => {
+                            let system = event["system"].as_u64().unwrap_or(0);
+                            made.other_system.store(system, Ordering::Release);
+                        }
+                        _ => {}
+                    }
+                    if let Some(t_s) = event["t_s"].as_f64() {
+                        let t_ms = (t_s * 1e3).round() as u64;
+                        made.followed_ms.store(t_ms, Ordering::Release);
+                    }
+                    event
+                });
+                events.collect()
+            }),
+            progress,
+        }
+    }
+
+    pub fn udp(options: &[&str]) -> Watch {
+        Watch::start("udpin:127.0.0.1:0", options)
+    }
+
+    pub fn address(&self) -> SocketAddr {
+        self.address.unwrap()
+    }
+
+    /// A vehicle that sends it datagrams.
+    pub fn vehicle(&self, flight: &Flight, link: Link) -> StandIn {
+        self.vehicle_on(flight, Wire::udp(self.address()), link, Version::V2)
+    }
+
+    /// A vehicle on a wire to it.
+    pub fn vehicle_on(&self, flight: &Flight, wire: Wire, link: Link, version: Version) -> StandIn {
+        let mut vehicle = StandIn::new(flight, wire, link, version);
+        vehicle.progress = Some(Arc::clone(&self.progress));
+        vehicle
+    }
+
+    /// Interrupts it; gives all it said.
+    pub fn end(mut self) -> Said {
+        let interrupted = Command::new("kill")
+            .args(["-INT", &self.child.id().to_string()])
+            .status();
+        assert!(interrupted.unwrap().success());
+        let events = self.reader.join().unwrap();
+        let code = self.child.wait().unwrap().code();
+        Said { events, code }
+    }
+}
+
+pub struct Said {
+    /// Its lines.
+    pub events: Vec<Value>,
+    /// Its exit code.
+    pub code: Option<i32>,
+}
+
+impl Said {
+    pub fn all<'a>(&'a self, kind: &'a str) -> impl Iterator<Item = &'a Value> {
+        self.events
+            .iter()
+            .filter(move |event| event["event"] == kind)
+    }
+
+    pub fn one(&self, kind: &str) -> &Value {
+        let is_of = |event: &&Value| event["event"] == kind;
+        let all: Vec<&Value> = self.events.iter().filter(is_of).collect();
+        assert_eq!(all.len(), 1, "`{kind}` in {:?}", self.events);
+        all[0]
+    }
+
+    /// The worst verdict of its flights; that one is all there is to say where it is `NA`.
+    pub fn verdict(&self) -> String {
+        let order = ["NA", "GOOD", "WARN", "FAIL"];
+        let verdicts = self
+            .all("landed")
+            .map(|event| event["verdict"].as_str().unwrap());
+        let worst = verdicts.max_by_key(|verdict| order.iter().position(|known| known == verdict));
+        worst.unwrap_or("none").to_owned()
+    }
+
+    pub fn has_note(&self, part: &str) -> bool {
+        self.all("note")
+            .any(|event| event["text"].as_str().unwrap().contains(part))
+    }
+}
+
+pub fn assess(log: &Path) -> Value {
+    let output = flagred()
+        .args(["assess", "--json", "--step", "0"])
+        .arg(log)
+        .output()
+        .unwrap();
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Flies a log over UDP; gives what the watch and the vehicle heard.
+pub fn fly_udp(flight: &Flight, link: Link, options: &[&str], speed: Speed) -> (Said, StandIn) {
+    let watch = Watch::udp(options);
+    let mut vehicle = watch.vehicle(flight, link);
+    vehicle.meet();
+    vehicle.fly(flight, speed, 0.0, f64::INFINITY);
+    (watch.end(), vehicle)
+}
+
+/// The share of samples whose risk was told, and the largest difference to what `assess` says of them.
+pub fn compare(said: &Said, assessed: &Value) -> (f64, f64) {
+    let steps = assessed["steps"].as_array().unwrap();
+    let mut watched = said
+        .all("risk")
+        .filter_map(|event| Some((event["t_s"].as_f64()?, event["risk_pct"].as_f64()?)));
+    let (mut matched, mut known, mut largest) = (0, 0, 0.0_f64);
+    let mut next = watched.next();
+    for step in steps {
+        let (Some(t_s), Some(risk)) = (step["t_s"].as_f64(), step["risk"].as_f64()) else {
+            continue;
+        };
+        known += 1;
+        while next.is_some_and(|(at_s, _)| at_s < t_s - 1e-4) {
+            next = watched.next();
+        }
+        if let Some((at_s, watched_risk)) = next
+            && (at_s - t_s).abs() < 1e-4
+        {
+            matched += 1;
+            largest = largest.max((watched_risk - risk).abs());
+        }
+    }
+    (f64::from(matched) / f64::from(known), largest)
+}
+
+/// One text for each change of state, none of them on the ground, all as ground stations want them.
+pub fn check_texts(said: &Said, heard: &Heard) {
+    let texts = heard.texts();
+    let levels: Vec<(String, u8)> = said
+        .all("level")
+        .map(|event| {
+            let severity = match event["level"].as_str().unwrap() {
+                "GOOD" => 6,
+                "WARN" => 4,
+                _ => 2,
+            };
+            (event["text"].as_str().unwrap().to_owned(), severity)
+        })
+        .collect();
+    assert_eq!(texts.len(), levels.len(), "{texts:?} {levels:?}");
+    for ((severity, text), (level, expected)) in texts.iter().zip(&levels) {
+        assert_eq!((text, severity), (level, expected));
+        assert!(text.starts_with("FLAGRED: ") && text.len() <= 50, "{text}");
+    }
+}
+
+pub fn refused(endpoint: &str, options: &[&str]) -> (Option<i32>, String) {
+    let Output { status, stderr, .. } = flagred()
+        .args(["watch", endpoint])
+        .args(options)
+        .output()
+        .unwrap();
+    (status.code(), String::from_utf8(stderr).unwrap())
+}

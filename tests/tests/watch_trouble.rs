@@ -1,0 +1,315 @@
+//! `flagred watch` where the link, the vehicle or the machine does what it should not.
+
+use std::{
+    net::{TcpListener, TcpStream, UdpSocket},
+    path::Path,
+    time::Duration,
+};
+
+use flagred_tests::{
+    flagred,
+    log_writer::Tlog,
+    vehicle::{Link, Speed, StandIn, Wire, flight, servo},
+    watch::{STEADY, Watch, check_texts, refused},
+};
+use flightlog::mavlink::Version;
+
+#[test]
+fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
+    let flight = flight(Path::new(STEADY));
+    let watch = Watch::udp(&[]);
+    let mut vehicle = watch.vehicle(&flight, Link::default());
+    vehicle.meet();
+    let air = flight.in_air.as_ref().unwrap().spans[0];
+    vehicle.fly(&flight, Speed::Fastest, air.start_s, air.start_s + 40.0);
+    vehicle.linger(Duration::from_millis(2300));
+    let values_then = vehicle.heard.values("FR_RISK").len();
+    // It comes back, half a minute later on its own clock: the windows start anew.
+    vehicle.fly(
+        &flight,
+        Speed::Fastest,
+        air.start_s + 70.0,
+        air.start_s + 71.0,
+    );
+    vehicle.fly(
+        &flight,
+        Speed::Fastest,
+        air.start_s + 71.0,
+        air.start_s + 80.0,
+    );
+    assert!(vehicle.heard.values("FR_RISK").len() > values_then);
+    // It starts anew.
+    for t_ms in [100, 200, 300, 400] {
+        vehicle.send(&servo(t_ms * 1000, &[1000; 16]));
+        vehicle.linger(Duration::from_millis(5));
+    }
+    let said = watch.end();
+    assert_eq!(said.one("lost")["what"], "link");
+    let back = said.one("back");
+    assert!(back["after_s"].as_f64().unwrap() >= 2.0, "{back}");
+    said.one("rebooted");
+    let first = said
+        .all("risk")
+        .find(|event| event["t_s"].as_f64().unwrap() >= air.start_s + 69.9)
+        .unwrap();
+    assert!(
+        first["risk_pct"].is_null() && first["unknown"].is_string(),
+        "{first}"
+    );
+    // The flight is over with the reboot.
+    assert_eq!(said.all("landed").count(), 1);
+    check_texts(&said, &vehicle.heard);
+}
+
+#[test]
+fn other_vehicles_and_ground_stations_are_not_followed() {
+    use flightlog::mavlink::{
+        Sender,
+        dialect::{HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType},
+    };
+    let beat = |component, system, mavtype, autopilot| {
+        let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            custom_mode: 0,
+            mavtype,
+            autopilot,
+            base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+            system_status: MavState::MAV_STATE_ACTIVE,
+            mavlink_version: 3,
+        });
+        Sender::new(component).packet(Version::V2, system, &heartbeat)
+    };
+    let flight = flight(Path::new(STEADY));
+    let watch = Watch::udp(&[]);
+    let mut vehicle = watch.vehicle(&flight, Link::default());
+    let none = MavAutopilot::MAV_AUTOPILOT_INVALID;
+    let some = MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA;
+    vehicle.raw(&beat(190, 255, MavType::MAV_TYPE_GCS, none));
+    vehicle.raw(&beat(1, 9, MavType::MAV_TYPE_FIXED_WING, some));
+    vehicle.meet();
+    for _ in 0..3 {
+        vehicle.raw(&beat(1, 7, MavType::MAV_TYPE_HEXAROTOR, some));
+        vehicle.raw(&beat(154, 1, MavType::MAV_TYPE_GIMBAL, none));
+        vehicle.linger(Duration::from_millis(20));
+    }
+    let said = watch.end();
+    assert_eq!(said.one("not_a_multirotor")["system"], 9);
+    assert_eq!(said.one("found")["system"], 1);
+    assert_eq!(said.one("another_vehicle")["system"], 7);
+}
+
+/// Whatever comes in between, the flight is assessed as if it had not.
+#[test]
+fn garbage_and_wild_values_are_counted_and_raise_no_alarm() {
+    let flight = flight(Path::new(STEADY));
+    let watch = Watch::udp(&[]);
+    let mut vehicle = watch.vehicle(&flight, Link::default());
+    vehicle.meet();
+    let air = flight.in_air.as_ref().unwrap().spans[0];
+    let mut at_s = air.start_s;
+    let mut random = 1_u64;
+    for round in 0..40_u32 {
+        vehicle.fly(&flight, Speed::Fastest, at_s, at_s + 0.5);
+        at_s += 0.5;
+        let garbage: Vec<u8> = (0..1 + 37 * round as usize)
+            .map(|_| {
+                random = random
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1);
+                (random >> 56) as u8
+            })
+            .collect();
+        vehicle.raw(&garbage);
+        // Longer than any packet, and the beginning of one that is cut off.
+        vehicle.raw(&[0xfd; 5000]);
+        vehicle.raw(&[0xfd, 30, 0, 0, 1, 1, 1, 36, 0, 0, 9]);
+        // Wild values: no pulse at all, and times from nowhere.
+        vehicle.send(&servo(((at_s - 0.01) * 1e6) as u32, &[u16::MAX; 16]));
+        vehicle.send(&servo(u32::MAX, &[u16::MAX; 16]));
+        wild(&mut vehicle, ((at_s - 0.01) * 1e6) as u32);
+    }
+    let said = watch.end();
+    let ended = said.one("ended");
+    assert!(
+        ended["skipped_bytes"].as_u64().unwrap() > 40 * 5000,
+        "{ended}"
+    );
+    assert_eq!(said.all("level").count(), 0);
+    assert_eq!(said.all("rebooted").count(), 0);
+    assert_eq!(said.verdict(), "GOOD");
+    assert_eq!(vehicle.heard.texts(), []);
+    assert!(said.has_note("no MAVLink packets"));
+    for event in said.all("risk") {
+        let risk = event["risk_pct"].as_f64();
+        assert!(risk.is_none_or(|risk| risk.is_finite()));
+    }
+}
+
+/// The messages that are read: number, the byte that goes into the checksum with them, a payload that is in order, and
+/// the width of each field on the wire (<https://mavlink.io/en/messages/common.html>).
+fn messages_read(t_us: u32) -> Vec<(u8, u8, Vec<u8>, Vec<usize>)> {
+    let mut heartbeat = vec![0; 4];
+    // A quadrotor of ArduPilot, armed and active.
+    heartbeat.extend([2, 3, 128, 4, 3]);
+    let mut servo = t_us.to_le_bytes().to_vec();
+    servo.extend([1500_u16; 8].iter().flat_map(|pulse| pulse.to_le_bytes()));
+    servo.push(0);
+    servo.extend([0; 16]);
+    let mut parameter = 1000.0_f32.to_le_bytes().to_vec();
+    parameter.extend([0; 4]);
+    parameter.extend(b"MOT_PWM_MIN\0\0\0\0\0");
+    parameter.push(9);
+    let mut attitude = (t_us / 1000).to_le_bytes().to_vec();
+    attitude.extend([0; 24]);
+    vec![
+        (0, 50, heartbeat, vec![4, 1, 1, 1, 1, 1]),
+        (22, 220, parameter, vec![4, 2, 2, 16, 1]),
+        (30, 39, attitude, vec![4; 7]),
+        (
+            36,
+            222,
+            servo,
+            [vec![4], vec![2; 8], vec![1], vec![2; 8]].concat(),
+        ),
+        (
+            77,
+            143,
+            vec![0xff, 1, 0, 0, 0, 0, 0, 0, 0, 0],
+            vec![2, 1, 1, 4, 1, 1],
+        ),
+        (245, 130, vec![0, 2], vec![1, 1]),
+    ]
+}
+
+/// A packet of MAVLink 2 with any payload.
+fn packet(message: u8, extra: u8, payload: &[u8]) -> Vec<u8> {
+    let mut log = Tlog::default();
+    log.packet(0, 2, (1, 1), (u32::from(message), extra, 0), payload);
+    // Without the time stamp of a log.
+    log.bytes.split_off(8)
+}
+
+/// Every field of every message that is read holds all ones in turn (the largest number, 65535, NaN of a float), and then
+/// all of them at once; and the floats the infinities.
+fn wild(vehicle: &mut StandIn, t_us: u32) {
+    for (message, extra, payload, widths) in messages_read(t_us) {
+        assert_eq!(payload.len(), widths.iter().sum::<usize>(), "{message}");
+        let mut at = 0;
+        for width in &widths {
+            let mut odd = payload.clone();
+            odd[at..at + width].fill(0xff);
+            vehicle.raw(&packet(message, extra, &odd));
+            if *width == 4 {
+                for infinity in [f32::INFINITY, f32::NEG_INFINITY] {
+                    odd[at..at + 4].copy_from_slice(&infinity.to_le_bytes());
+                    vehicle.raw(&packet(message, extra, &odd));
+                }
+            }
+            at += width;
+        }
+        vehicle.raw(&packet(message, extra, &vec![0xff; payload.len()]));
+        vehicle.raw(&packet(message, extra, &[0xff; 255]));
+    }
+}
+
+/// The checksum of these tests is that of the library, so that wild values arrive and are not skipped as damaged.
+#[test]
+fn wild_packets_are_packets() {
+    use flightlog::mavlink::{Next, next_packet};
+    for (message, extra, payload, _) in messages_read(1) {
+        let bytes = packet(message, extra, &payload);
+        let Next::Packet(packet) = next_packet(&bytes) else {
+            panic!("message {message} is no packet");
+        };
+        assert_eq!(packet.id, u32::from(message));
+    }
+}
+
+#[test]
+fn ports_that_cannot_be_had_are_told_with_what_to_do() {
+    let taken = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let (code, told) = refused(&format!("udpin:{}", taken.local_addr().unwrap()), &[]);
+    assert_eq!(code, Some(3));
+    assert!(
+        told.contains("cannot be opened") && told.contains("another program"),
+        "{told}"
+    );
+
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = taken.local_addr().unwrap();
+    let (code, told) = refused(&format!("tcpin:{address}"), &[]);
+    assert!(
+        code == Some(3) && told.contains("another program"),
+        "{told}"
+    );
+    drop(taken);
+    let (code, told) = refused(&format!("tcp:{address}"), &[]);
+    assert!(
+        code == Some(3) && told.contains("start the vehicle"),
+        "{told}"
+    );
+
+    let (code, told) = refused("/dev/flagred-no-such-port:57600", &[]);
+    assert!(
+        code == Some(3) && told.contains("is the cable plugged in?"),
+        "{told}"
+    );
+    let (code, told) = refused("somewhere", &[]);
+    assert!(code == Some(2) && told.contains("is no endpoint"), "{told}");
+    let (code, told) = refused("udpout:127.0.0.1:9", &["--no-send"]);
+    assert!(code == Some(2) && told.contains("sends first"), "{told}");
+}
+
+/// As a user whom the port does not belong to.
+#[test]
+#[cfg(unix)]
+fn a_serial_port_without_permission_is_told_with_what_to_do() {
+    use std::os::unix::{fs::PermissionsExt, process::CommandExt};
+    let path = std::env::temp_dir().join(format!("flagred-port-{}", std::process::id()));
+    std::fs::write(&path, "").unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o000)).unwrap();
+    let mut watch = flagred();
+    watch.args(["watch", &format!("{}:57600", path.display())]);
+    if std::fs::File::open(&path).is_ok() {
+        // This user may open anything: be nobody.
+        watch.uid(65534);
+    }
+    let output = watch.output();
+    std::fs::remove_file(&path).unwrap();
+    let output = match output {
+        Ok(output) => output,
+        Err(error) => {
+            eprintln!("skipped: the program cannot be run as another user: {error}");
+            return;
+        }
+    };
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{told}");
+    assert!(
+        told.contains("cannot be opened") && told.contains("`dialout`"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_connection_that_breaks_is_opened_again() {
+    let flight = flight(Path::new(STEADY));
+    let watch = Watch::start("tcpin:127.0.0.1:0", &[]);
+    for round in 0..2 {
+        let stream = TcpStream::connect(watch.address()).unwrap();
+        let mut vehicle = StandIn::new(&flight, Wire::tcp(stream), Link::default(), Version::V2);
+        if round == 0 {
+            vehicle.meet();
+        }
+        vehicle.beat(false, false);
+        vehicle.linger(Duration::from_millis(200));
+    }
+    let said = watch.end();
+    assert!(said.has_note("the link is closed"));
+    assert_eq!(
+        said.all("note")
+            .filter(|event| event["text"] == "the link is open")
+            .count(),
+        2
+    );
+    said.one("found");
+}
