@@ -40,6 +40,15 @@ What to type:
   flagred explain my-rules.yaml temperature=24 humidity=70
   flagred explain --json my-rules.yaml temperature=24 humidity=70";
 
+pub(crate) const EXPORT: &str = "\
+What to type:
+  flagred export --rust --output profile.rs
+  flagred export --c --output profile.h flagred-paper
+  flagred export --c my-profile.yaml
+
+What flies with it: in Rust the crate flagred without its default features, in C the library
+flagred-c and its header flagred.h.";
+
 pub(crate) const INSPECT: &str = "\
 What to type:
   flagred inspect flight.bin

@@ -11,6 +11,7 @@ mod diagnostics;
 mod eval;
 mod evaluate;
 mod explain;
+mod export;
 mod failure;
 mod help;
 mod inspect;
@@ -61,6 +62,9 @@ enum Command {
     /// Say why the outputs of a rule set are what they are
     #[command(after_help = help::EXPLAIN)]
     Explain(explain::Arguments),
+    /// Write a profile and its rule set as constant data, to fly on board
+    #[command(after_help = help::EXPORT)]
+    Export(export::Arguments),
     /// Turn flights into rows to learn from: inputs, attitude error, risk
     Dataset(dataset::Arguments),
     /// Measure how well profiles tell what comes, beside predictors that need no rules
@@ -91,6 +95,7 @@ impl Command {
             Command::Completions(arguments) => completions::run(&arguments),
             Command::Eval(arguments) => eval::run(&arguments),
             Command::Explain(arguments) => explain::run(&arguments),
+            Command::Export(arguments) => export::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
             Command::Evaluate(arguments) => evaluate::run(&arguments),
             Command::Inspect(arguments) => inspect::run(&arguments),

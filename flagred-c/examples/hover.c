@@ -1,0 +1,62 @@
+/* A quadrotor hovers calmly for half a minute, then fights gusts that saturate its motors.
+ *
+ *   flagred export --c --output profile.h
+ *   cargo build -p flagred-c --no-default-features --profile onboard
+ *   cc -DPROFILE='"profile.h"' -I flagred-c/include flagred-c/examples/hover.c target/onboard/libflagred.a -o hover */
+#include <stdio.h>
+
+#include PROFILE
+
+/* 50 times a second. */
+#define STEP_S 0.02
+
+/* The memory of the monitor: static, as a flight stack has it. */
+static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
+
+/* What the motors are told, in us: calm, or one corner up and the other down in turns. */
+static void commands_at(int step, double commands[4]) {
+    int gust = step > 1500 && (step / 40) % 2 == 0;
+    for (int motor = 0; motor < 4; motor++) {
+        int up = (motor + step / 10) % 2;
+        commands[motor] = gust ? (up ? 1950.0 : 1150.0) : 1500.0 + 2.0 * (step % 5);
+    }
+}
+
+static const char *word(int32_t level) {
+    return level == FLAGRED_FAIL ? "FAIL" : level == FLAGRED_WARN ? "WARN" : "GOOD";
+}
+
+int main(void) {
+    /* MOT_PWM_MIN 1000, MOT_PWM_MAX 2000, MOT_SPIN_MIN 0.15, MOT_SPIN_MAX 0.95 */
+    const flagred_limits limits[4] = {{1150, 1950}, {1150, 1950}, {1150, 1950}, {1150, 1950}};
+    flagred_monitor *monitor;
+    int32_t status = flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor);
+    if (status != FLAGRED_OK) {
+        printf("%s\n", flagred_status_text(status));
+        return 1;
+    }
+    for (int step = 0; step < 2500; step++) {
+        double commands[4];
+        flagred_assessment said;
+        commands_at(step, commands);
+        flagred_sample sample = {.t_s = step * STEP_S, .commands = commands, .motors = 4, .in_air = 1};
+        status = flagred_push(monitor, &sample, &said);
+        if (status != FLAGRED_OK) {
+            printf("%s\n", flagred_status_text(status));
+            return 1;
+        }
+        if (said.change != FLAGRED_LEVEL_NONE) {
+            printf("%5.2f s  %s  risk %.0f %%, elevated risk %.0f %%\n", said.t_s, word(said.change), said.risk_pct,
+                   said.elevated_risk_pct);
+        }
+    }
+    flagred_finding ended[2];
+    flagred_finish(monitor, ended);
+    for (int i = 0; i < 2; i++) {
+        if (ended[i].level != FLAGRED_LEVEL_NONE) {
+            printf("%s from %.2f s to %.2f s, motor %d\n", word(ended[i].level), ended[i].from_s, ended[i].to_s,
+                   (int)ended[i].motor + 1);
+        }
+    }
+    return 0;
+}

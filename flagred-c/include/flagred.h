@@ -1,0 +1,295 @@
+/* FLAGRED on board: how close a multirotor is to losing control, told from its motor commands alone.
+ *
+ * A profile and its rule set are written as constant data by `flagred export --c`. A monitor follows a flight with it,
+ * in memory that the caller lends: nothing is allocated, and a sample costs the same whatever the lengths of the windows.
+ * What it says has the bits of what the command `flagred` says of the same samples.
+ *
+ *     #include "profile.h"                                     // flagred export --c flagred
+ *     static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
+ *     flagred_monitor *monitor;
+ *     flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor);
+ *     flagred_push(monitor, &sample, &assessment);             // for every sample of the motors
+ *
+ * Functions do not block, lock or write anywhere but to what they are given. A monitor is for one thread at a time.
+ * What is not known is NAN, or a reason; never a number that could be taken for a risk.
+ */
+#ifndef FLAGRED_H
+#define FLAGRED_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The version of the data that `flagred export --c` writes. */
+#define FLAGRED_PLAN_FORMAT 1
+
+/* ---- Following a flight ------------------------------------------------------------------------------------------- */
+
+typedef enum flagred_status {
+    FLAGRED_OK = 0,
+    FLAGRED_NULL_POINTER = 1,   /* a pointer that must not be null is */
+    FLAGRED_OTHER_FORMAT = 2,   /* the plan was exported by another version: export it again */
+    FLAGRED_DAMAGED_PLAN = 3,   /* the plan points beyond its own arrays */
+    FLAGRED_NO_MOTORS = 4,
+    FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size says, or not aligned to 16 bytes */
+    FLAGRED_BAD_LIMITS = 6      /* a motor's lower limit is not below its upper one */
+} flagred_status;
+
+typedef enum flagred_level {
+    FLAGRED_LEVEL_NONE = -1,    /* on the ground, or unknown for long; as a change: none */
+    FLAGRED_GOOD = 0,
+    FLAGRED_WARN = 1,
+    FLAGRED_FAIL = 2
+} flagred_level;
+
+/* Why a risk is unknown. */
+typedef enum flagred_unknown {
+    FLAGRED_KNOWN = 0,
+    FLAGRED_ON_GROUND = 1,
+    FLAGRED_OUT_OF_ORDER = 2,   /* the time stamp is not after the one before; the sample was left out */
+    FLAGRED_WARMING_UP = 3,     /* the window of an input does not reach back far enough yet */
+    FLAGRED_TOO_FEW_SAMPLES = 4,
+    FLAGRED_NO_VALUE = 5,       /* nothing is known of the signal of an input */
+    FLAGRED_NO_RULE = 6         /* no rule says anything about such inputs, and nothing fills the gap */
+} flagred_unknown;
+
+/* The commands at which a motor can give no less and no more, in the unit of its commands. On an ArduPilot vehicle in us:
+ * MOT_PWM_MIN + MOT_SPIN_MIN * (MOT_PWM_MAX - MOT_PWM_MIN), and the same with MOT_SPIN_MAX. */
+typedef struct flagred_limits {
+    double low;
+    double high;
+} flagred_limits;
+
+/* A moment of a flight. */
+typedef struct flagred_sample {
+    double t_s;                 /* seconds; must not fall */
+    const double *commands;     /* the command of each motor, in the unit of its limits; NAN is unknown, and so must
+                                   be what a bus sends for it, such as 65535 */
+    size_t motors;              /* how many there are; those that are missing are unknown */
+    const double *signals;      /* the signals that the profile names, in its order; NAN is unknown; may be NULL */
+    size_t signal_count;
+    int32_t in_air;             /* 0 on the ground */
+} flagred_sample;
+
+/* What a level was raised for, once it is over. */
+typedef struct flagred_finding {
+    double from_s;              /* since when the level was reached */
+    double raised_s;            /* when it was raised */
+    double to_s;                /* when it was last reached */
+    double threshold_pct;
+    double peak_pct;
+    double mean_margin;         /* of the motor with the least margin; NAN where no motor is known */
+    double least_margin;
+    int32_t level;              /* flagred_level; FLAGRED_LEVEL_NONE where there is no finding */
+    int32_t of_elevated_risk;   /* 0: the risk reached the threshold; 1: the elevated risk did */
+    int32_t motor;              /* counted from 0; -1 where no motor is known */
+    int32_t at_high_limit;      /* 0: nearest to its lower limit; 1: to its upper one */
+} flagred_finding;
+
+/* What is known after a sample. */
+typedef struct flagred_assessment {
+    double t_s;
+    double risk_pct;            /* NAN where unknown */
+    double elevated_risk_pct;   /* NAN where unknown */
+    double coverage;            /* how well the rules know such inputs, 0 to 1; NAN where the risk is unknown */
+    double filled_from;         /* the distance to what rules cover, where the risk was filled in from there; else NAN */
+    flagred_finding ended[2];   /* the findings that ended with this sample: of WARN, of FAIL */
+    int32_t dominant_rule;      /* the rule that fired most strongly, counted from 0; -1 where none did */
+    int32_t clamped;            /* 1 where an input lay outside its range and was taken as its end */
+    int32_t level;              /* flagred_level */
+    int32_t change;             /* flagred_level: the new level where this sample changed it */
+    int32_t unknown;            /* flagred_unknown */
+    int32_t unknown_input;      /* the input of the profile that is unknown, counted from 0; else -1 */
+} flagred_assessment;
+
+typedef struct flagred_plan flagred_plan;
+typedef struct flagred_monitor flagred_monitor;
+
+/* The version of this library, as "0.1.0". */
+const char *flagred_version(void);
+
+/* A status in words. */
+const char *flagred_status_text(int32_t status);
+
+/* How many bytes a monitor needs; 0 for a plan that cannot be used. Exported profiles have a macro that is at least as
+ * much on every processor. */
+size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
+
+/* Starts to follow a flight, and gives the monitor, which lives in the memory: nothing has to be freed. Plan and memory
+ * must outlive it; the limits, one a motor, are copied. Limits that are NULL say that commands are from 0 to 1, and that
+ * others are unknown; with limits, commands beyond them are at them. */
+int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
+                      flagred_monitor **monitor);
+
+/* Takes a sample in and says what is known. */
+int32_t flagred_push(flagred_monitor *monitor, const flagred_sample *sample, flagred_assessment *assessment);
+
+/* The finding that the level rests on, as it stands; one of FLAGRED_LEVEL_NONE while the level is good. */
+int32_t flagred_open_finding(const flagred_monitor *monitor, flagred_finding *finding);
+
+/* Ends the flight: the findings that were still open, of WARN and of FAIL. A next sample begins another flight. */
+int32_t flagred_finish(flagred_monitor *monitor, flagred_finding ended[2]);
+
+/* The risk at values of the profile's inputs, in its order, whatever was flown: for tests and for maps. Fills in what is
+ * said of one moment: the risk, coverage, filled_from, dominant_rule, clamped. */
+int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t count, flagred_assessment *assessment);
+
+/* ---- Exported data: written by `flagred export --c`, not by hand --------------------------------------------------- */
+
+typedef struct flagred_input {
+    double low, high;
+    uint32_t first_literal, first_cut, end_cut, first_start, first_curve, end_curve;
+} flagred_input;
+
+typedef struct flagred_line {
+    double foot, run, base, rise;
+    uint32_t literal;
+} flagred_line;
+
+typedef struct flagred_curve {
+    double parameters[4];
+    double height;
+    uint32_t kind, literal, first_point, end_point, first_hedge, end_hedge;
+} flagred_curve;
+
+typedef struct flagred_axis {
+    uint32_t input, first_cut, end_cut, first_line;
+} flagred_axis;
+
+typedef struct flagred_dimension {
+    uint32_t input, stride, any;
+} flagred_dimension;
+
+typedef struct flagred_node {
+    uint32_t first_edge, end_edge, first_action, end_action;
+} flagred_node;
+
+typedef struct flagred_edge {
+    uint32_t literal, node;
+} flagred_edge;
+
+typedef struct flagred_action {
+    double weight;
+    uint32_t place, output, rule, sums;
+} flagred_action;
+
+typedef struct flagred_program {
+    uint32_t first_step, end_step, first_action, end_action;
+} flagred_program;
+
+typedef struct flagred_step {
+    uint32_t op, literal;
+} flagred_step;
+
+typedef struct flagred_output {
+    double low, high, otherwise;
+    uint32_t set, first, end, first_height, end_height;
+} flagred_output;
+
+typedef struct flagred_pair {
+    double area[2][2], moment[3][2], width[2], middle[2];
+} flagred_pair;
+
+typedef struct flagred_moment {
+    double area, moment;
+} flagred_moment;
+
+typedef struct flagred_consequence {
+    double constant;
+    uint32_t first, end;
+} flagred_consequence;
+
+typedef struct flagred_coefficient {
+    double coefficient;
+    uint32_t input;
+} flagred_coefficient;
+
+typedef struct flagred_channel {
+    double window_s, limit;
+    uint32_t observed, signal, motors, threshold;
+} flagred_channel;
+
+typedef struct flagred_source {
+    uint32_t channel, statistic;
+} flagred_source;
+
+typedef struct flagred_scale {
+    double low, high;
+    uint32_t points;
+} flagred_scale;
+
+typedef struct flagred_run {
+    uint32_t cell, first, end;
+} flagred_run;
+
+typedef struct flagred_threshold {
+    double risk_pct, elevated_risk_pct;   /* NAN where there is none */
+} flagred_threshold;
+
+typedef struct flagred_level_settings {
+    flagred_threshold raise;
+    double after_s;
+    flagred_threshold until;
+} flagred_level_settings;
+
+typedef struct flagred_settings {
+    double warm_up_s, longest_gap_s;
+    double risk_window_s, high_pct, low_pct, rise_pct_per_s, fall_pct_per_s;
+    flagred_level_settings warn, fail;
+    double clear_after_s, quiet_after_take_off_s, quiet_before_landing_s;
+    double idle_command_below, idle_risk_at_most_pct;
+    uint32_t min_samples;
+} flagred_settings;
+
+/* An array and its length. */
+#define FLAGRED_ARRAY(type, name) \
+    const type *name;             \
+    size_t name##_count
+
+struct flagred_plan {
+    uint32_t format;
+    uint32_t and_operator, or_operator;
+    uint32_t conjunctions, actions_a_cell, first_action, sums;
+    uint32_t degrees, alive, partial, stack, heights;
+    uint32_t output, signals;
+    double coverage_below;
+    flagred_settings settings;
+    FLAGRED_ARRAY(flagred_input, inputs);
+    FLAGRED_ARRAY(double, cuts);
+    FLAGRED_ARRAY(uint32_t, starts);
+    FLAGRED_ARRAY(flagred_line, lines);
+    FLAGRED_ARRAY(flagred_curve, curves);
+    FLAGRED_ARRAY(double, points);              /* x, degree, x, degree ... */
+    FLAGRED_ARRAY(uint32_t, hedges);
+    FLAGRED_ARRAY(flagred_axis, axes);
+    FLAGRED_ARRAY(flagred_dimension, dimensions);
+    FLAGRED_ARRAY(uint32_t, cells);
+    FLAGRED_ARRAY(flagred_node, nodes);
+    FLAGRED_ARRAY(flagred_edge, edges);
+    FLAGRED_ARRAY(flagred_action, actions);
+    FLAGRED_ARRAY(flagred_program, programs);
+    FLAGRED_ARRAY(flagred_step, steps);
+    FLAGRED_ARRAY(flagred_output, outputs);
+    FLAGRED_ARRAY(flagred_pair, pairs);
+    FLAGRED_ARRAY(flagred_moment, moments);
+    FLAGRED_ARRAY(flagred_consequence, consequences);
+    FLAGRED_ARRAY(flagred_coefficient, coefficients);
+    FLAGRED_ARRAY(uint32_t, order);
+    FLAGRED_ARRAY(flagred_channel, channels);
+    FLAGRED_ARRAY(flagred_source, sources);
+    FLAGRED_ARRAY(flagred_scale, scales);       /* of the cells that fill gaps; none where there are no gaps */
+    FLAGRED_ARRAY(flagred_run, runs);
+    FLAGRED_ARRAY(double, values);
+    FLAGRED_ARRAY(float, distances);
+};
+
+#undef FLAGRED_ARRAY
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,138 @@
+//! What is known, as C has it.
+
+use flagred::{
+    assessment::{self, Estimate, Unknown},
+    margin::Side,
+    verdict::{self, Ended, Level, Measure},
+};
+
+/// What a level was raised for.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct Finding {
+    from_s: f64,
+    raised_s: f64,
+    to_s: f64,
+    threshold_pct: f64,
+    peak_pct: f64,
+    mean_margin: f64,
+    least_margin: f64,
+    level: i32,
+    of_elevated_risk: i32,
+    motor: i32,
+    at_high_limit: i32,
+}
+
+/// What is known after a sample.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct Assessment {
+    t_s: f64,
+    risk_pct: f64,
+    elevated_risk_pct: f64,
+    coverage: f64,
+    filled_from: f64,
+    ended: [Finding; 2],
+    dominant_rule: i32,
+    clamped: i32,
+    level: i32,
+    change: i32,
+    unknown: i32,
+    unknown_input: i32,
+}
+
+impl Finding {
+    const NONE: Finding = Finding {
+        from_s: f64::NAN,
+        raised_s: f64::NAN,
+        to_s: f64::NAN,
+        threshold_pct: f64::NAN,
+        peak_pct: f64::NAN,
+        mean_margin: f64::NAN,
+        least_margin: f64::NAN,
+        level: -1,
+        of_elevated_risk: 0,
+        motor: -1,
+        at_high_limit: 0,
+    };
+
+    pub(crate) fn of(finding: Option<verdict::Finding>) -> Finding {
+        let Some(finding) = finding else {
+            return Finding::NONE;
+        };
+        let motor = finding.motor;
+        Finding {
+            from_s: finding.from_s,
+            raised_s: finding.raised_s,
+            to_s: finding.to_s,
+            threshold_pct: finding.threshold_pct,
+            peak_pct: finding.peak_pct,
+            mean_margin: motor.map_or(f64::NAN, |motor| motor.mean_margin),
+            least_margin: motor.map_or(f64::NAN, |motor| motor.least_margin),
+            level: level(Some(finding.level)),
+            of_elevated_risk: i32::from(finding.measure == Measure::ElevatedRisk),
+            motor: motor.map_or(-1, |motor| index(motor.motor)),
+            at_high_limit: i32::from(motor.is_some_and(|motor| motor.side == Side::High)),
+        }
+    }
+}
+
+pub(crate) fn findings(ended: Ended) -> [Finding; 2] {
+    ended.map(Finding::of)
+}
+
+impl Assessment {
+    pub(crate) fn of(said: &assessment::Assessment) -> Assessment {
+        let (unknown, unknown_input) = match said.risk {
+            Ok(_) => (0, -1),
+            Err(Unknown::OnGround) => (1, -1),
+            Err(Unknown::OutOfOrder) => (2, -1),
+            Err(Unknown::WarmingUp { input }) => (3, index(input)),
+            Err(Unknown::TooFewSamples { input, .. }) => (4, index(input)),
+            Err(Unknown::NoValue { input }) => (5, index(input)),
+            Err(Unknown::NoRule) => (6, -1),
+        };
+        Assessment {
+            t_s: said.t_s,
+            elevated_risk_pct: said.elevated_risk_pct.unwrap_or(f64::NAN),
+            ended: findings(said.ended),
+            level: level(said.level),
+            change: level(said.change),
+            unknown,
+            unknown_input,
+            ..Assessment::of_moment(said.risk.ok())
+        }
+    }
+
+    /// What is said of one moment, whatever came before.
+    pub(crate) fn of_moment(said: Option<Estimate>) -> Assessment {
+        let known = |value: fn(&Estimate) -> f64| said.as_ref().map_or(f64::NAN, value);
+        Assessment {
+            t_s: f64::NAN,
+            risk_pct: known(|said| said.risk_pct),
+            elevated_risk_pct: f64::NAN,
+            coverage: known(|said| said.coverage),
+            filled_from: known(|said| said.filled_from.unwrap_or(f64::NAN)),
+            ended: [Finding::NONE; 2],
+            dominant_rule: said.and_then(|said| said.dominant_rule).map_or(-1, index),
+            clamped: i32::from(said.is_some_and(|said| said.clamped)),
+            level: -1,
+            change: -1,
+            unknown: if said.is_some() { 0 } else { 6 },
+            unknown_input: -1,
+        }
+    }
+}
+
+fn level(level: Option<Level>) -> i32 {
+    match level {
+        None => -1,
+        Some(Level::Good) => 0,
+        Some(Level::Warn) => 1,
+        Some(Level::Fail) => 2,
+    }
+}
+
+fn index(index: usize) -> i32 {
+    i32::try_from(index).unwrap_or(i32::MAX)
+}

@@ -1,0 +1,284 @@
+//! The C interface of FLAGRED on board; what each function does stands in `include/flagred.h`.
+//!
+//! Everything is done by [`flagred::board`]. Here foreign memory becomes references, and the other way round: the only
+//! `unsafe` of the workspace.
+#![cfg_attr(not(feature = "std"), no_std)]
+
+mod assessment;
+mod memory;
+mod plan;
+mod status;
+
+use core::ffi::{CStr, c_char};
+
+use flagred::{
+    assessment::Sample,
+    board::{Memory, Monitor, Parts},
+    channel::Seen,
+    margin::Range,
+    verdict::Motor,
+    window::Window,
+};
+
+use assessment::{Assessment, Finding, findings};
+use memory::Block;
+use plan::{Array, Plan};
+use status::Status;
+
+/// The limits of a motor.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct Limits {
+    low: f64,
+    high: f64,
+}
+
+/// A moment of a flight.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct CSample {
+    t_s: f64,
+    commands: Array<f64>,
+    signals: Array<f64>,
+    in_air: i32,
+}
+
+/// A monitor in the caller's memory.
+#[derive(Debug)]
+pub struct CMonitor {
+    monitor: Monitor<'static>,
+    /// One a motor; none where commands are effective ones.
+    limits: &'static [Range],
+    /// The effective command of each motor in the sample at hand.
+    effective: &'static mut [f64],
+}
+
+/// The version of this library.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "a name that C can call")]
+pub extern "C" fn flagred_version() -> *const c_char {
+    const VERSION: &CStr =
+        match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
+            Ok(version) => version,
+            Err(_) => c"",
+        };
+    VERSION.as_ptr()
+}
+
+/// A status in words.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "a name that C can call")]
+pub extern "C" fn flagred_status_text(status: i32) -> *const c_char {
+    status::text(status).as_ptr()
+}
+
+/// How many bytes a monitor needs; 0 for a plan that cannot be used.
+///
+/// # Safety
+/// `plan` is null or points to a plan whose arrays are as long as it says.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub unsafe extern "C" fn flagred_memory_size(plan: *const Plan, motors: usize) -> usize {
+    // SAFETY: the caller's promise.
+    let plan = unsafe { plan.as_ref() };
+    let plan = plan.ok_or(Status::NullPointer);
+    // SAFETY: the caller's promise on the plan's arrays, which are read only here.
+    let sizes = plan.and_then(|plan| unsafe { plan.bytes(motors) });
+    sizes.unwrap_or(0)
+}
+
+/// Starts to follow a flight.
+///
+/// # Safety
+/// `plan` is null or points to a plan whose arrays are as long as it says; `limits` is null or points to one for each
+/// motor; `memory` is null or points to `size` bytes that nothing else uses; `monitor` is null or can be written. Plan
+/// and memory stay where they are as long as the monitor is used.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub unsafe extern "C" fn flagred_start(
+    plan: *const Plan,
+    motors: usize,
+    limits: *const Limits,
+    memory: *mut u8,
+    size: usize,
+    monitor: *mut *mut CMonitor,
+) -> i32 {
+    // SAFETY: the caller's promises, passed on.
+    let started = unsafe { start(plan, motors, limits, memory, size) };
+    if monitor.is_null() {
+        return Status::NullPointer as i32;
+    }
+    let (status, started) = match started {
+        Ok(started) => (Status::Ok, started),
+        Err(status) => (status, core::ptr::null_mut()),
+    };
+    // SAFETY: not null, and the caller lets it be written.
+    unsafe { monitor.write(started) };
+    status as i32
+}
+
+/// # Safety
+/// As [`flagred_start`].
+#[allow(unsafe_code, reason = "foreign memory")]
+unsafe fn start(
+    plan: *const Plan,
+    motors: usize,
+    limits: *const Limits,
+    memory: *mut u8,
+    size: usize,
+) -> Result<*mut CMonitor, Status> {
+    // SAFETY: the caller's promise: it lives as long as the monitor.
+    let plan: &'static Plan = unsafe { plan.as_ref() }.ok_or(Status::NullPointer)?;
+    // SAFETY: the caller's promise: nobody else uses the memory, as long as the monitor.
+    let mut block = unsafe { Block::new(memory, size) }?;
+    if motors == 0 {
+        return Err(Status::NoMotors);
+    }
+    // SAFETY: the caller's promise on the plan's arrays.
+    let plan = unsafe { plan.read(&mut block) }?;
+    let plan: &'static flagred::board::Plan<'static> = block.place(plan)?;
+    plan.check().map_err(|_| Status::DamagedPlan)?;
+
+    let limits: &'static [Limits] = if limits.is_null() {
+        &[]
+    } else {
+        // SAFETY: not null, and by the caller's promise there is one for each motor; only read here.
+        unsafe { core::slice::from_raw_parts(limits, motors) }
+    };
+    let ranges = block.fill(limits.len(), Range::FULL)?;
+    for (range, Limits { low, high }) in ranges.iter_mut().zip(limits) {
+        *range = Range::new(*low, *high).ok_or(Status::BadLimits)?;
+    }
+    let sizes = plan.sizes();
+    let parts = Parts {
+        numbers: block.fill(sizes.numbers, 0.0)?,
+        partials: block.fill(sizes.partials, flagred::board::table::Partial::NONE)?,
+        strongest: block.fill(sizes.outputs, flagred::board::table::Strongest::NONE)?,
+        outcomes: block.fill(sizes.outputs, flagred::board::table::Outcome::UNDEFINED)?,
+        seen: block.repeat(sizes.channels, |_| Ok(Seen::IDLE))?,
+        risks: block.place(Window::IDLE)?,
+        motors: block.fill(motors, Motor::UNKNOWN)?,
+    };
+    let memory = Memory::of(plan, parts).ok_or(Status::MemorySize)?;
+    let monitor = CMonitor {
+        monitor: Monitor::new(plan, memory).map_err(|_| Status::DamagedPlan)?,
+        limits: ranges,
+        effective: block.fill(motors, f64::NAN)?,
+    };
+    block.place(monitor).map(core::ptr::from_mut)
+}
+
+/// Takes a sample in and says what is known.
+///
+/// # Safety
+/// `monitor` is null or came from [`flagred_start`]; `sample` is null or points to a sample whose arrays are as long as it
+/// says; `assessment` is null or can be written.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub unsafe extern "C" fn flagred_push(
+    monitor: *mut CMonitor,
+    sample: *const CSample,
+    assessment: *mut Assessment,
+) -> i32 {
+    // SAFETY: the caller's promises.
+    let (monitor, sample) = unsafe { (monitor.as_mut(), sample.as_ref()) };
+    let (Some(monitor), Some(sample), false) = (monitor, sample, assessment.is_null()) else {
+        return Status::NullPointer as i32;
+    };
+    // SAFETY: the caller's promise on the sample's arrays, which are used in this call alone.
+    let arrays = unsafe { (sample.commands.read(), sample.signals.read()) };
+    let (Ok(commands), Ok(signals)) = arrays else {
+        return Status::NullPointer as i32;
+    };
+    let known = commands.iter().copied().chain(core::iter::repeat(f64::NAN));
+    for (i, (effective, command)) in monitor.effective.iter_mut().zip(known).enumerate() {
+        *effective = match monitor.limits.get(i) {
+            Some(limits) if command.is_finite() => limits.fraction(command),
+            Some(_) => f64::NAN,
+            None => command,
+        };
+    }
+    let said = monitor.monitor.push(&Sample {
+        t_s: sample.t_s,
+        motors: monitor.effective,
+        in_air: sample.in_air != 0,
+        signals,
+    });
+    // SAFETY: not null, and the caller lets it be written.
+    unsafe { assessment.write(Assessment::of(&said)) };
+    Status::Ok as i32
+}
+
+/// The finding that the level rests on, as it stands.
+///
+/// # Safety
+/// `monitor` is null or came from [`flagred_start`]; `finding` is null or can be written.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub unsafe extern "C" fn flagred_open_finding(
+    monitor: *const CMonitor,
+    finding: *mut Finding,
+) -> i32 {
+    // SAFETY: the caller's promise.
+    let monitor = unsafe { monitor.as_ref() };
+    let (Some(monitor), false) = (monitor, finding.is_null()) else {
+        return Status::NullPointer as i32;
+    };
+    // SAFETY: not null, and the caller lets it be written.
+    unsafe { finding.write(Finding::of(monitor.monitor.open_finding())) };
+    Status::Ok as i32
+}
+
+/// Ends the flight: the findings that were still open.
+///
+/// # Safety
+/// `monitor` is null or came from [`flagred_start`]; `ended` is null or two findings can be written there.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub unsafe extern "C" fn flagred_finish(monitor: *mut CMonitor, ended: *mut [Finding; 2]) -> i32 {
+    // SAFETY: the caller's promise.
+    let monitor = unsafe { monitor.as_mut() };
+    let (Some(monitor), false) = (monitor, ended.is_null()) else {
+        return Status::NullPointer as i32;
+    };
+    // SAFETY: not null, and the caller lets it be written.
+    unsafe { ended.write(findings(monitor.monitor.finish())) };
+    Status::Ok as i32
+}
+
+/// The risk at values of the profile's inputs, whatever was flown.
+///
+/// # Safety
+/// `monitor` is null or came from [`flagred_start`]; `inputs` is null or points to `count` numbers; `assessment` is null
+/// or can be written.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub unsafe extern "C" fn flagred_evaluate(
+    monitor: *mut CMonitor,
+    inputs: *const f64,
+    count: usize,
+    assessment: *mut Assessment,
+) -> i32 {
+    let inputs = Array {
+        items: inputs,
+        count,
+    };
+    // SAFETY: the caller's promises.
+    let (monitor, inputs) = unsafe { (monitor.as_mut(), inputs.read()) };
+    let (Some(monitor), Ok(inputs), false) = (monitor, inputs, assessment.is_null()) else {
+        return Status::NullPointer as i32;
+    };
+    let said = monitor.monitor.at(inputs);
+    // SAFETY: not null, and the caller lets it be written.
+    unsafe { assessment.write(Assessment::of_moment(said)) };
+    Status::Ok as i32
+}
+
+/// A panic would be an error of this library: its promise is to have none. The processor stops where it is.
+#[cfg(not(feature = "std"))]
+#[panic_handler]
+fn stop(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {
+        core::hint::spin_loop();
+    }
+}

@@ -1,0 +1,395 @@
+//! An exported plan, as C has it.
+
+use flagred::{
+    accumulator::AccumulatorSettings,
+    assessment::Sampling,
+    board::{
+        self,
+        scale::Scale,
+        table::{
+            Action, Axis, Coefficient, Conjunction, Conjunctions, Consequence, Curve, Dimension,
+            Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Program, Sizes,
+            Step, Table,
+        },
+    },
+    channel::{self, Channel, Motors, Observed, Statistic},
+    follower::Settings,
+    gap::{FilledCells, Run},
+    verdict::{Idle, LevelSettings, Threshold, VerdictSettings},
+};
+
+use crate::{memory::Block, status::Status};
+
+/// The version of the data that is understood.
+const FORMAT: u32 = 1;
+
+/// An array of C and its length.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub(crate) struct Array<T> {
+    pub(crate) items: *const T,
+    pub(crate) count: usize,
+}
+
+impl<T> Array<T> {
+    /// The array, in place.
+    ///
+    /// # Safety
+    /// It is null or as long as it says, and nothing changes it as long as the slice is used.
+    #[allow(unsafe_code, reason = "foreign memory")]
+    pub(crate) unsafe fn read<'a>(&self) -> Result<&'a [T], Status> {
+        if self.count == 0 {
+            return Ok(&[]);
+        }
+        if self.items.is_null() || !self.items.is_aligned() {
+            return Err(Status::NullPointer);
+        }
+        // SAFETY: neither null nor unaligned, and the caller's promise.
+        Ok(unsafe { core::slice::from_raw_parts(self.items, self.count) })
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+struct CChannel {
+    window_s: f64,
+    limit: f64,
+    observed: u32,
+    signal: u32,
+    motors: u32,
+    threshold: u32,
+}
+
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+struct CSource {
+    channel: u32,
+    statistic: u32,
+}
+
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+struct CThreshold {
+    risk_pct: f64,
+    elevated_risk_pct: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+struct CLevelSettings {
+    raise: CThreshold,
+    after_s: f64,
+    until: CThreshold,
+}
+
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+struct CSettings {
+    warm_up_s: f64,
+    longest_gap_s: f64,
+    risk_window_s: f64,
+    high_pct: f64,
+    low_pct: f64,
+    rise_pct_per_s: f64,
+    fall_pct_per_s: f64,
+    warn: CLevelSettings,
+    fail: CLevelSettings,
+    clear_after_s: f64,
+    quiet_after_take_off_s: f64,
+    quiet_before_landing_s: f64,
+    idle_command_below: f64,
+    idle_risk_at_most_pct: f64,
+    min_samples: u32,
+}
+
+/// `struct flagred_plan`.
+#[derive(Debug)]
+#[repr(C)]
+pub struct Plan {
+    format: u32,
+    and: u32,
+    or: u32,
+    conjunctions: u32,
+    actions_a_cell: u32,
+    first_action: u32,
+    sums: u32,
+    sizes: Sizes,
+    output: u32,
+    signals: u32,
+    coverage_below: f64,
+    settings: CSettings,
+    inputs: Array<Input>,
+    cuts: Array<f64>,
+    starts: Array<u32>,
+    lines: Array<Line>,
+    curves: Array<Curve>,
+    points: Array<f64>,
+    hedges: Array<u32>,
+    axes: Array<Axis>,
+    dimensions: Array<Dimension>,
+    cells: Array<u32>,
+    nodes: Array<Node>,
+    edges: Array<Edge>,
+    actions: Array<Action>,
+    programs: Array<Program>,
+    steps: Array<Step>,
+    outputs: Array<Output>,
+    pairs: Array<Pair>,
+    moments: Array<Moment>,
+    consequences: Array<Consequence>,
+    coefficients: Array<Coefficient>,
+    order: Array<u32>,
+    channels: Array<CChannel>,
+    sources: Array<CSource>,
+    scales: Array<Scale>,
+    runs: Array<Run>,
+    values: Array<f64>,
+    distances: Array<f32>,
+}
+
+impl Plan {
+    /// How many bytes a monitor needs.
+    ///
+    /// # Safety
+    /// The arrays are as long as they say.
+    #[allow(unsafe_code, reason = "foreign memory")]
+    pub(crate) unsafe fn bytes(&self, motors: usize) -> Result<usize, Status> {
+        // SAFETY: the caller's promise.
+        let plan = unsafe { self.whole(&[], &[]) }?;
+        let mut bytes = plan.bytes(motors);
+        // Channels and inputs are read into the memory; without it there are none yet.
+        let (channel, input) = (
+            size_of::<Channel>() + size_of::<channel::Seen>(),
+            size_of::<channel::Input>() + size_of::<f64>(),
+        );
+        bytes += self.channels.count * channel + self.sources.count * input;
+        Ok(bytes)
+    }
+
+    /// The plan, with what C has in another form read into the block.
+    ///
+    /// # Safety
+    /// The arrays are as long as they say, and stay as they are.
+    #[allow(unsafe_code, reason = "foreign memory")]
+    pub(crate) unsafe fn read(&self, block: &mut Block) -> Result<board::Plan<'static>, Status> {
+        // SAFETY: the caller's promise.
+        let (channels, sources) = unsafe { (self.channels.read()?, self.sources.read()?) };
+        let get = |i: usize| channels.get(i).ok_or(Status::DamagedPlan);
+        let channels = block.repeat(channels.len(), |i| get(i)?.read())?;
+        let get = |i: usize| sources.get(i).ok_or(Status::DamagedPlan);
+        let inputs = block.repeat(sources.len(), |i| get(i)?.read(channels))?;
+        // SAFETY: the caller's promise.
+        unsafe { self.whole(channels, inputs) }
+    }
+
+    /// # Safety
+    /// The arrays are as long as they say, and stay as they are.
+    #[allow(unsafe_code, reason = "foreign memory")]
+    unsafe fn whole<'a>(
+        &self,
+        channels: &'a [Channel],
+        inputs: &'a [channel::Input],
+    ) -> Result<board::Plan<'a>, Status> {
+        if self.format != FORMAT {
+            return Err(Status::OtherFormat);
+        }
+        // SAFETY: the caller's promise, for all arrays of the plan.
+        unsafe {
+            let (points, _) = self.points.read()?.as_chunks::<2>();
+            let scales = self.scales.read()?;
+            let cells = FilledCells {
+                scales,
+                runs: self.runs.read()?,
+                values: self.values.read()?,
+                distances: self.distances.read()?,
+            };
+            Ok(board::Plan {
+                name: "",
+                table: Table {
+                    and: conjunction(self.and)?,
+                    or: disjunction(self.or)?,
+                    conjunctions: match self.conjunctions {
+                        0 => Conjunctions::Uniform {
+                            actions_a_cell: self.actions_a_cell,
+                            first_action: self.first_action,
+                            sums: self.sums != 0,
+                        },
+                        1 => Conjunctions::Dense,
+                        2 => Conjunctions::Trie,
+                        _ => return Err(Status::DamagedPlan),
+                    },
+                    sizes: self.sizes,
+                    inputs: self.inputs.read()?,
+                    cuts: self.cuts.read()?,
+                    starts: self.starts.read()?,
+                    lines: self.lines.read()?,
+                    curves: self.curves.read()?,
+                    points,
+                    hedges: hedges(self.hedges.read()?)?,
+                    axes: self.axes.read()?,
+                    dimensions: self.dimensions.read()?,
+                    cells: self.cells.read()?,
+                    nodes: self.nodes.read()?,
+                    edges: self.edges.read()?,
+                    actions: self.actions.read()?,
+                    programs: self.programs.read()?,
+                    steps: self.steps.read()?,
+                    outputs: self.outputs.read()?,
+                    pairs: self.pairs.read()?,
+                    moments: self.moments.read()?,
+                    consequences: self.consequences.read()?,
+                    coefficients: self.coefficients.read()?,
+                },
+                output: self.output,
+                order: self.order.read()?,
+                channels,
+                inputs,
+                signals: self.signals,
+                settings: self.settings.read(),
+                coverage_below: self.coverage_below,
+                filled: (!scales.is_empty()).then_some(cells),
+            })
+        }
+    }
+}
+
+/// Hedges in place, where all are known.
+#[allow(unsafe_code, reason = "foreign memory")]
+fn hedges(codes: &[u32]) -> Result<&[Hedge], Status> {
+    if codes.iter().any(|code| *code as usize >= Hedge::ALL.len()) {
+        return Err(Status::DamagedPlan);
+    }
+    // SAFETY: a hedge is a `u32` below the number of hedges, which all of these are.
+    Ok(unsafe { core::slice::from_raw_parts(codes.as_ptr().cast(), codes.len()) })
+}
+
+fn conjunction(code: u32) -> Result<Conjunction, Status> {
+    Ok(match code {
+        0 => Conjunction::Minimum,
+        1 => Conjunction::Product,
+        2 => Conjunction::BoundedDifference,
+        3 => Conjunction::Drastic,
+        4 => Conjunction::Einstein,
+        5 => Conjunction::Hamacher,
+        6 => Conjunction::NilpotentMinimum,
+        _ => return Err(Status::DamagedPlan),
+    })
+}
+
+fn disjunction(code: u32) -> Result<Disjunction, Status> {
+    Ok(match code {
+        0 => Disjunction::Maximum,
+        1 => Disjunction::ProbabilisticSum,
+        2 => Disjunction::BoundedSum,
+        3 => Disjunction::Drastic,
+        4 => Disjunction::Einstein,
+        5 => Disjunction::Hamacher,
+        6 => Disjunction::NilpotentMaximum,
+        _ => return Err(Status::DamagedPlan),
+    })
+}
+
+impl CChannel {
+    fn read(&self) -> Result<Channel, Status> {
+        Ok(Channel {
+            observed: match self.observed {
+                0 => Observed::Command,
+                1 => Observed::Margin,
+                2 => Observed::LowSide,
+                3 => Observed::HighSide,
+                4 => Observed::Named(self.signal as usize),
+                _ => return Err(Status::DamagedPlan),
+            },
+            motors: match self.motors {
+                0 => Motors::Pooled,
+                1 => Motors::Mean,
+                2 => Motors::Std,
+                3 => Motors::Min,
+                4 => Motors::Max,
+                _ => return Err(Status::DamagedPlan),
+            },
+            threshold: match self.threshold {
+                0 => None,
+                1 => Some(channel::Threshold::Below(self.limit)),
+                2 => Some(channel::Threshold::Above(self.limit)),
+                _ => return Err(Status::DamagedPlan),
+            },
+            window_s: self.window_s,
+        })
+    }
+}
+
+impl CSource {
+    /// The limit of a share of time is its channel's.
+    fn read(&self, channels: &[Channel]) -> Result<channel::Input, Status> {
+        let channel = channels.get(self.channel as usize);
+        let limit = match channel.and_then(|channel| channel.threshold) {
+            Some(channel::Threshold::Below(limit) | channel::Threshold::Above(limit)) => limit,
+            None => f64::NAN,
+        };
+        Ok(channel::Input {
+            channel: self.channel as usize,
+            statistic: match self.statistic {
+                0 => Statistic::Mean,
+                1 => Statistic::Std,
+                2 => Statistic::Rms,
+                3 => Statistic::Min,
+                4 => Statistic::Max,
+                5 => Statistic::Last,
+                6 => Statistic::ShareBelow(limit),
+                7 => Statistic::ShareAbove(limit),
+                _ => return Err(Status::DamagedPlan),
+            },
+        })
+    }
+}
+
+impl CThreshold {
+    fn read(&self) -> Threshold {
+        let known = |value: f64| (!value.is_nan()).then_some(value);
+        Threshold {
+            risk_pct: known(self.risk_pct),
+            elevated_risk_pct: known(self.elevated_risk_pct),
+        }
+    }
+}
+
+impl CLevelSettings {
+    fn read(&self) -> LevelSettings {
+        LevelSettings {
+            raise: self.raise.read(),
+            after_s: self.after_s,
+            until: self.until.read(),
+        }
+    }
+}
+
+impl CSettings {
+    fn read(&self) -> Settings {
+        Settings {
+            sampling: Sampling {
+                min_samples: self.min_samples,
+                warm_up_s: self.warm_up_s,
+                longest_gap_s: self.longest_gap_s,
+            },
+            elevated_risk: AccumulatorSettings {
+                window_s: self.risk_window_s,
+                high_pct: self.high_pct,
+                low_pct: self.low_pct,
+                rise_pct_per_s: self.rise_pct_per_s,
+                fall_pct_per_s: self.fall_pct_per_s,
+            },
+            verdict: VerdictSettings {
+                warn: self.warn.read(),
+                fail: self.fail.read(),
+                clear_after_s: self.clear_after_s,
+                quiet_after_take_off_s: self.quiet_after_take_off_s,
+                quiet_before_landing_s: self.quiet_before_landing_s,
+                idle: Idle {
+                    command_below: self.idle_command_below,
+                    risk_at_most_pct: self.idle_risk_at_most_pct,
+                },
+            },
+        }
+    }
+}

@@ -1,0 +1,112 @@
+/* Everything that can be given wrongly is told, and nothing crashes. The line that fails is the exit code. */
+#include <stdio.h>
+
+#include PROFILE
+
+#define MOTORS 4
+#define CHECK(holds)                                 \
+    do {                                             \
+        if (!(holds)) {                              \
+            printf("line %d: %s\n", __LINE__, #holds); \
+            return 1;                                \
+        }                                            \
+    } while (0)
+
+static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(MOTORS)];
+
+static int32_t start(const flagred_plan *plan, flagred_monitor **monitor) {
+    return flagred_start(plan, MOTORS, NULL, memory, sizeof memory, monitor);
+}
+
+int main(void) {
+    flagred_monitor *monitor = NULL;
+    flagred_assessment said;
+    flagred_finding ended[2];
+    const flagred_plan *plan = &PLAN;
+    double commands[MOTORS] = {0.5, 0.5, 0.5, 0.5};
+
+    CHECK(flagred_version()[0] != '\0');
+    for (int32_t status = -1; status < 9; status++) {
+        CHECK(flagred_status_text(status)[0] != '\0');
+    }
+    CHECK(flagred_memory_size(NULL, MOTORS) == 0);
+    CHECK(flagred_memory_size(plan, MOTORS) > 0 && flagred_memory_size(plan, MOTORS) <= sizeof memory);
+
+    /* Starting. */
+    CHECK(start(NULL, &monitor) == FLAGRED_NULL_POINTER && monitor == NULL);
+    CHECK(start(plan, NULL) == FLAGRED_NULL_POINTER);
+    CHECK(flagred_start(plan, MOTORS, NULL, NULL, sizeof memory, &monitor) == FLAGRED_NULL_POINTER);
+    CHECK(flagred_start(plan, 0, NULL, memory, sizeof memory, &monitor) == FLAGRED_NO_MOTORS);
+    CHECK(flagred_start(plan, MOTORS, NULL, memory + 1, sizeof memory - 1, &monitor) == FLAGRED_MEMORY_SIZE);
+    CHECK(flagred_start(plan, (size_t)-1 / 2, NULL, memory, sizeof memory, &monitor) == FLAGRED_MEMORY_SIZE);
+    for (size_t size = 0; size < sizeof memory - 4096; size += 977) {
+        CHECK(flagred_start(plan, MOTORS, NULL, memory, size, &monitor) == FLAGRED_MEMORY_SIZE && monitor == NULL);
+    }
+    flagred_limits limits[MOTORS] = {{1000, 2000}, {1000, 2000}, {2000, 1000}, {1000, 2000}};
+    CHECK(flagred_start(plan, MOTORS, limits, memory, sizeof memory, &monitor) == FLAGRED_BAD_LIMITS);
+    limits[2].low = NAN;
+    CHECK(flagred_start(plan, MOTORS, limits, memory, sizeof memory, &monitor) == FLAGRED_BAD_LIMITS);
+
+    /* Plans of another version, and damaged ones. */
+    flagred_plan damaged = *plan;
+    damaged.format = 0;
+    CHECK(start(&damaged, &monitor) == FLAGRED_OTHER_FORMAT && flagred_memory_size(&damaged, MOTORS) == 0);
+    damaged = *plan;
+    damaged.and_operator = 99;
+    CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+    damaged = *plan;
+    damaged.conjunctions = 99;
+    CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+    damaged = *plan;
+    damaged.output = 99;
+    CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+    damaged = *plan;
+    damaged.lines_count = damaged.actions_count = 1;
+    CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+    damaged = *plan;
+    damaged.inputs = NULL;
+    CHECK(start(&damaged, &monitor) == FLAGRED_NULL_POINTER);
+    damaged = *plan;
+    damaged.channels_count = 0;
+    CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+    damaged = *plan;
+    damaged.order_count = 0;
+    CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+    damaged = *plan;
+    damaged.heights = 0;
+    CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+
+    /* Samples. */
+    CHECK(start(plan, &monitor) == FLAGRED_OK && monitor != NULL);
+    flagred_sample sample = {.t_s = 0, .commands = commands, .motors = MOTORS, .in_air = 1};
+    CHECK(flagred_push(NULL, &sample, &said) == FLAGRED_NULL_POINTER);
+    CHECK(flagred_push(monitor, NULL, &said) == FLAGRED_NULL_POINTER);
+    CHECK(flagred_push(monitor, &sample, NULL) == FLAGRED_NULL_POINTER);
+    sample.commands = NULL;
+    CHECK(flagred_push(monitor, &sample, &said) == FLAGRED_NULL_POINTER);
+    sample.commands = commands;
+    CHECK(flagred_finish(monitor, NULL) == FLAGRED_NULL_POINTER && flagred_finish(NULL, ended) == FLAGRED_NULL_POINTER);
+    CHECK(flagred_open_finding(NULL, ended) == FLAGRED_NULL_POINTER);
+    CHECK(flagred_evaluate(monitor, NULL, 4, &said) == FLAGRED_NULL_POINTER);
+    CHECK(flagred_evaluate(monitor, commands, 0, &said) == FLAGRED_OK && isnan(said.risk_pct));
+
+    /* What is not known is never a risk: NAN, 65535 and infinities in every field, too few and too many motors. */
+    const double odd[] = {NAN, 65535.0, INFINITY, -INFINITY, -1.0, 1e300};
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+        CHECK(start(plan, &monitor) == FLAGRED_OK);
+        for (int step = 0; step < 500; step++) {
+            for (int motor = 0; motor < MOTORS; motor++) {
+                commands[motor] = odd[i];
+            }
+            sample.t_s = step * 0.02;
+            sample.motors = step % 3 == 0 ? 0 : MOTORS;
+            CHECK(flagred_push(monitor, &sample, &said) == FLAGRED_OK);
+            CHECK(isnan(said.risk_pct) && isnan(said.elevated_risk_pct) && said.unknown != FLAGRED_KNOWN);
+            CHECK(said.level == FLAGRED_LEVEL_NONE && said.change == FLAGRED_LEVEL_NONE);
+        }
+        sample.t_s = odd[i];
+        CHECK(flagred_push(monitor, &sample, &said) == FLAGRED_OK && isnan(said.risk_pct));
+        sample.motors = MOTORS;
+    }
+    return 0;
+}

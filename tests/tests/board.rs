@@ -1,0 +1,477 @@
+//! What flies on board says, bit for bit, what the monitor says: as a table that is lent, as exported Rust and as
+//! exported C, over grids of inputs and over every flight there is.
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::OnceLock,
+};
+
+use flagred::{
+    board::{self, Memory, Parts, Plan, table},
+    channel::Seen,
+    estimator::Estimator,
+    monitor::Monitor,
+    verdict::Motor,
+    window::Window,
+};
+use flagred_tests::{
+    board::{Moment, PROFILES, estimator, findings, logs, moment, moments, points, told},
+    flagred,
+};
+
+/// What `flagred export --rust` writes of each of the profiles.
+mod exported {
+    pub mod flagred {
+        include!("../exported/flagred.rs");
+    }
+    pub mod flagred_paper {
+        include!("../exported/flagred_paper.rs");
+    }
+    pub mod flagred_battery {
+        include!("../exported/flagred_battery.rs");
+    }
+}
+
+fn exported() -> [(&'static str, &'static Plan<'static>); 3] {
+    [
+        ("flagred", &exported::flagred::PLAN),
+        ("flagred_paper", &exported::flagred_paper::PLAN),
+        ("flagred_battery", &exported::flagred_battery::PLAN),
+    ]
+}
+
+/// Runs a board's monitor in memory of just the plan's sizes.
+fn with_monitor<R>(
+    plan: &Plan<'_>,
+    motors: usize,
+    run: impl FnOnce(&mut board::Monitor<'_>) -> R,
+) -> R {
+    let sizes = plan.sizes();
+    let parts = Parts {
+        numbers: &mut vec![0.0; sizes.numbers],
+        partials: &mut vec![table::Partial::NONE; sizes.partials],
+        strongest: &mut vec![table::Strongest::NONE; sizes.outputs],
+        outcomes: &mut vec![table::Outcome::UNDEFINED; sizes.outputs],
+        seen: &mut vec![Seen::IDLE; sizes.channels],
+        risks: &mut Window::IDLE.clone(),
+        motors: &mut vec![Motor::UNKNOWN; motors],
+    };
+    let memory = Memory::of(plan, parts).unwrap();
+    run(&mut board::Monitor::new(plan, memory).unwrap())
+}
+
+/// What the monitor says of a flight, sample by sample, and at its end.
+fn by_the_monitor(estimator: &Estimator, flight: &[Moment]) -> Vec<String> {
+    let signals = estimator.profile().signals();
+    let mut monitor = Monitor::new(estimator, flight[0].motors.len(), &signals).unwrap();
+    let said = flight
+        .iter()
+        .map(|moment| told(&monitor.push(&moment.sample())));
+    let mut said: Vec<String> = said.collect();
+    said.push(findings(&monitor.finish()));
+    said
+}
+
+fn on_board(plan: &Plan<'_>, flight: &[Moment]) -> Vec<String> {
+    with_monitor(plan, flight[0].motors.len(), |monitor| {
+        let said = flight
+            .iter()
+            .map(|moment| told(&monitor.push(&moment.sample())));
+        let mut said: Vec<String> = said.collect();
+        said.push(findings(&monitor.finish()));
+        said
+    })
+}
+
+/// The first difference, if any: a whole flight is too long to print.
+fn assert_same(expected: &[String], found: &[String], what: &str) {
+    assert_eq!(expected.len(), found.len(), "{what}");
+    for (i, (expected, found)) in expected.iter().zip(found).enumerate() {
+        assert_eq!(expected, found, "{what}, step {i}");
+    }
+}
+
+/// As many points as make a dense grid that is soon done.
+fn along(estimator: &Estimator) -> usize {
+    match estimator.profile().inputs.len() {
+        0..=2 => 203,
+        3 => 53,
+        _ => 19,
+    }
+}
+
+#[test]
+fn exported_files_are_what_export_writes() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("exported");
+    for (profile, (file, _)) in PROFILES.iter().zip(exported()) {
+        let output = flagred()
+            .args(["export", "--rust", profile])
+            .output()
+            .unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success(), "{profile}");
+        let path = folder.join(format!("{file}.rs"));
+        if std::env::var_os("UPDATE_EXPORTED").is_some() {
+            std::fs::write(&path, &text).unwrap();
+        }
+        assert!(
+            std::fs::read_to_string(&path).unwrap() == text,
+            "{} is not what `flagred export --rust {profile}` writes; UPDATE_EXPORTED=1 writes it anew",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs() {
+    for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
+        let estimator = estimator(profile);
+        let lent = estimator.plan().unwrap();
+        // As text, in which what is not a number is equal to itself.
+        let table = |plan: &Plan<'_>| format!("{:?}", plan.table);
+        assert!(table(plan) == table(&lent), "{name}");
+        let (mut known, mut filled) = (0, 0);
+        with_monitor(plan, 1, |monitor| {
+            for point in points(&estimator, along(&estimator)) {
+                let expected = estimator.at(&point);
+                known += usize::from(expected.is_some());
+                filled += usize::from(expected.is_some_and(|said| said.filled_from > Some(0.0)));
+                let found = monitor.at(&point);
+                assert_eq!(
+                    moment(expected.as_ref()),
+                    moment(found.as_ref()),
+                    "{name} at {point:?}"
+                );
+            }
+            let inputs = estimator.profile().inputs.len();
+            assert_eq!(monitor.at(&vec![f64::NAN; inputs]), None);
+            assert_eq!(monitor.at(&vec![f64::INFINITY; inputs]), None);
+            assert_eq!(monitor.at(&[]), None);
+        });
+        eprintln!("{name}: {known} points, {filled} of them filled");
+        assert!(known > 30_000, "{name}: {known}");
+        // The rules to fly with leave no gap.
+        assert_eq!(filled > 0, name != "flagred", "{name}: {filled}");
+    }
+}
+
+#[test]
+fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
+    for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
+        let estimator = estimator(profile);
+        let lent = estimator.plan().unwrap();
+        for log in logs() {
+            let flight = moments(&log, &estimator.profile().signals());
+            let what = format!("{name}, {}", log.display());
+            let expected = by_the_monitor(&estimator, &flight);
+            assert_same(&expected, &on_board(&lent, &flight), &what);
+            assert_same(&expected, &on_board(plan, &flight), &what);
+        }
+    }
+}
+
+#[test]
+fn a_storage_has_the_sizes_of_its_plan_and_refuses_others() {
+    let mut storage = exported::flagred::Storage::<8>::new();
+    assert!(storage.monitor(&exported::flagred::PLAN).is_ok());
+    let other = storage.monitor(&exported::flagred_battery::PLAN);
+    assert_eq!(other.err(), Some(board::Refused::Memory));
+    let mut nothing = exported::flagred::Storage::<0>::new();
+    let refused = nothing.monitor(&exported::flagred::PLAN);
+    assert_eq!(refused.err(), Some(board::Refused::NoMotors));
+}
+
+#[test]
+fn a_sample_on_board_allocates_nothing() {
+    for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
+        let estimator = estimator(profile);
+        let flight = moments(&logs()[0], &estimator.profile().signals());
+        with_monitor(plan, flight[0].motors.len(), |monitor| {
+            let counted = allocation_counter::measure(|| {
+                for moment in &flight {
+                    std::hint::black_box(monitor.push(&moment.sample()));
+                }
+            });
+            assert_eq!(counted.count_total, 0, "{name}");
+        });
+    }
+}
+
+#[test]
+fn what_has_no_closed_form_is_refused_with_what_has() {
+    let folder = std::env::temp_dir().join(format!("flagred-export-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let rules = include_str!("../../rules/flagred-paper.yaml")
+        .replace("defuzzifier: centroid", "defuzzifier: bisector");
+    std::fs::write(folder.join("odd-rules.yaml"), rules).unwrap();
+    let profile = include_str!("../../rules/profiles/flagred-paper.yaml")
+        .replace("rules: flagred-paper ", "rules: odd-rules.yaml ");
+    std::fs::write(folder.join("odd.yaml"), profile).unwrap();
+    let output = flagred()
+        .args(["export", "--c"])
+        .arg(folder.join("odd.yaml"))
+        .output()
+        .unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{told}");
+    assert!(
+        told.contains("output `risk` has no closed form")
+            && told.contains("help: closed forms have"),
+        "{told}"
+    );
+}
+
+/// The library for C, built with nothing but `core`, and the folder to build programs in.
+fn library() -> Option<&'static Path> {
+    static LIBRARY: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let built = LIBRARY.get_or_init(|| {
+        if Command::new("cc").arg("--version").output().is_err() {
+            eprintln!("skipped: there is no C compiler named `cc`");
+            return None;
+        }
+        let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let target = workspace.join("target");
+        let status = Command::new(env!("CARGO"))
+            .args([
+                "build",
+                "--quiet",
+                "-p",
+                "flagred-c",
+                "--no-default-features",
+            ])
+            .args(["--profile", "onboard", "--target-dir"])
+            .arg(&target)
+            .current_dir(&workspace)
+            .status();
+        assert!(
+            status.unwrap().success(),
+            "the library for C does not build"
+        );
+        Some(target.join("onboard"))
+    });
+    built.as_deref()
+}
+
+/// Compiles a program of C with the library; gives it, and the folder it is in.
+fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(Command, PathBuf)> {
+    let library = library()?;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folder = std::env::temp_dir().join(format!("flagred-c-{}-{name}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut cc = Command::new("cc");
+    cc.args([
+        "-std=c11",
+        "-O1",
+        "-Wall",
+        "-Wextra",
+        "-Wpedantic",
+        "-Werror",
+    ]);
+    cc.arg("-I").arg(root.join("flagred-c/include"));
+    if let Some((profile, plan)) = exported {
+        let header = folder.join("profile.h");
+        let status = flagred()
+            .args(["export", "--c", profile, "--output"])
+            .arg(&header)
+            .status();
+        assert!(status.unwrap().success(), "{profile}");
+        cc.arg("-I").arg(&folder);
+        cc.arg(format!("-DPROFILE=\"{}\"", header.display()));
+        cc.arg(format!("-DPLAN=flagred_plan_{plan}"));
+    }
+    let binary = folder.join(name);
+    cc.arg(root.join(source)).arg("-o").arg(&binary);
+    cc.arg(library.join("libflagred.a"));
+    let compiled = cc.output().unwrap();
+    let told = String::from_utf8_lossy(&compiled.stderr);
+    assert!(compiled.status.success(), "{told}");
+    Some((Command::new(binary), folder))
+}
+
+/// What a program writes of doubles.
+fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
+    let mut child = program
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let bytes: Vec<u8> = doubles.iter().flat_map(|x| x.to_ne_bytes()).collect();
+    let mut stdin = child.stdin.take().unwrap();
+    let writer = std::thread::spawn(move || stdin.write_all(&bytes).unwrap());
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs() {
+    for (profile, (name, _)) in PROFILES.iter().zip(exported()) {
+        let Some((_, folder)) = program("tests/c/follow.c", name, Some((profile, name))) else {
+            return;
+        };
+        let estimator = estimator(profile);
+        for log in logs() {
+            let flight = moments(&log, &estimator.profile().signals());
+            let mut doubles = Vec::new();
+            for moment in &flight {
+                doubles.extend([0.0, moment.t_s, f64::from(u8::from(moment.in_air))]);
+                doubles.extend(&moment.motors);
+                doubles.extend(&moment.signals);
+            }
+            doubles.push(2.0);
+            let mut command = Command::new(folder.join(name));
+            command.arg(flight[0].motors.len().to_string());
+            let expected = by_the_monitor(&estimator, &flight);
+            let what = format!("{name} in C, {}", log.display());
+            assert_same(&expected, &written(command, &doubles), &what);
+        }
+        let points = points(&estimator, along(&estimator));
+        let doubles = points
+            .iter()
+            .flat_map(|point| [1.0].into_iter().chain(point.iter().copied()));
+        let found = written(
+            Command::new(folder.join(name)),
+            &doubles.collect::<Vec<f64>>(),
+        );
+        let expected: Vec<String> = points
+            .iter()
+            .map(|point| moment(estimator.at(point).as_ref()))
+            .collect();
+        assert_same(&expected, &found, &format!("{name} in C over its inputs"));
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
+
+#[test]
+fn the_example_in_c_runs() {
+    let profile = ("flagred", "flagred");
+    let Some((mut program, folder)) = program("flagred-c/examples/hover.c", "hover", Some(profile))
+    else {
+        return;
+    };
+    let output = program.output().unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    insta::assert_snapshot!(text);
+}
+
+/// Rule sets that use every array of a table: those of `tests/onboard`, each input the latest value of a signal.
+fn profiles_of_every_kind(folder: &Path) -> Vec<(String, Estimator, PathBuf)> {
+    let rule_sets = Path::new(env!("CARGO_MANIFEST_DIR")).join("onboard");
+    let mut profiles = Vec::new();
+    for entry in std::fs::read_dir(rule_sets).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let rules = std::fs::read_to_string(&path).unwrap();
+        let model = fuzzy::yaml::parse(&rules).unwrap().model;
+        let mut text = format!("flagred: 1\nname: {name}\nrules: {name}.yaml\ninputs:\n");
+        for input in &model.inputs {
+            text += &format!("  {0}: {{last: signal_{0}}}\n", input.name);
+        }
+        text += "gap: {method: nearest}\n";
+        let profile = flagred::profile::Profile::from_yaml(&text).unwrap();
+        let estimator = Estimator::new(&profile, &model).unwrap();
+        let file = folder.join(format!("{name}-profile.yaml"));
+        std::fs::write(folder.join(format!("{name}.yaml")), rules).unwrap();
+        std::fs::write(&file, text).unwrap();
+        profiles.push((name, estimator, file));
+    }
+    assert_eq!(profiles.len(), 3);
+    profiles
+}
+
+#[test]
+fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
+    let folder = std::env::temp_dir().join(format!("flagred-kinds-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut used = Vec::new();
+    for (name, estimator, file) in profiles_of_every_kind(&folder) {
+        let plan = estimator.plan().unwrap();
+        let table = &plan.table;
+        used.extend([
+            (!table.curves.is_empty(), "curves"),
+            (!table.points.is_empty(), "points"),
+            (!table.hedges.is_empty(), "hedges"),
+            (!table.programs.is_empty(), "programs"),
+            (!table.nodes.is_empty(), "nodes"),
+            (!table.pairs.is_empty(), "pairs"),
+            (!table.moments.is_empty(), "moments"),
+            (!table.coefficients.is_empty(), "coefficients"),
+        ]);
+        let along = if plan.inputs.len() > 2 { 10 } else { 80 };
+        let points = points(&estimator, along);
+        let expected: Vec<String> = points
+            .iter()
+            .map(|point| moment(estimator.at(point).as_ref()))
+            .collect();
+        let lent: Vec<String> = with_monitor(&plan, 1, |monitor| {
+            let said = points.iter().map(|point| monitor.at(point));
+            said.map(|said| moment(said.as_ref())).collect()
+        });
+        assert_same(&expected, &lent, &name);
+        let profile = file.to_str().unwrap();
+        if let Some((command, folder)) = program("tests/c/follow.c", &name, Some((profile, &name)))
+        {
+            let doubles = points
+                .iter()
+                .flat_map(|point| [1.0].into_iter().chain(point.iter().copied()));
+            let found = written(command, &doubles.collect::<Vec<f64>>());
+            std::fs::remove_dir_all(&folder).unwrap();
+            assert_same(&expected, &found, &format!("{name} in C"));
+        }
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+    for (_, array) in &used {
+        assert!(used.contains(&(true, array)), "no {array} are used");
+    }
+}
+
+#[test]
+fn every_compiled_table_is_whole() {
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/conformance")).unwrap() {
+        let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        let (rule_set, _) = text.split_once("\n---\n").unwrap();
+        let model = fuzzy::yaml::parse(rule_set).unwrap().model;
+        let engine = fuzzy::Engine::new(&model).unwrap();
+        assert_eq!(engine.table().check(), Ok(()), "{}", model.name);
+    }
+}
+
+/// The program of examples/09-on-board.md, as a reader would save it.
+#[test]
+fn the_page_in_c_runs() {
+    let page = include_str!("../../examples/09-on-board.md");
+    let (_, rest) = page.split_once("```c\n").unwrap();
+    let (code, _) = rest.split_once("```").unwrap();
+    let source = std::env::temp_dir().join(format!("flagred-page-{}.c", std::process::id()));
+    std::fs::write(&source, code).unwrap();
+    let profile = ("flagred", "flagred");
+    let program = program(source.to_str().unwrap(), "page", Some(profile));
+    std::fs::remove_file(&source).unwrap();
+    let Some((mut program, folder)) = program else {
+        return;
+    };
+    let output = program.output().unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), "FAIL\n");
+}
+
+#[test]
+fn mistakes_in_c_are_told_and_nothing_is_written() {
+    let profile = ("flagred", "flagred");
+    let Some((mut program, folder)) = program("tests/c/mistakes.c", "mistakes", Some(profile))
+    else {
+        return;
+    };
+    let output = program.output().unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{text}");
+}
