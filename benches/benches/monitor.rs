@@ -1,0 +1,85 @@
+//! Time and allocations of a sample of eight motors: at the ground, and on board.
+
+use divan::{Bencher, black_box, counter::ItemsCount};
+use flagred::{
+    board::{self, Memory, Parts, table},
+    channel::Seen,
+    estimator::Estimator,
+    monitor::{Monitor, Sample},
+    shipped,
+    verdict::Motor,
+    window::Window,
+};
+
+#[global_allocator]
+static ALLOCATOR: divan::AllocProfiler = divan::AllocProfiler::system();
+
+fn main() {
+    divan::main();
+}
+
+const MOTORS: usize = 8;
+/// Samples in a run: 20 s at 50 Hz, as long as the longest window.
+const SAMPLES: u32 = 1000;
+const PROFILES: [&str; 2] = ["flagred", "flagred-paper"];
+
+fn estimator(name: &str) -> Estimator {
+    let profile = shipped::profile(name).unwrap().unwrap();
+    let rules = shipped::rule_set(&profile.rules).unwrap().unwrap();
+    Estimator::new(&profile, &rules).unwrap()
+}
+
+/// Motors that fight gusts.
+fn commands(i: u32) -> [f64; MOTORS] {
+    let t_s = f64::from(i) * 0.02;
+    let gust = (t_s * 1.3).sin().max(0.0) * 0.4;
+    std::array::from_fn(|n| (0.55 + gust * (t_s * 9.0 + n as f64).sin()).clamp(0.0, 1.0))
+}
+
+/// A run of samples after so many that the windows are full; the times are those of a run, the throughput counts
+/// samples.
+fn run(bencher: Bencher<'_, '_>, mut push: impl FnMut(&Sample<'_>)) {
+    let flight: Vec<[f64; MOTORS]> = (0..SAMPLES).map(commands).collect();
+    let mut i = 0_u32;
+    bencher.counter(ItemsCount::new(SAMPLES)).bench_local(|| {
+        for motors in &flight {
+            i += 1;
+            push(black_box(&Sample {
+                t_s: f64::from(i) * 0.02,
+                motors,
+                in_air: true,
+                signals: &[],
+            }));
+        }
+    });
+}
+
+#[divan::bench(args = PROFILES)]
+fn monitor(bencher: Bencher<'_, '_>, profile: &str) {
+    let estimator = estimator(profile);
+    let mut monitor = Monitor::new(&estimator, MOTORS, &[]).unwrap();
+    run(bencher, |sample| {
+        black_box(monitor.push(sample));
+    });
+}
+
+#[divan::bench(args = PROFILES)]
+fn on_board(bencher: Bencher<'_, '_>, profile: &str) {
+    let estimator = estimator(profile);
+    let plan = estimator.plan().unwrap();
+    let sizes = plan.sizes();
+    let parts = Parts {
+        numbers: &mut vec![0.0; sizes.numbers],
+        partials: &mut vec![table::Partial::NONE; sizes.partials],
+        strongest: &mut vec![table::Strongest::NONE; sizes.outputs],
+        outcomes: &mut vec![table::Outcome::UNDEFINED; sizes.outputs],
+        seen: &mut vec![Seen::IDLE; sizes.channels],
+        risks: &mut Window::IDLE.clone(),
+        motors: &mut [Motor::UNKNOWN; MOTORS],
+    };
+    let memory = Memory::of(&plan, parts).unwrap();
+    let mut monitor = board::Monitor::new(&plan, memory).unwrap();
+    run(bencher, |sample| {
+        black_box(monitor.push(sample));
+    });
+}
