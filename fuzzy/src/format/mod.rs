@@ -29,7 +29,6 @@ mod words;
 mod write;
 
 pub use schema::schema;
-pub(crate) use shapes::parameters as shape_parameters;
 
 /// The version of the format this library reads and writes.
 pub const VERSION: u64 = 1;

@@ -7,6 +7,7 @@ use crate::rule;
 mod builder;
 mod shape;
 pub use builder::ModelBuilder;
+pub(crate) use shape::{Form, Kind, Parts};
 pub use shape::{Shape, ShapeError};
 
 /// A rule set: inputs, outputs, operators and rules.

@@ -1,8 +1,8 @@
 //! Which parameters make a shape.
 
-use alloc::{format, string::String};
+use alloc::{format, string::String, vec::Vec};
 
-use super::Shape;
+use super::{Kind, Parts, Shape};
 
 /// Why the parameters of a shape make no membership function.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -34,92 +34,27 @@ impl Shape {
     /// assert_eq!(shape.validate().unwrap_err().to_string(), "`peak` 2 is over `right` 1");
     /// ```
     pub fn validate(&self) -> Result<(), ShapeError> {
-        match *self {
-            Shape::Triangle { left, peak, right } => {
-                ordered(&[("left", left), ("peak", peak), ("right", right)])
+        match self.parts() {
+            Parts::Fixed(form, values) => {
+                let of = |kind: Kind| {
+                    let all = form.parameters.iter().zip(&values);
+                    all.filter(move |((_, k), _)| *k == kind)
+                        .map(|((name, _), value)| (*name, *value))
+                };
+                ordered(&of(Kind::Place).collect::<Vec<_>>())?;
+                of(Kind::Positive).try_for_each(|(name, value)| positive(name, value))?;
+                of(Kind::Number).try_for_each(|(name, value)| finite(name, value))?;
             }
-            Shape::Trapezoid {
-                left,
-                left_top,
-                right_top,
-                right,
-            }
-            | Shape::PiShape {
-                left,
-                left_top,
-                right_top,
-                right,
-            } => ordered(&[
-                ("left", left),
-                ("left_top", left_top),
-                ("right_top", right_top),
-                ("right", right),
-            ]),
-            Shape::LeftShoulder { top, foot } | Shape::ZShape { top, foot } => {
-                ordered(&[("top", top), ("foot", foot)])
-            }
-            Shape::RightShoulder { foot, top } | Shape::SShape { foot, top } => {
-                ordered(&[("foot", foot), ("top", top)])
-            }
-            Shape::Rectangle { left, right } => ordered(&[("left", left), ("right", right)]),
-            Shape::Singleton { at } => finite("at", at),
-            Shape::Piecewise { ref points } => piecewise(points),
-            Shape::Gaussian { mean, sd } => finite("mean", mean).and(positive("sd", sd)),
-            Shape::Gaussian2 {
-                left_mean,
-                left_sd,
-                right_mean,
-                right_sd,
-            } => ordered(&[("left_mean", left_mean), ("right_mean", right_mean)])
-                .and(positive("left_sd", left_sd))
-                .and(positive("right_sd", right_sd)),
-            Shape::Bell {
-                center,
-                width,
-                slope,
-            } => finite("center", center)
-                .and(positive("width", width))
-                .and(positive("slope", slope)),
-            Shape::Sigmoid { inflection, slope } => {
-                finite("inflection", inflection).and(finite("slope", slope))
-            }
-            Shape::SigmoidDifference {
-                left_inflection,
-                left_slope,
-                right_inflection,
-                right_slope,
-            }
-            | Shape::SigmoidProduct {
-                left_inflection,
-                left_slope,
-                right_inflection,
-                right_slope,
-            } => finite("left_inflection", left_inflection)
-                .and(finite("left_slope", left_slope))
-                .and(finite("right_inflection", right_inflection))
-                .and(finite("right_slope", right_slope)),
-            Shape::Cosine { center, width } | Shape::Spike { center, width } => {
-                finite("center", center).and(positive("width", width))
-            }
-            Shape::Concave { inflection, end } => {
-                finite("inflection", inflection)?;
-                finite("end", end)?;
-                if inflection == end {
-                    return wrong("end", format!("`inflection` and `end` are both {end}"));
-                }
-                Ok(())
-            }
-            Shape::Constant { value } => finite("value", value),
-            Shape::Linear {
-                ref coefficients,
-                constant,
-            } => {
+            Parts::Points(points) => piecewise(points)?,
+            Parts::Linear(coefficients, constant) => {
                 for (input, coefficient) in coefficients {
                     finite(input, *coefficient)?;
                 }
-                finite("constant", constant)
+                finite("constant", constant)?;
             }
         }
+        self.misfit()
+            .map_or(Ok(()), |(blamed, message)| wrong(blamed, message))
     }
 }
 
@@ -179,53 +114,4 @@ fn piecewise(points: &[(f64, f64)]) -> Result<(), ShapeError> {
         before = x;
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use alloc::{string::ToString, vec};
-
-    #[test]
-    fn says_which_parameter() {
-        let message = |shape: Shape| shape.validate().unwrap_err().to_string();
-        assert_eq!(
-            message(Shape::Gaussian { mean: 1.0, sd: 0.0 }),
-            "`sd` is 0, not over 0"
-        );
-        assert_eq!(
-            message(Shape::Bell {
-                center: f64::NAN,
-                width: 1.0,
-                slope: 1.0
-            }),
-            "`center` is NaN, not a finite number"
-        );
-        assert_eq!(
-            message(Shape::Piecewise {
-                points: vec![(0.0, 0.5), (1.0, 1.5)]
-            }),
-            "the degree 1.5 at 1 is not in [0, 1]"
-        );
-        assert_eq!(
-            message(Shape::Piecewise {
-                points: vec![(1.0, 0.5), (0.0, 0.5)]
-            }),
-            "the point at 0 stands behind 1"
-        );
-        assert_eq!(
-            message(Shape::Concave {
-                inflection: 1.0,
-                end: 1.0
-            }),
-            "`inflection` and `end` are both 1"
-        );
-        assert_eq!(
-            message(Shape::Rectangle {
-                left: -1.7e308,
-                right: 1.7e308
-            }),
-            "`left` is too large a number"
-        );
-    }
 }
