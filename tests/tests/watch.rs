@@ -14,16 +14,11 @@ use std::{
 };
 
 use flagred_tests::{
-    flagred, shared_data,
+    Folder, STEADY, flagred, shared_data,
     vehicle::{Heard, Link, Speed, StandIn, Wire, flight, servo},
 };
 use flightlog::{Flight, mavlink::Version};
 use serde_json::Value;
-
-const STEADY: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../examples/flights/steady.BIN"
-);
 
 /// A running watch, and where it listens.
 struct Watch {
@@ -608,23 +603,24 @@ fn a_connection_that_breaks_is_opened_again() {
 fn a_recording_gives_assess_what_watch_said(log: &Path) {
     let flight = flight(log);
     let name = log.file_stem().unwrap().to_string_lossy().into_owned();
-    let path = std::env::temp_dir().join(format!("flagred-{}-{name}.tlog", std::process::id()));
-    let file = path.to_str().unwrap();
+    let folder = Folder::new();
+    let file = folder.at("recorded.tlog");
     let (said, _) = fly_udp(
         &flight,
         Link::default(),
-        &["--record", file],
+        &["--record", &file],
         Speed::Fastest,
     );
     // A recording is not written over.
-    let (code, told) = refused("udpin:127.0.0.1:0", &["--record", file]);
+    let (code, told) = refused("udpin:127.0.0.1:0", &["--record", &file]);
     assert!(
         code == Some(3) && told.contains("cannot be recorded to"),
         "{told}"
     );
-    std::fs::write(&path, in_real_time(&std::fs::read(&path).unwrap())).unwrap();
-    let assessed = assess(&path);
-    std::fs::remove_file(&path).unwrap();
+    let recorded = std::fs::read(&file).unwrap();
+    let assessed = assess(Path::new(
+        &folder.file("real-time.tlog", in_real_time(&recorded)),
+    ));
     assert_eq!(assessed["log"]["format"], "MAVLink tlog");
     assert_eq!(assessed["read"]["skipped_bytes"], 0);
     assert_eq!(
