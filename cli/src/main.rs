@@ -8,6 +8,7 @@ mod completions;
 mod convert;
 mod dataset;
 mod diagnostics;
+mod drawing;
 mod eval;
 mod evaluate;
 mod explain;

@@ -9,7 +9,7 @@ use flagred::{
 };
 use flightlog::Flight;
 
-use crate::report::number;
+use crate::drawing::text::number;
 
 use super::{
     follow::{Assessed, Summary, Verdict, word},

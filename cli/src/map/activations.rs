@@ -6,10 +6,10 @@ use fuzzy::Model;
 
 use super::{
     heat::{cells, hatch},
-    palette::distinct,
     slice::Slice,
     svg::{Anchor, Frame, Sheet, px},
 };
+use crate::drawing::palette::distinct;
 
 /// The rules named in the legend; a picture with more is read by its numbers.
 const NAMED: usize = 20;

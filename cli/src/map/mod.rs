@@ -3,7 +3,6 @@
 mod activations;
 mod contour;
 mod heat;
-mod palette;
 mod slice;
 mod surface;
 mod svg;
@@ -20,6 +19,7 @@ use fuzzy::{
 
 use crate::{
     diagnostics::{read_text, refuse},
+    drawing::text::number,
     failure::{Exit, Failure},
 };
 use slice::Slice;
@@ -207,7 +207,7 @@ fn evaluate(arguments: &Arguments, model: Model) -> Result<Evaluated, Failure> {
         Some(wanted) => engine.output(wanted).ok_or_else(|| {
             let outputs = engine.output_names();
             let failure = Failure::usage(format!("`{name}` has no output `{wanted}`"));
-            failure.help(fuzzy::diagnostic::suggest(wanted, outputs).unwrap_or_default())
+            failure.help_if(fuzzy::diagnostic::suggest(wanted, outputs))
         })?,
     };
     let gap = GapSettings {
@@ -307,14 +307,9 @@ fn rule_number(rule: Option<usize>) -> String {
 
 /// At most 6 decimals, without zeros behind; nothing for what is infinite.
 fn short(x: f64) -> String {
-    if !x.is_finite() {
-        return String::new();
-    }
-    let text = format!("{x:.6}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".to_owned()
+    if x.is_finite() {
+        number(x, 6)
     } else {
-        text.to_owned()
+        String::new()
     }
 }

@@ -115,7 +115,7 @@ pub(super) fn cut(arguments: &Arguments, evaluated: &Evaluated) -> Result<Slice,
     let unknown = |name: &str| {
         let inputs = model.inputs.iter().map(|input| input.name.as_str());
         Failure::usage(format!("the rule set has no input `{name}`"))
-            .help(fuzzy::diagnostic::suggest(name, inputs).unwrap_or_default())
+            .help_if(fuzzy::diagnostic::suggest(name, inputs))
     };
     let place = |name: &str| {
         let found = model.inputs.iter().position(|input| input.name == name);

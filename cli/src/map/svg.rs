@@ -2,7 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::{palette::viridis, short, slice::Slice};
+use super::{short, slice::Slice};
+use crate::drawing::{
+    self,
+    palette::viridis,
+    text::{Escaped, number},
+};
 
 /// Drawn text; writing to a String cannot fail.
 #[derive(Default)]
@@ -64,7 +69,7 @@ impl Sheet {
             "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\" class=\"{class}\">{}</text>",
             px(x),
             px(y),
-            escaped(text)
+            Escaped(text)
         ));
     }
 
@@ -105,7 +110,7 @@ impl Sheet {
         self.push(format_args!(
             "<text transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\" class=\"title\">{}</text>",
             px(centre),
-            escaped(y_title)
+            Escaped(y_title)
         ));
     }
 
@@ -178,7 +183,7 @@ impl Sheet {
 
     /// The finished picture.
     pub(super) fn finish(self, title: &str) -> String {
-        let title = escaped(title);
+        let title = Escaped(title);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" role=\"img\" aria-label=\"{title}\">
 <title>{title}</title>
@@ -194,49 +199,10 @@ impl Sheet {
 
 /// A tenth of a pixel is as fine as a screen shows.
 pub(super) fn px(x: f64) -> String {
-    let text = format!("{x:.1}");
-    text.strip_suffix(".0")
-        .map_or_else(|| text.clone(), str::to_owned)
-}
-
-pub(super) fn escaped(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;");
-    text.replace('>', "&gt;").replace('"', "&quot;")
+    number(x, 1)
 }
 
 /// About five round numbers within a range.
 pub(super) fn ticks(low: f64, high: f64) -> Vec<f64> {
-    let rough = (high - low) / 5.0;
-    if rough <= 0.0 || !rough.is_finite() {
-        return Vec::new();
-    }
-    let power = 10f64.powf(rough.log10().floor());
-    let steps = [1.0, 2.0, 2.5, 5.0, 10.0].map(|step| step * power);
-    let step = steps
-        .into_iter()
-        .find(|step| *step >= rough * 0.999)
-        .unwrap_or(rough);
-    let first = (low / step - 1e-9).ceil() as i64;
-    let last = (high / step + 1e-9).floor() as i64;
-    (first..=last).map(|i| i as f64 * step).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ticks_are_round_and_within() {
-        assert_eq!(ticks(0.0, 100.0), [0.0, 20.0, 40.0, 60.0, 80.0, 100.0]);
-        let found = ticks(0.0, 0.5);
-        assert_eq!(found.len(), 6);
-        approx::assert_abs_diff_eq!(found[5], 0.5, epsilon = 1e-12);
-        assert_eq!(ticks(-3.0, 9.0), [-2.5, 0.0, 2.5, 5.0, 7.5]);
-        assert!(ticks(1.0, 1.0).is_empty());
-    }
-
-    #[test]
-    fn text_cannot_break_out() {
-        assert_eq!(escaped("a<b>\"c\"&d"), "a&lt;b&gt;&quot;c&quot;&amp;d");
-    }
+    drawing::ticks(low, high, 5.0)
 }
