@@ -1,8 +1,14 @@
 //! Why a model makes no engine.
 
-use alloc::{string::String, vec::Vec};
+use alloc::{
+    string::{String, ToString},
+    vec::Vec,
+};
 
-use crate::model::ShapeError;
+use crate::{
+    diagnostic::{Diagnostic, Findings},
+    model::ShapeError,
+};
 
 /// Why a model makes no engine: every problem found.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,6 +30,16 @@ impl core::fmt::Display for CompileError {
 }
 
 impl core::error::Error for CompileError {}
+
+impl CompileError {
+    /// The problems as findings of the rule set's text. The engine knows no places, so they have none.
+    #[must_use]
+    pub fn findings(&self) -> Findings {
+        let finding =
+            |problem: &Problem| Diagnostic::error("not-compiled", 0..0, problem.to_string());
+        Findings(self.problems.iter().map(finding).collect())
+    }
+}
 
 /// One reason why a model makes no engine. `rule` is an index into [`Model::rules`](crate::Model::rules); messages count from 1.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
