@@ -122,9 +122,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             head = false;
             if let Verdict::NotAvailable { reason, help } = &assessed.verdict {
                 let failure = Failure::unreadable(format!("`{log}`: no answer: {reason}"));
-                help.iter()
-                    .fold(failure, |failure, help| failure.help(help))
-                    .report();
+                failure.help_if(help.as_ref()).report();
             }
         } else {
             words::write(&mut out, log, &flight, &estimator.profile().name, &assessed)?;
