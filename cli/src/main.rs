@@ -3,6 +3,7 @@
 //! One file per command; this one only reads the command line and dispatches.
 
 mod assess;
+mod assessment;
 mod check;
 mod completions;
 mod convert;

@@ -73,3 +73,13 @@ impl ReadError {
         self
     }
 }
+
+/// What a log is called in an error until the caller names it.
+pub(crate) const UNNAMED: &str = "the log";
+
+pub(crate) fn io_error(source: std::io::Error) -> ReadError {
+    ReadError::Io {
+        path: UNNAMED.into(),
+        source,
+    }
+}

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use crate::error::{UNNAMED, io_error};
 use crate::input::Input;
 use crate::{Flight, ReadError, csv, dataflash, tlog, ulog};
 
@@ -103,16 +104,6 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
         flight.report.reason = Some(failure.into());
     }
     Ok(flight)
-}
-
-/// What a log is called in an error until the caller names it.
-const UNNAMED: &str = "the log";
-
-pub(crate) fn io_error(source: io::Error) -> ReadError {
-    ReadError::Io {
-        path: UNNAMED.into(),
-        source,
-    }
 }
 
 enum Content {

@@ -6,7 +6,7 @@ use flagred::estimator::Estimator;
 use fuzzy::Model;
 
 use crate::{
-    assess::follow::Step,
+    assessment::follow::Step,
     drawing::{
         palette,
         text::{Escaped, number},

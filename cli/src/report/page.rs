@@ -9,7 +9,7 @@ use super::{
     panel::{Panel, Timeline},
 };
 use crate::{
-    assess::{
+    assessment::{
         follow::{Assessed, Verdict, word},
         words,
     },
