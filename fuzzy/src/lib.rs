@@ -14,6 +14,7 @@ pub mod format;
 pub mod learn;
 pub mod map;
 pub mod model;
+mod operators;
 pub mod rule;
 pub mod tree;
 #[cfg(feature = "yaml")]

@@ -11,8 +11,10 @@ use serde::Serialize;
 use crate::{
     Engine,
     diagnostic::{Diagnostic, Findings, Severity, suggest},
-    format::{Document, Places},
-    model::{Aggregation, Model},
+    model::{
+        Aggregation, Model,
+        document::{Document, Places},
+    },
 };
 
 mod axis;

@@ -5,8 +5,10 @@ use core::ops::Range;
 
 use crate::{
     diagnostic::{Diagnostic, Severity, suggest},
-    format::{Places, VariablePlaces},
-    model::{Defuzzifier, Model, Shape, Variable},
+    model::{
+        Defuzzifier, Model, Shape, Variable,
+        document::{Places, VariablePlaces},
+    },
     rule::Name,
     tree::duplicate,
 };

@@ -2,8 +2,8 @@
 
 use alloc::vec::Vec;
 
-use crate::engine::operators::{larger, smaller};
 use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Sampling};
+use crate::operators::{larger, smaller};
 use curves::Curves;
 use maxima::{Highest, Maxima};
 use piece::{Integrals, Piece};

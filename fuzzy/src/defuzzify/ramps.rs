@@ -12,8 +12,7 @@ use alloc::{vec, vec::Vec};
 
 use super::piece::Integrals;
 use super::polyline::Polylines;
-use crate::engine::operators::smaller;
-use crate::engine::{FROM_TINY, TINY};
+use crate::operators::{FROM_TINY, TINY, smaller};
 
 #[derive(Debug, Clone)]
 pub(crate) struct Ramps {

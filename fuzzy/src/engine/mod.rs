@@ -6,9 +6,9 @@ use core::ops::Range;
 use crate::defuzzify::polyline::Room;
 use crate::defuzzify::{Defuzzify, Heights};
 use crate::model::NoRuleFires;
+use crate::operators::{self, FROM_TINY, TINY, larger, smaller};
 use lanes::Lanes;
 use literal::Literals;
-use operators::{larger, smaller};
 use rules::{FiringRoom, Rules, Strongest};
 
 mod batch;
@@ -17,7 +17,6 @@ mod condition;
 mod explain;
 mod lanes;
 mod literal;
-pub(crate) mod operators;
 mod outcome;
 mod problem;
 mod rules;
@@ -240,13 +239,6 @@ impl Engine {
         }
     }
 }
-
-/// Below this, areas would lose digits to underflow. Where all strengths are so small, only their ratios
-/// count: every set is cut so low that its slopes are vertical to the last digit, so all of them can be
-/// multiplied by [`FROM_TINY`].
-pub(crate) const TINY: f64 = 1e-200;
-/// 2^500: multiplying by it rounds nothing.
-pub(crate) const FROM_TINY: f64 = 3.273_390_607_896_142e150;
 
 #[cfg(test)]
 mod tests;

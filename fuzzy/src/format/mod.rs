@@ -8,8 +8,6 @@ use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
-use core::ops::Range;
-
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::{
@@ -28,43 +26,11 @@ mod variables;
 mod words;
 mod write;
 
+pub use crate::model::document::{Document, Places, VariablePlaces};
 pub use schema::schema;
 
 /// The version of the format this library reads and writes.
 pub const VERSION: u64 = 1;
-
-/// A model as it was read, and where its parts stand in the text.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Document {
-    /// What the author wrote.
-    pub model: Model,
-    /// Where its parts stand.
-    pub places: Places,
-    /// What does not keep the model from working.
-    pub warnings: Findings,
-}
-
-/// Where the parts of a model stand in its text, in the order of the model.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Places {
-    /// The inputs.
-    pub inputs: Vec<VariablePlaces>,
-    /// The outputs.
-    pub outputs: Vec<VariablePlaces>,
-    /// The key `rules`.
-    pub rules_key: Range<usize>,
-    /// The rules.
-    pub rules: Vec<Range<usize>>,
-}
-
-/// Where the parts of a variable stand.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct VariablePlaces {
-    /// Its name.
-    pub name: Range<usize>,
-    /// The names of its terms.
-    pub terms: Vec<Range<usize>>,
-}
 
 /// Reads a model from a tree. The findings of all of it are told at once, but those that follow from another one are not.
 ///

@@ -5,6 +5,7 @@ use alloc::{string::String, vec::Vec};
 use crate::rule;
 
 mod builder;
+pub(crate) mod document;
 mod shape;
 pub use builder::ModelBuilder;
 pub(crate) use shape::{Form, Kind, Parts};

@@ -15,6 +15,13 @@ pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
+/// Below this, areas would lose digits to underflow. Where all strengths are so small, only their ratios
+/// count: every set is cut so low that its slopes are vertical to the last digit, so all of them can be
+/// multiplied by [`FROM_TINY`].
+pub(crate) const TINY: f64 = 1e-200;
+/// 2^500: multiplying by it rounds nothing.
+pub(crate) const FROM_TINY: f64 = 3.273_390_607_896_142e150;
+
 impl Conjunction {
     /// AND of two degrees in [0, 1]; 0 AND anything is 0.
     #[inline(always)]
