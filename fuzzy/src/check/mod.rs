@@ -42,6 +42,17 @@ pub use terms::{Hole, TermOf};
 pub use trend::AgainstTrend;
 
 /// What to hold a rule set against.
+///
+/// # Example: what an author says of an output
+/// ```
+/// use fuzzy::check::{Direction, Monotone, Options};
+///
+/// let claim: Monotone = "heat:increasing:speed".parse()?;
+/// assert_eq!(claim.direction, Direction::Increasing);
+/// let options = Options { monotone: vec![claim], ..Options::default() };
+/// assert_eq!(options.coverage, 0.5);
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The degree that some rule should reach everywhere; with terms that sum to 1 and the minimum as AND, one half
@@ -244,6 +255,23 @@ fn known(model: &Model, claim: &Monotone) -> Result<(), alloc::boxed::Box<Diagno
 
 impl Report {
     /// What was found, in words, the parts of the model at their places.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::{Engine, check};
+    ///
+    /// let text = "fuzzy: 1
+    /// name: fan
+    /// inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// rules: [IF heat IS high THEN speed IS fast]";
+    /// let document = fuzzy::yaml::parse(text)?;
+    /// let engine = Engine::new(&document.model)?;
+    /// let report = check::check(&document.model, &engine, &check::Options::default())?;
+    /// let findings = report.findings(&document.model, &document.places);
+    /// assert!(findings.iter().any(|finding| finding.message == "no rule uses the term `low` of `heat`"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn findings(&self, model: &Model, places: &Places) -> Vec<Diagnostic> {
         findings::of(self, model, places)

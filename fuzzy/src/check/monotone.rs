@@ -8,6 +8,16 @@ use serde::Serialize;
 use super::probe::{Coordinate, Line, NOTABLE, Probe};
 
 /// What an author says of an output: it never falls, or never rises, when an input rises.
+///
+/// # Example
+/// ```
+/// use fuzzy::check::Monotone;
+///
+/// let claim: Monotone = "margin:decreasing".parse()?;
+/// assert_eq!((claim.input.as_str(), claim.output), ("margin", None));
+/// assert!("margin".parse::<Monotone>().is_err());
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Monotone {
     /// The input.

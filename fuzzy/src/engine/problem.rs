@@ -11,6 +11,14 @@ use crate::{
 };
 
 /// Why a model makes no engine: every problem found.
+///
+/// # Example
+/// ```
+/// use fuzzy::{Engine, Model};
+///
+/// let error = Engine::new(&Model::builder("empty").build()).unwrap_err();
+/// assert_eq!(error.to_string(), "the model has no outputs");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CompileError {
     /// The problems, in the order of the model; at least one.
@@ -33,6 +41,14 @@ impl core::error::Error for CompileError {}
 
 impl CompileError {
     /// The problems as findings of the rule set's text. The engine knows no places, so they have none.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::{Engine, Model};
+    ///
+    /// let error = Engine::new(&Model::builder("empty").build()).unwrap_err();
+    /// assert_eq!(error.findings().to_string(), "error[not-compiled]: the model has no outputs");
+    /// ```
     #[must_use]
     pub fn findings(&self) -> Findings {
         let finding =

@@ -36,6 +36,14 @@ pub const VERSION: u64 = 1;
 ///
 /// # Errors
 /// All findings, where one of them is an error. Without a text at hand they have no line and column.
+///
+/// # Example
+/// ```
+/// let tree = fuzzy::yaml::read("fuzzy: 2")?;
+/// let findings = fuzzy::format::read(&tree).unwrap_err();
+/// assert_eq!(findings[0].code, "unsupported-version");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let mut places = Places::default();
@@ -135,6 +143,13 @@ fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Op
 }
 
 /// The model as a tree; reading it again gives the same model.
+///
+/// # Example
+/// ```
+/// let model = fuzzy::Model::builder("fan").build();
+/// let tree = fuzzy::format::write(&model);
+/// assert!(fuzzy::yaml::to_text(&tree).starts_with("fuzzy: 1\nname: fan\n"));
+/// ```
 #[must_use]
 pub fn write(model: &Model) -> Node {
     write::model(model)

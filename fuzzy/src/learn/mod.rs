@@ -256,6 +256,21 @@ impl Learner {
     /// # Errors
     ///
     /// Not one output, a variable without terms, or settings that name what the model does not have.
+    ///
+    /// # Example
+    /// ```
+    /// # let text = "fuzzy: 1
+    /// # name: fan
+    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// # rules: []";
+    /// # let model = fuzzy::yaml::parse(text)?.model;
+    /// use fuzzy::learn::{Learner, Settings};
+    ///
+    /// let learner = Learner::new(&model, Settings::default())?;
+    /// assert_eq!(learner.samples(), 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(model: &Model, settings: Settings) -> Result<Learner, LearnError> {
         let [output] = model.outputs.as_slice() else {
             return Err(LearnError::Outputs {
@@ -302,6 +317,24 @@ impl Learner {
     /// # Errors
     ///
     /// Why it was refused; the learner goes on without it.
+    ///
+    /// # Example
+    /// ```
+    /// # let text = "fuzzy: 1
+    /// # name: fan
+    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// # rules: []";
+    /// # let model = fuzzy::yaml::parse(text)?.model;
+    /// use fuzzy::learn::{Learner, Settings};
+    ///
+    /// let mut learner = Learner::new(&model, Settings::default())?;
+    /// learner.add(&[95.0, 8.5], 1.0)?;
+    /// let refusal = learner.add(&[95.0, 12.0], 1.0).unwrap_err();
+    /// assert_eq!(refusal.to_string(), "`speed` is 12, outside its range from 0 to 9");
+    /// assert_eq!(learner.samples(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn add(&mut self, values: &[f64], weight: f64) -> Result<(), Refusal> {
         let Some((output, inputs)) = values
             .split_last()
@@ -375,11 +408,47 @@ impl Learner {
     }
 
     /// The number of samples learned from so far.
+    ///
+    /// # Example
+    /// ```
+    /// # let text = "fuzzy: 1
+    /// # name: fan
+    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// # rules: []";
+    /// # let model = fuzzy::yaml::parse(text)?.model;
+    /// use fuzzy::learn::{Learner, Settings};
+    ///
+    /// let mut learner = Learner::new(&model, Settings::default())?;
+    /// learner.add(&[95.0, 8.5], 1.0)?;
+    /// assert_eq!(learner.samples(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
     /// Makes the rules.
+    ///
+    /// # Example: two samples that contradict each other
+    /// ```
+    /// # let text = "fuzzy: 1
+    /// # name: fan
+    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// # rules: []";
+    /// # let model = fuzzy::yaml::parse(text)?.model;
+    /// use fuzzy::learn::{Learner, Settings};
+    ///
+    /// let mut learner = Learner::new(&model, Settings::default())?;
+    /// for (heat, speed) in [(5.0, 1.0), (95.0, 8.5), (90.0, 2.0)] {
+    ///     learner.add(&[heat, speed], 1.0)?;
+    /// }
+    /// let learned = learner.finish();
+    /// assert_eq!((learned.model.rules.len(), learned.conflicts, learned.missing), (2, 1, 0));
+    /// assert_eq!(learned.model.rules[1].rule.to_string(), "IF heat IS high THEN speed IS fast");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn finish(&self) -> Learned {
         resolve::resolve(self)
     }
