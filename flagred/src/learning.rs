@@ -172,6 +172,24 @@ const MOST_GROUPS: usize = 50;
 /// # Errors
 ///
 /// Where a row is refused or the model cannot be learned with.
+///
+/// # Example: vehicles that were not learned from
+/// ```
+/// use flagred::{gap::GapSettings, learning::{Row, cross_validate}};
+/// use fuzzy::learn::Settings;
+///
+/// let mut model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// model.rules.clear();
+/// // Risk falls with the margin; three vehicles, each predicted from the other two.
+/// let rows: Vec<Row> = (0..60).map(|i| {
+///     let margin = f64::from(i % 20) / 50.0;
+///     Row { values: vec![margin, 0.1, 100.0 - 200.0 * margin], weight: 1.0, group: Some(i % 3) }
+/// }).collect();
+/// let errors = cross_validate(&model, &Settings::default(), &GapSettings::default(), &rows)?;
+/// assert_eq!((errors.rows, errors.without_prediction), (60, 0));
+/// assert!(errors.rmse < 15.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn cross_validate(
     model: &Model,
     settings: &Settings,
@@ -265,6 +283,21 @@ pub struct MethodErrors {
 /// # Errors
 ///
 /// Where the rules do not compile.
+///
+/// # Example
+/// ```
+/// use flagred::{gap::GapMethod, learning::{Row, leave_one_rule_out}};
+///
+/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// let rows: Vec<Row> = (0..20).map(|i| {
+///     let margin = f64::from(i) / 50.0;
+///     Row { values: vec![margin, 0.1, 100.0 - 200.0 * margin], weight: 1.0, group: None }
+/// }).collect();
+/// let compared = leave_one_rule_out(&model, &rows, &GapMethod::ALL, None)?;
+/// assert_eq!(compared.methods.len(), 4);
+/// assert!(compared.rules > 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn leave_one_rule_out(
     model: &Model,
     rows: &[Row],

@@ -11,6 +11,14 @@ mod watch;
 pub(crate) use alert::{Alert, Step};
 
 /// How risky it is, or was.
+///
+/// # Example
+/// ```
+/// use flagred::verdict::Level;
+///
+/// let worst = [Level::Good, Level::Fail, Level::Warn].into_iter().max();
+/// assert_eq!(worst, Some(Level::Fail));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Nothing to say.
@@ -63,6 +71,16 @@ pub struct LevelSettings {
 }
 
 /// When levels are raised and lowered.
+///
+/// # Example: to warn at a risk of 60 % that lasts for a second
+/// ```
+/// use flagred::verdict::{Threshold, VerdictSettings};
+///
+/// let mut settings = VerdictSettings::default();
+/// settings.warn.raise = Threshold { risk_pct: Some(60.0), elevated_risk_pct: None };
+/// settings.warn.after_s = 1.0;
+/// assert_eq!(settings.clear_after_s, 10.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VerdictSettings {
     /// When to warn.

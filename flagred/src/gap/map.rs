@@ -5,6 +5,20 @@ use fuzzy::map::DecisionMap;
 use super::{GapMethod, Lattice, fill, is_gap};
 
 /// A decision map without gaps: what rules cover is as they say, what they do not is filled from there.
+///
+/// # Example: the corner that the paper marks
+/// ```
+/// # use flagred::gap::{FilledMap, GapMethod};
+/// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+/// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// # let engine = Engine::new(&model)?;
+/// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+/// let filled = FilledMap::new(map, 0.5, GapMethod::ThinPlate);
+/// // Saturated motors, no spread: the paper has no rule, and the map around it says what to expect.
+/// assert_eq!(filled.map().value(0), None);
+/// assert!(filled.value(0).is_some_and(|risk| risk > 85.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct FilledMap {
     map: DecisionMap,
@@ -78,17 +92,55 @@ impl FilledMap {
     }
 
     /// The map before it was filled, with its grid.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::gap::{FilledMap, GapMethod};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let filled = FilledMap::new(map, 0.5, GapMethod::ThinPlate);
+    /// assert_eq!(filled.map().grid().cells(), 51 * 51);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn map(&self) -> &DecisionMap {
         &self.map
     }
 
     /// The value of a cell; `None` where nothing is covered to fill it from, and off the grid.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::gap::{FilledMap, GapMethod};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let filled = FilledMap::new(map, 0.5, GapMethod::ThinPlate);
+    /// assert!((0..51 * 51).all(|cell| filled.value(cell).is_some()));
+    /// assert_eq!(filled.value(51 * 51), None); // off the grid
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn value(&self, cell: usize) -> Option<f64> {
         self.values.get(cell).copied().filter(|v| !v.is_nan())
     }
 
     /// The distance of a cell to the nearest covered one, in shares of the inputs' ranges: 0 for a covered one,
     /// infinite where there is none.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::gap::{FilledMap, GapMethod};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let filled = FilledMap::new(map, 0.5, GapMethod::ThinPlate);
+    /// assert!(filled.distance(0) > 0.0);
+    /// assert_eq!(filled.distance(51 * 51 - 1), 0.0); // covered
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn distance(&self, cell: usize) -> f64 {
         self.distances
             .get(cell)
@@ -96,11 +148,35 @@ impl FilledMap {
     }
 
     /// Whether a cell was filled.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::gap::{FilledMap, GapMethod};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let filled = FilledMap::new(map, 0.5, GapMethod::ThinPlate);
+    /// assert!(filled.is_filled(0) && !filled.is_filled(51 * 51 - 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn is_filled(&self, cell: usize) -> bool {
         self.distance(cell) > 0.0
     }
 
     /// The share of the cells that were filled.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::gap::{FilledMap, GapMethod};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let filled = FilledMap::new(map, 0.5, GapMethod::ThinPlate);
+    /// assert!((0.02..0.04).contains(&filled.filled_share()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn filled_share(&self) -> f64 {
         let filled = self.distances.iter().filter(|d| **d > 0.0).count();
         filled as f64 / self.distances.len().max(1) as f64
@@ -108,6 +184,20 @@ impl FilledMap {
 
     /// The value at a point with a coordinate for each axis of the grid, N-linearly between cells; beyond the grid,
     /// at its end. `None` where nothing is covered, or the point has another number of coordinates.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::gap::{FilledMap, GapMethod};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let filled = FilledMap::new(map, 0.5, GapMethod::ThinPlate);
+    /// let covered = filled.read(&[0.3, 0.2]).ok_or("off the grid")?;
+    /// let corner = filled.read(&[0.01, 0.01]).ok_or("off the grid")?;
+    /// assert!(covered.distance == 0.0 && corner.distance > 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
         let grid = self.map.grid();
         Some(Reading {

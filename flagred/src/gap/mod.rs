@@ -20,6 +20,14 @@ mod thin_plate;
 pub use map::{FilledMap, Reading};
 
 /// How a gap is filled.
+///
+/// # Example
+/// ```
+/// use flagred::gap::GapMethod;
+///
+/// assert_eq!(GapMethod::default(), GapMethod::ThinPlate);
+/// assert!(GapMethod::ALL.contains(&GapMethod::INVERSE_DISTANCE));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum GapMethod {
     /// The value of the nearest covered cell.
@@ -76,6 +84,15 @@ impl GapSettings {
     /// 0.5 at least, where two neighbours meet. With the minimum as AND it then fires at 0.5 or more, with the product
     /// of n inputs at `0.5^n`: less means that the dominating antecedent has no rule. With other terms and other
     /// conjunctions only what no rule covers at all is a gap.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::gap::GapSettings;
+    ///
+    /// let paper = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// assert_eq!(GapSettings::default().coverage_below(&paper), 0.5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn coverage_below(&self, model: &Model) -> f64 {
         let least = || match model.operators.and {
             Conjunction::Minimum => 0.5,
@@ -104,6 +121,14 @@ fn sums_to_one(variable: &Variable) -> bool {
 
 /// Whether a coverage is below the one from which on a cell counts as covered. Half way between two peaks, where both
 /// terms should be at 0.5, rounding leaves one of them a hair below it.
+///
+/// # Example
+/// ```
+/// use flagred::gap::is_gap;
+///
+/// assert!(is_gap(0.3, 0.5) && !is_gap(0.5, 0.5));
+/// assert!(!is_gap(0.5 - 1e-16, 0.5), "rounding is no gap");
+/// ```
 pub fn is_gap(coverage: f64, coverage_below: f64) -> bool {
     coverage < coverage_below - 1e-9 * coverage_below
 }

@@ -53,6 +53,14 @@ impl Profile {
     /// # Errors
     ///
     /// Everything that is wrong in the text, each with its place and what to do about it.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::profile::Profile;
+    ///
+    /// let mistakes = Profile::from_yaml("flagred: 1\nname: x\nrules: my.yaml\ninputs: {m: {mean: motor_margin, window: 5}}");
+    /// assert!(mistakes.is_err_and(|findings| findings.to_string().contains("did you mean `window_s`?")));
+    /// ```
     pub fn from_yaml(text: &str) -> Result<Profile, Findings> {
         let tree = yaml::read(text)?;
         let mut found = Vec::new();
