@@ -2,6 +2,15 @@
 
 /// A log that could not be read. A damaged log is no error: it gives what is there,
 /// and says in its [`Report`](crate::Report) what is missing.
+///
+/// # Example
+/// ```
+/// use flightlog::{Options, ReadError};
+///
+/// let error = flightlog::read(&b"\x89PNG\r\n\x1a\n"[..], &Options::default()).unwrap_err();
+/// assert!(matches!(error, ReadError::NotALog { .. }));
+/// assert_eq!(error.to_string(), "`the log` is a PNG picture, not a flight log");
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file could not be opened, or reading it failed.
