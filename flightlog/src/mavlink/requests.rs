@@ -61,6 +61,10 @@ const PARAMETER_TRIES: u32 = 20;
 /// let asked = out.len();
 /// requests.due(0.1, &telemetry, &mut out);
 /// assert_eq!(out.len(), asked, "not so soon again");
+/// for i in 1..60 {
+///     requests.due(f64::from(i) * 0.5, &telemetry, &mut Vec::new());
+/// }
+/// assert!(requests.parameters_done(), "they were asked for often enough");
 /// # Ok::<(), &str>(())
 /// ```
 #[derive(Debug, Default)]
@@ -75,71 +79,16 @@ pub struct Requests {
 
 impl Requests {
     /// Asks for everything anew.
-    ///
-    /// # Example
-    /// ```
-    /// assert!(!flightlog::mavlink::Requests::new().parameters_done());
-    /// ```
     pub fn new() -> Requests {
         Requests::default()
     }
 
     /// Whether all parameters came, or were asked for often enough.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// let mut requests = Requests::new();
-    /// for i in 0..60 {
-    ///     requests.due(f64::from(i) * 0.5, &telemetry, &mut Vec::new());
-    /// }
-    /// assert!(requests.parameters_done(), "they were asked for often enough");
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn parameters_done(&self) -> bool {
         self.parameters_done
     }
 
     /// Adds what is to be sent now. The time is the receiver's own, in seconds.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// let mut out = Vec::new();
-    /// Requests::new().due(0.0, &telemetry, &mut out);
-    /// assert!(out.iter().any(|message| matches!(message, MavMessage::COMMAND_LONG(_))));
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn due(&mut self, now_s: f64, telemetry: &Telemetry, out: &mut Vec<MavMessage>) {
         self.ask_rates(now_s, telemetry, out);
         if !self.parameters_done {

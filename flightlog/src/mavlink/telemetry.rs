@@ -200,7 +200,9 @@ pub struct Setup {
 /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
 /// let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
 /// let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-/// telemetry.receive(&packet(&heartbeat));
+/// assert_eq!((telemetry.system(), telemetry.version()), (1, Version::V2));
+/// assert!(telemetry.may_be_multirotor() && telemetry.vehicle().motors == Some(4));
+/// assert_eq!(telemetry.receive(&packet(&heartbeat)), News::Nothing);
 /// assert!(telemetry.is_armed() && telemetry.is_in_air());
 ///
 /// let mut news = News::Nothing;
@@ -215,7 +217,20 @@ pub struct Setup {
 /// }
 /// assert!(matches!(news, News::Commands { t_s } if (t_s - 0.4).abs() < 1e-9));
 ///
-/// // Its parameters never came, so what is assumed is said.
+/// assert!(telemetry.commands_seen() == 10 && !telemetry.interval_refused());
+///
+/// // A parameter, as it comes when asked for.
+/// let bytes = autopilot.packet(Version::V2, 1, &MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+///     param_id: "MOT_SPIN_MIN".into(),
+///     param_value: 0.125,
+///     param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+///     ..PARAM_VALUE_DATA::default()
+/// }));
+/// assert_eq!(telemetry.receive(&packet(&bytes)), News::Parameter);
+/// assert_eq!(telemetry.parameter("MOT_SPIN_MIN"), Some(0.125));
+/// assert!(telemetry.take_parameters_changed());
+///
+/// // The others never came, so what is assumed is said.
 /// let setup = telemetry.setup();
 /// assert!(setup.assumed.contains(&"commands from 1000 to 2000 us".to_string()));
 /// let mut commands = [0.0; 4];
@@ -243,28 +258,6 @@ pub struct Telemetry {
 
 impl Telemetry {
     /// Starts with the heartbeat that [`vehicle_of`] told the vehicle from.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// assert_eq!(telemetry.commands_seen(), 0);
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn new(heartbeat: &Packet<'_>, vehicle: Vehicle) -> Telemetry {
         Telemetry {
             system: heartbeat.system,
@@ -285,292 +278,51 @@ impl Telemetry {
     }
 
     /// The system it follows.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// assert_eq!(telemetry.system(), 1);
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn system(&self) -> u8 {
         self.system
     }
 
     /// The vehicle as its heartbeat describes it.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// assert_eq!(telemetry.vehicle().motors, Some(4));
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
     }
 
     /// The version of the protocol that it speaks.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// assert_eq!(telemetry.version(), Version::V2);
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn version(&self) -> Version {
         self.version
     }
 
     /// Whether the motors are armed.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// assert!(!telemetry.is_armed(), "nothing was received yet");
-    /// telemetry.receive(&packet(&heartbeat));
-    /// assert!(telemetry.is_armed());
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn is_armed(&self) -> bool {
         self.is_armed
     }
 
     /// Whether it is in the air.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// telemetry.receive(&packet(&heartbeat));
-    /// assert!(telemetry.is_in_air());
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn is_in_air(&self) -> bool {
         is_in_air(self.is_armed, self.state, self.landed)
     }
 
     /// How many SERVO_OUTPUT_RAW came so far.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// let outputs = MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA { time_usec: 1_000_000, ..Default::default() });
-    /// telemetry.receive(&packet(&autopilot.packet(Version::V2, 1, &outputs)));
-    /// assert_eq!(telemetry.commands_seen(), 1);
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn commands_seen(&self) -> u64 {
         self.commands_seen
     }
 
     /// Whether it refused MAV_CMD_SET_MESSAGE_INTERVAL.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// assert!(!telemetry.interval_refused());
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn interval_refused(&self) -> bool {
         self.interval_refused
     }
 
     /// The value of a parameter, where it is known.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// let parameter = MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
-    ///     param_value: 0.1,
-    ///     param_id: "MOT_SPIN_MIN".into(),
-    ///     param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    ///     ..PARAM_VALUE_DATA::default()
-    /// });
-    /// let bytes = autopilot.packet(Version::V2, 1, &parameter);
-    /// assert_eq!(telemetry.receive(&packet(&bytes)), News::Parameter);
-    /// assert!(telemetry.parameter("MOT_SPIN_MIN").is_some_and(|low| (low - 0.1).abs() < 1e-6));
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn parameter(&self, name: &str) -> Option<f64> {
         self.parameters.get(name)
     }
 
     /// Whether parameters came since this was last asked.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// let parameter = MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
-    ///     param_value: 0.1,
-    ///     param_id: "MOT_SPIN_MIN".into(),
-    ///     param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    ///     ..PARAM_VALUE_DATA::default()
-    /// });
-    /// let bytes = autopilot.packet(Version::V2, 1, &parameter);
-    /// telemetry.receive(&packet(&bytes));
-    /// assert!(telemetry.take_parameters_changed() && !telemetry.take_parameters_changed());
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn take_parameters_changed(&mut self) -> bool {
         std::mem::take(&mut self.parameters_changed)
     }
 
     /// Takes in a packet; those of other systems tell nothing.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// assert_eq!(telemetry.receive(&packet(&heartbeat)), News::Nothing);
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn receive(&mut self, packet: &Packet<'_>) -> News {
         if packet.system != self.system {
             return News::Nothing;
@@ -683,29 +435,6 @@ impl Telemetry {
     ///
     /// Without SERVOn_FUNCTION the motors are the first outputs, as many as the type of vehicle has; without limits
     /// they are those ArduPilot has when nobody changed them.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// let setup = telemetry.setup();
-    /// assert_eq!((setup.motors.len(), setup.range.source.as_str()), (4, "assumed"));
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn setup(&self) -> Setup {
         let mut assumed = Vec::new();
         let name = |output| format!("servo{output}_raw");
@@ -755,30 +484,6 @@ impl Telemetry {
     }
 
     /// The latest commands on the effective range, 0..1, a value a motor; NaN where it is not known.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// let mut commands = [0.0; 4];
-    /// telemetry.effective_commands(&telemetry.setup(), &mut commands);
-    /// assert!(commands.iter().all(|command| command.is_nan()), "none came yet");
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn effective_commands(&self, setup: &Setup, commands: &mut [f64]) {
         for (command, &output) in commands.iter_mut().zip(&setup.outputs) {
             let index = output.checked_sub(1);
@@ -795,28 +500,6 @@ impl Telemetry {
     }
 
     /// Whether the vehicle is one that FLAGRED knows about; a generic vehicle may be.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-    /// assert!(telemetry.may_be_multirotor());
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn may_be_multirotor(&self) -> bool {
         matches!(
             self.vehicle.kind,
