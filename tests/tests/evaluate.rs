@@ -52,9 +52,9 @@ fn estimator<'a>(document: &'a Value, name: &str) -> &'a Value {
 #[test]
 fn flights_are_compared_step_by_step_and_episode_by_episode() {
     let folder = Folder::new();
-    folder.file("a-calm.csv", &flight("calm", false));
-    folder.file("b-gusts.csv", &flight("gusts", true));
-    folder.file("c-manoeuvre.csv", &flight("manoeuvre", true));
+    folder.file("a-calm.csv", flight("calm", false));
+    folder.file("b-gusts.csv", flight("gusts", true));
+    folder.file("c-manoeuvre.csv", flight("manoeuvre", true));
     // A folder may hold other things than flights.
     folder.file("README.md", "Not a flight.\n");
     let output = evaluate(&["--json", folder.path().to_str().unwrap()]);
@@ -130,7 +130,7 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
 #[test]
 fn a_file_that_is_no_flight_stops_no_other() {
     let folder = Folder::new();
-    let good = folder.file("good.csv", &flight("gusts", true));
+    let good = folder.file("good.csv", flight("gusts", true));
     let bad = folder.file("notes.txt", "took off at noon\n");
     let picture = folder.at("curves.svg");
     let output = evaluate(&[&bad, &good, "--svg", &picture]);

@@ -200,7 +200,7 @@ fn a_report_that_cannot_be_written_says_so_and_leaves_nothing() {
     fs::create_dir(&kept).unwrap();
     let output = assess(&[STEADY], &["--html", &kept]);
     assert_eq!(output.status.code(), Some(3));
-    let names: Vec<_> = fs::read_dir(&folder.path())
+    let names: Vec<_> = fs::read_dir(folder.path())
         .unwrap()
         .map(|e| e.unwrap().file_name())
         .collect();
