@@ -83,7 +83,7 @@ impl DecisionTable {
     /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
     /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
     /// # let engine = Engine::new(&model)?;
-    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
     /// assert!(table.error() > 0.0, "it is measured, and no map is flat");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -155,7 +155,7 @@ impl DecisionTable {
     /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
     /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
     /// # let engine = Engine::new(&model)?;
-    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
     /// assert!(table.value(&[0.1, 0.2]).unwrap() > 90.0);
     /// assert_eq!(table.value(&[0.0, 0.0]), None); // no rule speaks there
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -174,7 +174,7 @@ impl DecisionTable {
     /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let coarse = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
-    /// let fine = DecisionTable::new(&engine, Grid::new(&engine, 101)?, 0)?;
+    /// let fine = DecisionTable::new(&engine, Grid::new(&engine, 21)?, 0)?;
     /// assert!(fine.error() < coarse.error());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -189,8 +189,8 @@ impl DecisionTable {
     /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
     /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
     /// # let engine = Engine::new(&model)?;
-    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// assert_eq!(table.grid().cells(), 51 * 51);
+    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// assert_eq!(table.grid().cells(), 11 * 11);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn grid(&self) -> &Grid {
