@@ -5,16 +5,9 @@ use alloc::{string::String, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     engine::{CompileError, EvaluateError, Outcome, Scratch},
-    map::{DecisionMap, Grid, GridError},
 };
 
-use crate::{
-    gap::{FilledMap, is_gap},
-    profile::Profile,
-};
-
-/// The most cells a map has that is made to fill gaps; the more inputs, the fewer points along each.
-const MAP_CELLS: usize = 100_000;
+use crate::{gap::Filling, profile::Profile};
 
 /// A profile and its rule set, compiled: immutable, and shared by any number of monitors.
 #[derive(Debug, Clone)]
@@ -22,9 +15,7 @@ pub struct Estimator {
     profile: Profile,
     engine: Engine,
     output: usize,
-    coverage_below: f64,
-    /// `None` where no gap is in reach: every cell is covered.
-    filled: Option<FilledMap>,
+    filling: Filling,
     /// Which input of the profile each input of the model is.
     order: Vec<usize>,
 }
@@ -52,10 +43,7 @@ pub enum EstimatorError {
     /// The rule set itself does not compile.
     #[error("the rule set cannot be used: {0}")]
     Rules(#[from] CompileError),
-    /// It has too many inputs for a map that fills gaps.
-    #[error("the map of the rule set cannot be laid: {0}")]
-    Map(#[from] GridError),
-    /// The map that fills gaps could not be evaluated.
+    /// It cannot be evaluated at the places that gaps are filled from.
     #[error("the rule set cannot be evaluated everywhere: {0}")]
     Evaluate(#[from] EvaluateError),
     /// The rule set has an input that the profile does not feed.
@@ -130,16 +118,11 @@ impl Estimator {
                 })
             })
             .collect::<Result<Vec<usize>, EstimatorError>>()?;
-        let coverage_below = profile.gap.coverage_below(model);
-        let grid = Grid::new(&engine, points_along(model.inputs.len()))?;
-        let map = DecisionMap::new(&engine, grid, output)?;
-        let filled = FilledMap::new(map, coverage_below, profile.gap.method);
         Ok(Estimator {
-            coverage_below,
             profile: profile.clone(),
+            filling: Filling::new(&engine, model, output, &profile.gap)?,
             engine,
             output,
-            filled: (filled.filled_share() > 0.0).then_some(filled),
             order,
         })
     }
@@ -187,11 +170,8 @@ impl Estimator {
             Err(_) => return None,
         }
         let outcome = memory.outcomes.get(self.output)?;
-        let reading = self
-            .filled
-            .as_ref()
-            .filter(|_| is_gap(outcome.coverage, self.coverage_below))
-            .and_then(|map| map.read(&memory.inputs));
+        let gap = self.filling.is_gap(outcome.coverage);
+        let reading = gap.then(|| self.filling.read(&memory.inputs)).flatten();
         let risk_pct = reading
             .map(|reading| reading.value)
             .or_else(|| outcome.value())?;
@@ -203,13 +183,6 @@ impl Estimator {
             clamped: outcome.clamped,
         })
     }
-}
-
-/// How many points the map that fills gaps has along each of so many inputs: 51, or fewer so that there are not more
-/// than 100,000 in all, but at least 3.
-pub fn points_along(inputs: usize) -> usize {
-    let most = libm::pow(MAP_CELLS as f64, 1.0 / inputs.max(1) as f64);
-    (most as usize).clamp(3, 51)
 }
 
 /// What an estimate needs beside the estimator: allocated once, used for every sample.

@@ -294,7 +294,7 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
     let fields = node.fields("the gap method", &["inverse_distance"], found)?;
     let settings = fields.require(
         "inverse_distance",
-        "write `{inverse_distance: {power: 2, neighbours: 4}}`",
+        "write `{inverse_distance: {power: 2, neighbours: 3}}`",
         found,
     )?;
     let fields = settings.fields("`inverse_distance`", &["power", "neighbours"], found)?;
@@ -302,7 +302,7 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
         .get("neighbours")
         .and_then(|node| node.whole("`neighbours`", 1, found));
     Some(GapMethod::InverseDistance {
-        neighbours: neighbours.map_or(4, |n| usize::try_from(n).unwrap_or(usize::MAX)),
+        neighbours: neighbours.map_or(3, |n| usize::try_from(n).unwrap_or(usize::MAX)),
         power: number(&fields, "power", 2.0, Least::Above0, found),
     })
 }

@@ -1,0 +1,196 @@
+//! The filling of a rule set's gaps: what is said where no rule applies.
+
+use alloc::{vec, vec::Vec};
+
+use fuzzy::{Engine, Model, engine::EvaluateError};
+
+use super::{
+    GapMethod, GapSettings, field::Field, harmonic, inverse_distance, knots::Knots, metric,
+    neighbours::Tree, thin_plate,
+};
+
+/// What is said where no rule applies.
+///
+/// The rules are asked at the peaks of the terms and half way between them. Those of these knots that are a gap get their
+/// value from the covered ones by a [`GapMethod`], with distances counted in how much the output typically changes;
+/// between knots it is read linearly along each input.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filling {
+    knots: Knots,
+    /// Empty where nothing is covered.
+    values: Vec<f64>,
+    distances: Vec<f64>,
+    coverage_below: f64,
+}
+
+/// A value read from a [`Filling`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// The value.
+    pub value: f64,
+    /// How far the nearest covered place is, in shares of the inputs' ranges, read between knots as the value is.
+    pub distance: f64,
+}
+
+impl Filling {
+    /// Asks the rules at the knots and fills those that are a gap. The engine is that of the model, and `output` one of
+    /// its outputs.
+    ///
+    /// # Errors
+    ///
+    /// There is no such output.
+    ///
+    /// # Example: a gap in the middle of a line
+    ///
+    /// ```
+    /// use flagred::gap::{Filling, GapMethod, GapSettings};
+    /// use fuzzy::Engine;
+    ///
+    /// let model = fuzzy::yaml::parse("
+    /// fuzzy: 1
+    /// name: two ends
+    /// inputs: {x: {range: [0, 1], partition: {low: 0, middle: 0.5, high: 1}}}
+    /// outputs: {y: {range: [0, 100], partition: [small, medium, large]}}
+    /// rules: [IF x IS low THEN y IS small, IF x IS high THEN y IS large]
+    /// ")?.model;
+    /// let engine = Engine::new(&model)?;
+    /// let settings = GapSettings { method: GapMethod::Harmonic, coverage_below: None };
+    /// let filling = Filling::new(&engine, &model, 0, &settings)?;
+    ///
+    /// assert!(filling.is_gap(engine.evaluate(&[0.5])?[0].coverage));
+    /// let middle = filling.read(&[0.5]).ok_or("nothing is covered")?;
+    /// assert!((middle.value - 50.0).abs() < 1e-6);
+    /// assert_eq!(middle.distance, 0.25); // a rule applies up to half way between two peaks
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(
+        engine: &Engine,
+        model: &Model,
+        output: usize,
+        settings: &GapSettings,
+    ) -> Result<Filling, EvaluateError> {
+        let outputs = engine.output_names().len();
+        let Some(variable) = model.outputs.get(output).filter(|_| output < outputs) else {
+            return Err(EvaluateError::WrongNumberOfOutputs {
+                expected: outputs,
+                got: output,
+            });
+        };
+        let variable = &variable.variable;
+        let coverage_below = settings.coverage_below(model);
+        let knots = Knots::of(model);
+        let columns: Vec<Vec<f64>> = (0..knots.axes.len())
+            .map(|axis| knots.column(axis, &knots.axes[axis]))
+            .collect();
+        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let outcomes = engine.evaluate_batch(&columns)?;
+        let outcomes = outcomes.iter().skip(output).step_by(outputs);
+        let (values, covered): (Vec<f64>, Vec<bool>) = outcomes
+            .map(|outcome| {
+                let covered = !is_gap(outcome.coverage, coverage_below);
+                match outcome.value() {
+                    Some(value) => (value, covered),
+                    None => (variable.low, false),
+                }
+            })
+            .unzip();
+        let (values, distances) = match covered.contains(&true) {
+            true => {
+                let range = (variable.low, variable.high);
+                fill(&knots, values, covered, range, settings.method)
+            }
+            false => (Vec::new(), Vec::new()),
+        };
+        Ok(Filling {
+            knots,
+            values,
+            distances,
+            coverage_below,
+        })
+    }
+
+    /// Whether a place of this coverage is a gap.
+    pub fn is_gap(&self, coverage: f64) -> bool {
+        is_gap(coverage, self.coverage_below)
+    }
+
+    /// What is said at a place in the gap, with a coordinate for each input; beyond the outermost peaks, as there.
+    /// `None` where the rules cover nothing to fill from, the point has another number of coordinates, or one is not a
+    /// number.
+    pub fn read(&self, point: &[f64]) -> Option<Reading> {
+        if self.values.is_empty() {
+            return None;
+        }
+        Some(Reading {
+            value: self.knots.read(&self.values, point)?,
+            distance: self.knots.read(&self.distances, point)?,
+        })
+    }
+}
+
+/// Half way between two peaks, where both terms should be at 0.5, rounding leaves one of them a hair below it.
+fn is_gap(coverage: f64, coverage_below: f64) -> bool {
+    coverage < coverage_below - 1e-9 * coverage_below
+}
+
+/// Fills the knots that are not covered, of which there is at least one, within the `range` of the output; gives all
+/// values, and each knot's distance to the nearest covered one in shares of the inputs' ranges.
+fn fill(
+    knots: &Knots,
+    values: Vec<f64>,
+    covered: Vec<bool>,
+    range: (f64, f64),
+    method: GapMethod,
+) -> (Vec<f64>, Vec<f64>) {
+    let mut field = Field {
+        coordinates: metric::coordinates(knots, &values, &covered),
+        knots,
+        covered,
+        values,
+    };
+    let distances = distances(&field);
+    let nearest = nearest(&field);
+    for (knot, (_, from)) in field.gap().into_iter().zip(nearest) {
+        field.values[knot] = field.values[from];
+    }
+    // From here on the values in the gap are those of the nearest covered knots.
+    match method {
+        GapMethod::Nearest => {}
+        GapMethod::InverseDistance { power, neighbours } => {
+            inverse_distance::fill(&mut field, power, neighbours);
+        }
+        GapMethod::ThinPlate => thin_plate::fill(&mut field, range),
+        GapMethod::Harmonic => harmonic::fill(&mut field),
+    }
+    (field.values, distances)
+}
+
+/// For each knot of the gap the squared distance to the nearest covered one, and that one.
+fn nearest(field: &Field) -> Vec<(f64, usize)> {
+    let known = field.from_the_highest();
+    let mut tree = Tree::new(field.coordinates.len(), field.points(&known));
+    let mut nearest = |knot: usize| {
+        let found = tree.nearest(&field.point(knot), 1).first().copied();
+        found.map(|(square, index)| (square, known[index]))
+    };
+    field.gap().into_iter().filter_map(&mut nearest).collect()
+}
+
+/// The distance of each knot to the nearest covered one, in shares of the inputs' ranges: 0 for a covered one.
+fn distances(field: &Field) -> Vec<f64> {
+    let knots = field.knots;
+    let shares = knots.axes.iter().zip(&knots.ranges);
+    let shares = shares.map(|(places, range)| places.iter().map(|x| x / range).collect());
+    let by_range = Field {
+        coordinates: shares.collect(),
+        ..field.clone()
+    };
+    let mut distances = vec![0.0; field.covered.len()];
+    for (knot, (square, _)) in field.gap().into_iter().zip(nearest(&by_range)) {
+        distances[knot] = libm::sqrt(square);
+    }
+    distances
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,234 @@
+//! The places a rule set is asked at, to fill its gaps from what it says there.
+
+use alloc::{vec, vec::Vec};
+
+use fuzzy::{
+    Model,
+    model::{Shape, Variable},
+};
+
+/// More knots than this are thinned: the cost of filling has a bound in any number of inputs.
+const MOST_KNOTS: usize = 40_000;
+
+/// A grid over the inputs of a rule set, with a place at the peak of every term, one at each end of the range, and one
+/// half way between each two.
+///
+/// At a peak a rule says what it says, unmixed with its neighbours; half way between, two share evenly, which is where
+/// the gap of a missing rule ends.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Knots {
+    /// The places along each input, rising.
+    pub(super) axes: Vec<Vec<f64>>,
+    /// The width of each input's range.
+    pub(super) ranges: Vec<f64>,
+    /// By how much the number of a knot grows per place along each input, the last input running fastest.
+    strides: Vec<usize>,
+}
+
+impl Knots {
+    pub(super) fn of(model: &Model) -> Knots {
+        let mut axes: Vec<Vec<f64>> = model.inputs.iter().map(peaks).collect();
+        let count = |axes: &[Vec<f64>]| {
+            let count = |n: usize, axis: &Vec<f64>| n.saturating_mul(axis.len());
+            axes.iter().fold(1, count)
+        };
+        let finer: Vec<Vec<f64>> = axes.iter().map(|peaks| with_middles(peaks)).collect();
+        if count(&finer) <= MOST_KNOTS {
+            axes = finer;
+        }
+        while count(&axes) > MOST_KNOTS {
+            let longest = axes.iter_mut().max_by_key(|axis| axis.len());
+            let Some(longest) = longest.filter(|axis| axis.len() > 2) else {
+                break;
+            };
+            let last = longest.len() - 1;
+            let mut i = 0..;
+            longest.retain(|_| i.next().is_some_and(|i| i % 2 == 0 || i == last));
+        }
+        Knots::over(axes, model.inputs.iter().map(|i| i.high - i.low).collect())
+    }
+
+    /// A grid of given places.
+    pub(super) fn over(axes: Vec<Vec<f64>>, ranges: Vec<f64>) -> Knots {
+        let mut strides = vec![1; axes.len()];
+        for axis in (1..axes.len()).rev() {
+            strides[axis - 1] = strides[axis] * axes[axis].len();
+        }
+        Knots {
+            axes,
+            ranges,
+            strides,
+        }
+    }
+
+    /// How many knots there are.
+    pub(super) fn count(&self) -> usize {
+        self.axes.iter().map(Vec::len).product()
+    }
+
+    /// The place of a knot along an axis.
+    pub(super) fn place(&self, knot: usize, axis: usize) -> usize {
+        knot / self.strides[axis] % self.axes[axis].len()
+    }
+
+    /// The knot behind this one along an axis.
+    pub(super) fn next(&self, knot: usize, axis: usize) -> Option<usize> {
+        let behind = self.place(knot, axis) + 1 < self.axes[axis].len();
+        behind.then(|| knot + self.strides[axis])
+    }
+
+    /// The knot before this one along an axis.
+    pub(super) fn previous(&self, knot: usize, axis: usize) -> Option<usize> {
+        (self.place(knot, axis) > 0).then(|| knot - self.strides[axis])
+    }
+
+    /// A coordinate of every knot along an axis, from what each place of that axis has.
+    pub(super) fn column(&self, axis: usize, places: &[f64]) -> Vec<f64> {
+        let knots = 0..self.count();
+        knots.map(|knot| places[self.place(knot, axis)]).collect()
+    }
+
+    /// Reads values at the knots linearly along each axis between them; beyond the outermost, at these. `None` where
+    /// the point has another number of coordinates, or one is not a number.
+    pub(super) fn read(&self, values: &[f64], point: &[f64]) -> Option<f64> {
+        let fits = point.len() == self.axes.len() && point.iter().all(|x| !x.is_nan());
+        fits.then(|| self.read_from(values, point, 0, 0))
+    }
+
+    fn read_from(&self, values: &[f64], point: &[f64], axis: usize, knot: usize) -> f64 {
+        let (Some(places), Some(&x)) = (self.axes.get(axis), point.get(axis)) else {
+            return values[knot];
+        };
+        let behind = places.partition_point(|place| *place <= x);
+        let at = |place| self.read_from(values, point, axis + 1, knot + place * self.strides[axis]);
+        if behind == 0 || behind == places.len() {
+            return at(behind.saturating_sub(1));
+        }
+        let (left, right) = (places[behind - 1], places[behind]);
+        let share = (x - left) / (right - left);
+        if share == 0.0 {
+            return at(behind - 1);
+        }
+        (1.0 - share) * at(behind - 1) + share * at(behind)
+    }
+}
+
+/// The peaks of a variable's terms and the ends of its range, rising. A flat top has two peaks.
+pub fn peaks(variable: &Variable) -> Vec<f64> {
+    let (low, high) = (variable.low, variable.high);
+    let tops = variable.terms.iter().map(|t| top(&t.shape, low, high));
+    let mut peaks = vec![low, high];
+    peaks.extend(tops.flat_map(|(first, last)| [first, last]));
+    peaks.sort_by(f64::total_cmp);
+    // Nobody means a thousandth of a range; the ends stay.
+    let apart = 1e-3 * (high - low);
+    peaks.dedup_by(|next, last| *next - *last < apart);
+    if let Some(last) = peaks.last_mut().filter(|last| high - **last < apart) {
+        *last = high;
+    }
+    peaks
+}
+
+/// Places with another one half way between each two.
+fn with_middles(places: &[f64]) -> Vec<f64> {
+    let middles = places.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
+    let mut all: Vec<f64> = middles.chain(places.iter().copied()).collect();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// Where a shape is highest within a range, from and to.
+fn top(shape: &Shape, low: f64, high: f64) -> (f64, f64) {
+    const STEPS: u32 = 2000;
+    let corners = shape.corners().filter(|corners| corners.len() > 1);
+    let xs: Vec<f64> = match corners {
+        Some(corners) => {
+            let ends = [low, high].into_iter();
+            ends.chain(corners.iter().map(|(x, _)| x.clamp(low, high)))
+                .collect()
+        }
+        None => {
+            let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(STEPS);
+            (0..=STEPS).map(at).collect()
+        }
+    };
+    let highest = xs.iter().map(|x| shape.membership(*x));
+    let highest = highest.fold(f64::NEG_INFINITY, f64::max);
+    let at_top = xs
+        .iter()
+        .filter(|x| shape.membership(**x) >= highest - 1e-9);
+    at_top.fold((high, low), |(first, last), x| (x.min(first), x.max(last)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn knots(inputs: &str) -> Knots {
+        let text = format!(
+            "
+fuzzy: 1
+name: test
+inputs: {{{inputs}}}
+outputs: {{y: {{range: [0, 1], partition: [low, high]}}}}
+rules: []
+"
+        );
+        Knots::of(&fuzzy::yaml::parse(&text).unwrap().model)
+    }
+
+    fn places_of(terms: &str) -> Vec<f64> {
+        knots(&format!("x: {{range: [0, 1], {terms}}}"))
+            .axes
+            .remove(0)
+    }
+
+    #[test]
+    fn a_partition_has_its_peaks_its_ends_and_the_places_between() {
+        let places = places_of("partition: {low: 0.2, middle: 0.4, high: 0.8}");
+        let expected = [0.0, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 0.9, 1.0];
+        assert_eq!(places.len(), expected.len());
+        for (place, expected) in places.iter().zip(expected) {
+            approx::assert_abs_diff_eq!(*place, expected, epsilon = 1e-12);
+        }
+    }
+
+    #[test]
+    fn flat_tops_count_from_both_ends_and_curves_from_their_highest_place() {
+        let peaks = |terms| {
+            let places = places_of(terms);
+            places.into_iter().step_by(2).collect::<Vec<f64>>()
+        };
+        let flat = "terms: {flat: {trapezoid: [0.1, 0.25, 0.5, 0.7]}}";
+        assert_eq!(peaks(flat), [0.0, 0.25, 0.5, 1.0]);
+        let bell = "terms: {bell: {gaussian: {mean: 0.3, sd: 0.1}}}";
+        assert_eq!(peaks(bell), [0.0, 0.3, 1.0]);
+        let beyond = "terms: {beyond: {gaussian: {mean: 3, sd: 1}}}";
+        assert_eq!(peaks(beyond), [0.0, 1.0]);
+        assert_eq!(peaks("terms: {all: {rectangle: [0, 1]}}"), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn reading_is_linear_between_knots_and_level_beyond() {
+        let knots = Knots::over(vec![vec![0.0, 1.0, 3.0], vec![0.0, 2.0]], vec![3.0, 2.0]);
+        let plane: Vec<f64> = (0..6)
+            .map(|knot| knots.axes[0][knot / 2] + 10.0 * knots.axes[1][knot % 2])
+            .collect();
+        let read = |point: &[f64]| knots.read(&plane, point);
+        assert_eq!(read(&[2.0, 0.5]), Some(7.0));
+        assert_eq!(read(&[-5.0, 9.0]), Some(20.0));
+        assert_eq!(read(&[3.0, 2.0]), Some(23.0));
+        assert_eq!((read(&[1.0]), read(&[f64::NAN, 0.0])), (None, None));
+    }
+
+    #[test]
+    fn many_inputs_have_fewer_places_each() {
+        let input = |i| format!("x{i}: {{range: [0, 1], partition: [a, b, c, d, e]}}");
+        let inputs: Vec<String> = (0..7).map(input).collect();
+        let knots = knots(&inputs.join(", "));
+        assert!(knots.count() <= MOST_KNOTS, "{}", knots.count());
+        for places in &knots.axes {
+            assert_eq!((places[0], places[places.len() - 1]), (0.0, 1.0));
+        }
+    }
+}
