@@ -124,7 +124,16 @@ fn bad_data_is_told_with_its_place_and_nothing_is_written() {
             "margin,spread,risk\n",
             "has a header, but no rows",
         ),
-        ("ragged", "margin,spread,risk\n0.1,0.1\n", "cannot be read"),
+        (
+            "ragged",
+            "margin,spread,risk\n0.1,0.1\n",
+            "line 2: 2 cells, but the header has 3",
+        ),
+        (
+            "twice",
+            "margin,spread,risk,risk\n0.1,0.1,5,6\n",
+            "has the column `risk` more than once",
+        ),
     ] {
         let data = folder.file(&format!("{name}.csv"), text);
         let output = learn(&[&model, &data, "-o", out.to_str().unwrap()]);
@@ -137,6 +146,11 @@ fn bad_data_is_told_with_its_place_and_nothing_is_written() {
         assert!(said.contains("help: "), "{name}: {said}");
         assert!(!out.exists(), "{name}");
     }
+    // The rows themselves are not to be lost.
+    let data = folder.file("rows.csv", "margin,spread,risk\n0.1,0.1,5\n");
+    let output = learn(&[&model, &data, "-o", &data]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(fs::read_to_string(&data).unwrap().starts_with("margin"));
     // A single row is enough for a rule, and bad ones can be left out.
     let data = folder.file("one.csv", "margin,spread,risk\n0.1,0.1,5\n0.1,NaN,5\n");
     let output = learn(&[

@@ -128,6 +128,13 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if arguments.data.contains(&arguments.output) && arguments.output != Path::new("-") {
+        let name = arguments.output.display();
+        return Err(Failure::usage(format!(
+            "`--output {name}` would replace the rows it is learned from"
+        ))
+        .help("name another file"));
+    }
     let name = arguments.model.display().to_string();
     let text = read_text(&arguments.model)?;
     let mut model = fuzzy::yaml::parse(&text)
