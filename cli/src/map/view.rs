@@ -14,26 +14,7 @@ const NOTICEABLE: f64 = 0.01;
 /// part and as much again.
 pub(super) fn shown(variable: &Variable) -> (f64, f64) {
     let (low, high) = (variable.low, variable.high);
-    let peaks = flagred::gap::peaks(variable);
-    let same = |pair: &[f64]| {
-        let at = |x: &f64| {
-            variable
-                .terms
-                .iter()
-                .map(|t| t.shape.membership(*x))
-                .collect::<Vec<f64>>()
-        };
-        matches!(pair, [a, b] if at(a) == at(b))
-    };
-    let level_before = peaks.windows(2).take_while(|pair| same(pair)).count();
-    let level_behind = peaks.windows(2).rev().take_while(|pair| same(pair)).count();
-    let first = peaks.get(level_before).copied().unwrap_or(low);
-    let last = peaks
-        .iter()
-        .rev()
-        .nth(level_behind)
-        .copied()
-        .unwrap_or(high);
+    let (first, last) = flagred::gap::changing(variable);
     let width = last - first;
     if width <= 0.0 || width >= (high - low) / 4.0 {
         return (low, high);

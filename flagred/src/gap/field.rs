@@ -24,7 +24,7 @@ impl Field<'_> {
 
     /// The knots that are covered. Of equally near ones the first counts, so the highest come first: what is not known
     /// is no reason for ease.
-    pub(super) fn from_the_highest(&self) -> Vec<usize> {
+    pub(super) fn known_highest_first(&self) -> Vec<usize> {
         let mut known: Vec<usize> = (0..self.covered.len())
             .filter(|k| self.covered[*k])
             .collect();

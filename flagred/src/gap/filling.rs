@@ -13,7 +13,8 @@ use super::{
 ///
 /// The rules are asked at the peaks of the terms and half way between them. Those of these knots that are a gap get their
 /// value from the covered ones by a [`GapMethod`], with distances counted in how much the output typically changes;
-/// between knots it is read linearly along each input.
+/// between knots it is read linearly along each input, and beyond the outermost peaks, where no
+/// rule can tell one place from another, nothing changes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filling {
     knots: Knots,
@@ -78,35 +79,35 @@ impl Filling {
         };
         let variable = &variable.variable;
         let coverage_below = settings.coverage_below(model);
-        let knots = Knots::of(model);
-        let columns: Vec<Vec<f64>> = (0..knots.axes.len())
-            .map(|axis| knots.column(axis, &knots.axes[axis]))
-            .collect();
-        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        let outcomes = engine.evaluate_batch(&columns)?;
-        let outcomes = outcomes.iter().skip(output).step_by(outputs);
-        let (values, covered): (Vec<f64>, Vec<bool>) = outcomes
-            .map(|outcome| {
-                let covered = !is_gap(outcome.coverage, coverage_below);
-                match outcome.value() {
-                    Some(value) => (value, covered),
-                    None => (variable.low, false),
-                }
-            })
-            .unzip();
-        let (values, distances) = match covered.contains(&true) {
-            true => {
-                let range = (variable.low, variable.high);
-                fill(&knots, values, covered, range, settings.method)
-            }
-            false => (Vec::new(), Vec::new()),
+        let ask = |knots: &Knots| -> Result<Vec<Option<f64>>, EvaluateError> {
+            let columns = knots.columns();
+            let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+            let outcomes = engine.evaluate_batch(&columns)?;
+            let outcomes = outcomes.iter().skip(output).step_by(outputs);
+            let covered = outcomes.map(|outcome| match is_gap(outcome.coverage, coverage_below) {
+                true => None,
+                false => outcome.value(),
+            });
+            Ok(covered.collect())
         };
-        Ok(Filling {
+        let inner = Knots::of(model);
+        let known = ask(&inner)?;
+        let knots = inner.with_ends(model);
+        let mut filling = Filling {
+            values: Vec::new(),
+            distances: distances(&knots, &ask(&knots)?),
             knots,
-            values,
-            distances,
             coverage_below,
-        })
+        };
+        if known.iter().any(Option::is_some) {
+            let range = (variable.low, variable.high);
+            let filled = fill(&inner, &known, range, settings.method);
+            let points = (0..filling.knots.count()).map(|knot| filling.knots.point(knot));
+            filling.values = points
+                .filter_map(|point| inner.read(&filled, &point))
+                .collect();
+        }
+        Ok(filling)
     }
 
     /// Whether a place of this coverage is a gap.
@@ -133,24 +134,17 @@ fn is_gap(coverage: f64, coverage_below: f64) -> bool {
     coverage < coverage_below - 1e-9 * coverage_below
 }
 
-/// Fills the knots that are not covered, of which there is at least one, within the `range` of the output; gives all
-/// values, and each knot's distance to the nearest covered one in shares of the inputs' ranges.
-fn fill(
-    knots: &Knots,
-    values: Vec<f64>,
-    covered: Vec<bool>,
-    range: (f64, f64),
-    method: GapMethod,
-) -> (Vec<f64>, Vec<f64>) {
+/// The values at all knots, those without one filled, within the `range` of the output; at least one is known.
+fn fill(knots: &Knots, known: &[Option<f64>], range: (f64, f64), method: GapMethod) -> Vec<f64> {
+    let covered: Vec<bool> = known.iter().map(Option::is_some).collect();
+    let values: Vec<f64> = known.iter().map(|value| value.unwrap_or(range.0)).collect();
     let mut field = Field {
         coordinates: metric::coordinates(knots, &values, &covered),
         knots,
         covered,
         values,
     };
-    let distances = distances(&field);
-    let nearest = nearest(&field);
-    for (knot, (_, from)) in field.gap().into_iter().zip(nearest) {
+    for (knot, (_, from)) in field.gap().into_iter().zip(nearest(&field)) {
         field.values[knot] = field.values[from];
     }
     // From here on the values in the gap are those of the nearest covered knots.
@@ -162,12 +156,12 @@ fn fill(
         GapMethod::ThinPlate => thin_plate::fill(&mut field, range),
         GapMethod::Harmonic => harmonic::fill(&mut field),
     }
-    (field.values, distances)
+    field.values
 }
 
 /// For each knot of the gap the squared distance to the nearest covered one, and that one.
 fn nearest(field: &Field) -> Vec<(f64, usize)> {
-    let known = field.from_the_highest();
+    let known = field.known_highest_first();
     let mut tree = Tree::new(field.coordinates.len(), field.points(&known));
     let mut nearest = |knot: usize| {
         let found = tree.nearest(&field.point(knot), 1).first().copied();
@@ -177,16 +171,17 @@ fn nearest(field: &Field) -> Vec<(f64, usize)> {
 }
 
 /// The distance of each knot to the nearest covered one, in shares of the inputs' ranges: 0 for a covered one.
-fn distances(field: &Field) -> Vec<f64> {
-    let knots = field.knots;
+fn distances(knots: &Knots, known: &[Option<f64>]) -> Vec<f64> {
     let shares = knots.axes.iter().zip(&knots.ranges);
     let shares = shares.map(|(places, range)| places.iter().map(|x| x / range).collect());
-    let by_range = Field {
+    let field = Field {
         coordinates: shares.collect(),
-        ..field.clone()
+        knots,
+        covered: known.iter().map(Option::is_some).collect(),
+        values: vec![0.0; known.len()],
     };
-    let mut distances = vec![0.0; field.covered.len()];
-    for (knot, (square, _)) in field.gap().into_iter().zip(nearest(&by_range)) {
+    let mut distances = vec![0.0; known.len()];
+    for (knot, (square, _)) in field.gap().into_iter().zip(nearest(&field)) {
         distances[knot] = libm::sqrt(square);
     }
     distances

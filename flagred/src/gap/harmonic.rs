@@ -19,7 +19,7 @@ const RELAXATION: f64 = 1.5;
 pub(super) fn fill(field: &mut Field) {
     let known = || {
         field
-            .from_the_highest()
+            .known_highest_first()
             .into_iter()
             .map(|k| field.values[k])
     };

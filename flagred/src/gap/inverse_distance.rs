@@ -9,7 +9,7 @@ pub(super) fn fill(field: &mut Field, power: f64, neighbours: usize) {
         beside.iter().any(|(other, _)| !field.covered[*other])
     };
     let edge: Vec<usize> = field
-        .from_the_highest()
+        .known_highest_first()
         .into_iter()
         .filter(at_edge)
         .collect();

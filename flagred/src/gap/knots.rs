@@ -10,8 +10,7 @@ use fuzzy::{
 /// More knots than this are thinned: the cost of filling has a bound in any number of inputs.
 const MOST_KNOTS: usize = 40_000;
 
-/// A grid over the inputs of a rule set, with a place at the peak of every term, one at each end of the range, and one
-/// half way between each two.
+/// A grid over the inputs of a rule set, with a place at the peak of every term and one half way between each two.
 ///
 /// At a peak a rule says what it says, unmixed with its neighbours; half way between, two share evenly, which is where
 /// the gap of a missing rule ends.
@@ -26,8 +25,15 @@ pub(super) struct Knots {
 }
 
 impl Knots {
+    /// The grid over the part of each input in which terms change: beyond, rules cannot tell one place from another.
     pub(super) fn of(model: &Model) -> Knots {
-        let mut axes: Vec<Vec<f64>> = model.inputs.iter().map(peaks).collect();
+        let axes = model.inputs.iter().map(|input| {
+            let (first, last) = changing(input);
+            let mut peaks = peaks(input);
+            peaks.retain(|x| (first..=last).contains(x));
+            peaks
+        });
+        let mut axes: Vec<Vec<f64>> = axes.collect();
         let count = |axes: &[Vec<f64>]| {
             let count = |n: usize, axis: &Vec<f64>| n.saturating_mul(axis.len());
             axes.iter().fold(1, count)
@@ -46,6 +52,20 @@ impl Knots {
             longest.retain(|_| i.next().is_some_and(|i| i % 2 == 0 || i == last));
         }
         Knots::over(axes, model.inputs.iter().map(|i| i.high - i.low).collect())
+    }
+
+    /// The same grid with the ends of the inputs' ranges, where it does not reach them.
+    pub(super) fn with_ends(&self, model: &Model) -> Knots {
+        let axes = self.axes.iter().zip(&model.inputs).map(|(places, input)| {
+            let before = Some(input.low).filter(|low| places.first().is_some_and(|x| low < x));
+            let behind = Some(input.high).filter(|high| places.last().is_some_and(|x| high > x));
+            before
+                .into_iter()
+                .chain(places.iter().copied())
+                .chain(behind)
+                .collect()
+        });
+        Knots::over(axes.collect(), self.ranges.clone())
     }
 
     /// A grid of given places.
@@ -71,6 +91,13 @@ impl Knots {
         knot / self.strides[axis] % self.axes[axis].len()
     }
 
+    /// Where a knot lies.
+    pub(super) fn point(&self, knot: usize) -> Vec<f64> {
+        let axes = self.axes.iter().enumerate();
+        axes.map(|(axis, places)| places[self.place(knot, axis)])
+            .collect()
+    }
+
     /// The knot behind this one along an axis.
     pub(super) fn next(&self, knot: usize, axis: usize) -> Option<usize> {
         let behind = self.place(knot, axis) + 1 < self.axes[axis].len();
@@ -82,10 +109,13 @@ impl Knots {
         (self.place(knot, axis) > 0).then(|| knot - self.strides[axis])
     }
 
-    /// A coordinate of every knot along an axis, from what each place of that axis has.
-    pub(super) fn column(&self, axis: usize, places: &[f64]) -> Vec<f64> {
-        let knots = 0..self.count();
-        knots.map(|knot| places[self.place(knot, axis)]).collect()
+    /// The values of every knot's inputs, a column for each.
+    pub(super) fn columns(&self) -> Vec<Vec<f64>> {
+        let column = |(axis, places): (usize, &Vec<f64>)| {
+            let knots = 0..self.count();
+            knots.map(|knot| places[self.place(knot, axis)]).collect()
+        };
+        self.axes.iter().enumerate().map(column).collect()
     }
 
     /// Reads values at the knots linearly along each axis between them; beyond the outermost, at these. `None` where
@@ -127,6 +157,21 @@ pub fn peaks(variable: &Variable) -> Vec<f64> {
         *last = high;
     }
     peaks
+}
+
+/// The part of a variable's range in which its terms change, from and to; all of it where they change nowhere.
+pub fn changing(variable: &Variable) -> (f64, f64) {
+    let peaks = peaks(variable);
+    let changes = |pair: &&[f64]| {
+        let differ = |shape: &Shape| shape.membership(pair[0]) != shape.membership(pair[1]);
+        variable.terms.iter().any(|term| differ(&term.shape))
+    };
+    let first = peaks.windows(2).find(changes);
+    let last = peaks.windows(2).rev().find(changes);
+    match (first, last) {
+        (Some(first), Some(last)) => (first[0], last[1]),
+        _ => (variable.low, variable.high),
+    }
 }
 
 /// Places with another one half way between each two.
@@ -184,9 +229,9 @@ rules: []
     }
 
     #[test]
-    fn a_partition_has_its_peaks_its_ends_and_the_places_between() {
+    fn a_partition_has_its_peaks_and_the_places_between() {
         let places = places_of("partition: {low: 0.2, middle: 0.4, high: 0.8}");
-        let expected = [0.0, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 0.9, 1.0];
+        let expected = [0.2, 0.3, 0.4, 0.6, 0.8];
         assert_eq!(places.len(), expected.len());
         for (place, expected) in places.iter().zip(expected) {
             approx::assert_abs_diff_eq!(*place, expected, epsilon = 1e-12);
@@ -206,6 +251,21 @@ rules: []
         let beyond = "terms: {beyond: {gaussian: {mean: 3, sd: 1}}}";
         assert_eq!(peaks(beyond), [0.0, 1.0]);
         assert_eq!(peaks("terms: {all: {rectangle: [0, 1]}}"), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn the_ends_of_the_range_are_added_where_they_lie_beyond() {
+        let text = "
+fuzzy: 1
+name: test
+inputs: {x: {range: [0, 1], partition: {low: 0, high: 0.5}}}
+outputs: {y: {range: [0, 1], partition: [low, high]}}
+rules: []
+";
+        let model = fuzzy::yaml::parse(text).unwrap().model;
+        let knots = Knots::of(&model);
+        assert_eq!(knots.axes, [[0.0, 0.25, 0.5]]);
+        assert_eq!(knots.with_ends(&model).axes, [[0.0, 0.25, 0.5, 1.0]]);
     }
 
     #[test]

@@ -23,7 +23,7 @@ mod neighbours;
 mod thin_plate;
 
 pub use filling::{Filling, Reading};
-pub use knots::peaks;
+pub use knots::{changing, peaks};
 pub use map::FilledMap;
 
 /// How a gap is filled.

@@ -17,7 +17,7 @@ const COST_OF_SLOPE: f64 = 1e-7;
 
 /// Fills the knots that are not covered, within `range`.
 pub(super) fn fill(field: &mut Field, range: (f64, f64)) {
-    let known = field.from_the_highest();
+    let known = field.known_highest_first();
     let dimensions = field.coordinates.len();
     let mut tree = Tree::new(dimensions, field.points(&known));
     let count = if dimensions <= 2 {
