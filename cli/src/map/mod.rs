@@ -10,7 +10,7 @@ mod svg;
 mod text;
 mod view;
 
-use std::{fs, io::Write, path::PathBuf};
+use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
@@ -22,6 +22,7 @@ use fuzzy::{
 use crate::{
     diagnostics::{read_text, refuse},
     failure::{Exit, Failure},
+    output,
 };
 use slice::Slice;
 
@@ -200,14 +201,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     } else {
         heat::draw(&slice)
     };
-    if file.as_os_str() == "-" {
-        write!(out, "{drawn}")?;
-    } else {
-        fs::write(file, drawn).map_err(|error| {
-            Failure::unreadable(format!("`{}` cannot be written: {error}", file.display()))
-                .help("check the folder and its permissions")
-        })?;
-    }
+    output::write(file, &drawn)?;
     Ok(Exit::Clean)
 }
 

@@ -4,7 +4,7 @@
 //! rules are learned from the rows of all others, both tables counting the same, and score the rows of the one left out.
 //! The scores of all turns are pooled: the area under the ROC curve, on steps and on whole flights.
 
-use std::{collections::BTreeSet, error::Error, fs};
+use std::{collections::BTreeSet, error::Error, fs, io::Write};
 
 use flagred::{
     evaluation::{Prediction, Ranking},
@@ -243,10 +243,11 @@ fn main() -> Result<(), Failure> {
         return Err("usage: compare_candidates STEPS.csv FLIGHTS.csv".into());
     };
     let tables = [Table::read(&steps)?, Table::read(&flights)?];
-    println!("| rules | steps | whole flights |\n|---|---|---|");
+    let mut out = std::io::stdout();
+    writeln!(out, "| rules | steps | whole flights |\n|---|---|---|")?;
     for candidate in candidates() {
         let [steps, flights] = areas(&candidate, &tables)?;
-        println!("| {} | {steps:.3} | {flights:.3} |", candidate.said);
+        writeln!(out, "| {} | {steps:.3} | {flights:.3} |", candidate.said)?;
     }
     Ok(())
 }
