@@ -18,7 +18,7 @@ use super::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filling {
     knots: Knots,
-    /// Empty where nothing is covered.
+    /// Empty where nothing is covered, or there are too many inputs.
     values: Vec<f64>,
     distances: Vec<f64>,
     coverage_below: f64,
@@ -90,7 +90,14 @@ impl Filling {
             });
             Ok(covered.collect())
         };
-        let inner = Knots::of(model);
+        let Some(inner) = Knots::of(model) else {
+            return Ok(Filling {
+                knots: Knots::over(Vec::new(), Vec::new()),
+                values: Vec::new(),
+                distances: Vec::new(),
+                coverage_below,
+            });
+        };
         let known = ask(&inner)?;
         let knots = inner.with_ends(model);
         let mut filling = Filling {
@@ -116,7 +123,8 @@ impl Filling {
     }
 
     /// What is said at a place in the gap, with a coordinate for each input; beyond the outermost peaks, as there.
-    /// `None` where the rules cover nothing to fill from, the point has another number of coordinates, or one is not a
+    /// `None` where the rules cover nothing to fill from, there are more inputs than can be filled over (over 15 of two
+    /// terms each), the point has another number of coordinates, or one is not a
     /// number.
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
         if self.values.is_empty() {

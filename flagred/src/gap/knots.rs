@@ -26,7 +26,9 @@ pub(super) struct Knots {
 
 impl Knots {
     /// The grid over the part of each input in which terms change: beyond, rules cannot tell one place from another.
-    pub(super) fn of(model: &Model) -> Knots {
+    ///
+    /// `None` where even the peaks are too many: so many inputs, 16 of two terms each, have no filling.
+    pub(super) fn of(model: &Model) -> Option<Knots> {
         let axes = model.inputs.iter().map(|input| {
             let (first, last) = changing(input);
             let mut peaks = peaks(input);
@@ -34,27 +36,22 @@ impl Knots {
             peaks
         });
         let mut axes: Vec<Vec<f64>> = axes.collect();
-        let count = |axes: &[Vec<f64>]| {
-            let count = |n: usize, axis: &Vec<f64>| n.saturating_mul(axis.len());
-            axes.iter().fold(1, count)
-        };
         let finer: Vec<Vec<f64>> = axes.iter().map(|peaks| with_middles(peaks)).collect();
         if count(&finer) <= MOST_KNOTS {
             axes = finer;
         }
         while count(&axes) > MOST_KNOTS {
             let longest = axes.iter_mut().max_by_key(|axis| axis.len());
-            let Some(longest) = longest.filter(|axis| axis.len() > 2) else {
-                break;
-            };
+            let longest = longest.filter(|axis| axis.len() > 2)?;
             let last = longest.len() - 1;
             let mut i = 0..;
             longest.retain(|_| i.next().is_some_and(|i| i % 2 == 0 || i == last));
         }
-        Knots::over(axes, model.inputs.iter().map(|i| i.high - i.low).collect())
+        let ranges = model.inputs.iter().map(|i| i.high - i.low);
+        Some(Knots::over(axes, ranges.collect()))
     }
 
-    /// The same grid with the ends of the inputs' ranges, where it does not reach them.
+    /// The same grid with the ends of the inputs' ranges, where it does not reach them and there is room.
     pub(super) fn with_ends(&self, model: &Model) -> Knots {
         let axes = self.axes.iter().zip(&model.inputs).map(|(places, input)| {
             let before = Some(input.low).filter(|low| places.first().is_some_and(|x| low < x));
@@ -65,7 +62,11 @@ impl Knots {
                 .chain(behind)
                 .collect()
         });
-        Knots::over(axes.collect(), self.ranges.clone())
+        let axes: Vec<Vec<f64>> = axes.collect();
+        match count(&axes) <= 4 * MOST_KNOTS {
+            true => Knots::over(axes, self.ranges.clone()),
+            false => self.clone(),
+        }
     }
 
     /// A grid of given places.
@@ -83,7 +84,7 @@ impl Knots {
 
     /// How many knots there are.
     pub(super) fn count(&self) -> usize {
-        self.axes.iter().map(Vec::len).product()
+        count(&self.axes)
     }
 
     /// The place of a knot along an axis.
@@ -143,7 +144,20 @@ impl Knots {
     }
 }
 
+fn count(axes: &[Vec<f64>]) -> usize {
+    let times = |n: usize, axis: &Vec<f64>| n.saturating_mul(axis.len());
+    axes.iter().fold(1, times)
+}
+
 /// The peaks of a variable's terms and the ends of its range, rising. A flat top has two peaks.
+///
+/// # Example: where the paper's spread is low, medium and high
+///
+/// ```
+/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// assert_eq!(flagred::gap::peaks(&model.inputs[1]), [0.0, 0.1, 0.2, 0.5]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn peaks(variable: &Variable) -> Vec<f64> {
     let (low, high) = (variable.low, variable.high);
     let tops = variable.terms.iter().map(|t| top(&t.shape, low, high));
@@ -160,6 +174,14 @@ pub fn peaks(variable: &Variable) -> Vec<f64> {
 }
 
 /// The part of a variable's range in which its terms change, from and to; all of it where they change nowhere.
+///
+/// # Example: a shoulder
+///
+/// ```
+/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// assert_eq!(flagred::gap::changing(&model.inputs[0]), (0.0, 0.3)); // from 0.3 to 0.5 the margin is high
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn changing(variable: &Variable) -> (f64, f64) {
     let peaks = peaks(variable);
     let changes = |pair: &&[f64]| {
@@ -219,7 +241,7 @@ outputs: {{y: {{range: [0, 1], partition: [low, high]}}}}
 rules: []
 "
         );
-        Knots::of(&fuzzy::yaml::parse(&text).unwrap().model)
+        Knots::of(&fuzzy::yaml::parse(&text).unwrap().model).unwrap()
     }
 
     fn places_of(terms: &str) -> Vec<f64> {
@@ -263,7 +285,7 @@ outputs: {y: {range: [0, 1], partition: [low, high]}}
 rules: []
 ";
         let model = fuzzy::yaml::parse(text).unwrap().model;
-        let knots = Knots::of(&model);
+        let knots = Knots::of(&model).unwrap();
         assert_eq!(knots.axes, [[0.0, 0.25, 0.5]]);
         assert_eq!(knots.with_ends(&model).axes, [[0.0, 0.25, 0.5, 1.0]]);
     }

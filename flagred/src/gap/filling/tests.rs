@@ -49,6 +49,27 @@ rules: [IF x IS middle THEN y IS medium, IF x IS high THEN y IS large]
     approx::assert_abs_diff_eq!(read(0.1).distance, 0.45, epsilon = 1e-12);
 }
 
+#[test]
+fn with_very_many_inputs_a_gap_is_unknown() {
+    let inputs: Vec<String> = (0..24)
+        .map(|i| format!("x{i}: {{range: [0, 1], partition: [low, high]}}"))
+        .collect();
+    let text = format!(
+        "
+fuzzy: 1
+name: many
+inputs: {{{}}}
+outputs: {{y: {{range: [0, 100], partition: [low, high]}}}}
+rules: [IF x0 IS low THEN y IS low]
+",
+        inputs.join(", ")
+    );
+    let model = fuzzy::yaml::parse(&text).unwrap().model;
+    let engine = Engine::new(&model).unwrap();
+    let filling = Filling::new(&engine, &model, 0, &GapSettings::default()).unwrap();
+    assert_eq!(filling.read(&[1.0; 24]), None);
+}
+
 /// The table of the paper's ten rules at the knots, its corner left out, and what fills it: computed apart from this
 /// program (numpy), from the same definitions.
 #[test]
