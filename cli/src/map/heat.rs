@@ -54,7 +54,7 @@ pub(super) fn draw(slice: &Slice) -> String {
                 x.clamp(frame.left + 14.0, frame.left + frame.width - 14.0),
                 y.clamp(frame.top + 12.0, frame.top + frame.height - 6.0) + 4.0,
             );
-            sheet.text(inside, Anchor::Middle, "on", &short(level));
+            sheet.text_on(inside, &short(level));
         }
     }
     sheet.axes(&frame, slice, (y.low(), y.high()), &y.title());

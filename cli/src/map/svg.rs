@@ -68,6 +68,12 @@ impl Sheet {
         ));
     }
 
+    /// Text over a picture, on a halo of its own: not every viewer draws the edge of letters first.
+    pub(super) fn text_on(&mut self, at: (f64, f64), text: &str) {
+        self.text(at, Anchor::Middle, "under", text);
+        self.text(at, Anchor::Middle, "on", text);
+    }
+
     pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64), class: &str) {
         self.push(format_args!(
             "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" class=\"{class}\"/>",
@@ -183,7 +189,7 @@ impl Sheet {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" role=\"img\" aria-label=\"{title}\">
 <title>{title}</title>
 <defs><pattern id=\"hatch\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" patternTransform=\"rotate(45)\"><line x1=\"0\" y1=\"0\" x2=\"0\" y2=\"7\" stroke=\"#000\" stroke-width=\"2.4\"/><line x1=\"2\" y1=\"0\" x2=\"2\" y2=\"7\" stroke=\"#fff\" stroke-width=\"1.2\"/></pattern></defs>
-<style>rect{{shape-rendering:crispEdges}}text{{font-family:system-ui,sans-serif;fill:#1a1a1a}}.heading{{font-size:15px;font-weight:600}}.title{{font-size:13px}}.label{{font-size:11px}}.frame{{fill:none;stroke:#1a1a1a}}.tick{{stroke:#1a1a1a}}.unknown{{fill:#d9d9d9;stroke:#999}}.swatch{{fill:#fff;stroke:#1a1a1a}}.contour{{fill:none;stroke:#000;stroke-width:1.1}}.halo{{fill:none;stroke:#fff;stroke-width:3;stroke-opacity:.55}}.on{{font-size:11px;font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:3px}}.curve{{fill:none;stroke:#2a788e;stroke-width:2.5}}.dashed{{fill:none;stroke:#d55e00;stroke-width:2.5;stroke-dasharray:6 4}}.grid{{stroke:#bbb;stroke-width:.7}}</style>
+<style>rect{{shape-rendering:crispEdges}}text{{font-family:system-ui,sans-serif;fill:#1a1a1a}}.heading{{font-size:15px;font-weight:600}}.title{{font-size:13px}}.label{{font-size:11px}}.frame{{fill:none;stroke:#1a1a1a}}.tick{{stroke:#1a1a1a}}.unknown{{fill:#d9d9d9;stroke:#999}}.swatch{{fill:#fff;stroke:#1a1a1a}}.contour{{fill:none;stroke:#000;stroke-width:1.1}}.halo{{fill:none;stroke:#fff;stroke-width:3;stroke-opacity:.55}}.on,.under{{font-size:11px;font-weight:600}}.under{{stroke:#fff;stroke-width:3px}}.curve{{fill:none;stroke:#2a788e;stroke-width:2.5}}.dashed{{fill:none;stroke:#d55e00;stroke-width:2.5;stroke-dasharray:6 4}}.grid{{stroke:#bbb;stroke-width:.7}}</style>
 <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"#fff\"/>
 {}</svg>
 ",
