@@ -62,7 +62,12 @@ fn without_a_word_the_picture_shows_where_the_rules_to_fly_with_decide() {
 
     // What was asked for needs no note.
     let asked = ["--fix", "load=0.5", "--fix", "at_limit=0"];
-    let axes = ["--x", "unsteady_now:0..0.1", "--y", "unsteady_lately:0..0.1"];
+    let axes = [
+        "--x",
+        "unsteady_now:0..0.1",
+        "--y",
+        "unsteady_lately:0..0.1",
+    ];
     let (_, same, notes) = map(&[&[FLAGRED, "--points", "26"][..], &asked, &axes].concat());
     assert_eq!((same, notes.as_str()), (text, ""));
 }
