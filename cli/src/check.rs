@@ -3,7 +3,7 @@
 use std::{io::Write, path::PathBuf};
 
 use fuzzy::{
-    Engine, check,
+    check,
     diagnostic::{Diagnostic, Findings, Severity},
     format::Document,
 };
@@ -109,47 +109,14 @@ fn examine(
         Ok(document) => document,
         Err(findings) => return Ok((findings, None)),
     };
-    // An empty list is for `flagred learn` to fill; what is checked is meant to be used.
-    if document.model.rules.is_empty() {
-        let mut findings = document.warnings;
-        for finding in findings
-            .0
-            .iter_mut()
-            .filter(|finding| finding.code == "no-rules")
-        {
-            finding.severity = Severity::Error;
-        }
-        return Ok((findings, None));
-    }
-    let engine = match Engine::new(&document.model) {
-        Ok(engine) => engine,
-        Err(error) => return Ok((Findings(not_compiled(&error)), None)),
-    };
     let options = check::Options {
         coverage: arguments.coverage,
         monotone: arguments.monotone.clone(),
     };
-    let report = check::check(&document.model, &engine, &options).map_err(|finding| {
-        let failure = Failure::usage(format!("--monotone: {}", finding.message));
-        match finding.help {
-            Some(help) => failure.help(help),
-            None => failure,
-        }
+    let (findings, report) = check::document(&document, text, &options).map_err(|finding| {
+        Failure::usage(format!("--monotone: {}", finding.message)).help_if(finding.help)
     })?;
-    let mut findings = document.warnings.0.clone();
-    findings.extend(report.findings(&document.model, &document.places));
-    let mut findings = Findings::locate(findings, text);
-    // What reading the file warns of is found by the analysis again.
-    findings.0.dedup();
-    Ok((findings, Some((document, report))))
-}
-
-/// What the engine cannot take although it reads well. It knows no places.
-pub(crate) fn not_compiled(error: &fuzzy::engine::CompileError) -> Vec<Diagnostic> {
-    let finding = |problem: &fuzzy::engine::Problem| {
-        Diagnostic::error("not-compiled", 0..0, problem.to_string())
-    };
-    error.problems.iter().map(finding).collect()
+    Ok((findings, report.map(|report| (document, report))))
 }
 
 fn summary(findings: &Findings) -> String {

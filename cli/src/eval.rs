@@ -141,10 +141,7 @@ fn columns(engine: &Engine, header: &csv::StringRecord) -> Result<Vec<usize>, Fa
             ))),
             (None, _) => {
                 let failure = Failure::usage(format!("the points have no column `{input}`"));
-                Err(match suggest(input, names()) {
-                    Some(help) => failure.help(help),
-                    None => failure,
-                })
+                Err(failure.help_if(suggest(input, names())))
             }
         }
     };

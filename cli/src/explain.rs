@@ -69,10 +69,7 @@ fn values(model: &Model, given: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
     for (i, (name, _)) in given.iter().enumerate() {
         if !names().any(|known| known == name) {
             let failure = Failure::usage(format!("the rule set has no input `{name}`"));
-            return Err(match suggest(name, names()) {
-                Some(help) => failure.help(help),
-                None => failure,
-            });
+            return Err(failure.help_if(suggest(name, names())));
         }
         if given.iter().take(i).any(|(other, _)| other == name) {
             return Err(Failure::usage(format!("`{name}` is given twice")));

@@ -65,6 +65,14 @@ impl Failure {
         self
     }
 
+    /// Adds what to do about it, where that is known.
+    pub(crate) fn help_if(self, help: Option<impl fmt::Display>) -> Self {
+        match help {
+            Some(help) => self.help(help),
+            None => self,
+        }
+    }
+
     /// Tells the user, and gives the exit code.
     pub(crate) fn report(self) -> ExitCode {
         if !self.message.is_empty() {
@@ -83,11 +91,7 @@ impl Failure {
 /// A log that cannot be read: exit code 3.
 impl From<flightlog::ReadError> for Failure {
     fn from(error: flightlog::ReadError) -> Self {
-        let failure = Failure::unreadable(&error);
-        match error.help() {
-            Some(help) => failure.help(help),
-            None => failure,
-        }
+        Failure::unreadable(&error).help_if(error.help())
     }
 }
 

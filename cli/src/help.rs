@@ -9,6 +9,9 @@ What to type:
   flagred new my-rules                           a commented rule set to start from
   flagred check my-rules.yaml                    what is wrong with it, what it leaves open
   flagred explain my-rules.yaml temperature=24 humidity=70   why the answer is what it is
+  flagred map my-rules.yaml                      what it decides, over its inputs
+  flagred learn my-rules.yaml rows.csv --output learned.yaml   its rules, learned from flights
+  flagred watch udpin:0.0.0.0:14550              the risk of a flight while it is flown
   flagred completions bash                       completions for your shell
 
 Each command has its own help: flagred assess --help";
@@ -30,10 +33,31 @@ What to type:
   flagred check --deny warnings rules/*.yaml
   flagred check --json my-rules.yaml";
 
+pub(crate) const CONVERT: &str = "\
+What to type:
+  flagred convert flight.bin --output flight.csv
+  flagred convert flight.ulg --output -          to another program
+  flagred assess flight.csv                      what was written is a flight like any other";
+
+pub(crate) const DATASET: &str = "\
+What to type:
+  flagred dataset *.bin --profile flagred        a row for each time in the air
+  flagred dataset *.bin --window 10              a row for every 10 seconds
+  flagred dataset *.bin --profile flagred --ahead 5 --skip kind=manoeuvre
+
+The rows go to standard output, for flagred learn: flagred dataset *.bin > rows.csv";
+
 pub(crate) const EVAL: &str = "\
 What to type:
   flagred eval my-rules.yaml points.csv
   flagred eval my-rules.yaml";
+
+pub(crate) const EVALUATE: &str = "\
+What to type:
+  flagred evaluate flights/*.bin
+  flagred evaluate flights/*.bin --profile my-profile.yaml --svg curves.svg
+  flagred evaluate --rows rows.csv
+  flagred evaluate --json flights/*.bin";
 
 pub(crate) const EXPLAIN: &str = "\
 What to type:
@@ -53,6 +77,23 @@ pub(crate) const INSPECT: &str = "\
 What to type:
   flagred inspect flight.bin
   flagred inspect --json flight.ulg";
+
+pub(crate) const LEARN: &str = "\
+What to type:
+  flagred learn my-rules.yaml rows.csv --output learned.yaml
+  flagred learn my-rules.yaml rows.csv --resolve mean --min-support 5 --group-by vehicle --output learned.yaml
+  flagred learn my-rules.yaml rows.csv --column margin=margin_mean --skip-bad-rows --output learned.yaml
+  flagred learn my-rules.yaml rows.csv --compare-gaps --output learned.yaml
+  flagred check learned.yaml                     what the learned rules leave open";
+
+pub(crate) const MAP: &str = "\
+What to type:
+  flagred map my-rules.yaml
+  flagred map my-rules.yaml --svg map.svg
+  flagred map my-rules.yaml --surface --svg surface.svg
+  flagred map my-rules.yaml --activations        which rule decides where
+  flagred map my-rules.yaml --fix battery=20 --x margin:0..0.3 --y spread
+  flagred map my-rules.yaml --csv --fill none";
 
 pub(crate) const NEW: &str = "\
 What to type:
@@ -74,6 +115,14 @@ What to type:
   flagred man assess
   flagred man --all man1";
 
+pub(crate) const WATCH: &str = "\
+What to type:
+  flagred watch udpin:0.0.0.0:14550              a vehicle or a router that sends here
+  flagred watch tcp:127.0.0.1:5760               a simulator
+  flagred watch /dev/ttyACM0:57600               a telemetry radio
+  flagred watch udpin:0.0.0.0:14550 --no-send --record flight.tlog
+  flagred watch udpin:0.0.0.0:14550 --jsonl      a JSON object a line, for another program";
+
 #[cfg(test)]
 mod tests {
     use clap::{CommandFactory, Parser};
@@ -87,9 +136,8 @@ mod tests {
         let mut commands = vec![Arguments::command()];
         commands.extend(Arguments::command().get_subcommands().cloned());
         for command in &commands {
-            let Some(help) = command.get_after_help().map(ToString::to_string) else {
-                continue;
-            };
+            let help = command.get_after_help().map(ToString::to_string);
+            let help = help.unwrap_or_else(|| panic!("{} has no examples", command.get_name()));
             for line in help
                 .lines()
                 .filter_map(|line| line.strip_prefix("  flagred "))
@@ -102,7 +150,7 @@ mod tests {
                 tried += 1;
             }
         }
-        assert!(tried > 20, "{tried}");
+        assert!(tried > 45, "{tried}");
     }
 
     #[test]

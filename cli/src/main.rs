@@ -3,11 +3,13 @@
 //! One file per command; this one only reads the command line and dispatches.
 
 mod assess;
+mod assessment;
 mod check;
 mod completions;
 mod convert;
 mod dataset;
 mod diagnostics;
+mod drawing;
 mod eval;
 mod evaluate;
 mod explain;
@@ -52,6 +54,7 @@ enum Command {
     #[command(after_help = help::CHECK)]
     Check(check::Arguments),
     /// Write a flight log as flight CSV
+    #[command(after_help = help::CONVERT)]
     Convert(convert::Arguments),
     /// Write completions for a shell
     #[command(after_help = help::COMPLETIONS)]
@@ -66,20 +69,25 @@ enum Command {
     #[command(after_help = help::EXPORT)]
     Export(export::Arguments),
     /// Turn flights into rows to learn from: inputs, attitude error, risk
+    #[command(after_help = help::DATASET)]
     Dataset(dataset::Arguments),
     /// Measure how well profiles tell what comes, beside predictors that need no rules
+    #[command(after_help = help::EVALUATE)]
     Evaluate(evaluate::Arguments),
     /// Show what is in a flight log, and where each value came from
     #[command(after_help = help::INSPECT)]
     Inspect(inspect::Arguments),
     /// Learn the rules of a rule set from rows of data
+    #[command(after_help = help::LEARN)]
     Learn(learn::Arguments),
     /// Draw what a rule set decides over its inputs
+    #[command(after_help = help::MAP)]
     Map(map::Arguments),
     /// Print the manual
     #[command(after_help = help::MAN)]
     Man(man::Arguments),
     /// Say how risky a flight is while it is flown, to you and to the ground station
+    #[command(after_help = help::WATCH)]
     Watch(watch::Arguments),
     /// Write a rule set to start from
     #[command(after_help = help::NEW)]

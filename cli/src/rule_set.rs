@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fuzzy::{Engine, Model, diagnostic::Findings};
+use fuzzy::{Engine, Model};
 
 use crate::{
     diagnostics::{read_text, refuse},
@@ -16,9 +16,6 @@ pub(crate) fn load(path: &Path) -> Result<(Model, Engine), Failure> {
     let file = path.display().to_string();
     let document = fuzzy::yaml::parse(&text).map_err(|findings| refuse(&findings, &file, &text))?;
     let model = document.model;
-    let engine = Engine::new(&model).map_err(|error| {
-        let findings = Findings(crate::check::not_compiled(&error));
-        refuse(&findings, &file, &text)
-    })?;
+    let engine = Engine::new(&model).map_err(|error| refuse(&error.findings(), &file, &text))?;
     Ok((model, engine))
 }

@@ -36,7 +36,7 @@ impl Table {
             .from_reader(source);
         let header: Vec<String> = reader
             .headers()
-            .map_err(|error| unreadable(&error).help("the file must be CSV text, a header first"))?
+            .map_err(|error| broken(&file, &error))?
             .iter()
             .map(str::to_owned)
             .collect();
@@ -46,9 +46,7 @@ impl Table {
         }
         let mut records = Vec::new();
         for record in reader.records() {
-            let record = record.map_err(|error| {
-                unreadable(&error).help("every row has as many cells as the header")
-            })?;
+            let record = record.map_err(|error| broken(&file, &error))?;
             let line = record.position().map_or(0, csv::Position::line);
             records.push((line, record));
         }
@@ -82,6 +80,10 @@ impl Table {
 
     /// The place of a column that must be there; `help` says what else could be done.
     pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
+        if self.header.iter().filter(|column| *column == name).count() > 1 {
+            let message = format!("`{}` has the column `{name}` more than once", self.file);
+            return Err(Failure::unreadable(message).help("rename all but the one that is meant"));
+        }
         self.column(name).ok_or_else(|| {
             let columns = self.header.iter().map(String::as_str);
             let meant = fuzzy::diagnostic::suggest(name, columns).unwrap_or_default();
@@ -115,5 +117,23 @@ impl Table {
             column: self.header.get(column).cloned().unwrap_or_default(),
             problem,
         }
+    }
+}
+
+/// What is wrong with the text of a table, and where.
+fn broken(file: &str, error: &csv::Error) -> Failure {
+    let line = error.position().map_or(1, csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths {
+            expected_len, len, ..
+        } => Failure::unreadable(format!(
+            "`{file}`, line {line}: {len} cells, but the header has {expected_len}"
+        ))
+        .help("every row has as many cells as the header"),
+        csv::ErrorKind::Utf8 { .. } => {
+            Failure::unreadable(format!("`{file}`, line {line}: this is no UTF-8 text"))
+                .help("the file must be CSV text, a header first")
+        }
+        _ => Failure::unreadable(format!("`{file}` cannot be read: {error}")),
     }
 }

@@ -216,15 +216,6 @@ typedef struct flagred_source {
     uint32_t channel, statistic;
 } flagred_source;
 
-typedef struct flagred_scale {
-    double low, high;
-    uint32_t points;
-} flagred_scale;
-
-typedef struct flagred_run {
-    uint32_t cell, first, end;
-} flagred_run;
-
 typedef struct flagred_threshold {
     double risk_pct, elevated_risk_pct;   /* NAN where there is none */
 } flagred_threshold;
@@ -280,10 +271,10 @@ struct flagred_plan {
     FLAGRED_ARRAY(uint32_t, order);
     FLAGRED_ARRAY(flagred_channel, channels);
     FLAGRED_ARRAY(flagred_source, sources);
-    FLAGRED_ARRAY(flagred_scale, scales);       /* of the cells that fill gaps; none where there are no gaps */
-    FLAGRED_ARRAY(flagred_run, runs);
+    FLAGRED_ARRAY(double, places);              /* of the knots that fill gaps, input by input; none where nothing can */
+    FLAGRED_ARRAY(uint32_t, first_places);      /* where those of each input begin, and where the last one's end */
     FLAGRED_ARRAY(double, values);
-    FLAGRED_ARRAY(float, distances);
+    FLAGRED_ARRAY(double, distances);
 };
 
 #undef FLAGRED_ARRAY

@@ -5,7 +5,6 @@ use flagred::{
     assessment::Sampling,
     board::{
         self,
-        scale::Scale,
         table::{
             Action, Axis, Coefficient, Conjunction, Conjunctions, Consequence, Curve, Dimension,
             Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Program, Sizes,
@@ -14,7 +13,7 @@ use flagred::{
     },
     channel::{self, Channel, Motors, Observed, Statistic},
     follower::Settings,
-    gap::{FilledCells, Run},
+    gap::FilledKnots,
     verdict::{Idle, LevelSettings, Threshold, VerdictSettings},
 };
 
@@ -141,10 +140,10 @@ pub struct Plan {
     order: Array<u32>,
     channels: Array<CChannel>,
     sources: Array<CSource>,
-    scales: Array<Scale>,
-    runs: Array<Run>,
+    places: Array<f64>,
+    first_places: Array<u32>,
     values: Array<f64>,
-    distances: Array<f32>,
+    distances: Array<f64>,
 }
 
 impl Plan {
@@ -196,10 +195,9 @@ impl Plan {
         // SAFETY: the caller's promise, for all arrays of the plan.
         unsafe {
             let (points, _) = self.points.read()?.as_chunks::<2>();
-            let scales = self.scales.read()?;
-            let cells = FilledCells {
-                scales,
-                runs: self.runs.read()?,
+            let knots = FilledKnots {
+                places: self.places.read()?,
+                starts: self.first_places.read()?,
                 values: self.values.read()?,
                 distances: self.distances.read()?,
             };
@@ -247,7 +245,7 @@ impl Plan {
                 signals: self.signals,
                 settings: self.settings.read(),
                 coverage_below: self.coverage_below,
-                filled: (!scales.is_empty()).then_some(cells),
+                filled: (!knots.values.is_empty()).then_some(knots),
             })
         }
     }

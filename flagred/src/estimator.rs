@@ -5,15 +5,13 @@ use alloc::{string::String, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     engine::{CompileError, EvaluateError, Outcome, Scratch},
-    map::{Axis, DecisionMap, Grid, GridError},
-    scale::Scale,
     table::Set,
 };
 
 use crate::{
     board::Plan,
     channel::{Channel, Input},
-    gap::{FilledCells, FilledMap, Run},
+    gap::Filling,
     lookup::Lookup,
     profile::Profile,
     source::channels,
@@ -21,32 +19,18 @@ use crate::{
 
 pub use crate::assessment::Estimate;
 
-/// The most cells a map has that is made to fill gaps; the more inputs, the fewer points along each.
-const MAP_CELLS: usize = 100_000;
-
 /// A profile and its rule set, compiled: immutable, and shared by any number of monitors.
 #[derive(Debug, Clone)]
 pub struct Estimator {
     profile: Profile,
     engine: Engine,
     output: usize,
-    coverage_below: f64,
-    /// `None` where no gap is in reach: every cell is covered, or there is nothing to fill one from.
-    filled: Option<Filled>,
+    filling: Filling,
     /// Which input of the profile each input of the model is.
     order: Vec<u32>,
     /// What is observed, where samples carry the signals of the profile in its order.
     channels: Vec<Channel>,
     inputs: Vec<Input>,
-}
-
-/// The filled cells of the map.
-#[derive(Debug, Clone)]
-struct Filled {
-    scales: Vec<Scale>,
-    runs: Vec<Run>,
-    values: Vec<f64>,
-    distances: Vec<f32>,
 }
 
 /// Why a profile and a rule set make no estimator.
@@ -56,10 +40,7 @@ pub enum EstimatorError {
     /// The rule set itself does not compile.
     #[error("the rule set cannot be used: {0}")]
     Rules(#[from] CompileError),
-    /// It has too many inputs for a map that fills gaps.
-    #[error("the map of the rule set cannot be laid: {0}")]
-    Map(#[from] GridError),
-    /// The map that fills gaps could not be evaluated.
+    /// It cannot be evaluated at the places that gaps are filled from.
     #[error("the rule set cannot be evaluated everywhere: {0}")]
     Evaluate(#[from] EvaluateError),
     /// The rule set has an input that the profile does not feed.
@@ -155,16 +136,11 @@ impl Estimator {
         let sources = profile.inputs.iter().map(|input| &input.source);
         let (channels, inputs) = channels(sources, &profile.signals())
             .map_err(|input| EstimatorError::NoSource { input })?;
-        let coverage_below = profile.gap.coverage_below(model);
-        let grid = Grid::new(&engine, points_along(model.inputs.len()))?;
-        let map = DecisionMap::new(&engine, grid, output)?;
-        let filled = FilledMap::new(map, coverage_below, profile.gap.method);
         Ok(Estimator {
-            coverage_below,
             profile: profile.clone(),
+            filling: Filling::new(&engine, model, output, &profile.gap)?,
             engine,
             output,
-            filled: Filled::of(&filled),
             order,
             channels,
             inputs,
@@ -205,7 +181,6 @@ impl Estimator {
         let Memory {
             scratch,
             point,
-            corner,
             outcomes,
         } = memory;
         let rules = |point: &[f64]| match self.engine.evaluate_with(scratch, point, outcomes) {
@@ -213,7 +188,7 @@ impl Estimator {
             Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => outcomes.get(self.output).copied(),
             Err(_) => None,
         };
-        self.lookup().estimate(inputs, (point, corner), rules)
+        self.lookup().estimate(inputs, point, rules)
     }
 
     /// The profile and its rule set as plain data, to fly on board; samples carry the signals of
@@ -253,74 +228,26 @@ impl Estimator {
             inputs: &self.inputs,
             signals: self.profile.signals().len() as u32,
             settings: self.profile.settings(),
-            coverage_below: self.coverage_below,
-            filled: self.filled.as_ref().map(Filled::lend),
+            coverage_below: self.filling.coverage_below(),
+            filled: self.filling.lend(),
         })
     }
 
     fn lookup(&self) -> Lookup<'_> {
         Lookup {
             order: &self.order,
-            coverage_below: self.coverage_below,
-            filled: self.filled.as_ref().map(Filled::lend),
+            coverage_below: self.filling.coverage_below(),
+            filled: self.filling.lend(),
         }
     }
-}
-
-impl Filled {
-    /// `None` where no cell was filled.
-    fn of(map: &FilledMap) -> Option<Filled> {
-        let grid = map.map().grid();
-        let mut filled = Filled {
-            scales: grid.axes().iter().map(Axis::scale).collect(),
-            runs: vec![],
-            values: vec![],
-            distances: vec![],
-        };
-        for cell in (0..grid.cells()).filter(|cell| map.is_filled(*cell)) {
-            let first = filled.values.len() as u32;
-            match filled.runs.last_mut() {
-                Some(run) if run.cell + (run.end - run.first) == cell as u32 => run.end += 1,
-                _ => filled.runs.push(Run {
-                    cell: cell as u32,
-                    first,
-                    end: first + 1,
-                }),
-            }
-            filled.values.push(map.value(cell).unwrap_or(f64::NAN));
-            filled.distances.push(map.distance(cell) as f32);
-        }
-        filled
-            .values
-            .iter()
-            .any(|value| !value.is_nan())
-            .then_some(filled)
-    }
-
-    fn lend(&self) -> FilledCells<'_> {
-        FilledCells {
-            scales: &self.scales,
-            runs: &self.runs,
-            values: &self.values,
-            distances: &self.distances,
-        }
-    }
-}
-
-/// How many points the map that fills gaps has along each of so many inputs: 51, or fewer so that there are not more
-/// than 100,000 in all, but at least 3.
-pub fn points_along(inputs: usize) -> usize {
-    let most = libm::pow(MAP_CELLS as f64, 1.0 / inputs.max(1) as f64);
-    (most as usize).clamp(3, 51)
 }
 
 /// What an estimate needs beside the estimator: allocated once, used for every sample.
 #[derive(Debug, Clone)]
 pub(crate) struct Memory {
     scratch: Scratch,
-    /// The inputs in the order of the model, and room for others.
+    /// The inputs in the order of the model.
     point: Vec<f64>,
-    corner: Vec<f64>,
     outcomes: Vec<Outcome>,
 }
 
@@ -330,7 +257,6 @@ impl Memory {
         Memory {
             scratch: estimator.engine.scratch(),
             point: vec![0.0; inputs],
-            corner: vec![0.0; inputs],
             outcomes: vec![Outcome::default(); estimator.engine.output_names().len()],
         }
     }

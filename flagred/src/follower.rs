@@ -52,6 +52,7 @@ impl Follower {
         }
     }
 
+    #[cfg(feature = "std")]
     pub(crate) fn settings(&self) -> &Settings {
         &self.settings
     }

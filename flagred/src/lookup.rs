@@ -1,10 +1,10 @@
-//! From the values of inputs to a risk: the rules where they apply, the filled cells where they do not.
+//! From the values of inputs to a risk: the rules where they apply, the filling where they do not.
 
 use fuzzy::table::Outcome;
 
 use crate::{
     assessment::Estimate,
-    gap::{FilledCells, is_gap},
+    gap::{FilledKnots, is_gap},
 };
 
 /// What an estimate needs to know beside the rules.
@@ -14,8 +14,8 @@ pub(crate) struct Lookup<'a> {
     pub(crate) order: &'a [u32],
     /// The coverage below which the rules do not apply.
     pub(crate) coverage_below: f64,
-    /// `None` where rules apply everywhere.
-    pub(crate) filled: Option<FilledCells<'a>>,
+    /// `None` where there is nothing to fill gaps from.
+    pub(crate) filled: Option<FilledKnots<'a>>,
 }
 
 impl Lookup<'_> {
@@ -24,8 +24,8 @@ impl Lookup<'_> {
     pub(crate) fn estimate(
         &self,
         inputs: &[f64],
-        (point, corner): (&mut [f64], &mut [f64]),
-        mut rules: impl FnMut(&[f64]) -> Option<Outcome>,
+        point: &mut [f64],
+        rules: impl FnOnce(&[f64]) -> Option<Outcome>,
     ) -> Option<Estimate> {
         for (value, from) in point.iter_mut().zip(self.order) {
             *value = *inputs.get(*from as usize)?;
@@ -35,7 +35,7 @@ impl Lookup<'_> {
             .filled
             .filter(|_| is_gap(outcome.coverage, self.coverage_below))
             .filter(|_| point.iter().all(|x| x.is_finite()))
-            .and_then(|cells| cells.read(point, corner, |corner| rules(corner)?.value()));
+            .and_then(|knots| knots.read(point));
         let risk_pct = reading
             .map(|reading| reading.value)
             .or_else(|| outcome.value())?;

@@ -4,6 +4,16 @@
 //! that the vehicle uses in flight: a motor at its limit then has margin 0, whatever the vehicle's set-up.
 
 /// How a pulse width becomes a normalised command.
+///
+/// # Example: the erratum
+/// ```
+/// use flagred::margin::{Normalisation, Range};
+///
+/// let pwm = Range::new(1000.0, 2000.0).ok_or("low must be below high")?;
+/// assert_eq!(pwm.normalise(2000.0, Normalisation::Linear), 1.0);
+/// assert!((pwm.normalise(2000.0, Normalisation::Printed) - 0.577).abs() < 1e-3);
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Normalisation {
     /// `(pwm - low) / (high - low)`.
@@ -45,21 +55,53 @@ impl Range {
     };
 
     /// A range from `low` to `high`; `None` unless both are finite and `low < high`.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::margin::Range;
+    ///
+    /// assert!(Range::new(1100.0, 1940.0).is_some());
+    /// assert!(Range::new(1940.0, 1100.0).is_none() && Range::new(1100.0, f64::NAN).is_none());
+    /// ```
     pub fn new(low: f64, high: f64) -> Option<Range> {
         (low.is_finite() && high.is_finite() && low < high).then_some(Range { low, high })
     }
 
     /// The lower limit.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::margin::Range;
+    ///
+    /// assert_eq!((Range::FULL.low(), Range::FULL.high()), (0.0, 1.0));
+    /// ```
     pub fn low(&self) -> f64 {
         self.low
     }
 
     /// The upper limit.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::margin::Range;
+    ///
+    /// assert_eq!(Range::new(1100.0, 1940.0).map(|range| range.high() - range.low()), Some(840.0));
+    /// ```
     pub fn high(&self) -> f64 {
         self.high
     }
 
     /// The normalised command of a pulse width in the unit of this range (us); not clamped.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::margin::{Normalisation, Range};
+    ///
+    /// let pwm = Range::new(1100.0, 1900.0).ok_or("low must be below high")?;
+    /// assert_eq!(pwm.normalise(1300.0, Normalisation::Linear), 0.25);
+    /// assert_eq!(pwm.normalise(1000.0, Normalisation::Linear), -0.125);
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn normalise(&self, pwm: f64, normalisation: Normalisation) -> f64 {
         let width = match normalisation {
             Normalisation::Linear => self.high - self.low,
@@ -69,12 +111,28 @@ impl Range {
     }
 
     /// Where a value stands in this range: 0 at `low`, 1 at `high`, clamped to these; NaN stays NaN.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::margin::Range;
+    ///
+    /// let spin = Range::new(0.25, 0.75).ok_or("low must be below high")?;
+    /// assert_eq!((spin.fraction(0.1), spin.fraction(0.5), spin.fraction(0.9)), (0.0, 0.5, 1.0));
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn fraction(&self, value: f64) -> f64 {
         ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 }
 
 /// The margin of an effective command in [0, 1]: `min(e, 1 - e)`, in [0, 0.5]; 0 is saturated, low or high.
+///
+/// # Example
+/// ```
+/// use flagred::margin::margin;
+///
+/// assert_eq!((margin(0.0), margin(0.5), margin(0.75), margin(1.0)), (0.0, 0.5, 0.25, 0.0));
+/// ```
 pub fn margin(effective: f64) -> f64 {
     effective.min(1.0 - effective)
 }
@@ -90,6 +148,13 @@ pub enum Side {
 
 impl Side {
     /// The limit nearer to an effective command; the middle counts as high.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::margin::Side;
+    ///
+    /// assert_eq!((Side::of(0.1), Side::of(0.9)), (Side::Low, Side::High));
+    /// ```
     pub fn of(effective: f64) -> Side {
         if effective < 0.5 {
             Side::Low

@@ -7,6 +7,15 @@ use fuzzy::{Model, diagnostic::Findings};
 use crate::profile::Profile;
 
 /// A rule set or profile that comes with this crate.
+///
+/// # Example: every shipped rule set loads
+/// ```
+/// for shipped in flagred::shipped::RULE_SETS {
+///     let model = fuzzy::yaml::parse(shipped.text)?.model;
+///     assert_eq!(model.name, shipped.name);
+/// }
+/// # Ok::<(), fuzzy::diagnostic::Findings>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shipped {
     /// Its name.
@@ -46,6 +55,14 @@ pub const PROFILES: [Shipped; 2] = [
 ];
 
 /// The rule set of this name; `None` if there is none.
+///
+/// # Example
+/// ```
+/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// assert_eq!(model.rules.len(), 10);
+/// assert!(flagred::shipped::rule_set("mine").is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn rule_set(name: &str) -> Option<Result<Model, Findings>> {
     find(&RULE_SETS, name)
         .map(|shipped| fuzzy::yaml::parse(shipped.text).map(|document| document.model))
@@ -63,6 +80,11 @@ pub fn profile(name: &str) -> Option<Result<Profile, Findings>> {
 }
 
 /// The names of the shipped profiles, for messages.
+///
+/// # Example
+/// ```
+/// assert_eq!(flagred::shipped::profile_names(), ["flagred", "flagred-paper"]);
+/// ```
 pub fn profile_names() -> Vec<&'static str> {
     PROFILES.iter().map(|shipped| shipped.name).collect()
 }

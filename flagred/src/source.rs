@@ -6,6 +6,14 @@ use crate::channel::{Channel, Input, Observed, Seen, Threshold, push, value};
 pub use crate::channel::{Motors, Observation, Statistic};
 
 /// What is observed.
+///
+/// # Example
+/// ```
+/// use flagred::source::Signal;
+///
+/// assert_eq!(Signal::named("motor_margin"), Signal::MotorMargin);
+/// assert_eq!(Signal::named("battery_v"), Signal::Named("battery_v".into()));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Signal {
     /// The effective command `e` of each motor: 0 at its lower limit, 1 at its upper one.
@@ -30,6 +38,15 @@ impl Signal {
     ];
 
     /// The signal of a name; a name that is not one of [`Signal::MOTORS`] is one of the flight's own.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::source::Signal;
+    ///
+    /// for (name, signal) in Signal::MOTORS {
+    ///     assert_eq!(Signal::named(name), signal);
+    /// }
+    /// ```
     pub fn named(name: &str) -> Signal {
         Signal::MOTORS
             .into_iter()
@@ -38,6 +55,14 @@ impl Signal {
     }
 
     /// Whether the signal has one value for each motor.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::source::Signal;
+    ///
+    /// assert!(Signal::MotorCommand.is_of_motors());
+    /// assert!(!Signal::named("wind_m_s").is_of_motors());
+    /// ```
     pub fn is_of_motors(&self) -> bool {
         !matches!(self, Signal::Named(_))
     }
@@ -47,6 +72,22 @@ impl Signal {
 ///
 /// `{mean: motor_margin}` pools all motors; `{mean: {min: motor_margin}}` is the mean over time of the lowest
 /// motor; `{std: {mean: motor_command}}` is the spread over time of what the motors do together.
+///
+/// # Example: the lowest motor over five seconds, in YAML and in Rust
+/// ```
+/// use flagred::profile::Profile;
+/// use flagred::source::{Motors, Signal, Source, Statistic};
+///
+/// let text = "flagred: 1\nname: lowest\nrules: my.yaml\ninputs: {x: {mean: {min: motor_margin}, window_s: 5}}";
+/// let lowest = Source {
+///     statistic: Statistic::Mean,
+///     motors: Motors::Min,
+///     signal: Signal::MotorMargin,
+///     window_s: 5.0,
+/// };
+/// assert_eq!(Profile::from_yaml(text)?.inputs[0].source, lowest);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
     /// The statistic over time.
@@ -94,6 +135,15 @@ impl Observer {
     /// # Errors
     ///
     /// The name of a signal that is not among `names`.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::source::{Motors, Observer, Signal, Source, Statistic};
+    /// # let last = |name| Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named(name), window_s: 1.0 };
+    /// let wind = last("wind_m_s");
+    /// assert!(Observer::new([&wind], &["battery_v", "wind_m_s"]).is_ok());
+    /// assert_eq!(Observer::new([&wind], &["battery_v"]).err().as_deref(), Some("wind_m_s"));
+    /// ```
     pub fn new<'a>(
         sources: impl IntoIterator<Item = &'a Source>,
         names: &[&str],
@@ -108,6 +158,17 @@ impl Observer {
     }
 
     /// Forgets everything.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::source::{Motors, Observer, Signal, Source, Statistic};
+    /// # let last = |name| Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named(name), window_s: 1.0 };
+    /// let mut observer = Observer::new([&last("wind_m_s")], &["wind_m_s"])?;
+    /// observer.push(0.1, 0.1, &[], &[5.0]);
+    /// observer.clear();
+    /// assert!(observer.value(0).is_none());
+    /// # Ok::<(), String>(())
+    /// ```
     pub fn clear(&mut self) {
         for seen in &mut self.seen {
             seen.clear();
@@ -116,12 +177,33 @@ impl Observer {
 
     /// Adds a sample at `t_s` that stands for the `held_s` seconds before it: the effective command of each motor, and
     /// the named signals in the order of their names; NaN is unknown.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::source::{Motors, Observer, Signal, Source, Statistic};
+    /// # let last = |name| Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named(name), window_s: 1.0 };
+    /// let mut observer = Observer::new([&last("wind_m_s")], &["wind_m_s"])?;
+    /// observer.push(0.1, 0.1, &[0.4, 0.5], &[5.0]);
+    /// assert_eq!(observer.value(0).map(|observed| observed.value), Some(5.0));
+    /// # Ok::<(), String>(())
+    /// ```
     pub fn push(&mut self, t_s: f64, held_s: f64, motors: &[f64], named: &[f64]) {
         let motors = motors.iter().copied();
         push(&self.channels, &mut self.seen, (t_s, held_s), motors, named);
     }
 
     /// The value of an input, and how much of its window is behind it; `None` where nothing is known.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::source::{Motors, Observer, Signal, Source, Statistic};
+    /// # let last = |name| Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named(name), window_s: 1.0 };
+    /// let mut observer = Observer::new([&last("wind_m_s")], &["wind_m_s"])?;
+    /// assert!(observer.value(0).is_none(), "nothing is known yet");
+    /// observer.push(0.1, 0.1, &[], &[f64::NAN]);
+    /// assert!(observer.value(0).is_none(), "NaN is unknown");
+    /// # Ok::<(), String>(())
+    /// ```
     pub fn value(&self, input: usize) -> Option<Observation> {
         value(&self.inputs, &self.seen, input)
     }

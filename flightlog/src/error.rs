@@ -2,6 +2,15 @@
 
 /// A log that could not be read. A damaged log is no error: it gives what is there,
 /// and says in its [`Report`](crate::Report) what is missing.
+///
+/// # Example
+/// ```
+/// use flightlog::{Options, ReadError};
+///
+/// let error = flightlog::read(&b"\x89PNG\r\n\x1a\n"[..], &Options::default()).unwrap_err();
+/// assert!(matches!(error, ReadError::NotALog { .. }));
+/// assert_eq!(error.to_string(), "`the log` is a PNG picture, not a flight log");
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file could not be opened, or reading it failed.
@@ -71,5 +80,15 @@ impl ReadError {
             | Self::Csv { path, .. } => name.clone_into(path),
         }
         self
+    }
+}
+
+/// What a log is called in an error until the caller names it.
+pub(crate) const UNNAMED: &str = "the log";
+
+pub(crate) fn io_error(source: std::io::Error) -> ReadError {
+    ReadError::Io {
+        path: UNNAMED.into(),
+        source,
     }
 }

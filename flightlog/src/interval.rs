@@ -13,6 +13,13 @@ pub struct Interval {
 
 impl Interval {
     /// Length in seconds.
+    ///
+    /// # Example
+    /// ```
+    /// use flightlog::Interval;
+    ///
+    /// assert_eq!(Interval { start_s: 10.0, end_s: 12.5, ends_with_log: false }.duration_s(), 2.5);
+    /// ```
     pub fn duration_s(&self) -> f64 {
         self.end_s - self.start_s
     }
@@ -33,6 +40,16 @@ pub struct Intervals {
 
 impl Intervals {
     /// Whether `t_s` lies in one of the intervals (start included, end not).
+    ///
+    /// # Example
+    /// ```
+    /// use flightlog::{Interval, Intervals};
+    ///
+    /// let flown = Interval { start_s: 10.0, end_s: 60.0, ends_with_log: true };
+    /// let in_air = Intervals { spans: vec![flown], rule: "an example".into() };
+    /// assert!(!in_air.contains(9.0) && in_air.contains(10.0));
+    /// assert!(in_air.contains(60.0), "the log ended in the air");
+    /// ```
     pub fn contains(&self, t_s: f64) -> bool {
         let after = self.spans.partition_point(|span| span.start_s <= t_s);
         after

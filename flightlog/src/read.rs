@@ -4,10 +4,22 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use crate::error::{UNNAMED, io_error};
 use crate::input::Input;
 use crate::{Flight, ReadError, csv, dataflash, tlog, ulog};
 
 /// What to read.
+///
+/// # Example: one signal of many
+/// ```
+/// use flightlog::Options;
+///
+/// let log = "t_s,motor1,roll_deg,wind_m_s\n0,0.4,0.3,5\n";
+/// let only_wind = Options { signals: Some(vec!["wind_m_s".into()]) };
+/// let flight = flightlog::read(log.as_bytes(), &only_wind)?;
+/// assert!(flight.signal("wind_m_s").is_some() && flight.signal("roll_deg").is_none());
+/// # Ok::<(), flightlog::ReadError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Options {
     /// Names of the signals to keep; `None` keeps all. Motor commands, armed and in-air
@@ -103,16 +115,6 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
         flight.report.reason = Some(failure.into());
     }
     Ok(flight)
-}
-
-/// What a log is called in an error until the caller names it.
-const UNNAMED: &str = "the log";
-
-pub(crate) fn io_error(source: io::Error) -> ReadError {
-    ReadError::Io {
-        path: UNNAMED.into(),
-        source,
-    }
 }
 
 enum Content {

@@ -48,6 +48,15 @@ impl Flight {
     /// # Errors
     ///
     /// As [`Flight::statistics`].
+    ///
+    /// # Example
+    /// ```
+    /// let log = "# effective_low: 0.2\n# effective_high: 0.8\nt_s,motor1\n0,0.8\n0.1,0.8\n";
+    /// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
+    /// assert_eq!(flight.statistics()?.margin_mean, 0.0); // at its limit
+    /// assert!((flight.full_range_statistics()?.margin_mean - 0.2).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn full_range_statistics(&self) -> Result<Statistics, Gap> {
         self.statistics_of(|raw| self.command(raw))
     }

@@ -12,6 +12,20 @@ use serde::Serialize;
 ///
 /// Messages are in lower case without a full stop, the author's own words in backticks; what to do
 /// stands apart in `help`.
+///
+/// # Example: a finding of one's own
+/// ```
+/// use fuzzy::diagnostic::Diagnostic;
+///
+/// let finding = Diagnostic::warning("no-fuel", 4..8, "the tank `main` is empty")
+///     .help("fill it, or take `spare`")
+///     .related(0..3, "named here first");
+/// assert_eq!(
+///     finding.to_string(),
+///     "warning[no-fuel]: the tank `main` is empty\n  help: fill it, or take `spare`"
+/// );
+/// assert_eq!(finding.related[0].span, 0..3);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Diagnostic {
     /// How bad it is.
@@ -31,6 +45,13 @@ pub struct Diagnostic {
 }
 
 /// How bad a finding is.
+///
+/// # Example
+/// ```
+/// use fuzzy::diagnostic::Severity;
+///
+/// assert!(Severity::Error > Severity::Warning && Severity::Warning > Severity::Note);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
@@ -88,6 +109,14 @@ impl Position {
 
 impl Diagnostic {
     /// An error.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::diagnostic::{Diagnostic, Severity};
+    ///
+    /// let finding = Diagnostic::error("not-a-number", 3..6, "`abc` is no number");
+    /// assert_eq!((finding.severity, finding.code, finding.span), (Severity::Error, "not-a-number", 3..6));
+    /// ```
     pub fn error(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Error,
@@ -101,6 +130,14 @@ impl Diagnostic {
     }
 
     /// A warning.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::diagnostic::Diagnostic;
+    ///
+    /// let finding = Diagnostic::warning("unused", 0..4, "`name` is used nowhere");
+    /// assert_eq!(finding.to_string(), "warning[unused]: `name` is used nowhere");
+    /// ```
     pub fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Warning,
@@ -109,6 +146,14 @@ impl Diagnostic {
     }
 
     /// A note.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::diagnostic::Diagnostic;
+    ///
+    /// let finding = Diagnostic::note("reach", 0..4, "`fan` stays below 90");
+    /// assert_eq!(finding.to_string(), "note[reach]: `fan` stays below 90");
+    /// ```
     pub fn note(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Note,
@@ -117,6 +162,14 @@ impl Diagnostic {
     }
 
     /// The same with what to do about it.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::diagnostic::Diagnostic;
+    ///
+    /// let finding = Diagnostic::error("not-a-number", 3..6, "`abc` is no number").help("write digits");
+    /// assert_eq!(finding.help.as_deref(), Some("write digits"));
+    /// ```
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
@@ -124,6 +177,14 @@ impl Diagnostic {
     }
 
     /// The same with another place that explains it.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::diagnostic::Diagnostic;
+    ///
+    /// let finding = Diagnostic::error("duplicate-key", 9..13, "`name` is given twice").related(0..4, "the first one");
+    /// assert_eq!(finding.related[0].message, "the first one");
+    /// ```
     #[must_use]
     pub fn related(mut self, span: Range<usize>, message: impl Into<String>) -> Self {
         let message = message.into();
@@ -154,12 +215,31 @@ impl fmt::Display for Diagnostic {
 impl core::error::Error for Diagnostic {}
 
 /// All findings of one text, in the order of their places: the error of everything that reads text.
+///
+/// # Example: all mistakes of a text at once
+/// ```
+/// let findings = fuzzy::yaml::parse("fuzzy: 1\nnam: fan\n").unwrap_err();
+/// let codes: Vec<&str> = findings.0.iter().map(|finding| finding.code).collect();
+/// assert!(codes.starts_with(&["missing-key", "missing-key"]) && codes.contains(&"unknown-key"), "{codes:?}");
+/// assert!(findings.has_errors());
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Findings(pub Vec<Diagnostic>);
 
 impl Findings {
     /// Sorts findings by place and gives each its line and column in the text.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::diagnostic::{Diagnostic, Findings};
+    ///
+    /// let text = "first line\nsecond line";
+    /// let second = Diagnostic::note("here", 11..17, "the second");
+    /// let first = Diagnostic::note("here", 6..10, "the first");
+    /// let findings = Findings::locate(vec![second, first], text);
+    /// assert_eq!(findings.to_string(), "1:7: note[here]: the first\n2:1: note[here]: the second");
+    /// ```
     #[must_use]
     pub fn locate(mut findings: Vec<Diagnostic>, text: &str) -> Self {
         findings.sort_by_key(|finding| (finding.span.start, finding.span.end));
@@ -187,6 +267,14 @@ impl Findings {
     }
 
     /// Whether one of them is an error.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::diagnostic::{Diagnostic, Findings};
+    ///
+    /// let warning = Diagnostic::warning("unused", 0..4, "`name` is used nowhere");
+    /// assert!(!Findings(vec![warning]).has_errors());
+    /// ```
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|f| f.severity == Severity::Error)
@@ -276,6 +364,15 @@ fn edit_distance(a: &[char], b: &[char]) -> usize {
 }
 
 /// ``did you mean `margin`?``, or else what there is: ``there are `margin` and `spread` ``.
+///
+/// # Example
+/// ```
+/// use fuzzy::diagnostic::suggest;
+///
+/// let inputs = ["margin", "spread"];
+/// assert_eq!(suggest("marign", inputs).as_deref(), Some("did you mean `margin`?"));
+/// assert_eq!(suggest("battery", inputs).as_deref(), Some("there are `margin` and `spread`"));
+/// ```
 pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     match nearest(word, candidates.iter().copied()) {

@@ -26,6 +26,7 @@ pub mod model;
 #[cfg(feature = "alloc")]
 pub mod rule;
 pub mod scale;
+mod shape;
 #[cfg_attr(
     not(feature = "alloc"),
     allow(

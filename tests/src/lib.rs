@@ -1,14 +1,22 @@
 //! What the tests across packages share; the tests themselves are in `tests/tests/`.
 
 pub mod board;
+mod folder;
 pub mod log_writer;
+pub mod reference;
 pub mod simulated;
 pub mod vehicle;
 pub mod watch;
 
+pub use folder::Folder;
+
 use std::{path::PathBuf, process::Command, sync::OnceLock};
 
-pub mod reference;
+/// The flight that is shipped: two minutes of a quadrotor in a steady wind.
+pub const STEADY: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../examples/flights/steady.BIN"
+);
 
 /// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent.
 ///

@@ -1,49 +1,23 @@
 //! `flagred assess` as its users meet it: on the shipped flight, on what is no log, on damaged logs.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::Output,
-};
+use std::{fs, path::Path, process::Output};
 
-use flagred_tests::{flagred, shared_data};
+use flagred_tests::{Folder, STEADY, flagred, shared_data};
 use serde_json::Value;
-
-const FLIGHT: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../examples/flights/steady.BIN"
-);
 
 fn assess(arguments: &[&str]) -> Output {
     flagred().arg("assess").args(arguments).output().unwrap()
 }
 
-fn json(log: &Path) -> (Option<i32>, Value) {
-    let output = assess(&["--json", log.to_str().unwrap()]);
+fn json(log: impl AsRef<Path>) -> (Option<i32>, Value) {
+    let output = assess(&["--json", log.as_ref().to_str().unwrap()]);
     let document = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
     (output.status.code(), document)
 }
 
-/// A file of this test's own, gone when the test is.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str, bytes: &[u8]) -> Self {
-        let path = std::env::temp_dir().join(format!("flagred-{}-{name}", std::process::id()));
-        fs::write(&path, bytes).unwrap();
-        Scratch(path)
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_file(&self.0);
-    }
-}
-
 #[test]
 fn the_shipped_flight_in_words() {
-    let output = assess(&[FLIGHT]);
+    let output = assess(&[STEADY]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{text}");
     assert!(text.starts_with("GOOD "), "{text}");
@@ -53,7 +27,7 @@ fn the_shipped_flight_in_words() {
 
 #[test]
 fn the_shipped_flight_as_json() {
-    let (code, document) = json(Path::new(FLIGHT));
+    let (code, document) = json(STEADY);
     assert_eq!(code, Some(0));
     for key in [
         "schema", "log", "vehicle", "read", "verdict", "findings", "summary", "steps",
@@ -81,14 +55,14 @@ fn the_shipped_flight_as_json() {
 
 #[test]
 fn csv_has_a_row_for_each_step_of_the_json() {
-    let output = assess(&["--csv", FLIGHT]);
+    let output = assess(&["--csv", STEADY]);
     let text = String::from_utf8(output.stdout).unwrap();
     let (head, rows) = text.split_once('\n').unwrap();
     assert!(
         head.starts_with("t_s,margin,spread,coverage,filled,risk,elevated_risk"),
         "{head}"
     );
-    let (_, document) = json(Path::new(FLIGHT));
+    let (_, document) = json(STEADY);
     let steps = document["steps"].as_array().unwrap();
     assert_eq!(rows.lines().count(), steps.len());
     for (row, step) in rows.lines().zip(steps) {
@@ -103,7 +77,7 @@ fn csv_has_a_row_for_each_step_of_the_json() {
 
 #[test]
 fn several_logs_are_told_apart_and_one_that_fails_stops_no_other() {
-    let output = assess(&["--csv", FLIGHT, "/nowhere.BIN", FLIGHT]);
+    let output = assess(&["--csv", STEADY, "/nowhere.BIN", STEADY]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(text.starts_with("log,t_s,"));
@@ -120,15 +94,16 @@ fn standard_input_is_read_like_a_file() {
         .spawn()
         .unwrap();
     let mut stdin = child.stdin.take().unwrap();
-    std::io::Write::write_all(&mut stdin, &fs::read(FLIGHT).unwrap()).unwrap();
+    std::io::Write::write_all(&mut stdin, &fs::read(STEADY).unwrap()).unwrap();
     drop(stdin);
     let document: Value =
         serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
-    assert_eq!(document["steps"], json(Path::new(FLIGHT)).1["steps"]);
+    assert_eq!(document["steps"], json(STEADY).1["steps"]);
 }
 
 #[test]
 fn what_is_no_log_is_named_for_what_it_is() {
+    let folder = Folder::new();
     let picture = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR and so on";
     for (name, bytes, said) in [
         ("empty.bin", &b""[..], "is empty"),
@@ -139,8 +114,7 @@ fn what_is_no_log_is_named_for_what_it_is() {
         ),
         ("picture.png", picture, "is a PNG picture, not a flight log"),
     ] {
-        let file = Scratch::new(name, bytes);
-        let output = assess(&[file.0.to_str().unwrap()]);
+        let output = assess(&[&folder.file(name, bytes)]);
         let told = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(3), "{name}");
         assert!(told.contains(said) && told.contains("help:"), "{told}");
@@ -150,9 +124,10 @@ fn what_is_no_log_is_named_for_what_it_is() {
 
 #[test]
 fn a_log_cut_in_the_middle_is_assessed_as_far_as_it_goes() {
-    let bytes = fs::read(FLIGHT).unwrap();
-    let cut = Scratch::new("cut.bin", &bytes[..bytes.len() / 2]);
-    let (code, document) = json(&cut.0);
+    let bytes = fs::read(STEADY).unwrap();
+    let folder = Folder::new();
+    let cut = folder.file("cut.bin", &bytes[..bytes.len() / 2]);
+    let (code, document) = json(cut);
     assert_eq!(code, Some(0));
     assert_eq!(document["read"]["truncated"], true);
     let steps = document["steps"].as_array().unwrap();
@@ -163,7 +138,8 @@ fn a_log_cut_in_the_middle_is_assessed_as_far_as_it_goes() {
 /// flight is assessed from the messages that are left.
 #[test]
 fn a_log_with_one_byte_in_a_hundred_overwritten_is_assessed_as_far_as_it_goes_or_says_why_not() {
-    let intact = fs::read(FLIGHT).unwrap();
+    let intact = fs::read(STEADY).unwrap();
+    let folder = Folder::new();
     let mut assessed = 0;
     for seed in 1..=6_u64 {
         let mut bytes = intact.clone();
@@ -175,8 +151,8 @@ fn a_log_with_one_byte_in_a_hundred_overwritten_is_assessed_as_far_as_it_goes_or
             let at = (random >> 16) as usize % bytes.len();
             bytes[at] = random as u8;
         }
-        let damaged = Scratch::new(&format!("damaged{seed}.bin"), &bytes);
-        let (code, document) = json(&damaged.0);
+        let damaged = folder.file("damaged.bin", &bytes);
+        let (code, document) = json(&damaged);
         assert!(
             document["read"]["skipped_bytes"].as_u64().unwrap() > 1000,
             "seed {seed}"
@@ -193,7 +169,7 @@ fn a_log_with_one_byte_in_a_hundred_overwritten_is_assessed_as_far_as_it_goes_or
         let steps = document["steps"].as_array().unwrap();
         let known = steps.iter().filter(|s| s["risk"].is_number()).count();
         assert!(known > 300, "seed {seed}: {known} steps");
-        let words = assess(&[damaged.0.to_str().unwrap()]);
+        let words = assess(&[&damaged]);
         let text = String::from_utf8(words.stdout).unwrap();
         assert!(
             text.contains("damaged log, read as far as it goes"),
@@ -210,8 +186,8 @@ fn a_rate_too_low_for_a_spread_is_no_answer_and_no_good() {
     for t in 0..120 {
         rows += &format!("{t},0.4,0.41,0.42,0.4\n");
     }
-    let slow = Scratch::new("slow.csv", rows.as_bytes());
-    let output = assess(&[slow.0.to_str().unwrap()]);
+    let folder = Folder::new();
+    let output = assess(&[&folder.file("slow.csv", rows)]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(text.starts_with("NA ") && text.contains("help:"), "{text}");
@@ -219,19 +195,18 @@ fn a_rate_too_low_for_a_spread_is_no_answer_and_no_good() {
 
 #[test]
 fn a_signal_that_the_profile_needs_and_the_log_lacks_is_no_answer() {
-    let folder = std::env::temp_dir();
-    let profile = Scratch::new(
+    let folder = Folder::new();
+    let profile = folder.file(
         "wind.yaml",
         b"flagred: 1\nname: wind\nrules: wind-rules.yaml\ninputs: {wind: {mean: anemometer_m_s}}\n",
     );
-    fs::write(
-        folder.join("wind-rules.yaml"),
+    folder.file(
+        "wind-rules.yaml",
         "fuzzy: 1\nname: wind\ninputs: {wind: {range: [0, 20], partition: [calm, storm]}}\n\
          outputs: {risk: {range: [0, 100], partition: [low, high]}}\n\
          rules: [IF wind IS calm THEN risk IS low, IF wind IS storm THEN risk IS high]\n",
-    )
-    .unwrap();
-    let output = assess(&["--profile", profile.0.to_str().unwrap(), FLIGHT]);
+    );
+    let output = assess(&["--profile", &profile, STEADY]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(
         output.status.code(),
@@ -255,7 +230,7 @@ fn the_simulated_flights_are_all_assessed() {
         "octoquad",
         "octoquad_crash",
     ] {
-        let (code, document) = json(&folder.join(format!("{name}.BIN")));
+        let (code, document) = json(folder.join(format!("{name}.BIN")));
         assert!(matches!(code, Some(0 | 1)), "{name}: {code:?}");
         let in_air_s = document["summary"]["in_air_s"].as_f64().unwrap();
         let assessed_s = document["summary"]["assessed_s"].as_f64().unwrap();

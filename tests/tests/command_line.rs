@@ -15,3 +15,38 @@ fn help_names_every_command() {
     assert_eq!(output.status.code(), Some(0));
     assert!(String::from_utf8_lossy(&output.stdout).contains("assess"));
 }
+
+/// Both are made of the same definitions as the help, so each names every command.
+#[test]
+fn completions_and_manual_name_every_command() {
+    let commands = [
+        "assess", "check", "dataset", "evaluate", "learn", "map", "watch",
+    ];
+    let said = |arguments: &[&str]| {
+        let output = flagred().args(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    for of in [
+        &["completions", "bash"][..],
+        &["completions", "zsh"],
+        &["completions", "fish"],
+        &["man"],
+    ] {
+        let text = said(of);
+        for command in commands {
+            assert!(text.contains(command), "{of:?} lacks {command}");
+        }
+    }
+    assert!(said(&["man", "learn"]).contains("min\\-support"));
+
+    let folder = std::env::temp_dir().join(format!("flagred-manual-{}", std::process::id()));
+    said(&["man", "--all", folder.to_str().unwrap()]);
+    let pages = std::fs::read_dir(&folder).unwrap().count();
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(pages > commands.len(), "{pages}");
+
+    let output = flagred().args(["man", "lern"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("learn"));
+}

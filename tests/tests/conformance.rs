@@ -307,8 +307,7 @@ fn decision_maps_have_the_bits_of_single_calls() {
 /// `flagred eval` prints numbers that read back to the same bits.
 #[test]
 fn the_command_line_has_the_bits_of_single_calls() {
-    let folder = std::env::temp_dir().join(format!("flagred-conformance-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = flagred_tests::Folder::new();
     // One run for all cases of a rule set with the same operators.
     let mut runs: Vec<(String, Vec<Case>)> = Vec::new();
     for case in corpus() {
@@ -319,15 +318,14 @@ fn the_command_line_has_the_bits_of_single_calls() {
         }
     }
     for (rule_set, cases) in runs {
-        let (model, points) = (folder.join("model.yaml"), folder.join("points.csv"));
-        std::fs::write(&model, rule_set).unwrap();
+        let model = folder.file("model.yaml", rule_set);
         let engine = Engine::new(&cases[0].model).unwrap();
         let mut csv = engine.input_names().collect::<Vec<_>>().join(",") + "\n";
         for case in &cases {
             let row: Vec<String> = case.point.iter().map(f64::to_string).collect();
             csv += &(row.join(",") + "\n");
         }
-        std::fs::write(&points, csv).unwrap();
+        let points = folder.file("points.csv", csv);
         let output = flagred_tests::flagred()
             .arg("eval")
             .arg(&model)
@@ -353,5 +351,4 @@ fn the_command_line_has_the_bits_of_single_calls() {
             assert_eq!(read, expected, "{}", case.place);
         }
     }
-    std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -1,15 +1,17 @@
 //! `flagred convert`: what is written is read back the same.
 
-use flagred_tests::{flagred, shared_data};
+use std::path::Path;
+
+use flagred_tests::{Folder, STEADY, flagred, shared_data};
 use flightlog::{Flight, Options};
 
-fn open(path: &std::path::Path) -> Flight {
+fn open(path: &Path) -> Flight {
     flightlog::open(path, &Options::default()).unwrap()
 }
 
-fn converted(log: &std::path::Path) -> Flight {
-    let name = format!("converted-{}.csv", log.file_name().unwrap().display());
-    let csv = std::env::temp_dir().join(format!("{}-{name}", std::process::id()));
+fn converted(log: &Path) -> Flight {
+    let folder = Folder::new();
+    let csv = folder.at("converted.csv");
     let status = flagred()
         .arg("convert")
         .arg(log)
@@ -18,13 +20,11 @@ fn converted(log: &std::path::Path) -> Flight {
         .status()
         .unwrap();
     assert!(status.success());
-    let flight = open(&csv);
-    std::fs::remove_file(csv).unwrap();
-    flight
+    open(Path::new(&csv))
 }
 
 /// Commands, ranges and statistics are the same to the last bit; signals are held.
-fn compare(log: &std::path::Path) {
+fn compare(log: &Path) {
     let (flight, again) = (open(log), converted(log));
     assert!(again.report.is_clean(), "{:?}", again.report);
     assert_eq!(again.commands.t_s(), flight.commands.t_s());
@@ -47,8 +47,7 @@ fn compare(log: &std::path::Path) {
 
 #[test]
 fn the_shipped_flight_is_the_same_as_csv() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/flights");
-    compare(&std::path::Path::new(folder).join("steady.BIN"));
+    compare(Path::new(STEADY));
 }
 
 #[test]
@@ -65,11 +64,9 @@ fn flights_of_other_formats_are_the_same_as_csv() {
 
 #[test]
 fn standard_output_and_failures() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/flights");
-    let log = std::path::Path::new(folder).join("steady.BIN");
     let output = flagred()
         .arg("convert")
-        .arg(&log)
+        .arg(STEADY)
         .args(["-o", "-"])
         .output()
         .unwrap();
@@ -84,7 +81,7 @@ fn standard_output_and_failures() {
     let mut refused = flagred();
     refused
         .arg("convert")
-        .arg(&log)
+        .arg(STEADY)
         .args(["-o", "/no/such/folder/x.csv"]);
     let output = refused.output().unwrap();
     assert_eq!(output.status.code(), Some(2));

@@ -13,7 +13,7 @@ use std::{
     process::Command,
 };
 
-use flagred_tests::flagred;
+use flagred_tests::{Folder, flagred};
 
 /// What a reader types that a test has no business running: it builds the whole workspace, or installs.
 const NOT_RUN: [&str; 6] = [
@@ -76,32 +76,32 @@ fn blocks(text: &str) -> Vec<Block> {
 }
 
 /// A folder with what the repository holds, in which documents may write.
-struct Desk(PathBuf);
+struct Desk(Folder);
 
 impl Desk {
-    fn new(name: &str) -> Self {
-        let desk = std::env::temp_dir().join(format!("flagred-{}-{name}", std::process::id()));
+    fn new() -> Self {
+        let desk = Folder::new();
         for folder in ["bin", "repository"] {
-            fs::create_dir_all(desk.join(folder)).unwrap();
+            fs::create_dir_all(desk.path().join(folder)).unwrap();
         }
         for shared in ["examples", "rules", "tests", "docs"] {
             let there = root().join(shared);
             if there.exists() {
                 std::os::unix::fs::symlink(
                     there.canonicalize().unwrap(),
-                    desk.join("repository").join(shared),
+                    desk.path().join("repository").join(shared),
                 )
                 .unwrap();
             }
         }
         let binary = flagred().get_program().to_owned();
-        std::os::unix::fs::symlink(&binary, desk.join("bin/flagred")).unwrap();
+        std::os::unix::fs::symlink(&binary, desk.path().join("bin/flagred")).unwrap();
         // `cargo run --release -- assess LOG` is the program with these arguments.
         let cargo =
             "#!/bin/sh\nwhile [ \"$1\" != -- ]; do shift; done; shift; exec flagred \"$@\"\n";
-        fs::write(desk.join("bin/cargo"), cargo).unwrap();
+        fs::write(desk.path().join("bin/cargo"), cargo).unwrap();
         let executable = std::os::unix::fs::PermissionsExt::from_mode(0o755);
-        fs::set_permissions(desk.join("bin/cargo"), executable).unwrap();
+        fs::set_permissions(desk.path().join("bin/cargo"), executable).unwrap();
         Desk(desk)
     }
 
@@ -109,22 +109,16 @@ impl Desk {
     fn run(&self, command: &str) -> String {
         let path = format!(
             "{}:{}",
-            self.0.join("bin").display(),
+            self.0.path().join("bin").display(),
             std::env::var("PATH").unwrap()
         );
         let output = Command::new("sh")
             .args(["-c", &format!("{{ {command}\n}} 2>&1")])
-            .current_dir(self.0.join("repository"))
+            .current_dir(self.0.path().join("repository"))
             .env("PATH", path)
             .output()
             .unwrap();
         String::from_utf8_lossy(&output.stdout).into_owned()
-    }
-}
-
-impl Drop for Desk {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 
@@ -185,7 +179,7 @@ fn check_yaml(desk: &Desk, block: &Block) -> Result<(), String> {
         .next()
         .and_then(|line| line.strip_prefix("# "));
     if let Some(name) = named.filter(|name| name.ends_with(".yaml") && !name.contains(' ')) {
-        fs::write(desk.0.join("repository").join(name), &block.text).unwrap();
+        fs::write(desk.0.path().join("repository").join(name), &block.text).unwrap();
     }
     let starts = |word: &str| block.text.lines().any(|line| line.starts_with(word));
     if starts("fuzzy: ") {
@@ -204,7 +198,7 @@ fn every_block_runs_as_printed() {
     for page in documents() {
         let text = fs::read_to_string(&page).unwrap();
         let name = page.file_name().unwrap().to_string_lossy().into_owned();
-        let desk = Desk::new(&name);
+        let desk = Desk::new();
         let mut updated = text.clone();
         for block in blocks(&text) {
             let wrong = match block.language.as_str() {

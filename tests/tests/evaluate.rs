@@ -1,37 +1,9 @@
 //! `flagred evaluate` as its users meet it, and what the shipped rules are worth on the simulated flights.
 
-use std::{
-    fmt::Write as _,
-    fs,
-    path::{Path, PathBuf},
-    process::Output,
-};
+use std::{fmt::Write as _, fs, process::Output};
 
-use flagred_tests::{flagred, shared_data};
+use flagred_tests::{Folder, flagred, shared_data};
 use serde_json::Value;
-
-/// A folder of this test's own, gone when the test is.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("flagred-{}-{name}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Folder(path)
-    }
-
-    fn file(&self, name: &str, text: &str) -> PathBuf {
-        let path = self.0.join(name);
-        fs::write(&path, text).unwrap();
-        path
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 /// A minute of flight at 25 Hz: from 30 to 40 s the motors swing ever harder, from 34 to 40 s the attitude is off.
 fn flight(kind: &str, in_trouble: bool) -> String {
@@ -62,7 +34,7 @@ fn flight(kind: &str, in_trouble: bool) -> String {
     text
 }
 
-fn evaluate(arguments: &[&Path]) -> Output {
+fn evaluate(arguments: &[&str]) -> Output {
     let mut command = flagred();
     command.arg("evaluate").args(arguments).output().unwrap()
 }
@@ -79,13 +51,13 @@ fn estimator<'a>(document: &'a Value, name: &str) -> &'a Value {
 
 #[test]
 fn flights_are_compared_step_by_step_and_episode_by_episode() {
-    let folder = Folder::new("evaluate");
-    folder.file("a-calm.csv", &flight("calm", false));
-    folder.file("b-gusts.csv", &flight("gusts", true));
-    folder.file("c-manoeuvre.csv", &flight("manoeuvre", true));
+    let folder = Folder::new();
+    folder.file("a-calm.csv", flight("calm", false));
+    folder.file("b-gusts.csv", flight("gusts", true));
+    folder.file("c-manoeuvre.csv", flight("manoeuvre", true));
     // A folder may hold other things than flights.
     folder.file("README.md", "Not a flight.\n");
-    let output = evaluate(&[Path::new("--json"), &folder.0]);
+    let output = evaluate(&["--json", folder.path().to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0));
     let document = json(&output);
     let names: Vec<&Value> = document["estimators"]
@@ -157,11 +129,11 @@ fn flights_are_compared_step_by_step_and_episode_by_episode() {
 
 #[test]
 fn a_file_that_is_no_flight_stops_no_other() {
-    let folder = Folder::new("bad-flight");
-    let good = folder.file("good.csv", &flight("gusts", true));
+    let folder = Folder::new();
+    let good = folder.file("good.csv", flight("gusts", true));
     let bad = folder.file("notes.txt", "took off at noon\n");
-    let picture = folder.0.join("curves.svg");
-    let output = evaluate(&[&bad, &good, Path::new("--svg"), &picture]);
+    let picture = folder.at("curves.svg");
+    let output = evaluate(&[&bad, &good, "--svg", &picture]);
     assert_eq!(output.status.code(), Some(3));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(
@@ -190,7 +162,7 @@ fn a_file_that_is_no_flight_stops_no_other() {
 
 #[test]
 fn whole_flights_are_evaluated_from_a_table() {
-    let folder = Folder::new("rows");
+    let folder = Folder::new();
     let table = folder.file(
         "rows.csv",
         "frame,c_limit_low,c_limit_high,margin_mean,margin_min_mean,c_mean,c_std,c_std_time,c_std_motors,sat_lim_frac,wind_mean,att_rmse_deg,crashed\n\
@@ -199,7 +171,7 @@ fn whole_flights_are_evaluated_from_a_table() {
          b,0,1,0.2,0.1,0.8,0.16,0.04,0.12,0.1,12,6.2,0\n\
          b,0,1,0.1,0.02,0.9,0.2,0.05,0.14,0.2,7,4.0,1\n",
     );
-    let output = evaluate(&[Path::new("--json"), Path::new("--rows"), &table]);
+    let output = evaluate(&["--json", "--rows", &table]);
     let document = json(&output);
     assert_eq!(document["cases"], "flights");
     for (name, auc) in [("flagred", 1.0), ("lowest_motor", 1.0), ("true_wind", 0.75)] {
@@ -210,14 +182,14 @@ fn whole_flights_are_evaluated_from_a_table() {
     assert_eq!(estimator(&document, "flagred")["warnings"], Value::Null);
 
     let bad = folder.file("bad.csv", "c_mean,att_rmse_deg\nhalf,1\n");
-    let output = evaluate(&[Path::new("--rows"), &bad]);
+    let output = evaluate(&["--rows", &bad]);
     let said = String::from_utf8_lossy(&output.stderr);
     // Nothing but the load is in it, and nobody asks for the load alone.
     assert!(
         said.contains("does not tell its input `unsteady_now`"),
         "{said}"
     );
-    let output = evaluate(&[Path::new("--rows"), &bad, &bad]);
+    let output = evaluate(&["--rows", &bad, &bad]);
     assert_eq!(output.status.code(), Some(2));
 }
 
@@ -227,13 +199,13 @@ fn whole_flights_are_evaluated_from_a_table() {
 fn the_shipped_rules_on_the_simulated_flights() {
     let Some(data) = shared_data() else { return };
     let rows = json(&evaluate(&[
-        Path::new("--json"),
-        Path::new("--rows"),
-        &data.join("sitl/runs.csv"),
+        "--json",
+        "--rows",
+        data.join("sitl/runs.csv").to_str().unwrap(),
     ]));
     let series = json(&evaluate(&[
-        Path::new("--json"),
-        &data.join("sitl2/timeseries"),
+        "--json",
+        data.join("sitl2/timeseries").to_str().unwrap(),
     ]));
     assert_eq!(series["steps"], 44_369);
     for (document, least) in [(&rows, 0.96), (&series, 0.88)] {

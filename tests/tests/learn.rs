@@ -2,11 +2,11 @@
 
 use std::{
     fs,
-    path::{Path, PathBuf},
+    path::Path,
     process::{Command, Output},
 };
 
-use flagred_tests::{flagred, shared_data};
+use flagred_tests::{Folder, STEADY, flagred, shared_data};
 use serde_json::Value;
 
 const VARIABLES: &str = "\
@@ -21,43 +21,20 @@ outputs:
 rules: []
 ";
 
-/// A folder of this test's own, gone when the test is.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("flagred-{}-{name}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Folder(path)
-    }
-
-    fn file(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name);
-        fs::write(&path, text).unwrap();
-        path.display().to_string()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 fn learn(arguments: &[&str]) -> Output {
     flagred().arg("learn").args(arguments).output().unwrap()
 }
 
 #[test]
 fn rows_become_a_rule_set_with_its_provenance() {
-    let folder = Folder::new("learn");
+    let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
     // Table I of the paper, under other names.
     let data = folder.file(
         "data.csv",
         "m,s,r\n0.007969,0.226310,65.679063\n0.070469,0.308401,100.0\n0.064687,0.153689,46.015181\n0.351094,0.092301,4.798570\n",
     );
-    let out = folder.0.join("out.yaml").display().to_string();
+    let out = folder.at("out.yaml");
     let columns = [
         "--column", "margin=m", "--column", "spread=s", "--column", "risk=r",
     ];
@@ -84,9 +61,9 @@ fn rows_become_a_rule_set_with_its_provenance() {
 
 #[test]
 fn bad_data_is_told_with_its_place_and_nothing_is_written() {
-    let folder = Folder::new("bad");
+    let folder = Folder::new();
     let model = folder.file("model.yaml", VARIABLES);
-    let out = folder.0.join("out.yaml");
+    let out = folder.at("out.yaml");
     for (name, text, expected) in [
         (
             "missing",
@@ -124,10 +101,19 @@ fn bad_data_is_told_with_its_place_and_nothing_is_written() {
             "margin,spread,risk\n",
             "has a header, but no rows",
         ),
-        ("ragged", "margin,spread,risk\n0.1,0.1\n", "cannot be read"),
+        (
+            "ragged",
+            "margin,spread,risk\n0.1,0.1\n",
+            "line 2: 2 cells, but the header has 3",
+        ),
+        (
+            "twice",
+            "margin,spread,risk,risk\n0.1,0.1,5,6\n",
+            "has the column `risk` more than once",
+        ),
     ] {
         let data = folder.file(&format!("{name}.csv"), text);
-        let output = learn(&[&model, &data, "-o", out.to_str().unwrap()]);
+        let output = learn(&[&model, &data, "-o", &out]);
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(3), "{name}: {said}");
         assert!(
@@ -135,37 +121,32 @@ fn bad_data_is_told_with_its_place_and_nothing_is_written() {
             "{name}: {said}"
         );
         assert!(said.contains("help: "), "{name}: {said}");
-        assert!(!out.exists(), "{name}");
+        assert!(!Path::new(&out).exists(), "{name}");
     }
+    // The rows themselves are not to be lost.
+    let data = folder.file("rows.csv", "margin,spread,risk\n0.1,0.1,5\n");
+    let output = learn(&[&model, &data, "-o", &data]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(fs::read_to_string(&data).unwrap().starts_with("margin"));
     // A single row is enough for a rule, and bad ones can be left out.
     let data = folder.file("one.csv", "margin,spread,risk\n0.1,0.1,5\n0.1,NaN,5\n");
-    let output = learn(&[
-        &model,
-        &data,
-        "-o",
-        out.to_str().unwrap(),
-        "--skip-bad-rows",
-    ]);
+    let output = learn(&[&model, &data, "-o", &out, "--skip-bad-rows"]);
     let said = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(0));
     assert!(
         said.contains("1 used, 1 refused") && said.contains("`NaN` is no finite number"),
         "{said}"
     );
-    assert!(out.exists());
+    assert!(Path::new(&out).exists());
 }
 
 #[test]
 fn a_flight_becomes_rows() {
-    let flight = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../examples/flights/steady.BIN"
-    );
     let rows = |arguments: &[&str]| {
         let output = flagred()
             .arg("dataset")
             .args(arguments)
-            .arg(flight)
+            .arg(STEADY)
             .output()
             .unwrap();
         assert_eq!(
@@ -219,8 +200,8 @@ fn the_shipped_rules_are_what_the_documented_command_learns() {
         return;
     };
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let folder = Folder::new("flagred-rules");
-    let out = folder.0.join("flagred.yaml");
+    let folder = Folder::new();
+    let out = folder.at("flagred.yaml");
     let status = Command::new(workspace.join("scripts/learn-flagred"))
         .arg(data)
         .arg(&out)

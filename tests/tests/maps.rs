@@ -53,6 +53,25 @@ fn a_map_in_the_terminal_marks_what_was_filled() {
     insta::assert_snapshot!(text);
 }
 
+/// The middles of all ranges lie where every motor is at a limit: a picture of nothing but danger.
+#[test]
+fn without_a_word_the_picture_shows_where_the_rules_to_fly_with_decide() {
+    let (code, text, notes) = map(&[FLAGRED, "--points", "26"]);
+    assert_eq!(code, Some(0));
+    insta::assert_snapshot!(format!("{text}\n{notes}"));
+
+    // What was asked for needs no note.
+    let asked = ["--fix", "load=0.5", "--fix", "at_limit=0"];
+    let axes = [
+        "--x",
+        "unsteady_now:0..0.1",
+        "--y",
+        "unsteady_lately:0..0.1",
+    ];
+    let (_, same, notes) = map(&[&[FLAGRED, "--points", "26"][..], &asked, &axes].concat());
+    assert_eq!((same, notes.as_str()), (text, ""));
+}
+
 #[test]
 fn the_rule_that_dominates_in_the_terminal() {
     let (code, text, _) = map(&[PAPER, "--activations", "--points", "26"]);

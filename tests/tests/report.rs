@@ -1,44 +1,12 @@
 //! `flagred assess --html` and `--svg`: files that are whole, that need nothing beside them, and that say what the
 //! flight says.
 
-use std::{
-    fmt::Write as _,
-    fs,
-    path::{Path, PathBuf},
-    process::Output,
-};
+use std::{fmt::Write as _, fs, path::Path, process::Output};
 
-use flagred_tests::flagred;
+use flagred_tests::{Folder, STEADY, flagred};
 use serde_json::Value;
 
-const FLIGHT: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../examples/flights/steady.BIN"
-);
-
-/// A folder of this test's own, gone when the test is.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path =
-            std::env::temp_dir().join(format!("flagred-report-{}-{name}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Folder(path)
-    }
-
-    fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-fn assess(logs: &[&Path], more: &[&str]) -> Output {
+fn assess(logs: &[&str], more: &[&str]) -> Output {
     flagred()
         .arg("assess")
         .args(logs)
@@ -47,12 +15,9 @@ fn assess(logs: &[&Path], more: &[&str]) -> Output {
         .unwrap()
 }
 
-fn report(logs: &[&Path], folder: &Folder) -> String {
-    let file = folder.file("report.html");
-    let output = assess(
-        logs,
-        &["--html", file.to_str().unwrap(), "--fail-on", "never"],
-    );
+fn report(logs: &[&str], folder: &Folder) -> String {
+    let file = folder.at("report.html");
+    let output = assess(logs, &["--html", &file, "--fail-on", "never"]);
     assert!(
         output.stderr.is_empty(),
         "{}",
@@ -79,10 +44,9 @@ fn curve(html: &str, class: &str) -> Vec<(f64, f64)> {
 
 #[test]
 fn the_curves_hold_the_values_of_the_json_document() {
-    let folder = Folder::new("curves");
-    let html = report(&[Path::new(FLIGHT)], &folder);
-    let document: Value =
-        serde_json::from_slice(&assess(&[Path::new(FLIGHT)], &["--json"]).stdout).unwrap();
+    let folder = Folder::new();
+    let html = report(&[STEADY], &folder);
+    let document: Value = serde_json::from_slice(&assess(&[STEADY], &["--json"]).stdout).unwrap();
     for (class, name) in [
         ("risk", "risk"),
         ("elevated", "elevated_risk"),
@@ -116,8 +80,8 @@ fn the_curves_hold_the_values_of_the_json_document() {
 /// Whatever would make a browser ask for something that is not in the file.
 #[test]
 fn a_report_needs_no_network() {
-    let folder = Folder::new("offline");
-    let html = report(&[Path::new(FLIGHT)], &folder);
+    let folder = Folder::new();
+    let html = report(&[STEADY], &folder);
     for word in [
         "http:", "https:", " src=", "<link", "@import", "fetch(", "url(//", "XMLHttp",
     ] {
@@ -156,9 +120,8 @@ fn long_log(seconds: u32, hz: u32) -> String {
 
 #[test]
 fn ten_minutes_of_an_octocopter_stay_small() {
-    let folder = Folder::new("long");
-    let log = folder.file("log.csv");
-    fs::write(&log, long_log(600, 25)).unwrap();
+    let folder = Folder::new();
+    let log = folder.file("log.csv", long_log(600, 25));
     let html = report(&[&log], &folder);
     assert!(html.len() < 1_500_000, "{} bytes", html.len());
     assert_eq!(html.matches("<figure class=\"panel small\"").count(), 8 + 4);
@@ -169,16 +132,15 @@ fn ten_minutes_of_an_octocopter_stay_small() {
 fn nothing_in_a_log_is_markup() {
     const SAID: &[u8] = b"EKF3 IMU0 MAG0 in-flight yaw alignment complete";
     const HOSTILE: &[u8] = b"</title></svg><script>alert(2)</script>\x01&amp;12";
-    let folder = Folder::new("hostile");
-    let mut bytes = fs::read(FLIGHT).unwrap();
+    let folder = Folder::new();
+    let mut bytes = fs::read(STEADY).unwrap();
     let place = bytes
         .windows(SAID.len())
         .position(|window| window == SAID)
         .unwrap();
     bytes[place..place + HOSTILE.len()].copy_from_slice(HOSTILE);
-    let log = folder.file("<img src=x> & <script>.bin");
-    fs::write(&log, bytes).unwrap();
-    let svg = folder.file("risk.svg");
+    let log = folder.file("<img src=x> & <script>.bin", bytes);
+    let svg = folder.at("risk.svg");
     let html = report(&[&log], &folder);
     assert_eq!(html.matches("<script").count(), 1, "only ours");
     assert!(!html.contains("<img") && !html.contains("</title></svg>"));
@@ -187,7 +149,7 @@ fn nothing_in_a_log_is_markup() {
         "what the log says is shown"
     );
 
-    assess(&[&log], &["--svg", svg.to_str().unwrap()]);
+    assess(&[&log], &["--svg", &svg]);
     let text = fs::read_to_string(&svg).unwrap();
     let tree = roxmltree::Document::parse(&text).unwrap();
     let curves = tree
@@ -204,10 +166,9 @@ fn nothing_in_a_log_is_markup() {
 
 #[test]
 fn several_flights_are_compared_on_one_scale() {
-    let folder = Folder::new("several");
-    let log = folder.file("long.csv");
-    fs::write(&log, long_log(200, 10)).unwrap();
-    let html = report(&[Path::new(FLIGHT), &log], &folder);
+    let folder = Folder::new();
+    let log = folder.file("long.csv", long_log(200, 10));
+    let html = report(&[STEADY, &log], &folder);
     assert!(html.contains("2 flights compared"));
     assert_eq!(html.matches("<section id=\"flight").count(), 2);
     let lengths: Vec<&str> = html
@@ -221,9 +182,9 @@ fn several_flights_are_compared_on_one_scale() {
 
 #[test]
 fn a_report_that_cannot_be_written_says_so_and_leaves_nothing() {
-    let folder = Folder::new("nowhere");
-    let file = folder.file("missing/report.html");
-    let output = assess(&[Path::new(FLIGHT)], &["--html", file.to_str().unwrap()]);
+    let folder = Folder::new();
+    let file = folder.at("missing/report.html");
+    let output = assess(&[STEADY], &["--html", &file]);
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(3), "{message}");
     assert!(
@@ -235,32 +196,32 @@ fn a_report_that_cannot_be_written_says_so_and_leaves_nothing() {
         "{message}"
     );
 
-    let kept = folder.file("kept.html");
+    let kept = folder.at("kept.html");
     fs::create_dir(&kept).unwrap();
-    let output = assess(&[Path::new(FLIGHT)], &["--html", kept.to_str().unwrap()]);
+    let output = assess(&[STEADY], &["--html", &kept]);
     assert_eq!(output.status.code(), Some(3));
-    let names: Vec<_> = fs::read_dir(&folder.0)
+    let names: Vec<_> = fs::read_dir(folder.path())
         .unwrap()
         .map(|e| e.unwrap().file_name())
         .collect();
     assert_eq!(names, ["kept.html"], "no draft is left");
 
-    let output = assess(&[Path::new(FLIGHT), Path::new(FLIGHT)], &["--svg", "x.svg"]);
+    let output = assess(&[STEADY, STEADY], &["--svg", "x.svg"]);
     assert_eq!(output.status.code(), Some(2));
 }
 
 /// A log without an answer still shows what was read, and why there is none.
 #[test]
 fn no_answer_is_reported_as_none() {
-    let folder = Folder::new("none");
-    let log = folder.file("ground.csv");
+    let folder = Folder::new();
+    let log = folder.at("ground.csv");
     let text = long_log(20, 10).replace(",1\n", ",0\n");
     fs::write(&log, text).unwrap();
     let html = report(&[&log], &folder);
     assert!(html.contains("<span class=\"badge na\">NA</span>"));
     assert!(html.contains("No answer: "));
-    let svg = folder.file("risk.svg");
-    let output = assess(&[&log], &["--svg", svg.to_str().unwrap()]);
+    let svg = folder.at("risk.svg");
+    let output = assess(&[&log], &["--svg", &svg]);
     assert_eq!(output.status.code(), Some(3));
-    assert!(!svg.exists());
+    assert!(!Path::new(&svg).exists());
 }

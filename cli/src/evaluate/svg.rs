@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use flagred::evaluation::{Band, RocPoint};
 
 use super::{Evaluation, scores::Evaluated};
+use crate::drawing::text::Escaped;
 
 /// Eight colours that the colour-blind can tell apart (Okabe and Ito, 2008); one without any is the eighth.
 const COLOURS: [&str; 8] = [
@@ -146,7 +147,7 @@ fn legend(svg: &mut String, left: f64, i: usize, evaluated: &Evaluated) {
     let y = TOP + 8.0 + 18.0 * i as f64;
     let area = evaluated.all.areas;
     let area = area.map_or("unknown".to_owned(), |area| format!("{:.3}", area.roc));
-    let name: String = evaluated.name.chars().map(escape).collect();
+    let name = Escaped(&evaluated.name);
     let _ = writeln!(
         svg,
         "<path d=\"M{left} {y}h28\" stroke=\"{colour}\" stroke-width=\"1.8\" stroke-dasharray=\"{dash}\"/>\
@@ -154,16 +155,6 @@ fn legend(svg: &mut String, left: f64, i: usize, evaluated: &Evaluated) {
         left + 36.0,
         y + 4.0
     );
-}
-
-/// A character of a name as it may stand in a picture.
-fn escape(c: char) -> std::borrow::Cow<'static, str> {
-    match c {
-        '<' => "&lt;".into(),
-        '>' => "&gt;".into(),
-        '&' => "&amp;".into(),
-        c => c.to_string().into(),
-    }
 }
 
 #[cfg(test)]

@@ -291,33 +291,15 @@ impl Arrays {
         );
         self.records("flagred_source", "sources", plan.inputs.iter().map(source));
         let Some(filled) = plan.filled else {
-            for field in ["scales", "runs", "values", "distances"] {
+            for field in ["places", "first_places", "values", "distances"] {
                 self.fields.push((field, "NULL".to_owned(), 0));
             }
             return;
         };
-        self.records(
-            "flagred_scale",
-            "scales",
-            filled
-                .scales
-                .iter()
-                .map(|s| (vec![s.low, s.high], vec![s.points])),
-        );
-        self.records(
-            "flagred_run",
-            "runs",
-            filled
-                .runs
-                .iter()
-                .map(|r| (vec![], vec![r.cell, r.first, r.end])),
-        );
+        self.numbers("places", filled.places.iter().copied());
+        self.counts("first_places", filled.starts.iter().copied());
         self.numbers("values", filled.values.iter().copied());
-        let distances = filled.distances.iter().map(|d| match d.is_finite() {
-            true => format!("{d:?}f"),
-            false => number(f64::from(*d)),
-        });
-        self.add("float", "distances", distances.collect());
+        self.numbers("distances", filled.distances.iter().copied());
     }
 }
 

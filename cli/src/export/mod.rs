@@ -55,9 +55,9 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
             env!("CARGO_PKG_VERSION")
         ),
         format!(
-            "{} bytes of constants, of which {} fill gaps of the rules' map; {} bytes of memory for a monitor of 4 motors.",
+            "{} bytes of constants, of which {} fill gaps of the rules; {} bytes of memory for a monitor of 4 motors.",
             bytes(plan),
-            bytes_of_cells(plan),
+            bytes_of_filling(plan),
             plan.bytes(4)
         ),
     ];
@@ -71,10 +71,10 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
 }
 
 /// What fills gaps weighs.
-fn bytes_of_cells(plan: &Plan<'_>) -> usize {
+fn bytes_of_filling(plan: &Plan<'_>) -> usize {
     plan.filled.map_or(0, |filled| {
-        size_of_val(filled.scales)
-            + size_of_val(filled.runs)
+        size_of_val(filled.places)
+            + size_of_val(filled.starts)
             + size_of_val(filled.values)
             + size_of_val(filled.distances)
     })
@@ -108,7 +108,7 @@ fn bytes(plan: &Plan<'_>) -> usize {
         size_of_val(plan.order),
         size_of_val(plan.channels),
         size_of_val(plan.inputs),
-        bytes_of_cells(plan),
+        bytes_of_filling(plan),
     ]
     .iter()
     .sum()

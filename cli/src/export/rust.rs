@@ -37,10 +37,10 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
     use ::flagred::{{
         accumulator::AccumulatorSettings,
         assessment::Sampling,
-        board::{{Plan, scale::Scale, table::*}},
+        board::{{Plan, table::*}},
         channel,
         follower::Settings,
-        gap::{{FilledCells, Run}},
+        gap::FilledKnots,
         verdict::{{Idle, LevelSettings, Threshold, VerdictSettings}},
     }};
     Plan {{
@@ -106,9 +106,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
     match plan.filled {
         None => line_of(out, format_args!("        filled: None,")),
         Some(filled) => {
-            line_of(out, format_args!("        filled: Some(FilledCells {{"));
-            array(out, 3, "scales", filled.scales);
-            array(out, 3, "runs", filled.runs);
+            line_of(out, format_args!("        filled: Some(FilledKnots {{"));
+            array(out, 3, "places", filled.places);
+            array(out, 3, "starts", filled.starts);
             array(out, 3, "values", filled.values);
             array(out, 3, "distances", filled.distances);
             line_of(out, format_args!("        }}),"));

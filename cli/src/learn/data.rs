@@ -25,7 +25,7 @@ pub(super) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
     {
         let failure = Failure::usage(format!("the rule set has no variable `{stray}`"));
         let meant = fuzzy::diagnostic::suggest(stray, names.iter().copied());
-        return Err(failure.help(meant.unwrap_or_default()));
+        return Err(failure.help_if(meant));
     }
     let mut data = Data {
         rows: Vec::new(),

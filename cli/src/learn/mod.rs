@@ -10,7 +10,7 @@ use std::{
 
 use clap::ValueEnum;
 use flagred::{
-    gap::{FilledMap, GapMethod, GapSettings},
+    gap::{FilledMap, Filling, GapMethod, GapSettings},
     learning::{Errors, GapComparison, cross_validate, leave_one_rule_out},
 };
 use fuzzy::{
@@ -128,6 +128,13 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if arguments.data.contains(&arguments.output) && arguments.output != Path::new("-") {
+        let name = arguments.output.display();
+        return Err(Failure::usage(format!(
+            "`--output {name}` would replace the rows it is learned from"
+        ))
+        .help("name another file"));
+    }
     let name = arguments.model.display().to_string();
     let text = read_text(&arguments.model)?;
     let mut model = fuzzy::yaml::parse(&text)
@@ -254,11 +261,11 @@ fn coverage(model: &Model, gap: &GapSettings) -> Result<(f64, f64), Failure> {
         Failure::unreadable(format!("the learned rules cannot be used: {error}"))
     };
     let engine = Engine::new(model).map_err(|error| unusable(&error))?;
-    let points = flagred::estimator::points_along(model.inputs.len());
+    let points = crate::map::points_along(model.inputs.len());
     let grid = Grid::new(&engine, points).map_err(|error| unusable(&error))?;
     let map = DecisionMap::new(&engine, grid, 0).map_err(|error| unusable(&error))?;
-    // Whether a cell can be filled does not depend on how.
-    let filled = FilledMap::new(map, gap.coverage_below(model), GapMethod::Nearest);
+    let filling = Filling::new(&engine, model, 0, gap).map_err(|error| unusable(&error))?;
+    let filled = FilledMap::new(map, filling);
     let cells = filled.map().grid().cells();
     let known = (0..cells).filter(|cell| filled.value(*cell).is_some());
     let known = known.count() as f64 / cells.max(1) as f64;

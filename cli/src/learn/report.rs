@@ -10,16 +10,6 @@ use super::{Arguments, Outcome, Resolve};
 /// The antecedents without a rule that are named.
 const SHOWN: usize = 12;
 
-/// The name of a gap method, as profiles have it.
-pub(crate) fn method_name(method: GapMethod) -> &'static str {
-    match method {
-        GapMethod::Nearest => "nearest",
-        GapMethod::InverseDistance { .. } => "inverse_distance",
-        GapMethod::ThinPlate => "thin_plate",
-        GapMethod::Harmonic => "harmonic",
-    }
-}
-
 fn resolution(arguments: &Arguments) -> &'static str {
     match arguments.resolve {
         Resolve::Strongest => "strongest",
@@ -93,7 +83,7 @@ pub(super) fn words(
         "coverage   {:.1} % of the map by rules, {:.1} % after filling ({})",
         100.0 * outcome.coverage,
         100.0 * outcome.after_filling,
-        method_name(GapMethod::default())
+        GapMethod::default().name()
     )?;
     let parts = match &arguments.group_by {
         Some(column) => format!("groups of `{column}` left out in turn"),
@@ -122,7 +112,7 @@ pub(super) fn words(
             "method", "RMS", "mean", "bias", "mean over rules"
         )?;
         let with = ("(with the rule)", &gaps.with_the_rule);
-        let methods = gaps.methods.iter().map(|(m, e)| (method_name(*m), e));
+        let methods = gaps.methods.iter().map(|(m, e)| (m.name(), e));
         for (name, errors) in [with].into_iter().chain(methods) {
             writeln!(
                 out,
@@ -164,14 +154,14 @@ pub(super) fn json(arguments: &Arguments, outcome: &Outcome) -> Value {
         "coverage": {
             "by_rules": outcome.coverage,
             "after_filling": outcome.after_filling,
-            "gap_method": method_name(GapMethod::default()),
+            "gap_method": GapMethod::default().name(),
         },
         "cross_validation": outcome.errors.as_ref().filter(|e| e.rows > 0).map(errors),
         "gap_methods": outcome.gaps.as_ref().map(|gaps| json!({
             "rules_left_out": gaps.rules,
             "with_the_rule": errors(&gaps.with_the_rule.by_row),
             "methods": gaps.methods.iter().map(|(method, found)| json!({
-                "method": method_name(*method),
+                "method": method.name(),
                 "by_row": errors(&found.by_row),
                 "by_rule_mean_absolute": found.by_rule_mean_absolute,
             })).collect::<Vec<_>>(),

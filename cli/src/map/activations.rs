@@ -6,10 +6,10 @@ use fuzzy::Model;
 
 use super::{
     heat::{cells, hatch},
-    palette::distinct,
     slice::Slice,
     svg::{Anchor, Frame, Sheet, px},
 };
+use crate::drawing::palette::distinct;
 
 /// The rules named in the legend; a picture with more is read by its numbers.
 const NAMED: usize = 20;
@@ -56,7 +56,7 @@ pub(super) fn draw(slice: &Slice, model: &Model) -> String {
                 x.clamp(frame.left + 10.0, frame.left + frame.width - 10.0),
                 y.clamp(frame.top + 14.0, frame.top + frame.height - 8.0) + 4.0,
             );
-            sheet.text(inside, Anchor::Middle, "on", &(rule + 1).to_string());
+            sheet.text_on(inside, &(rule + 1).to_string());
         }
     }
     let vertical = slice.y.as_ref();

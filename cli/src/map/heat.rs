@@ -3,12 +3,14 @@
 use std::fmt::Write as _;
 
 use super::{
-    contour,
-    palette::{Colour, viridis},
-    short,
+    contour, short,
     slice::Slice,
     svg::{Anchor, Frame, Sheet, px, ticks},
 };
+use crate::drawing::palette::{Colour, viridis};
+
+/// What no rule tells anything of.
+const UNKNOWN: Colour = Colour(0xd9, 0xd9, 0xd9);
 
 /// Colours are told apart in steps of this share of the range; finer ones only make the file heavier.
 const COLOURS: f64 = 100.0;
@@ -54,7 +56,7 @@ pub(super) fn draw(slice: &Slice) -> String {
                 x.clamp(frame.left + 14.0, frame.left + frame.width - 14.0),
                 y.clamp(frame.top + 12.0, frame.top + frame.height - 6.0) + 4.0,
             );
-            sheet.text(inside, Anchor::Middle, "on", &short(level));
+            sheet.text_on(inside, &short(level));
         }
     }
     sheet.axes(&frame, slice, (y.low(), y.high()), &y.title());
@@ -69,26 +71,16 @@ pub(super) fn cells(
     slice: &Slice,
     colour: impl Fn(usize, usize) -> Option<Colour>,
 ) {
-    runs(
-        slice,
-        colour,
-        |(x, y, width, height), colour| match colour {
-            Some(colour) => sheet.push(format_args!(
-                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{colour}\"/>",
-                px(x),
-                px(y),
-                px(width + 0.3),
-                px(height + 0.3)
-            )),
-            None => sheet.push(format_args!(
-                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#d9d9d9\"/>",
-                px(x),
-                px(y),
-                px(width + 0.3),
-                px(height + 0.3)
-            )),
-        },
-    );
+    runs(slice, colour, |(x, y, width, height), colour| {
+        sheet.push(format_args!(
+            "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>",
+            px(x),
+            px(y),
+            px(width + 0.3),
+            px(height + 0.3),
+            colour.unwrap_or(UNKNOWN)
+        ));
+    });
 }
 
 /// Hatches what was filled.
@@ -130,13 +122,10 @@ fn runs<L: PartialEq + Copy>(
         place.clamp(0.0, 1.0)
     };
     for j in 0..rows {
+        let row: Vec<L> = (0..columns).map(|i| look(i, j)).collect();
         let mut first = 0;
-        while first < columns {
-            let this = look(first, j);
-            let mut end = first + 1;
-            while end < columns && look(end, j) == this {
-                end += 1;
-            }
+        for run in row.chunk_by(|a, b| a == b) {
+            let end = first + run.len();
             let (left, bottom) = frame.at(edge(first, columns), edge(j, rows));
             let right_edge = if end == columns {
                 1.0
@@ -149,7 +138,9 @@ fn runs<L: PartialEq + Copy>(
                 edge(j + 1, rows)
             };
             let (right, top) = frame.at(right_edge, top_edge);
-            draw((left, top, right - left, bottom - top), this);
+            if let Some(this) = run.first() {
+                draw((left, top, right - left, bottom - top), *this);
+            }
             first = end;
         }
     }

@@ -3,16 +3,16 @@
 mod activations;
 mod contour;
 mod heat;
-mod palette;
 mod slice;
 mod surface;
 mod svg;
 mod text;
+mod view;
 
-use std::{fs, io::Write, path::PathBuf};
+use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
-use flagred::gap::{FilledMap, GapMethod, GapSettings};
+use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
 use fuzzy::{
     Engine, Model,
     map::{DecisionMap, Grid},
@@ -20,7 +20,9 @@ use fuzzy::{
 
 use crate::{
     diagnostics::{read_text, refuse},
+    drawing::text::number,
     failure::{Exit, Failure},
+    output,
 };
 use slice::Slice;
 
@@ -37,11 +39,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "POINTS", value_parser = clap::value_parser!(u16).range(2..=1001))]
     points: Option<u16>,
 
-    /// Hold an input at a value, so that it is no axis: `battery=0.8`
+    /// Hold an input at a value, so that it is no axis: `battery=0.8`. Inputs that are neither fixed nor an axis are
+    /// held in the middle of their range, or at the terms where the picture shows more
     #[arg(long, value_name = "INPUT=VALUE", value_parser = fix)]
     fix: Vec<(String, f64)>,
 
-    /// The input along the horizontal axis, the first one that is not fixed; or a part of it: `spread:0..0.2`
+    /// The input along the horizontal axis, the first one that is not fixed; or a part of it: `spread:0..0.2`. Where all
+    /// terms lie in less than a quarter of the range, only twice that part is shown
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     x: Option<AxisChoice>,
 
@@ -142,13 +146,22 @@ fn fix(text: &str) -> Result<(String, f64), String> {
     }
 }
 
-/// An evaluated rule set: the engine, and its map over every input, filled where it was asked for.
+/// A rule set that can be asked anywhere: the engine, and what fills its gaps where that was asked for.
 struct Evaluated {
     model: Model,
     engine: Engine,
     output: usize,
-    coverage_below: f64,
-    filled: Option<FilledMap>,
+    filling: Option<Filling>,
+}
+
+/// The most cells of a whole map, where nothing else is asked for.
+const MAP_CELLS: f64 = 100_000.0;
+
+/// How many points a whole map has along each of so many inputs: 51, or fewer so that there are not more than 100,000 in
+/// all, but at least 3.
+pub(crate) fn points_along(inputs: usize) -> usize {
+    let most = MAP_CELLS.powf(1.0 / inputs.max(1) as f64);
+    (most as usize).clamp(3, POINTS)
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -161,10 +174,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut out = anstream::stdout().lock();
     let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();
     if arguments.csv && whole && evaluated.model.inputs.len() > 2 {
-        write_whole(&mut out, &evaluated)?;
+        write_whole(&mut out, arguments, evaluated)?;
         return Ok(Exit::Clean);
     }
     let slice = slice::cut(arguments, &evaluated)?;
+    for note in &slice.notes {
+        // Nothing is left to tell a user whose standard error is closed.
+        let _ = writeln!(anstream::stderr(), "note: {note}");
+    }
     if arguments.csv {
         write_slice(&mut out, &slice)?;
         return Ok(Exit::Clean);
@@ -184,14 +201,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     } else {
         heat::draw(&slice)
     };
-    if file.as_os_str() == "-" {
-        write!(out, "{drawn}")?;
-    } else {
-        fs::write(file, drawn).map_err(|error| {
-            Failure::unreadable(format!("`{}` cannot be written: {error}", file.display()))
-                .help("check the folder and its permissions")
-        })?;
-    }
+    output::write(file, &drawn)?;
     Ok(Exit::Clean)
 }
 
@@ -207,45 +217,55 @@ fn evaluate(arguments: &Arguments, model: Model) -> Result<Evaluated, Failure> {
         Some(wanted) => engine.output(wanted).ok_or_else(|| {
             let outputs = engine.output_names();
             let failure = Failure::usage(format!("`{name}` has no output `{wanted}`"));
-            failure.help(fuzzy::diagnostic::suggest(wanted, outputs).unwrap_or_default())
+            failure.help_if(fuzzy::diagnostic::suggest(wanted, outputs))
         })?,
     };
     let gap = GapSettings {
         method: arguments.fill.method().unwrap_or_default(),
         coverage_below: arguments.coverage_below,
     };
-    let coverage_below = gap.coverage_below(&model);
-    let filled = match arguments.fill.method() {
+    let filling = match arguments.fill.method() {
         None => None,
-        Some(method) => {
-            let points = match arguments.points {
-                Some(points) => usize::from(points),
-                None => flagred::estimator::points_along(model.inputs.len()),
-            };
-            let grid = Grid::new(&engine, points).map_err(|error| {
-                unusable(&error).help("ask for fewer `--points`, or for `--fill none`")
-            })?;
-            let map = DecisionMap::new(&engine, grid, output).map_err(|error| unusable(&error))?;
-            Some(FilledMap::new(map, coverage_below, method))
+        Some(_) => {
+            let filling = Filling::new(&engine, &model, output, &gap);
+            Some(filling.map_err(|error| unusable(&error))?)
         }
     };
     Ok(Evaluated {
         model,
         engine,
         output,
-        coverage_below,
-        filled,
+        filling,
     })
 }
 
 /// Every cell of the map over all inputs.
-fn write_whole(out: &mut impl Write, evaluated: &Evaluated) -> Result<(), Failure> {
-    let Some(filled) = &evaluated.filled else {
+fn write_whole(
+    out: &mut impl Write,
+    arguments: &Arguments,
+    evaluated: Evaluated,
+) -> Result<(), Failure> {
+    let Some(filling) = evaluated.filling else {
         return Err(
             Failure::usage("the whole map of more than two inputs is filled")
                 .help("fix inputs with `--fix`, or name the axes with `--x` and `--y`"),
         );
     };
+    let points = match arguments.points {
+        Some(points) => usize::from(points),
+        None => points_along(evaluated.model.inputs.len()),
+    };
+    let no_map = |error: &dyn std::fmt::Display| {
+        Failure::unreadable(format!(
+            "`{}` has no map: {error}",
+            arguments.model.display()
+        ))
+    };
+    let grid = Grid::new(&evaluated.engine, points)
+        .map_err(|error| no_map(&error).help("ask for fewer `--points`"))?;
+    let map = DecisionMap::new(&evaluated.engine, grid, evaluated.output)
+        .map_err(|error| no_map(&error))?;
+    let filled = FilledMap::new(map, filling);
     let mut out = std::io::BufWriter::new(out);
     let map = filled.map();
     for axis in map.grid().axes() {
@@ -256,14 +276,19 @@ fn write_whole(out: &mut impl Write, evaluated: &Evaluated) -> Result<(), Failur
         for x in map.grid().point(cell) {
             write!(out, "{},", short(x))?;
         }
-        let value = filled.value(cell).map(short).unwrap_or_default();
-        let rule = rule_number(map.dominant(cell));
-        let (coverage, distance) = (short(map.coverage(cell)), filled.distance(cell));
-        let is_filled = u8::from(filled.is_filled(cell) && filled.value(cell).is_some());
+        let reading = filled.filled(cell);
+        let (value, distance) = match reading {
+            Some(reading) => (Some(reading.value), Some(reading.distance)),
+            None => (filled.value(cell), filled.value(cell).map(|_| 0.0)),
+        };
         writeln!(
             out,
-            "{value},{coverage},{rule},{is_filled},{}",
-            short(distance)
+            "{},{},{},{},{}",
+            value.map(short).unwrap_or_default(),
+            short(map.coverage(cell)),
+            rule_number(map.dominant(cell)),
+            u8::from(reading.is_some()),
+            distance.map(short).unwrap_or_default()
         )?;
     }
     out.flush()?;
@@ -307,14 +332,9 @@ fn rule_number(rule: Option<usize>) -> String {
 
 /// At most 6 decimals, without zeros behind; nothing for what is infinite.
 fn short(x: f64) -> String {
-    if !x.is_finite() {
-        return String::new();
-    }
-    let text = format!("{x:.6}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".to_owned()
+    if x.is_finite() {
+        number(x, 6)
     } else {
-        text.to_owned()
+        String::new()
     }
 }

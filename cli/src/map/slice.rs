@@ -7,7 +7,7 @@ use fuzzy::{
     model::Variable,
 };
 
-use super::{Arguments, AxisChoice, Evaluated, POINTS, short};
+use super::{Arguments, AxisChoice, Evaluated, POINTS, short, view};
 use crate::failure::Failure;
 
 /// A picture's worth of a map.
@@ -22,6 +22,8 @@ pub(super) struct Slice {
     pub(super) y: Option<Axis>,
     /// The inputs that are held, and at what.
     pub(super) held: Vec<(String, f64)>,
+    /// What the user did not ask for and may want otherwise.
+    pub(super) notes: Vec<String>,
     /// How gaps are filled; `None` where they are not.
     pub(super) filling: Option<&'static str>,
     /// x by x, each with every y.
@@ -115,7 +117,7 @@ pub(super) fn cut(arguments: &Arguments, evaluated: &Evaluated) -> Result<Slice,
     let unknown = |name: &str| {
         let inputs = model.inputs.iter().map(|input| input.name.as_str());
         Failure::usage(format!("the rule set has no input `{name}`"))
-            .help(fuzzy::diagnostic::suggest(name, inputs).unwrap_or_default())
+            .help_if(fuzzy::diagnostic::suggest(name, inputs))
     };
     let place = |name: &str| {
         let found = model.inputs.iter().position(|input| input.name == name);
@@ -161,22 +163,46 @@ pub(super) fn cut(arguments: &Arguments, evaluated: &Evaluated) -> Result<Slice,
     let variable = |input: usize| model.inputs.get(input);
     let axis = |input: usize, choice: &Option<AxisChoice>| {
         let part = choice.as_ref().and_then(|choice| choice.part);
-        variable(input).map(|v| Axis::new(v, part.unwrap_or((v.low, v.high)), points))
+        variable(input).map(|v| Axis::new(v, part.unwrap_or_else(|| view::shown(v)), points))
     };
     let x_axis =
         axis(x, &arguments.x).ok_or_else(|| Failure::usage("there is no input to draw"))?;
     let y_axis = y.and_then(|y| axis(y, &arguments.y));
-    let mut point: Vec<f64> = model
-        .inputs
-        .iter()
-        .zip(&fixed)
-        .map(|(input, fixed)| fixed.unwrap_or((input.low + input.high) / 2.0))
-        .collect();
+    let mut point = view::held(evaluated, &fixed, (x, y));
     let held = model.inputs.iter().zip(&point).enumerate();
-    let held = held
+    let held: Vec<(String, f64)> = held
         .filter(|(input, _)| *input != x && Some(*input) != y)
         .map(|(_, (input, value))| (input.name.clone(), *value))
         .collect();
+    let axes = [("x", Some(x), Some(&x_axis)), ("y", y, y_axis.as_ref())];
+    let shown = axes
+        .into_iter()
+        .filter_map(|(flag, input, axis)| Some((flag, variable(input?)?, axis?)));
+    let chosen = arguments.x.iter().chain(&arguments.y);
+    let chosen: Vec<&str> = chosen
+        .filter(|choice| choice.part.is_some())
+        .map(|choice| choice.name.as_str())
+        .collect();
+    let parts = shown
+        .filter(|(_, input, axis)| (axis.low(), axis.high()) != (input.low, input.high))
+        .filter(|(_, input, _)| !chosen.contains(&input.name.as_str()))
+        .map(|(flag, input, axis)| {
+            let (name, low, high) = (&input.name, short(axis.low()), short(axis.high()));
+            let whole = format!("{}..{}", short(input.low), short(input.high));
+            format!(
+                "`{name}` is shown from {low} to {high}, where its terms change; \
+                 all of it: `--{flag} {name}:{whole}`"
+            )
+        });
+    let named = |name: &str| arguments.fix.iter().any(|(fixed, _)| fixed == name);
+    let unnamed = held.iter().filter(|(name, _)| !named(name));
+    let held_at = unnamed.map(|(name, value)| {
+        format!(
+            "`{name}` is held at {}; elsewhere: `--fix {name}=VALUE`",
+            short(*value)
+        )
+    });
+    let notes = held_at.chain(parts).collect();
 
     let mut cells = Vec::with_capacity(points * points);
     let mut scratch = evaluated.engine.scratch();
@@ -210,20 +236,17 @@ pub(super) fn cut(arguments: &Arguments, evaluated: &Evaluated) -> Result<Slice,
         x: x_axis,
         y: y_axis,
         held,
-        filling: arguments
-            .fill
-            .method()
-            .map(crate::learn::report::method_name),
+        notes,
+        filling: arguments.fill.method().map(|method| method.name()),
         cells,
     })
 }
 
 fn cell(evaluated: &Evaluated, outcome: &Outcome, point: &[f64]) -> Cell {
-    let reading = evaluated
-        .filled
-        .as_ref()
-        .filter(|_| flagred::gap::is_gap(outcome.coverage, evaluated.coverage_below))
-        .and_then(|filled| filled.read(point));
+    let filling = evaluated.filling.as_ref();
+    let reading = filling
+        .filter(|filling| filling.is_gap(outcome.coverage))
+        .and_then(|filling| filling.read(point));
     Cell {
         value: reading.map(|r| r.value).or_else(|| outcome.value()),
         coverage: outcome.coverage,

@@ -1,10 +1,13 @@
 //! A slice as a surface in three dimensions, seen from above at a slant.
 
 use super::{
-    palette::{Colour, mix, viridis},
     short,
     slice::{Axis, Slice},
-    svg::{Anchor, Sheet, escaped, px, ticks},
+    svg::{Anchor, Sheet, px, ticks},
+};
+use crate::drawing::{
+    palette::{Colour, mix, viridis},
+    text::Escaped,
 };
 use crate::failure::Failure;
 
@@ -162,7 +165,7 @@ fn floor(sheet: &mut Sheet, view: &View, slice: &Slice, y: &Axis) {
             px((from.0 + to.0) / 2.0),
             px((from.1 + to.1) / 2.0 + 8.0),
             px(along(from, to)),
-            escaped(&title)
+            Escaped(&title)
         ));
     }
 }

@@ -2,7 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::{palette::viridis, short, slice::Slice};
+use super::{short, slice::Slice};
+use crate::drawing::{
+    self,
+    palette::viridis,
+    text::{Escaped, number},
+};
 
 /// Drawn text; writing to a String cannot fail.
 #[derive(Default)]
@@ -64,8 +69,14 @@ impl Sheet {
             "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\" class=\"{class}\">{}</text>",
             px(x),
             px(y),
-            escaped(text)
+            Escaped(text)
         ));
+    }
+
+    /// Text over a picture, on a halo of its own: not every viewer draws the edge of letters first.
+    pub(super) fn text_on(&mut self, at: (f64, f64), text: &str) {
+        self.text(at, Anchor::Middle, "under", text);
+        self.text(at, Anchor::Middle, "on", text);
     }
 
     pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64), class: &str) {
@@ -105,7 +116,7 @@ impl Sheet {
         self.push(format_args!(
             "<text transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\" class=\"title\">{}</text>",
             px(centre),
-            escaped(y_title)
+            Escaped(y_title)
         ));
     }
 
@@ -178,12 +189,12 @@ impl Sheet {
 
     /// The finished picture.
     pub(super) fn finish(self, title: &str) -> String {
-        let title = escaped(title);
+        let title = Escaped(title);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" role=\"img\" aria-label=\"{title}\">
 <title>{title}</title>
 <defs><pattern id=\"hatch\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" patternTransform=\"rotate(45)\"><line x1=\"0\" y1=\"0\" x2=\"0\" y2=\"7\" stroke=\"#000\" stroke-width=\"2.4\"/><line x1=\"2\" y1=\"0\" x2=\"2\" y2=\"7\" stroke=\"#fff\" stroke-width=\"1.2\"/></pattern></defs>
-<style>rect{{shape-rendering:crispEdges}}text{{font-family:system-ui,sans-serif;fill:#1a1a1a}}.heading{{font-size:15px;font-weight:600}}.title{{font-size:13px}}.label{{font-size:11px}}.frame{{fill:none;stroke:#1a1a1a}}.tick{{stroke:#1a1a1a}}.unknown{{fill:#d9d9d9;stroke:#999}}.swatch{{fill:#fff;stroke:#1a1a1a}}.contour{{fill:none;stroke:#000;stroke-width:1.1}}.halo{{fill:none;stroke:#fff;stroke-width:3;stroke-opacity:.55}}.on{{font-size:11px;font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:3px}}.curve{{fill:none;stroke:#2a788e;stroke-width:2.5}}.dashed{{fill:none;stroke:#d55e00;stroke-width:2.5;stroke-dasharray:6 4}}.grid{{stroke:#bbb;stroke-width:.7}}</style>
+<style>rect{{shape-rendering:crispEdges}}text{{font-family:system-ui,sans-serif;fill:#1a1a1a}}.heading{{font-size:15px;font-weight:600}}.title{{font-size:13px}}.label{{font-size:11px}}.frame{{fill:none;stroke:#1a1a1a}}.tick{{stroke:#1a1a1a}}.unknown{{fill:#d9d9d9;stroke:#999}}.swatch{{fill:#fff;stroke:#1a1a1a}}.contour{{fill:none;stroke:#000;stroke-width:1.1}}.halo{{fill:none;stroke:#fff;stroke-width:3;stroke-opacity:.55}}.on,.under{{font-size:11px;font-weight:600}}.under{{stroke:#fff;stroke-width:3px}}.curve{{fill:none;stroke:#2a788e;stroke-width:2.5}}.dashed{{fill:none;stroke:#d55e00;stroke-width:2.5;stroke-dasharray:6 4}}.grid{{stroke:#bbb;stroke-width:.7}}</style>
 <rect width=\"{WIDTH}\" height=\"{HEIGHT}\" fill=\"#fff\"/>
 {}</svg>
 ",
@@ -194,49 +205,10 @@ impl Sheet {
 
 /// A tenth of a pixel is as fine as a screen shows.
 pub(super) fn px(x: f64) -> String {
-    let text = format!("{x:.1}");
-    text.strip_suffix(".0")
-        .map_or_else(|| text.clone(), str::to_owned)
-}
-
-pub(super) fn escaped(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;");
-    text.replace('>', "&gt;").replace('"', "&quot;")
+    number(x, 1)
 }
 
 /// About five round numbers within a range.
 pub(super) fn ticks(low: f64, high: f64) -> Vec<f64> {
-    let rough = (high - low) / 5.0;
-    if rough <= 0.0 || !rough.is_finite() {
-        return Vec::new();
-    }
-    let power = 10f64.powf(rough.log10().floor());
-    let steps = [1.0, 2.0, 2.5, 5.0, 10.0].map(|step| step * power);
-    let step = steps
-        .into_iter()
-        .find(|step| *step >= rough * 0.999)
-        .unwrap_or(rough);
-    let first = (low / step - 1e-9).ceil() as i64;
-    let last = (high / step + 1e-9).floor() as i64;
-    (first..=last).map(|i| i as f64 * step).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ticks_are_round_and_within() {
-        assert_eq!(ticks(0.0, 100.0), [0.0, 20.0, 40.0, 60.0, 80.0, 100.0]);
-        let found = ticks(0.0, 0.5);
-        assert_eq!(found.len(), 6);
-        approx::assert_abs_diff_eq!(found[5], 0.5, epsilon = 1e-12);
-        assert_eq!(ticks(-3.0, 9.0), [-2.5, 0.0, 2.5, 5.0, 7.5]);
-        assert!(ticks(1.0, 1.0).is_empty());
-    }
-
-    #[test]
-    fn text_cannot_break_out() {
-        assert_eq!(escaped("a<b>\"c\"&d"), "a&lt;b&gt;&quot;c&quot;&amp;d");
-    }
+    drawing::ticks(low, high, 5.0)
 }

@@ -6,10 +6,10 @@ use anstyle::{RgbColor, Style};
 use fuzzy::Model;
 
 use super::{
-    palette::{Colour, distinct, ink, viridis},
     rule_number, short,
     slice::{Axis, Cell, Slice},
 };
+use crate::drawing::palette::{Colour, distinct, ink, viridis};
 
 /// The most columns and rows of a picture.
 const WIDEST: usize = 61;

@@ -12,7 +12,7 @@ use super::{
     curve::{Stretch, path},
     panel::{Line, Panel, Size, Timeline},
 };
-use crate::assess::follow::{Assessed, Step};
+use crate::assessment::follow::{Assessed, Step};
 
 /// Signals beside those of the profile that a report draws.
 pub(crate) const SIGNALS: [&str; 6] = [

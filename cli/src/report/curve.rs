@@ -1,6 +1,6 @@
 //! A value over time as the data of an SVG path, in the units of the data: what is drawn can be read back.
 
-use super::text::number;
+use crate::drawing::text::number;
 
 /// Spans of time a curve is thinned to; each keeps its first, smallest, largest and last value.
 const SPANS: usize = 500;

@@ -5,8 +5,13 @@ use std::fmt::Write as _;
 use flagred::estimator::Estimator;
 use fuzzy::Model;
 
-use super::text::{Escaped, number};
-use crate::assess::follow::Step;
+use crate::{
+    assessment::follow::Step,
+    drawing::{
+        palette,
+        text::{Escaped, number},
+    },
+};
 
 /// Cells along each side of the map.
 const CELLS: usize = 48;
@@ -117,7 +122,7 @@ pub(crate) fn html(estimator: &Estimator, model: &Model, steps: &[Step]) -> Opti
             }
             Cell::of(estimator.at(&point))
         });
-        draw_row(&mut drawing, j, values);
+        draw_row(&mut drawing, j, &values.collect::<Vec<_>>());
     }
     let mut visits = vec![0u32; CELLS * CELLS];
     let mut trail = String::new();
@@ -188,36 +193,27 @@ impl Cell {
 }
 
 /// Draws one row; neighbours that look the same become one rectangle.
-fn draw_row(drawing: &mut String, row: usize, cells: impl Iterator<Item = Cell>) {
-    let mut run: Option<(usize, usize, Cell)> = None;
-    let mut finish = |run: Option<(usize, usize, Cell)>| {
-        let Some((start, length, Cell::Risk { twentieth, filled })) = run else {
-            return;
-        };
-        // A little wider than it is, so that no seam is seen between neighbours.
-        let place = format!(r#"x="{start}" y="{row}" width="{length}.05" height="1.05""#);
-        let from = twentieth * 5;
-        let word = if filled { " filled" } else { "" };
-        let _ = write!(
-            drawing,
-            r#"<rect {place} fill="{}" data-v="{from} to {} %{word}"/>"#,
-            color(twentieth),
-            from + 5
-        );
-        if filled {
-            let _ = write!(drawing, r#"<rect class="hatch" {place}/>"#);
-        }
-    };
-    for (i, cell) in cells.enumerate() {
-        run = match run {
-            Some((start, length, same)) if same == cell => Some((start, length + 1, same)),
-            before => {
-                finish(before);
-                Some((i, 1, cell))
+fn draw_row(drawing: &mut String, row: usize, cells: &[Cell]) {
+    let mut start = 0;
+    for run in cells.chunk_by(|a, b| a == b) {
+        if let Some(Cell::Risk { twentieth, filled }) = run.first() {
+            // A little wider than it is, so that no seam is seen between neighbours.
+            let length = run.len();
+            let place = format!(r#"x="{start}" y="{row}" width="{length}.05" height="1.05""#);
+            let from = twentieth * 5;
+            let word = if *filled { " filled" } else { "" };
+            let _ = write!(
+                drawing,
+                r#"<rect {place} fill="{}" data-v="{from} to {} %{word}"/>"#,
+                colour(*twentieth),
+                from + 5
+            );
+            if *filled {
+                let _ = write!(drawing, r#"<rect class="hatch" {place}/>"#);
             }
-        };
+        }
+        start += run.len();
     }
-    finish(run);
 }
 
 /// The time spent in each cell as dots whose area grows with it, in five sizes.
@@ -246,29 +242,14 @@ fn dots(visits: &[u32]) -> String {
     draw("dot under", 2) + &draw("dot", 0)
 }
 
-/// From pale to dark as the risk rises: told apart without seeing colours, and on paper.
-fn color(twentieth: u32) -> String {
-    const STOPS: [[f64; 3]; 5] = [
-        [255.0, 250.0, 214.0],
-        [254.0, 217.0, 118.0],
-        [252.0, 141.0, 60.0],
-        [215.0, 48.0, 39.0],
-        [110.0, 8.0, 38.0],
-    ];
-    let place = f64::from(twentieth) / 19.0 * 4.0;
-    let lower = (place as usize).min(3);
-    let between = place - lower as f64;
-    let channel = |channel: usize| {
-        let stop = |i: usize| STOPS.get(i).and_then(|s| s.get(channel)).copied();
-        let (a, b) = (stop(lower).unwrap_or(0.0), stop(lower + 1).unwrap_or(0.0));
-        (a + (b - a) * between).round() as u8
-    };
-    format!("#{:02x}{:02x}{:02x}", channel(0), channel(1), channel(2))
+/// The colour of a twentieth of the range.
+fn colour(twentieth: u32) -> palette::Colour {
+    palette::risk(f64::from(twentieth) / 19.0)
 }
 
 fn legend() -> String {
     let swatches: String = (0..20)
-        .map(|i| format!(r#"<i style="background:{}"></i>"#, color(i)))
+        .map(|i| format!(r#"<i style="background:{}"></i>"#, colour(i)))
         .collect();
     format!(r#"<p class="legend">risk 0 % <span>{swatches}</span> 100 %</p>"#)
 }
@@ -276,20 +257,6 @@ fn legend() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn colours_darken_as_the_risk_rises() {
-        let light = |i| {
-            let color = color(i);
-            let part = |from: usize| u32::from_str_radix(&color[from..from + 2], 16).unwrap();
-            2126 * part(1) + 7152 * part(3) + 722 * part(5)
-        };
-        assert_eq!(
-            (color(0).as_str(), color(19).as_str()),
-            ("#fffad6", "#6e0826")
-        );
-        assert!((1..20).all(|i| light(i) < light(i - 1)));
-    }
 
     #[test]
     fn equal_neighbours_become_one_rectangle() {
@@ -302,7 +269,7 @@ mod tests {
             filled: true,
         };
         let mut drawing = String::new();
-        draw_row(&mut drawing, 3, [low, low, Cell::Unknown, high].into_iter());
+        draw_row(&mut drawing, 3, &[low, low, Cell::Unknown, high]);
         assert_eq!(drawing.matches("<rect").count(), 3, "{drawing}");
         assert!(drawing.contains(r#"x="0" y="3" width="2.05""#), "{drawing}");
         assert!(drawing.contains("90 to 95 % filled"), "{drawing}");

@@ -5,8 +5,6 @@ mod curve;
 mod decision;
 mod page;
 mod panel;
-mod text;
 
 pub(crate) use charts::SIGNALS;
 pub(crate) use page::{Subject, comparison, report, svg};
-pub(crate) use text::number;

@@ -7,13 +7,13 @@ use fuzzy::Model;
 use super::{
     charts, decision,
     panel::{Panel, Timeline},
-    text::{Escaped, number},
 };
 use crate::{
-    assess::{
+    assessment::{
         follow::{Assessed, Verdict, word},
         words,
     },
+    drawing::text::{Escaped, number},
     profile::Loaded,
 };
 use flightlog::Flight;

@@ -10,7 +10,7 @@ use flightlog::{Vehicle, mavlink::Setup};
 use serde_json::{Map, Value, json};
 
 use super::session::{Event, Session, Silent, View};
-use crate::assess::{Verdict, word};
+use crate::assessment::follow::{Verdict, word};
 
 /// Seconds of the vehicle's clock between two lines of risk in words.
 const STEP_S: f64 = 1.0;

@@ -307,7 +307,7 @@ impl Display {
     }
 
     fn end(mut self, at_s: f64, worst: Level, totals: &Totals) -> Result<(), Failure> {
-        let worst = crate::assess::word(worst);
+        let worst = crate::assessment::follow::word(worst);
         let last = if let Face::Json = self.face {
             let mut fields = totals.json();
             fields["dropped_lines"] = json!(self.printer.dropped());

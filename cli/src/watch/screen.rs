@@ -8,7 +8,7 @@ use super::{
     lines,
     session::{Event, View},
 };
-use crate::assess::{level_style, word};
+use crate::assessment::{follow::word, words::level_style};
 
 /// The other screen of the terminal, without a cursor; and back.
 pub(crate) const ENTER: &str = "\x1b[?1049h\x1b[?25l";

@@ -16,7 +16,7 @@ use flightlog::{
 mod tracked;
 
 use super::voice;
-use crate::assess::Verdict;
+use crate::assessment::follow::Verdict;
 pub(crate) use tracked::View;
 use tracked::{Flight, Tracked, tell, worst};
 

@@ -13,7 +13,7 @@ use flightlog::mavlink::{
     },
 };
 
-use crate::assess::word;
+use crate::assessment::follow::word;
 
 /// The names of the values that are sent.
 pub(crate) const RISK: &str = "FR_RISK";

@@ -49,7 +49,7 @@ use crate::{
     assessment::{Assessment, Estimate, Sample},
     channel::{Channel, Input, Observed, Seen},
     follower::{Follower, Room, Settings},
-    gap::FilledCells,
+    gap::FilledKnots,
     lookup::Lookup,
     verdict::{Ended, Finding, Motor},
     window::Window,
@@ -82,8 +82,8 @@ pub struct Plan<'a> {
     pub settings: Settings,
     /// The coverage below which rules do not apply.
     pub coverage_below: f64,
-    /// What fills the gaps of the rules' map; `None` where there are none.
-    pub filled: Option<FilledCells<'a>>,
+    /// What fills the gaps of the rules; `None` where there is nothing to fill them from.
+    pub filled: Option<FilledKnots<'a>>,
 }
 
 /// Why there is no monitor.
@@ -119,8 +119,6 @@ pub struct Memory<'m> {
     pub outcomes: &'m mut [Outcome],
     /// One for each input of the rule set.
     pub point: &'m mut [f64],
-    /// One for each input of the rule set.
-    pub corner: &'m mut [f64],
     /// One for each input of the profile.
     pub inputs: &'m mut [f64],
     /// One for each channel.
@@ -162,14 +160,14 @@ impl Plan<'_> {
         holds(
             self.filled
                 .is_none_or(|filled| filled.is_whole(self.table.inputs.len())),
-            "filled cells",
+            "filling",
         )
     }
 
     fn estimate(
         &self,
         inputs: &[f64],
-        room: (&mut [f64], &mut [f64]),
+        point: &mut [f64],
         (scratch, outcomes): (&mut Scratch<'_>, &mut [Outcome]),
     ) -> Option<Estimate> {
         let lookup = Lookup {
@@ -177,7 +175,7 @@ impl Plan<'_> {
             coverage_below: self.coverage_below,
             filled: self.filled,
         };
-        lookup.estimate(inputs, room, |point| {
+        lookup.estimate(inputs, point, |point| {
             self.table.evaluate(scratch, point, outcomes);
             outcomes.get(self.output as usize).copied()
         })
@@ -189,7 +187,6 @@ impl Plan<'_> {
         self.table.fits(&memory.scratch)
             && memory.outcomes.len() == self.table.outputs.len()
             && memory.point.len() == inputs
-            && memory.corner.len() == inputs
             && memory.inputs.len() == self.inputs.len()
             && memory.seen.len() == self.channels.len()
     }
@@ -238,7 +235,6 @@ impl<'a> Monitor<'a> {
             scratch,
             outcomes,
             point,
-            corner,
             inputs,
             seen,
             risks,
@@ -253,7 +249,7 @@ impl<'a> Monitor<'a> {
         };
         self.follower
             .push((plan.channels, plan.inputs), &mut room, sample, |inputs| {
-                plan.estimate(inputs, (point, corner), (scratch, outcomes))
+                plan.estimate(inputs, point, (scratch, outcomes))
             })
     }
 
@@ -264,11 +260,9 @@ impl<'a> Monitor<'a> {
             scratch,
             outcomes,
             point,
-            corner,
             ..
         } = &mut self.memory;
-        self.plan
-            .estimate(inputs, (point, corner), (scratch, outcomes))
+        self.plan.estimate(inputs, point, (scratch, outcomes))
     }
 
     /// The values of the inputs after the latest sample, in the order of the profile; NaN is unknown.

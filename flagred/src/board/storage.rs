@@ -64,7 +64,7 @@ impl Plan<'_> {
         let sizes = self.table.sizes;
         let rules = sizes.degrees as usize + sizes.stack as usize + sizes.heights as usize;
         Sizes {
-            numbers: 3 * inputs + self.inputs.len() + rules,
+            numbers: 2 * inputs + self.inputs.len() + rules,
             partials: sizes.alive as usize + 2 * sizes.partial as usize,
             outputs: self.table.outputs.len(),
             channels: self.channels.len(),
@@ -115,7 +115,6 @@ impl<'m> Memory<'m> {
                 strongest,
             },
             point: take(&mut numbers, inputs)?,
-            corner: take(&mut numbers, inputs)?,
             inputs: take(&mut numbers, plan.inputs.len())?,
             outcomes,
             seen,

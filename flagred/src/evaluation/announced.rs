@@ -24,11 +24,29 @@ pub struct Answer {
 
 impl Answer {
     /// Whether a warning that began before the episode was on at its start.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::evaluation::{Span, judge};
+    ///
+    /// let span = |from_s, to_s| Span { from_s, to_s };
+    /// let judged = judge(&[span(26.0, 40.0)], &[span(30.0, 33.0)], &[span(0.0, 60.0)], None);
+    /// assert!(judged.answers[0].is_announced());
+    /// ```
     pub fn is_announced(&self) -> bool {
         self.lead_s().is_some_and(|lead_s| lead_s > 0.0)
     }
 
     /// How long before the episode the warning began, in seconds; below 0 where it came after its start.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::evaluation::{Span, judge};
+    ///
+    /// let span = |from_s, to_s| Span { from_s, to_s };
+    /// let judged = judge(&[span(26.0, 40.0)], &[span(30.0, 33.0)], &[span(0.0, 60.0)], None);
+    /// assert_eq!(judged.answers[0].lead_s(), Some(4.0));
+    /// ```
     pub fn lead_s(&self) -> Option<f64> {
         self.warned_s.map(|warned_s| self.episode.from_s - warned_s)
     }
@@ -57,6 +75,17 @@ pub struct Judged {
 /// A warning is false unless an episode starts while it is on or within 10 s after it, or it begins during an episode or
 /// within 1 s after one. `lost_s` is when the flight ended in the air: what would have come is not known, so a warning
 /// that is on then or ended up to 10 s before is not called false.
+///
+/// # Example: one warning for nothing, one four seconds ahead
+/// ```
+/// use flagred::evaluation::{Span, judge};
+///
+/// let span = |from_s, to_s| Span { from_s, to_s };
+/// let (warnings, episodes) = ([span(5.0, 8.0), span(26.0, 40.0)], [span(30.0, 33.0)]);
+/// let judged = judge(&warnings, &episodes, &[span(0.0, 60.0)], None);
+/// let cried: Vec<bool> = judged.warnings.iter().map(|warning| warning.is_false).collect();
+/// assert_eq!(cried, [true, false]);
+/// ```
 pub fn judge(warnings: &[Span], episodes: &[Span], judged: &[Span], lost_s: Option<f64>) -> Judged {
     let mut found = Judged::default();
     for time in judged {

@@ -3,6 +3,16 @@
 use crate::source::{Motors, Signal, Source, Statistic};
 
 /// A predictor without rules: a statistic of the motors, or a signal as it stands.
+///
+/// # Example
+/// ```
+/// use flagred::evaluation::Baseline;
+///
+/// let lowest = Baseline::all().into_iter().find(|baseline| baseline.name == "lowest_motor").ok_or("gone")?;
+/// // The less margin the lowest motor has, the more critical.
+/// assert!(lowest.score(0.01) > lowest.score(0.3));
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baseline {
     /// Its name.
@@ -20,6 +30,14 @@ const WINDOW_S: f64 = 5.0;
 
 impl Baseline {
     /// All of them.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::evaluation::Baseline;
+    ///
+    /// let names = Baseline::all().map(|baseline| baseline.name);
+    /// assert_eq!(names, ["margin_mean", "lowest_motor", "spread", "saturated_share", "ekf_wind", "true_wind"]);
+    /// ```
     pub fn all() -> [Baseline; 6] {
         let of_motors = |name, description, statistic, motors, signal, rises| Baseline {
             name,
@@ -86,6 +104,14 @@ impl Baseline {
     }
 
     /// The score of a value: the higher, the more critical.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::evaluation::Baseline;
+    ///
+    /// let [margin_mean, ..] = Baseline::all();
+    /// assert_eq!(margin_mean.score(0.2), -0.2); // a falling margin is a rising score
+    /// ```
     pub fn score(&self, value: f64) -> f64 {
         if self.rises { value } else { -value }
     }

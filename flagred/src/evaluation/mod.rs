@@ -17,6 +17,14 @@ pub use critical::ErrorRecord;
 pub use ranking::{Areas, Band, Interval, Intervals, Prediction, Ranking, RocPoint, reliability};
 
 /// A time of a flight, both ends included, in seconds.
+///
+/// # Example
+/// ```
+/// use flagred::evaluation::Span;
+///
+/// let gust = Span { from_s: 30.0, to_s: 33.5 };
+/// assert!(gust.contains(30.0) && gust.contains(33.5) && !gust.contains(34.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
     /// Where it begins.
@@ -27,11 +35,27 @@ pub struct Span {
 
 impl Span {
     /// Its length in seconds.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::evaluation::Span;
+    ///
+    /// let gust = Span { from_s: 30.0, to_s: 33.5 };
+    /// assert_eq!(gust.length_s(), 3.5);
+    /// ```
     pub fn length_s(&self) -> f64 {
         self.to_s - self.from_s
     }
 
     /// Whether it holds a time.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::evaluation::Span;
+    ///
+    /// let gust = Span { from_s: 30.0, to_s: 33.5 };
+    /// assert!(gust.contains(31.0) && !gust.contains(29.0));
+    /// ```
     pub fn contains(&self, t_s: f64) -> bool {
         (self.from_s..=self.to_s).contains(&t_s)
     }
@@ -39,6 +63,17 @@ impl Span {
     /// Takes in whether something is the case at `t_s`: the last of `spans` grows, ends, or is followed by a new one.
     ///
     /// `open` remembers whether it is still the case.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::evaluation::Span;
+    ///
+    /// let (mut spans, mut open) = (Vec::new(), false);
+    /// for (t_s, is_so) in [(0.0, false), (1.0, true), (2.0, true), (3.0, false), (4.0, true)] {
+    ///     Span::follow(&mut spans, &mut open, t_s, is_so);
+    /// }
+    /// assert_eq!(spans, [Span { from_s: 1.0, to_s: 2.0 }, Span { from_s: 4.0, to_s: 4.0 }]);
+    /// ```
     pub fn follow(spans: &mut Vec<Span>, open: &mut bool, t_s: f64, is_so: bool) {
         match spans.last_mut().filter(|_| *open && is_so) {
             Some(span) => span.to_s = t_s,

@@ -2,71 +2,36 @@
 
 use fuzzy::map::DecisionMap;
 
-use super::fill::{Lattice, fill};
-use super::{GapMethod, Reading, is_gap};
+use super::{Filling, Reading};
 
 /// A decision map without gaps: what rules cover is as they say, what they do not is filled from there.
 #[derive(Debug, Clone)]
 pub struct FilledMap {
     map: DecisionMap,
-    /// NaN where nothing could be filled; never shown.
-    values: Vec<f64>,
-    distances: Vec<f32>,
+    filling: Filling,
 }
 
 impl FilledMap {
-    /// Fills the cells whose coverage is below `coverage_below`, or that have no value.
+    /// A map with the filling of its rule set. Cells that are a gap or have no value are filled.
     ///
-    /// # Example: a gap in the middle of a line
+    /// # Example: the corner that the paper's rules do not cover
     ///
     /// ```
-    /// use flagred::gap::{FilledMap, GapMethod};
+    /// use flagred::gap::{FilledMap, Filling, GapSettings};
     /// use fuzzy::{Engine, map::{DecisionMap, Grid}};
     ///
-    /// let model = fuzzy::yaml::parse("
-    /// fuzzy: 1
-    /// name: two ends
-    /// inputs: {x: {range: [0, 1], partition: {low: 0, middle: 0.5, high: 1}}}
-    /// outputs: {y: {range: [0, 100], partition: [small, medium, large]}}
-    /// rules: [IF x IS low THEN y IS small, IF x IS high THEN y IS large]
-    /// ")?.model;
+    /// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
     /// let engine = Engine::new(&model)?;
-    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 5)?, 0)?;
-    /// assert_eq!(map.value(2), None);
+    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+    /// let filled = FilledMap::new(map, filling);
     ///
-    /// let method = GapMethod::InverseDistance { power: 2.0, neighbours: 2 };
-    /// let filled = FilledMap::new(map, 0.5, method);
-    /// let middle = filled.read(&[0.5]).ok_or("nothing is covered")?;
-    /// assert_eq!((middle.value, middle.distance), (50.0, 0.25));
+    /// assert!(filled.is_filled(0) && filled.value(0).is_some_and(|risk| risk > 75.0));
+    /// assert!(!filled.is_filled(51 * 51 - 1));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn new(map: DecisionMap, coverage_below: f64, method: GapMethod) -> FilledMap {
-        let cells = 0..map.grid().cells();
-        let covered: Vec<bool> = cells
-            .clone()
-            .map(|cell| !is_gap(map.coverage(cell), coverage_below) && map.value(cell).is_some())
-            .collect();
-        let mut values: Vec<f64> = cells
-            .map(|cell| map.value(cell).unwrap_or(f64::NAN))
-            .collect();
-        let shape: Vec<usize> = map.grid().axes().iter().map(|axis| axis.points).collect();
-        let distances = fill(
-            &Lattice::new(&shape),
-            &covered,
-            &mut values,
-            map.range(),
-            method,
-        );
-        for (value, distance) in values.iter_mut().zip(&distances) {
-            if distance.is_infinite() {
-                *value = f64::NAN;
-            }
-        }
-        FilledMap {
-            map,
-            values,
-            distances,
-        }
+    pub fn new(map: DecisionMap, filling: Filling) -> FilledMap {
+        FilledMap { map, filling }
     }
 
     /// The map before it was filled, with its grid.
@@ -74,50 +39,65 @@ impl FilledMap {
         &self.map
     }
 
+    /// Whether a cell is not as rules say.
+    pub fn is_filled(&self, cell: usize) -> bool {
+        self.filling.is_gap(self.map.coverage(cell)) || self.map.value(cell).is_none()
+    }
+
+    /// The filling at a cell; `None` where rules say what it is, or there is nothing to fill from.
+    pub fn filled(&self, cell: usize) -> Option<Reading> {
+        if !self.is_filled(cell) || cell >= self.map.grid().cells() {
+            return None;
+        }
+        let grid = self.map.grid();
+        let mut inputs = vec![0.0; grid.axes().len() + grid.fixed().len()];
+        let axes = grid.axes().iter().map(|axis| axis.input);
+        let along = axes.zip(grid.point(cell));
+        let fixed = grid.fixed().iter().map(|fixed| (fixed.input, fixed.value));
+        for (input, value) in along.chain(fixed) {
+            *inputs.get_mut(input)? = value;
+        }
+        self.filling.read(&inputs)
+    }
+
     /// The value of a cell; `None` where nothing is covered to fill it from, and off the grid.
     pub fn value(&self, cell: usize) -> Option<f64> {
-        self.values.get(cell).copied().filter(|v| !v.is_nan())
-    }
-
-    /// The distance of a cell to the nearest covered one, in shares of the inputs' ranges: 0 for a covered one,
-    /// infinite where there is none.
-    pub fn distance(&self, cell: usize) -> f64 {
-        self.distances
-            .get(cell)
-            .map_or(f64::INFINITY, |d| f64::from(*d))
-    }
-
-    /// Whether a cell was filled.
-    pub fn is_filled(&self, cell: usize) -> bool {
-        self.distance(cell) > 0.0
+        match self.is_filled(cell) {
+            true => self.filled(cell).map(|reading| reading.value),
+            false => self.map.value(cell),
+        }
     }
 
     /// The share of the cells that were filled.
     pub fn filled_share(&self) -> f64 {
-        let filled = self.distances.iter().filter(|d| **d > 0.0).count();
-        filled as f64 / self.distances.len().max(1) as f64
+        let cells = self.map.grid().cells();
+        let filled = (0..cells).filter(|cell| self.is_filled(*cell)).count();
+        filled as f64 / cells.max(1) as f64
     }
 
     /// The value at a point with a coordinate for each axis of the grid, N-linearly between cells; beyond the grid,
     /// at its end. `None` where nothing is covered, or the point has another number of coordinates.
-    pub fn read(&self, point: &[f64]) -> Option<Reading> {
+    pub fn read(&self, point: &[f64]) -> Option<f64> {
         let grid = self.map.grid();
-        Some(Reading {
-            value: grid.interpolate(|cell| self.value(cell), point)?,
-            distance: grid.interpolate(|cell| Some(self.distance(cell)), point)?,
-        })
+        grid.interpolate(|cell| self.value(cell), point)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gap::{GapMethod, GapSettings};
     use fuzzy::{Engine, Model, map::Grid};
 
     fn filled(model: &Model, method: GapMethod) -> FilledMap {
         let engine = Engine::new(model).unwrap();
         let grid = Grid::new(&engine, 51).unwrap();
-        FilledMap::new(DecisionMap::new(&engine, grid, 0).unwrap(), 0.5, method)
+        let map = DecisionMap::new(&engine, grid, 0).unwrap();
+        let settings = GapSettings {
+            method,
+            coverage_below: None,
+        };
+        FilledMap::new(map, Filling::new(&engine, model, 0, &settings).unwrap())
     }
 
     #[test]
@@ -129,39 +109,24 @@ mod tests {
                 let point = map.map().grid().point(cell);
                 let in_corner = point[0] < 0.15 - 1e-9 && point[1] < 0.05 - 1e-9;
                 assert_eq!(map.is_filled(cell), in_corner, "{point:?}");
+                assert_eq!(map.filled(cell).is_some(), in_corner);
             }
+            // 0.04 below the covered part, in shares of a range of 0.5.
+            let distance = map.filled(2 * 51 + 1).unwrap().distance;
+            approx::assert_abs_diff_eq!(distance, 0.08, epsilon = 1e-12);
         }
     }
 
     #[test]
-    fn a_saturated_drone_reads_high_in_the_papers_corner() {
+    fn a_saturated_drone_reads_high_whatever_fills_the_papers_corner() {
         let model = crate::shipped::rule_set("flagred-paper").unwrap().unwrap();
-        let read = |method, point: [f64; 2]| filled(&model, method).read(&point).unwrap().value;
-        for method in [GapMethod::default(), GapMethod::INVERSE_DISTANCE] {
+        for method in GapMethod::ALL {
+            let map = filled(&model, method);
             for point in [[0.0, 0.0], [0.02, 0.01]] {
-                let value = read(method, point);
+                let value = map.read(&point).unwrap();
                 assert!(value >= 75.0, "{method:?} at {point:?}: {value}");
             }
         }
-        // scipy 1.17.1: RBFInterpolator(covered cells, their values, neighbors=16, kernel="thin_plate_spline").
-        approx::assert_abs_diff_eq!(
-            read(GapMethod::ThinPlate, [0.0, 0.0]),
-            91.528,
-            epsilon = 0.01
-        );
-        approx::assert_abs_diff_eq!(
-            read(GapMethod::ThinPlate, [0.02, 0.01]),
-            77.308,
-            epsilon = 0.01
-        );
-        approx::assert_abs_diff_eq!(
-            read(GapMethod::Nearest, [0.0, 0.0]),
-            90.278,
-            epsilon = 0.001
-        );
-        // These two only know what is next to the gap, which is milder.
-        approx::assert_abs_diff_eq!(read(GapMethod::Nearest, [0.02, 0.01]), 70.5, epsilon = 0.1);
-        approx::assert_abs_diff_eq!(read(GapMethod::Harmonic, [0.0, 0.0]), 69.4, epsilon = 0.1);
     }
 
     #[test]
@@ -185,6 +150,20 @@ mod tests {
         model.rules.clear();
         let map = filled(&model, GapMethod::Nearest);
         assert_eq!(map.read(&[0.1, 0.1]), None);
+        assert_eq!((map.value(7), map.value(51 * 51)), (None, None));
         assert_eq!(map.filled_share(), 1.0);
+    }
+
+    #[test]
+    fn a_slice_is_filled_with_its_fixed_inputs_in_their_places() {
+        let model = crate::shipped::rule_set("flagred-paper").unwrap().unwrap();
+        let engine = Engine::new(&model).unwrap();
+        let whole = filled(&model, GapMethod::Harmonic);
+        let slice = Grid::new(&engine, 51).unwrap().fix("margin", 0.02).unwrap();
+        let map = DecisionMap::new(&engine, slice, 0).unwrap();
+        let slice = FilledMap::new(map, whole.filling.clone());
+        for cell in 0..51 {
+            assert_eq!(slice.value(cell), whole.value(2 * 51 + cell));
+        }
     }
 }

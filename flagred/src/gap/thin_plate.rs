@@ -1,32 +1,34 @@
-//! The thin-plate spline: the smoothest surface through the covered cells around a place (Duchon 1977).
+//! The thin-plate spline: the smoothest surface through the covered knots around a place (Duchon 1977).
 //!
 //! `f(x) = a + b x + sum_i w_i phi(|x - c_i|)`, `phi(r) = r^2 ln r`, with the weights such that f takes the known
-//! values at the centres c_i and `sum w_i = 0`, `sum w_i c_i = 0`. The centres of each filled cell are the
-//! [`NEIGHBOURS`] covered cells nearest to it: over all of them the far side of the map would bend the corner of the
-//! gap. The surface follows slopes beyond what is known, so it can overshoot; values are kept within the range of the
-//! output.
+//! values at the centres c_i and `sum w_i = 0`, `sum w_i c_i = 0`. The centres are the covered knots nearest to a place:
+//! with two inputs nearly all there are. The surface follows slopes beyond what is known, so it can overshoot; values are
+//! kept within the range of the output.
 
-use super::{fill::Lattice, neighbours::Tree};
+use super::{field::Field, neighbours::Tree};
 
-/// How many covered cells shape the surface at a place, in two dimensions; twice as many in each further one.
-const NEIGHBOURS: usize = 16;
+/// How many covered knots shape the surface at a place: with one and two inputs, and with more. Further ones change the
+/// fillings of our maps by less than a point.
+const NEIGHBOURS: (usize, usize) = (32, 64);
 
 /// Where the neighbours lie in one plane they say nothing of the slope across it: a slope costs this much, so that it
 /// is 0 there. Elsewhere it changes nothing that could be seen.
 const COST_OF_SLOPE: f64 = 1e-7;
 
-/// Fills the nodes that are not covered, within `range`.
-pub(super) fn fill(lattice: &Lattice, covered: &[bool], values: &mut [f64], range: (f64, f64)) {
-    let known: Vec<usize> = (0..covered.len()).filter(|node| covered[*node]).collect();
-    let dimensions = lattice.shape.len();
-    let points = known.iter().flat_map(|node| lattice.point(*node)).collect();
-    let mut tree = Tree::new(dimensions, points);
-    let k = NEIGHBOURS << dimensions.saturating_sub(2).min(3);
-    let gap: Vec<usize> = (0..covered.len()).filter(|node| !covered[*node]).collect();
-    for node in gap {
-        let point = lattice.point(node);
+/// Fills the knots that are not covered, within `range`.
+pub(super) fn fill(field: &mut Field, range: (f64, f64)) {
+    let known = field.known_highest_first();
+    let dimensions = field.coordinates.len();
+    let mut tree = Tree::new(dimensions, field.points(&known));
+    let count = if dimensions <= 2 {
+        NEIGHBOURS.0
+    } else {
+        NEIGHBOURS.1
+    };
+    for knot in field.gap() {
+        let point = field.point(knot);
         let neighbours: Vec<usize> = tree
-            .nearest(&point, k)
+            .nearest(&point, count)
             .iter()
             .filter_map(|(_, index)| known.get(*index).copied())
             .collect();
@@ -34,13 +36,13 @@ pub(super) fn fill(lattice: &Lattice, covered: &[bool], values: &mut [f64], rang
         let centres: Vec<Vec<f64>> = neighbours
             .iter()
             .map(|n| {
-                let centre = lattice.point(*n);
+                let centre = field.point(*n);
                 centre.iter().zip(&point).map(|(c, x)| c - x).collect()
             })
             .collect();
-        let known: Vec<f64> = neighbours.iter().map(|n| values[*n]).collect();
+        let known: Vec<f64> = neighbours.iter().map(|n| field.values[*n]).collect();
         if let Some(value) = value_at_origin(&centres, &known) {
-            values[node] = value.clamp(range.0, range.1);
+            field.values[knot] = value.clamp(range.0, range.1);
         }
     }
 }

@@ -71,6 +71,17 @@ pub struct ProfileInput {
 
 impl Profile {
     /// The names of the signals beside the motors that it needs, each once.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::profile::Profile;
+    /// # let profile = Profile::from_yaml("flagred: 1
+    /// # name: windy
+    /// # rules: my.yaml
+    /// # inputs: {margin: {mean: motor_margin, window_s: 5}, wind: {last: wind_m_s}, gust: {max: wind_m_s, window_s: 20}}")?;
+    /// assert_eq!(profile.signals(), ["wind_m_s"]);
+    /// # Ok::<(), fuzzy::diagnostic::Findings>(())
+    /// ```
     pub fn signals(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for input in &self.inputs {
@@ -93,6 +104,17 @@ impl Profile {
     }
 
     /// The longest window of an input, in seconds.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::profile::Profile;
+    /// # let profile = Profile::from_yaml("flagred: 1
+    /// # name: windy
+    /// # rules: my.yaml
+    /// # inputs: {margin: {mean: motor_margin, window_s: 5}, wind: {last: wind_m_s}, gust: {max: wind_m_s, window_s: 20}}")?;
+    /// assert_eq!(profile.longest_window_s(), 20.0);
+    /// # Ok::<(), fuzzy::diagnostic::Findings>(())
+    /// ```
     pub fn longest_window_s(&self) -> f64 {
         self.inputs
             .iter()

@@ -53,6 +53,14 @@ impl Profile {
     /// # Errors
     ///
     /// Everything that is wrong in the text, each with its place and what to do about it.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::profile::Profile;
+    ///
+    /// let mistakes = Profile::from_yaml("flagred: 1\nname: x\nrules: my.yaml\ninputs: {m: {mean: motor_margin, window: 5}}");
+    /// assert!(mistakes.is_err_and(|findings| findings.to_string().contains("did you mean `window_s`?")));
+    /// ```
     pub fn from_yaml(text: &str) -> Result<Profile, Findings> {
         let tree = yaml::read(text)?;
         let mut found = Vec::new();
@@ -282,19 +290,14 @@ fn gap(fields: &Fields, found: &mut Found) -> GapSettings {
 }
 
 fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
-    let words = [
-        ("nearest", GapMethod::Nearest),
-        ("inverse_distance", GapMethod::INVERSE_DISTANCE),
-        ("thin_plate", GapMethod::ThinPlate),
-        ("harmonic", GapMethod::Harmonic),
-    ];
+    let words = GapMethod::ALL.map(|method| (method.name(), method));
     let Value::Mapping(_) = node.value else {
         return node.choice("the gap method", &words, found);
     };
     let fields = node.fields("the gap method", &["inverse_distance"], found)?;
     let settings = fields.require(
         "inverse_distance",
-        "write `{inverse_distance: {power: 2, neighbours: 4}}`",
+        "write `{inverse_distance: {power: 2, neighbours: 3}}`",
         found,
     )?;
     let fields = settings.fields("`inverse_distance`", &["power", "neighbours"], found)?;
@@ -302,7 +305,7 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
         .get("neighbours")
         .and_then(|node| node.whole("`neighbours`", 1, found));
     Some(GapMethod::InverseDistance {
-        neighbours: neighbours.map_or(4, |n| usize::try_from(n).unwrap_or(usize::MAX)),
+        neighbours: neighbours.map_or(3, |n| usize::try_from(n).unwrap_or(usize::MAX)),
         power: number(&fields, "power", 2.0, Least::Above0, found),
     })
 }

@@ -6,9 +6,9 @@ use std::io::BufRead;
 
 use csv::{ByteRecord, ReaderBuilder};
 
+use crate::error::io_error;
 use crate::flight::whole_range;
 use crate::input::Input;
-use crate::read::io_error;
 use crate::signal::{Label, preferred};
 use crate::{
     Commands, Flight, Format, Intervals, Motor, Options, Range, ReadError, Report, Series,

@@ -36,6 +36,37 @@ const PARAMETER_WAIT_S: f64 = 0.5;
 const PARAMETER_TRIES: u32 = 20;
 
 /// Keeps what was asked for and when.
+///
+/// # Example: what is asked for first
+/// ```
+/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
+/// # fn packet(bytes: &[u8]) -> Packet<'_> {
+/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+/// #     packet
+/// # }
+/// # let mut autopilot = Sender::new(1);
+/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+/// #     system_status: MavState::MAV_STATE_ACTIVE,
+/// #     ..HEARTBEAT_DATA::default()
+/// # });
+/// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
+/// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
+/// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
+/// let (mut requests, mut out) = (Requests::new(), Vec::new());
+/// requests.due(0.0, &telemetry, &mut out);
+/// assert!(!out.is_empty() && !requests.parameters_done());
+/// let asked = out.len();
+/// requests.due(0.1, &telemetry, &mut out);
+/// assert_eq!(out.len(), asked, "not so soon again");
+/// for i in 1..60 {
+///     requests.due(f64::from(i) * 0.5, &telemetry, &mut Vec::new());
+/// }
+/// assert!(requests.parameters_done(), "they were asked for often enough");
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct Requests {
     rate_tries: u32,
@@ -143,6 +174,28 @@ impl Requests {
 }
 
 /// Whether everything is known that the motors and their range depend on.
+///
+/// # Example
+/// ```
+/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
+/// # fn packet(bytes: &[u8]) -> Packet<'_> {
+/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+/// #     packet
+/// # }
+/// # let mut autopilot = Sender::new(1);
+/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+/// #     system_status: MavState::MAV_STATE_ACTIVE,
+/// #     ..HEARTBEAT_DATA::default()
+/// # });
+/// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
+/// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
+/// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
+/// assert!(!parameters_known(&telemetry));
+/// # Ok::<(), &str>(())
+/// ```
 pub fn parameters_known(telemetry: &Telemetry) -> bool {
     telemetry.missing_parameters().is_empty()
 }

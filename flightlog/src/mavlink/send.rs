@@ -5,6 +5,27 @@ use ::mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader};
 use super::{Version, dialect::MavMessage};
 
 /// Numbers the packets of one component.
+///
+/// # Example: a component of the vehicle's own system
+/// ```
+/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
+/// # fn packet(bytes: &[u8]) -> Packet<'_> {
+/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+/// #     packet
+/// # }
+/// # let mut autopilot = Sender::new(1);
+/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+/// #     system_status: MavState::MAV_STATE_ACTIVE,
+/// #     ..HEARTBEAT_DATA::default()
+/// # });
+/// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
+/// let mut sender = Sender::new(191);
+/// let bytes = sender.packet(Version::V2, 1, &MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
+/// assert_eq!((packet(&bytes).system, packet(&bytes).component), (1, 191));
+/// ```
 #[derive(Debug, Clone)]
 pub struct Sender {
     component: u8,
@@ -13,6 +34,14 @@ pub struct Sender {
 
 impl Sender {
     /// A sender that is this component of whatever system it speaks for.
+    ///
+    /// # Example
+    /// ```
+    /// use flightlog::mavlink::{Sender, Version, dialect::{HEARTBEAT_DATA, MavMessage}};
+    ///
+    /// let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA::default());
+    /// assert_eq!(Sender::new(191).packet(Version::V1, 1, &heartbeat)[0], 0xfe);
+    /// ```
     pub fn new(component: u8) -> Sender {
         Sender {
             component,
@@ -21,6 +50,16 @@ impl Sender {
     }
 
     /// The next packet, as a part of `system`.
+    ///
+    /// # Example
+    /// ```
+    /// use flightlog::mavlink::{Sender, Version, dialect::{HEARTBEAT_DATA, MavMessage}};
+    ///
+    /// let mut sender = Sender::new(191);
+    /// let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA::default());
+    /// let numbers = [(); 2].map(|()| sender.packet(Version::V2, 1, &heartbeat)[4]);
+    /// assert_eq!(numbers, [0, 1]); // packets are counted
+    /// ```
     pub fn packet(&mut self, version: Version, system: u8, message: &MavMessage) -> Vec<u8> {
         let header = MavHeader {
             system_id: system.into(),

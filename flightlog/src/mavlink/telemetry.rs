@@ -20,6 +20,25 @@ use crate::{
 
 impl Packet<'_> {
     /// The message; `None` where a field holds a value that the dialect does not know.
+    ///
+    /// # Example
+    /// ```
+    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// assert!(matches!(packet(&heartbeat).message(), Some(MavMessage::HEARTBEAT(_))));
+    /// ```
     pub fn message(&self) -> Option<MavMessage> {
         MavMessage::parse(self.version.into(), self.id, self.payload).ok()
     }
@@ -45,6 +64,31 @@ const LONGEST_PULSE_US: f64 = 3000.0;
 
 /// The vehicle that a heartbeat speaks for; `None` for other messages and for what is no vehicle, such as ground
 /// stations, gimbals and radios, whose heartbeats have an armed flag too.
+///
+/// # Example
+/// ```
+/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
+/// # fn packet(bytes: &[u8]) -> Packet<'_> {
+/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+/// #     packet
+/// # }
+/// # let mut autopilot = Sender::new(1);
+/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+/// #     system_status: MavState::MAV_STATE_ACTIVE,
+/// #     ..HEARTBEAT_DATA::default()
+/// # });
+/// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
+/// let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
+/// assert_eq!((vehicle.motors, vehicle.firmware.as_deref()), (Some(4), Some("ArduPilot")));
+///
+/// // A ground station beats too, and is no vehicle.
+/// let ground_station = Sender::new(190).packet(Version::V2, 255, &MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
+/// assert!(vehicle_of(&packet(&ground_station)).is_none());
+/// # Ok::<(), &str>(())
+/// ```
 pub fn vehicle_of(packet: &Packet<'_>) -> Option<Vehicle> {
     if packet.component != AUTOPILOT || packet.id != 0 {
         return None;
@@ -78,6 +122,15 @@ pub fn vehicle_of(packet: &Packet<'_>) -> Option<Vehicle> {
 ///
 /// EXTENDED_SYS_STATE says so in words. Without it, the state of the heartbeat is what tells: ArduPilot's is
 /// "standby" while landed and "active", or "critical" after a failsafe, while not.
+///
+/// # Example
+/// ```
+/// use flightlog::mavlink::{dialect::{MavLandedState, MavState}, is_in_air};
+///
+/// assert!(is_in_air(true, Some(MavState::MAV_STATE_ACTIVE), None));
+/// assert!(!is_in_air(true, Some(MavState::MAV_STATE_ACTIVE), Some(MavLandedState::MAV_LANDED_STATE_ON_GROUND)));
+/// assert!(!is_in_air(false, Some(MavState::MAV_STATE_ACTIVE), None));
+/// ```
 pub fn is_in_air(armed: bool, state: Option<MavState>, landed: Option<MavLandedState>) -> bool {
     use MavLandedState::{
         MAV_LANDED_STATE_IN_AIR as IN_AIR, MAV_LANDED_STATE_LANDING as LANDING,
@@ -114,6 +167,63 @@ pub enum News {
 }
 
 /// Follows one vehicle by its packets.
+///
+/// # Example: from a heartbeat to motor commands
+/// ```
+/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
+/// # fn packet(bytes: &[u8]) -> Packet<'_> {
+/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+/// #     packet
+/// # }
+/// # let mut autopilot = Sender::new(1);
+/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+/// #     system_status: MavState::MAV_STATE_ACTIVE,
+/// #     ..HEARTBEAT_DATA::default()
+/// # });
+/// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
+/// let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
+/// let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
+/// assert_eq!((telemetry.system(), telemetry.version()), (1, Version::V2));
+/// assert!(telemetry.may_be_multirotor() && telemetry.vehicle().motors == Some(4));
+/// assert_eq!(telemetry.receive(&packet(&heartbeat)), News::Nothing);
+/// assert!(telemetry.is_armed() && telemetry.is_in_air());
+///
+/// let mut news = News::Nothing;
+/// for i in 1..=10 {
+///     let outputs = MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+///         time_usec: 40_000 * i,
+///         servo1_raw: 1550, servo2_raw: 1550, servo3_raw: 1550, servo4_raw: 1950,
+///         ..SERVO_OUTPUT_RAW_DATA::default()
+///     });
+///     let bytes = autopilot.packet(Version::V2, 1, &outputs);
+///     news = telemetry.receive(&packet(&bytes));
+/// }
+/// assert!(matches!(news, News::Commands { t_s } if (t_s - 0.4).abs() < 1e-9));
+///
+/// assert!(telemetry.commands_seen() == 10 && !telemetry.interval_refused());
+///
+/// // A parameter, as it comes when asked for.
+/// let bytes = autopilot.packet(Version::V2, 1, &MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+///     param_id: "MOT_SPIN_MIN".into(),
+///     param_value: 0.125,
+///     param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+///     ..PARAM_VALUE_DATA::default()
+/// }));
+/// assert_eq!(telemetry.receive(&packet(&bytes)), News::Parameter);
+/// assert_eq!(telemetry.parameter("MOT_SPIN_MIN"), Some(0.125));
+/// assert!(telemetry.take_parameters_changed());
+///
+/// // The others never came, so what is assumed is said.
+/// let setup = telemetry.setup();
+/// assert!(setup.assumed.contains(&"commands from 1000 to 2000 us".to_string()));
+/// let mut commands = [0.0; 4];
+/// telemetry.effective_commands(&setup, &mut commands);
+/// assert_eq!(commands[3], 1.0); // motor 4 is at its limit
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Debug)]
 pub struct Telemetry {
     system: u8,

@@ -2,10 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::{
-    format::shape_parameters,
-    model::{Shape, Variable},
-};
+use crate::model::{Parts, Shape, Variable};
 
 /// Points of the range at which to look: evenly spaced ones, and those that the terms' parameters name.
 const EVENLY_SPACED: usize = 64;
@@ -29,9 +26,10 @@ pub(super) fn places(variable: &Variable) -> Vec<f64> {
 
 /// The corners and middles of a shape, among other numbers.
 pub(super) fn marks(shape: &Shape) -> Vec<f64> {
-    match shape {
-        Shape::Piecewise { points } => points.iter().map(|&(x, _)| x).collect(),
-        _ => shape_parameters(shape),
+    match shape.parts() {
+        Parts::Fixed(_, parameters) => parameters,
+        Parts::Points(points) => points.iter().map(|&(x, _)| x).collect(),
+        Parts::Linear(..) => Vec::new(),
     }
 }
 

@@ -13,8 +13,10 @@ use super::{
 };
 use crate::{
     diagnostic::{Diagnostic, Severity, listed},
-    format::{Places, VariablePlaces},
-    model::{Model, NoRuleFires},
+    model::{
+        Model, NoRuleFires,
+        document::{Places, VariablePlaces},
+    },
     rule::{Condition, Consequent, Name, Rule},
 };
 

@@ -10,30 +10,49 @@ use serde::Serialize;
 
 use crate::{
     Engine,
-    diagnostic::{Diagnostic, suggest},
-    format::Places,
-    model::{Aggregation, Model},
+    diagnostic::{Diagnostic, Findings, Severity, suggest},
+    model::{
+        Aggregation, Model,
+        document::{Document, Places},
+    },
 };
 
 mod axis;
-mod behaviour;
 mod coverage;
 mod findings;
+mod jumps;
 mod logic;
+mod monotone;
 pub mod names;
+mod probe;
+mod reach;
 mod rules;
 mod terms;
 #[cfg(test)]
 mod tests;
 mod trend;
 
-pub use behaviour::{Coordinate, Counterexample, Direction, Jump, Monotone, Reach};
 pub use coverage::{Antecedent, Side, Uncovered};
+pub use jumps::Jump;
+pub use monotone::{Counterexample, Direction, Monotone};
+pub use probe::Coordinate;
+pub use reach::Reach;
 pub use rules::{Contradiction, Subsumed};
 pub use terms::{Hole, TermOf};
 pub use trend::AgainstTrend;
 
 /// What to hold a rule set against.
+///
+/// # Example: what an author says of an output
+/// ```
+/// use fuzzy::check::{Direction, Monotone, Options};
+///
+/// let claim: Monotone = "heat:increasing:speed".parse()?;
+/// assert_eq!(claim.direction, Direction::Increasing);
+/// let options = Options { monotone: vec![claim], ..Options::default() };
+/// assert_eq!(options.coverage, 0.5);
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The degree that some rule should reach everywhere; with terms that sum to 1 and the minimum as AND, one half
@@ -117,7 +136,7 @@ pub fn check(
     }
     let never_firing = rules::never_firing(model);
     let (uncovered, uncovered_complete) = all_uncovered(model, options.coverage);
-    let mut probe = behaviour::Probe::new(model, engine);
+    let mut probe = probe::Probe::new(model, engine);
     let claims = options.monotone.iter();
     let counterexamples = claims
         .flat_map(|claim| probe.counterexamples(claim))
@@ -142,6 +161,55 @@ pub fn check(
         counterexamples,
         jumps: probe.jumps(),
     })
+}
+
+/// Checks a rule set that was read and is meant to be used: all findings with their places in the text, what reading it
+/// warned of included, and the analysis, where there can be one.
+///
+/// A rule set without rules is read with a warning, for learning fills it; here it is an error.
+///
+/// # Errors
+/// As [`check`].
+///
+/// # Example: a rule set that nobody has filled yet
+/// ```
+/// use fuzzy::check;
+///
+/// let text = "
+/// fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 1], partition: [low, high]}}
+/// outputs: {fan: {range: [0, 1], partition: [slow, fast]}}
+/// rules: []
+/// ";
+/// let document = fuzzy::yaml::parse(text)?;
+/// let (findings, report) = check::document(&document, text, &check::Options::default())?;
+/// assert!(report.is_none());
+/// assert!(findings.to_string().starts_with("6:8: error[no-rules]: the list of rules is empty"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn document(
+    document: &Document,
+    text: &str,
+    options: &Options,
+) -> Result<(Findings, Option<Report>), alloc::boxed::Box<Diagnostic>> {
+    let mut findings = document.warnings.0.clone();
+    if document.model.rules.is_empty() {
+        for finding in findings.iter_mut().filter(|f| f.code == "no-rules") {
+            finding.severity = Severity::Error;
+        }
+        return Ok((Findings(findings), None));
+    }
+    let engine = match Engine::new(&document.model) {
+        Ok(engine) => engine,
+        Err(error) => return Ok((error.findings(), None)),
+    };
+    let report = check(&document.model, &engine, options)?;
+    findings.extend(report.findings(&document.model, &document.places));
+    let mut findings = Findings::locate(findings, text);
+    // What reading the file warns of is found by the analysis again.
+    findings.0.dedup();
+    Ok((findings, Some(report)))
 }
 
 /// The uncovered boxes of all outputs: those where no rule fires at all, then those where none reaches the coverage.
@@ -187,6 +255,23 @@ fn known(model: &Model, claim: &Monotone) -> Result<(), alloc::boxed::Box<Diagno
 
 impl Report {
     /// What was found, in words, the parts of the model at their places.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::{Engine, check};
+    ///
+    /// let text = "fuzzy: 1
+    /// name: fan
+    /// inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// rules: [IF heat IS high THEN speed IS fast]";
+    /// let document = fuzzy::yaml::parse(text)?;
+    /// let engine = Engine::new(&document.model)?;
+    /// let report = check::check(&document.model, &engine, &check::Options::default())?;
+    /// let findings = report.findings(&document.model, &document.places);
+    /// assert!(findings.iter().any(|finding| finding.message == "no rule uses the term `low` of `heat`"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn findings(&self, model: &Model, places: &Places) -> Vec<Diagnostic> {
         findings::of(self, model, places)

@@ -5,14 +5,27 @@ use core::ops::Range;
 
 use crate::{
     diagnostic::{Diagnostic, Severity, suggest},
-    format::{Places, VariablePlaces},
-    model::{Defuzzifier, Model, Shape, Variable},
+    model::{
+        Defuzzifier, Model, Shape, Variable,
+        document::{Places, VariablePlaces},
+    },
     rule::Name,
     tree::duplicate,
 };
 
 /// Checks all names of a model, and that outputs and their terms go together. `places` may be empty for a model that
 /// was made by code; its findings have no place then.
+///
+/// # Example
+/// ```
+/// use fuzzy::{Model, check, format::Places};
+///
+/// let rule = fuzzy::rule::parse("IF heat IS high THEN speed IS fast")?;
+/// let model = Model::builder("fan").rule(rule).build();
+/// let findings = check::names::check(&model, &Places::default());
+/// assert_eq!(findings[0].message, "there is no input `heat`");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn check(model: &Model, places: &Places) -> Vec<Diagnostic> {
     let names = Names::of(model);

@@ -7,7 +7,7 @@ use alloc::{collections::BTreeMap, string::String, vec::Vec};
 
 use serde::Serialize;
 
-use super::{axis, behaviour::Direction};
+use super::{axis, monotone::Direction};
 use crate::{
     model::{Model, Shape, Term, Variable},
     rule::{Condition, Proposition},

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::piece::{Piece, root};
 use super::polyline::Room;
 use super::{Heights, Joint};
-use crate::model::{Aggregation, Implication, Shape, Term};
+use crate::model::{Aggregation, Implication, Term};
 
 /// The terms of one output and where to cut its range for each of them.
 #[derive(Debug, Clone)]
@@ -16,16 +16,11 @@ pub(crate) struct Curves {
     cuts: Vec<(f64, Option<usize>)>,
 }
 
-/// Where a curve passes these degrees it is cut, so that no stretch hides a narrow term.
-const LEVELS: [f64; 11] = [
-    1e-14, 1e-9, 1e-6, 1e-3, 0.03, 0.2, 0.5, 0.8, 0.97, 0.999, 0.999_999,
-];
-
 impl Curves {
     pub(crate) fn new(terms: &[Term], low: f64, high: f64) -> Self {
         let mut cuts = Vec::from([(low, None), (high, None)]);
         for (index, term) in terms.iter().enumerate() {
-            for x in landmarks(&term.shape) {
+            for x in term.shape.cuts() {
                 if low < x && x < high {
                     cuts.push((x, Some(index)));
                 }
@@ -156,109 +151,5 @@ impl Curves {
             };
             cut_at_sign_change(&|x| self.degree(heights, unbounded, x) - 1.0);
         }
-    }
-}
-
-/// The places at which a shape changes its nature or passes one of the levels.
-fn landmarks(shape: &Shape) -> Vec<f64> {
-    let mut places = Vec::new();
-    match *shape {
-        Shape::Gaussian { mean, sd } => {
-            flank(&mut places, mean, -sd, gaussian_reach);
-            flank(&mut places, mean, sd, gaussian_reach);
-        }
-        Shape::Gaussian2 {
-            left_mean,
-            left_sd,
-            right_mean,
-            right_sd,
-        } => {
-            flank(&mut places, left_mean, -left_sd, gaussian_reach);
-            flank(&mut places, right_mean, right_sd, gaussian_reach);
-        }
-        Shape::Bell {
-            center,
-            width,
-            slope,
-        } => {
-            // Levels closer to 1 as well: |t|^(2 slope) is rough at the middle where the slope is low.
-            let reach = |level: f64| libm::pow((1.0 - level) / level, 0.5 / slope);
-            flank(&mut places, center, -width, reach);
-            flank(&mut places, center, width, reach);
-            for halving in 1..40 {
-                let distance = width * libm::exp2(-f64::from(halving));
-                places.extend([center - distance, center + distance]);
-            }
-        }
-        Shape::Spike { center, width } => {
-            let reach = |level: f64| -0.1 * libm::log(level);
-            flank(&mut places, center, -width, reach);
-            flank(&mut places, center, width, reach);
-        }
-        Shape::Sigmoid { inflection, slope } => sigmoid(&mut places, inflection, slope),
-        Shape::SigmoidDifference {
-            left_inflection,
-            left_slope,
-            right_inflection,
-            right_slope,
-        }
-        | Shape::SigmoidProduct {
-            left_inflection,
-            left_slope,
-            right_inflection,
-            right_slope,
-        } => {
-            sigmoid(&mut places, left_inflection, left_slope);
-            sigmoid(&mut places, right_inflection, right_slope);
-            // Where the two sigmoids are equal their difference has a kink.
-            let slopes = left_slope - right_slope;
-            places.push((left_slope * left_inflection - right_slope * right_inflection) / slopes);
-        }
-        Shape::SShape { foot: a, top: b } | Shape::ZShape { top: a, foot: b } => {
-            places.extend([a, 0.5 * (a + b), b]);
-        }
-        Shape::PiShape {
-            left,
-            left_top,
-            right_top,
-            right,
-        } => places.extend([
-            left,
-            0.5 * (left + left_top),
-            left_top,
-            right_top,
-            0.5 * (right_top + right),
-            right,
-        ]),
-        Shape::Cosine { center, width } => {
-            places.extend([center - 0.5 * width, center, center + 0.5 * width]);
-        }
-        Shape::Concave { inflection, end } => places.extend([
-            inflection,
-            end,
-            end - 5.0 * (end - inflection),
-            end - 25.0 * (end - inflection),
-        ]),
-        _ => places.extend(shape.corners().unwrap_or_default().iter().map(|c| c.0)),
-    }
-    places.retain(|x| x.is_finite());
-    places
-}
-
-/// `sqrt(-2 ln level)`: how many standard deviations from the mean a gaussian passes a level.
-fn gaussian_reach(level: f64) -> f64 {
-    libm::sqrt(-2.0 * libm::log(level))
-}
-
-fn flank(places: &mut Vec<f64>, middle: f64, width: f64, reach: impl Fn(f64) -> f64) {
-    places.push(middle);
-    places.extend(LEVELS.map(|level| middle + width * reach(level)));
-}
-
-fn sigmoid(places: &mut Vec<f64>, inflection: f64, slope: f64) {
-    if slope != 0.0 {
-        let reach = |level: f64| libm::log(level / (1.0 - level)) / slope;
-        flank(places, inflection, 1.0, reach);
-        flank(places, inflection, -1.0, reach);
     }
 }

@@ -2,8 +2,8 @@
 
 use alloc::vec::Vec;
 
-use crate::engine::operators::{larger, smaller};
 use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Sampling};
+use crate::table::operators::{larger, smaller};
 use crate::table::{self, Moment, Pair};
 use curves::Curves;
 use maxima::{Highest, Maxima};

@@ -1,7 +1,6 @@
 //! Stretches of an aggregated set, and integrals over them.
 
-use crate::engine::operators::larger;
-use crate::table::centroid;
+use crate::table::{centroid, operators::larger};
 
 /// A stretch on which the aggregated set is a straight line, or a smooth curve.
 pub(crate) struct Piece<'a> {

@@ -9,8 +9,8 @@ use alloc::vec::Vec;
 
 use super::piece::Piece;
 use super::{Heights, Joint};
-use crate::engine::operators::smaller;
 use crate::model::{Aggregation, Implication, Term};
+use crate::table::operators::smaller;
 
 /// The terms of one output, as lines between cuts.
 #[derive(Debug, Clone, Default)]

@@ -29,6 +29,18 @@ pub use explain::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRul
 pub use problem::{CompileError, Problem};
 
 /// A compiled model. It holds indices only, never changes, and can be shared between threads.
+///
+/// # Example: from a model to an answer
+/// ```
+/// use fuzzy::Engine;
+///
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// let engine = Engine::new(&model)?;
+/// let outcome = engine.evaluate(&[0.1, 0.1])?[0];
+/// assert!((outcome.value().unwrap() - 50.0).abs() < 1e-9);
+/// assert_eq!(outcome.dominant, Some(7)); // IF margin IS low AND spread IS medium THEN risk IS medium
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Engine {
     inputs: Vec<Input>,
@@ -60,6 +72,20 @@ struct CompiledOutput {
 }
 
 /// What an evaluation works in: made once by [`Engine::scratch`], used again and again.
+///
+/// # Example: many evaluations, no allocation
+/// ```
+/// use fuzzy::{Engine, engine::Outcome};
+///
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// let engine = Engine::new(&model)?;
+/// let (mut scratch, mut outcomes) = (engine.scratch(), [Outcome::default()]);
+/// for spread in [0.1, 0.2, 0.3] {
+///     engine.evaluate_with(&mut scratch, &[0.1, spread], &mut outcomes)?;
+///     assert!(outcomes[0].value().is_some());
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Scratch {
     table: Rooms<Vec<f64>, Vec<Partial>, Vec<Strongest>>,
@@ -69,21 +95,55 @@ pub struct Scratch {
 
 impl Engine {
     /// The place of an input's value among the inputs.
+    ///
+    /// # Example
+    /// ```
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = fuzzy::Engine::new(&model)?;
+    /// let mut values = [0.1; 2];
+    /// values[engine.input("spread").ok_or("no such input")?] = 0.2;
+    /// assert_eq!(values, [0.1, 0.2]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| &*input.name == name)
     }
 
     /// The place of an output among the outcomes.
+    ///
+    /// # Example
+    /// ```
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = fuzzy::Engine::new(&model)?;
+    /// assert_eq!((engine.output("risk"), engine.output("margin")), (Some(0), None));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn output(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| &*output.name == name)
     }
 
     /// The names of the inputs, in the order of their values.
+    ///
+    /// # Example
+    /// ```
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = fuzzy::Engine::new(&model)?;
+    /// assert!(engine.input_names().eq(["margin", "spread"]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn input_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.inputs.iter().map(|input| &*input.name)
     }
 
     /// The names of the outputs, in the order of their outcomes.
+    ///
+    /// # Example
+    /// ```
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = fuzzy::Engine::new(&model)?;
+    /// assert!(engine.output_names().eq(["risk"]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn output_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.outputs.iter().map(|output| &*output.name)
     }
@@ -99,6 +159,17 @@ impl Engine {
     }
 
     /// Room to evaluate in, for [`Engine::evaluate_with`]; one a thread.
+    ///
+    /// # Example
+    /// ```
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = fuzzy::Engine::new(&model)?;
+    /// let mut scratch = engine.scratch();
+    /// let mut outcomes = [Default::default()];
+    /// engine.evaluate_with(&mut scratch, &[0.3, 0.1], &mut outcomes)?;
+    /// assert!(outcomes[0].value().unwrap() < 10.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn scratch(&self) -> Scratch {
         let sizes = self.arrays.sizes;
         let places = sizes.heights as usize;
@@ -131,6 +202,21 @@ impl Engine {
     ///
     /// # Errors
     /// Not one value for each input; or no rule fired for an output whose author made that an error.
+    ///
+    /// # Example: an answer, none, and a value out of range
+    /// ```
+    /// use fuzzy::engine::State;
+    ///
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = fuzzy::Engine::new(&model)?;
+    /// let high = engine.evaluate(&[0.05, 0.2])?[0];
+    /// assert!(high.value().unwrap() > 90.0 && !high.clamped);
+    /// // Here the paper has no rule, and nothing is made up.
+    /// assert_eq!(engine.evaluate(&[0.0, 0.0])?[0].state, State::NoRuleFired);
+    /// // A value outside the range counts as its end.
+    /// assert!(engine.evaluate(&[0.05, 7.0])?[0].clamped);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn evaluate(&self, inputs: &[f64]) -> Result<Vec<Outcome>, EvaluateError> {
         let mut outcomes = vec![Outcome::default(); self.outputs.len()];
         self.evaluate_with(&mut self.scratch(), inputs, &mut outcomes)?;
@@ -141,6 +227,19 @@ impl Engine {
     ///
     /// # Errors
     /// As [`Engine::evaluate`]; and not one place for each output.
+    ///
+    /// # Example: in a loop that must not allocate
+    /// ```
+    /// use fuzzy::engine::Outcome;
+    ///
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = fuzzy::Engine::new(&model)?;
+    /// let mut scratch = engine.scratch();
+    /// let mut outcomes = [Outcome::default()];
+    /// engine.evaluate_with(&mut scratch, &[0.05, 0.2], &mut outcomes)?;
+    /// assert_eq!(outcomes[0], engine.evaluate(&[0.05, 0.2])?[0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn evaluate_with(
         &self,
         scratch: &mut Scratch,

@@ -1,10 +1,24 @@
 //! Why a model makes no engine.
 
-use alloc::{string::String, vec::Vec};
+use alloc::{
+    string::{String, ToString},
+    vec::Vec,
+};
 
-use crate::model::ShapeError;
+use crate::{
+    diagnostic::{Diagnostic, Findings},
+    model::ShapeError,
+};
 
 /// Why a model makes no engine: every problem found.
+///
+/// # Example
+/// ```
+/// use fuzzy::{Engine, Model};
+///
+/// let error = Engine::new(&Model::builder("empty").build()).unwrap_err();
+/// assert_eq!(error.to_string(), "the model has no outputs");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CompileError {
     /// The problems, in the order of the model; at least one.
@@ -24,6 +38,24 @@ impl core::fmt::Display for CompileError {
 }
 
 impl core::error::Error for CompileError {}
+
+impl CompileError {
+    /// The problems as findings of the rule set's text. The engine knows no places, so they have none.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::{Engine, Model};
+    ///
+    /// let error = Engine::new(&Model::builder("empty").build()).unwrap_err();
+    /// assert_eq!(error.findings().to_string(), "error[not-compiled]: the model has no outputs");
+    /// ```
+    #[must_use]
+    pub fn findings(&self) -> Findings {
+        let finding =
+            |problem: &Problem| Diagnostic::error("not-compiled", 0..0, problem.to_string());
+        Findings(self.problems.iter().map(finding).collect())
+    }
+}
 
 /// One reason why a model makes no engine. `rule` is an index into [`Model::rules`](crate::Model::rules); messages count from 1.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

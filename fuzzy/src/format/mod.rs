@@ -8,8 +8,6 @@ use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
-use core::ops::Range;
-
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::{
@@ -28,49 +26,24 @@ mod variables;
 mod words;
 mod write;
 
+pub use crate::model::document::{Document, Places, VariablePlaces};
 pub use schema::schema;
-pub(crate) use shapes::parameters as shape_parameters;
 
 /// The version of the format this library reads and writes.
 pub const VERSION: u64 = 1;
-
-/// A model as it was read, and where its parts stand in the text.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Document {
-    /// What the author wrote.
-    pub model: Model,
-    /// Where its parts stand.
-    pub places: Places,
-    /// What does not keep the model from working.
-    pub warnings: Findings,
-}
-
-/// Where the parts of a model stand in its text, in the order of the model.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Places {
-    /// The inputs.
-    pub inputs: Vec<VariablePlaces>,
-    /// The outputs.
-    pub outputs: Vec<VariablePlaces>,
-    /// The key `rules`.
-    pub rules_key: Range<usize>,
-    /// The rules.
-    pub rules: Vec<Range<usize>>,
-}
-
-/// Where the parts of a variable stand.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct VariablePlaces {
-    /// Its name.
-    pub name: Range<usize>,
-    /// The names of its terms.
-    pub terms: Vec<Range<usize>>,
-}
 
 /// Reads a model from a tree. The findings of all of it are told at once, but those that follow from another one are not.
 ///
 /// # Errors
 /// All findings, where one of them is an error. Without a text at hand they have no line and column.
+///
+/// # Example
+/// ```
+/// let tree = fuzzy::yaml::read("fuzzy: 2")?;
+/// let findings = fuzzy::format::read(&tree).unwrap_err();
+/// assert_eq!(findings[0].code, "unsupported-version");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let mut places = Places::default();
@@ -170,6 +143,13 @@ fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Op
 }
 
 /// The model as a tree; reading it again gives the same model.
+///
+/// # Example
+/// ```
+/// let model = fuzzy::Model::builder("fan").build();
+/// let tree = fuzzy::format::write(&model);
+/// assert!(fuzzy::yaml::to_text(&tree).starts_with("fuzzy: 1\nname: fan\n"));
+/// ```
 #[must_use]
 pub fn write(model: &Model) -> Node {
     write::model(model)

@@ -7,11 +7,13 @@ use alloc::{format, string::String, vec::Vec};
 
 use super::{
     VERSION, rules,
-    shapes::{FORMS, Form},
     variables::{INPUT_KEYS, OUTPUT_KEYS},
     words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, IMPLICATIONS},
 };
-use crate::tree::Node;
+use crate::{
+    model::{Form, Role, Shape},
+    tree::Node,
+};
 
 /// The schema as a tree; `rules/schema.json` is what serde makes of it.
 ///
@@ -297,7 +299,7 @@ fn term() -> Node {
         ("linear", linear),
         height,
     ];
-    let properties = FORMS
+    let properties = Shape::FORMS
         .iter()
         .map(|form| (form.name, shape(form)))
         .chain(others);
@@ -313,20 +315,21 @@ fn term() -> Node {
 
 /// The parameters of a shape, in each spelling it has.
 fn shape(form: &Form) -> Node {
-    let properties = form.parameters.iter().map(|name| {
+    let properties = form.parameters.iter().map(|(name, role)| {
         let mut entries = Vec::from([("type", Node::text("number"))]);
-        if matches!(*name, "sd" | "left_sd" | "right_sd" | "width") {
+        if *role == Role::Positive {
             entries.push(("exclusiveMinimum", Node::number(0.0)));
         }
         (*name, Node::mapping(entries))
     });
-    let by_name = Node::mapping(object("By name", properties, form.parameters));
+    let names = form.names();
+    let by_name = Node::mapping(object("By name", properties, &names));
     let mut options = Vec::new();
-    if form.as_list {
-        let order = format!("[{}], from left to right", form.parameters.join(", "));
-        options.push(numbers(&order, form.parameters.len()));
+    if form.as_list() {
+        let order = format!("[{}], from left to right", names.join(", "));
+        options.push(numbers(&order, names.len()));
     }
-    if form.parameters.len() == 1 {
+    if names.len() == 1 {
         options.push(number("Its one parameter"));
     }
     options.push(by_name);
@@ -417,6 +420,16 @@ mod tests {
             std::fs::write(path, &made).unwrap();
         }
         assert_eq!(std::fs::read_to_string(path).unwrap(), made);
+    }
+
+    #[test]
+    fn the_guide_has_a_line_for_every_shape() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/rule-sets.md");
+        let guide = std::fs::read_to_string(path).unwrap();
+        let names = Shape::FORMS.iter().map(|form| form.name);
+        for name in names.chain(["piecewise", "linear"]) {
+            assert!(guide.contains(&format!("\n| `{name}` |")), "{name}");
+        }
     }
 
     #[test]

@@ -4,6 +4,8 @@ use proptest::{collection::vec, option, prelude::*, sample::select};
 
 use super::*;
 use crate::{
+    Engine,
+    engine::State,
     model::{
         Beaten, NoRuleFires, Operators, Output, Rule, Sampling, SamplingRule, Shape, Term, Variable,
     },
@@ -98,6 +100,11 @@ fn any_variable(name: String) -> impl Strategy<Value = Variable> {
                 terms,
             }
         })
+}
+
+/// A finite number, near the ranges that variables have or anywhere.
+fn any_finite() -> impl Strategy<Value = f64> {
+    prop_oneof![3 => place(), 1 => any::<f64>().prop_filter("finite", |x| x.is_finite())]
 }
 
 fn any_operators() -> impl Strategy<Value = Operators> {
@@ -207,6 +214,36 @@ proptest! {
         let text = crate::yaml::to_string(&model);
         if let Ok(document) = crate::yaml::parse(&text) {
             prop_assert_eq!(&document.model, &model, "{}", text);
+        }
+    }
+
+    /// Whatever compiles answers: a value in the output's range, or that no rule fires, never a silent number.
+    #[test]
+    fn a_model_that_compiles_answers_every_finite_input(
+        model in any_model(),
+        points in vec(vec(any_finite(), 3), 8),
+    ) {
+        let Ok(engine) = Engine::new(&model) else {
+            return Ok(());
+        };
+        let Output { variable, when_no_rule_fires, .. } = &model.outputs[0];
+        for point in &points {
+            let outcome = match engine.evaluate(&point[..model.inputs.len()]) {
+                Ok(outcomes) => outcomes[0],
+                Err(_) => {
+                    prop_assert_eq!(*when_no_rule_fires, NoRuleFires::Error);
+                    continue;
+                }
+            };
+            match (outcome.state, when_no_rule_fires) {
+                (State::Defined(value), _) => {
+                    prop_assert!((variable.low..=variable.high).contains(&value), "{value}");
+                    prop_assert!(outcome.coverage > 0.0);
+                }
+                (State::NoRuleFired, NoRuleFires::Undefined) => {}
+                (State::Default(value), NoRuleFires::Value(written)) => prop_assert_eq!(value, *written),
+                (state, _) => prop_assert!(false, "{:?} at {:?}", state, point),
+            }
         }
     }
 }

@@ -8,13 +8,7 @@
 //!
 //! Sums are made in fixed point, so the order of the samples changes nothing, not a bit.
 
-use alloc::{
-    boxed::Box,
-    collections::BTreeMap,
-    string::{String, ToString},
-    vec,
-    vec::Vec,
-};
+use alloc::{boxed::Box, collections::BTreeMap, string::ToString, vec, vec::Vec};
 
 use crate::{
     model::{Model, Shape, Variable},
@@ -22,133 +16,11 @@ use crate::{
 };
 
 mod resolve;
+mod settings;
 #[cfg(test)]
 mod tests;
 
-/// What decides between the consequents that samples of one antecedent vote for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Resolution {
-    /// The consequent of the one vote with the highest degree wins: Wang and Mendel's, and the FLAGRED paper's.
-    /// One odd sample can decide. The confidence of a rule is that degree.
-    #[default]
-    Strongest,
-    /// The consequent with the highest sum of degrees wins. The confidence is its share of the sum of all degrees.
-    Heaviest,
-    /// The mean of the output over the samples of the antecedent, each weighted with the product of its input
-    /// memberships, decides: the term it belongs to most. Where no term holds it, the term whose peak is nearest. The
-    /// confidence is the share of that weight whose own values say the same term.
-    Mean,
-}
-
-/// Which way the output must go when an input rises.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// It never falls.
-    Rising,
-    /// It never rises.
-    Falling,
-}
-
-/// What is learned, and how.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Settings {
-    /// What decides where samples disagree.
-    pub resolution: Resolution,
-    /// An antecedent with fewer samples makes no rule; 0 and 1 take every one.
-    pub min_support: u64,
-    /// A rule with a lower confidence is left out.
-    pub min_degree: f64,
-    /// Complete the rules: an antecedent without one takes what the nearest one says (steps between terms counted,
-    /// the highest of equally near ones), and says so in its note.
-    pub complete: bool,
-    /// Inputs on which the output must be monotone. Neighbouring antecedents that contradict it are averaged until
-    /// none does.
-    pub monotone: Vec<(String, Direction)>,
-    /// A condition that every learned rule is joined to by AND; its inputs are not learned over, and a sample counts
-    /// as much as it fulfils it.
-    pub given: Option<Condition>,
-}
-
-/// Why nothing can be learned with a model and settings.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum LearnError {
-    /// The model has not exactly one output.
-    #[error("rules are learned for one output, but the model has {outputs}")]
-    Outputs {
-        /// How many it has.
-        outputs: usize,
-    },
-    /// A variable without terms.
-    #[error("`{variable}` has no terms")]
-    NoTerms {
-        /// The variable.
-        variable: String,
-    },
-    /// A setting names what is no input of the model, or not one that is learned over.
-    #[error("`{name}` is no input that rules are learned over")]
-    NoInput {
-        /// The name.
-        name: String,
-    },
-    /// The given condition names a term that its input does not have.
-    #[error("`{variable}` has no term `{term}`")]
-    NoTerm {
-        /// The input.
-        variable: String,
-        /// The term.
-        term: String,
-    },
-    /// The given condition is more than propositions joined by AND.
-    #[error("the given condition is not made of `input IS term` joined by AND")]
-    Given,
-}
-
-/// Why a sample was not learned from.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Refusal {
-    /// Not one value for each variable.
-    #[error("there are {got} values for {expected} variables")]
-    WrongNumber {
-        /// Inputs and output.
-        expected: usize,
-        /// The values given.
-        got: usize,
-    },
-    /// A value that is NaN or infinite.
-    #[error("`{variable}` is not a finite number")]
-    NotFinite {
-        /// The variable.
-        variable: String,
-    },
-    /// A value outside the range of its variable.
-    #[error("`{variable}` is {value}, outside its range from {low} to {high}")]
-    OutOfRange {
-        /// The variable.
-        variable: String,
-        /// The value.
-        value: f64,
-        /// The lower end of the range.
-        low: f64,
-        /// The upper end of the range.
-        high: f64,
-    },
-    /// A value that belongs to no term.
-    #[error("`{variable}` is {value}, which belongs to none of its terms")]
-    NoTerm {
-        /// The variable.
-        variable: String,
-        /// The value.
-        value: f64,
-    },
-    /// A weight that is not a finite number above 0.
-    #[error("the weight {weight} is not a finite number above 0")]
-    Weight {
-        /// The weight.
-        weight: f64,
-    },
-}
+pub use settings::{Direction, LearnError, Refusal, Resolution, Settings};
 
 /// Collects samples, and makes rules of them.
 ///
@@ -256,6 +128,21 @@ impl Learner {
     /// # Errors
     ///
     /// Not one output, a variable without terms, or settings that name what the model does not have.
+    ///
+    /// # Example
+    /// ```
+    /// # let text = "fuzzy: 1
+    /// # name: fan
+    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// # rules: []";
+    /// # let model = fuzzy::yaml::parse(text)?.model;
+    /// use fuzzy::learn::{Learner, Settings};
+    ///
+    /// let learner = Learner::new(&model, Settings::default())?;
+    /// assert_eq!(learner.samples(), 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(model: &Model, settings: Settings) -> Result<Learner, LearnError> {
         let [output] = model.outputs.as_slice() else {
             return Err(LearnError::Outputs {
@@ -302,6 +189,24 @@ impl Learner {
     /// # Errors
     ///
     /// Why it was refused; the learner goes on without it.
+    ///
+    /// # Example
+    /// ```
+    /// # let text = "fuzzy: 1
+    /// # name: fan
+    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// # rules: []";
+    /// # let model = fuzzy::yaml::parse(text)?.model;
+    /// use fuzzy::learn::{Learner, Settings};
+    ///
+    /// let mut learner = Learner::new(&model, Settings::default())?;
+    /// learner.add(&[95.0, 8.5], 1.0)?;
+    /// let refusal = learner.add(&[95.0, 12.0], 1.0).unwrap_err();
+    /// assert_eq!(refusal.to_string(), "`speed` is 12, outside its range from 0 to 9");
+    /// assert_eq!(learner.samples(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn add(&mut self, values: &[f64], weight: f64) -> Result<(), Refusal> {
         let Some((output, inputs)) = values
             .split_last()
@@ -375,11 +280,47 @@ impl Learner {
     }
 
     /// The number of samples learned from so far.
+    ///
+    /// # Example
+    /// ```
+    /// # let text = "fuzzy: 1
+    /// # name: fan
+    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// # rules: []";
+    /// # let model = fuzzy::yaml::parse(text)?.model;
+    /// use fuzzy::learn::{Learner, Settings};
+    ///
+    /// let mut learner = Learner::new(&model, Settings::default())?;
+    /// learner.add(&[95.0, 8.5], 1.0)?;
+    /// assert_eq!(learner.samples(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
     /// Makes the rules.
+    ///
+    /// # Example: two samples that contradict each other
+    /// ```
+    /// # let text = "fuzzy: 1
+    /// # name: fan
+    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// # rules: []";
+    /// # let model = fuzzy::yaml::parse(text)?.model;
+    /// use fuzzy::learn::{Learner, Settings};
+    ///
+    /// let mut learner = Learner::new(&model, Settings::default())?;
+    /// for (heat, speed) in [(5.0, 1.0), (95.0, 8.5), (90.0, 2.0)] {
+    ///     learner.add(&[heat, speed], 1.0)?;
+    /// }
+    /// let learned = learner.finish();
+    /// assert_eq!((learned.model.rules.len(), learned.conflicts, learned.missing), (2, 1, 0));
+    /// assert_eq!(learned.model.rules[1].rule.to_string(), "IF heat IS high THEN speed IS fast");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn finish(&self) -> Learned {
         resolve::resolve(self)
     }

@@ -1,3 +1,5 @@
+use alloc::string::String;
+
 use super::*;
 use crate::Engine;
 use alloc::format;

@@ -105,6 +105,17 @@ impl Axis {
     }
 
     /// The coordinate of a point: `low + i (high - low) / (points - 1)`; the last is `high` itself.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 11)?;
+    /// let margin = &grid.axes()[0];
+    /// assert_eq!((margin.coordinate(0), margin.coordinate(3), margin.coordinate(10)), (0.0, 0.15, 0.5));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn coordinate(&self, i: usize) -> f64 {
         self.scale().coordinate(i)
     }
@@ -124,6 +135,18 @@ impl Axis {
     }
 
     /// The points around `x` and how far it lies between them, in [0, 1]; beyond the ends, the end.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 3)?; // points at 0, 0.25 and 0.5
+    /// let margin = &grid.axes()[0];
+    /// assert_eq!(margin.locate(0.3125), (1, 0.25));
+    /// assert_eq!(margin.locate(9.0), (1, 1.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn locate(&self, x: f64) -> (usize, f64) {
         self.scale().locate(x)
     }
@@ -134,6 +157,17 @@ impl Grid {
     ///
     /// # Errors
     /// Fewer than 2 points; more cells than can be counted.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 11)?;
+    /// assert_eq!(grid.cells(), 11 * 11);
+    /// assert!(Grid::new(&engine, 1).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(engine: &Engine, points: usize) -> Result<Self, GridError> {
         let axes = engine
             .ranges()
@@ -157,6 +191,16 @@ impl Grid {
     ///
     /// # Errors
     /// No such axis; fewer than 2 points; more cells than can be counted.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 11)?.points("spread", 3)?;
+    /// assert_eq!(grid.cells(), 11 * 3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn points(mut self, name: &str, points: usize) -> Result<Self, GridError> {
         let axis = self.axes.iter_mut().find(|axis| &*axis.name == name);
         let axis = axis.ok_or_else(|| GridError::NoAxis { name: name.into() })?;
@@ -168,6 +212,17 @@ impl Grid {
     ///
     /// # Errors
     /// No such axis, or the value is not a finite number.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let line = Grid::new(&engine, 11)?.fix("spread", 0.1)?;
+    /// assert_eq!((line.cells(), line.axes().len()), (11, 1));
+    /// assert_eq!(line.clone().fix("battery", 1.0).unwrap_err().to_string(), "`battery` is no axis of the grid");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn fix(mut self, name: &str, value: f64) -> Result<Self, GridError> {
         if !value.is_finite() {
             return Err(GridError::NotFinite {
@@ -202,21 +257,62 @@ impl Grid {
     }
 
     /// The axes, in the order of the engine's inputs.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 11)?;
+    /// assert_eq!(&*grid.axes()[1].name, "spread");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
     /// The inputs that have one value all over the grid.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let line = Grid::new(&engine, 11)?.fix("spread", 0.1)?;
+    /// assert_eq!((&*line.fixed()[0].name, line.fixed()[0].value), ("spread", 0.1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn fixed(&self) -> &[Fixed] {
         &self.fixed
     }
 
     /// The number of cells.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 11)?;
+    /// let corners = (0..grid.cells()).filter(|&cell| grid.indices(cell).iter().all(|i| i % 10 == 0));
+    /// assert_eq!(corners.count(), 4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn cells(&self) -> usize {
         self.cells
     }
 
     /// The point's place on each axis.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 11)?;
+    /// assert_eq!(grid.indices(25), [2, 3]); // the last axis runs fastest
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn indices(&self, cell: usize) -> Vec<usize> {
         let mut rest = cell;
         let mut indices: Vec<usize> = self
@@ -234,6 +330,17 @@ impl Grid {
     }
 
     /// The cell at a place on each axis; `None` off the grid.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 11)?;
+    /// assert_eq!(grid.cell(&[2, 3]), Some(25));
+    /// assert_eq!(grid.cell(&[2, 11]), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn cell(&self, indices: &[usize]) -> Option<usize> {
         if indices.len() != self.axes.len() {
             return None;
@@ -247,6 +354,16 @@ impl Grid {
     }
 
     /// A cell's coordinate on each axis.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 11)?;
+    /// assert_eq!(grid.point(25), [0.1, 0.15]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn point(&self, cell: usize) -> Vec<f64> {
         let indices = self.indices(cell);
         let axes = self.axes.iter().zip(indices);
@@ -257,6 +374,17 @@ impl Grid {
     /// the grid's ends, at the end.
     ///
     /// `None` where a cell that counts there has no value, or where the number of coordinates is wrong.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::Grid};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let grid = Grid::new(&engine, 3)?;
+    /// let sum = |cell| Some(grid.point(cell).iter().sum());
+    /// assert_eq!(grid.interpolate(sum, &[0.125, 0.375]), Some(0.5));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn interpolate(&self, value: impl Fn(usize) -> Option<f64>, point: &[f64]) -> Option<f64> {
         if point.len() != self.axes.len() || point.iter().any(|x| x.is_nan()) {
             return None;

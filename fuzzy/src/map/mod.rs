@@ -117,6 +117,17 @@ impl DecisionMap {
     ///
     /// # Errors
     /// The grid was laid over another engine, or there is no such output.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// assert_eq!(map.grid().cells(), 51 * 51);
+    /// assert!(DecisionMap::new(&engine, Grid::new(&engine, 51)?, 1).is_err(), "there is no second output");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(engine: &Engine, grid: Grid, output: usize) -> Result<Self, EvaluateError> {
         let inputs = engine.input_names().len();
         let named = grid.axes().len() + grid.fixed().len();
@@ -170,42 +181,131 @@ impl DecisionMap {
     }
 
     /// The grid.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// assert_eq!(map.grid().point(0), [0.0, 0.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
     /// The output's name.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// assert_eq!((map.output(), map.range()), ("risk", (0.0, 100.0)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn output(&self) -> &str {
         &self.output
     }
 
     /// The output's range.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let (low, high) = map.range();
+    /// let share = |cell| Some((map.value(cell)? - low) / (high - low));
+    /// assert!(share(51 * 51 - 1).is_some_and(|share| share < 0.1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn range(&self) -> (f64, f64) {
         self.range
     }
 
     /// The value of a cell; `None` where there is none, and off the grid.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// assert_eq!(map.value(0), None); // no margin, no spread: the paper has no rule
+    /// assert!(map.value(51 * 51 - 1).is_some_and(|risk| risk < 10.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn value(&self, cell: usize) -> Option<f64> {
         self.values.get(cell).copied().filter(|v| !v.is_nan())
     }
 
     /// The largest firing strength of a rule of this output in a cell, in [0, 1].
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// // The corner that the paper marks: no rule reaches one half there.
+    /// let corner = map.grid().cell(&[14, 4]).ok_or("off the grid")?;
+    /// assert!(map.coverage(corner) < 0.5);
+    /// assert_eq!(map.coverage(51 * 51 - 1), 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn coverage(&self, cell: usize) -> f64 {
         self.coverage.get(cell).copied().unwrap_or(0.0)
     }
 
     /// The rule of the largest firing strength in a cell, as its index in the model.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let calm = map.grid().cell(&[50, 0]).and_then(|cell| map.dominant(cell));
+    /// assert_eq!(calm, Some(1)); // IF margin IS high AND spread IS low THEN risk IS very_low
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn dominant(&self, cell: usize) -> Option<usize> {
         let rule = self.dominant.get(cell)?.checked_sub(1)?;
         Some(rule as usize)
     }
 
     /// The map read N-linearly between its cells; `None` where a cell that counts there has no value.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// let between = map.interpolate(&[0.123, 0.234]).ok_or("not covered")?;
+    /// let exact = engine.evaluate(&[0.123, 0.234])?[0].value().ok_or("not covered")?;
+    /// assert!((between - exact).abs() < 2.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn interpolate(&self, point: &[f64]) -> Option<f64> {
         self.grid.interpolate(|cell| self.value(cell), point)
     }
 
     /// What a cell says, as an evaluation there would.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
+    /// assert_eq!(map.state(0), engine.evaluate(&[0.0, 0.0])?[0].state);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn state(&self, cell: usize) -> State {
         match (self.value(cell), self.dominant(cell)) {
             (Some(value), Some(_)) => State::Defined(value),

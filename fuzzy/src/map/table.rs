@@ -77,6 +77,16 @@ impl DecisionTable {
     ///
     /// # Errors
     /// The grid is not one over the engine, there is no such output, or measuring takes too many cells.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// assert!(table.error() > 0.0, "it is measured, and no map is flat");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(engine: &Engine, grid: Grid, output: usize) -> Result<Self, TableError> {
         let mut finer = grid.clone();
         for axis in grid.axes() {
@@ -103,6 +113,17 @@ impl DecisionTable {
     ///
     /// # Errors
     /// As [`DecisionTable::new`]; a bound that is not over 0; no table of up to 2^18 cells is good enough.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let table = DecisionTable::within(&engine, 0, 10.0)?;
+    /// assert!(table.error() <= 10.0);
+    /// assert!(DecisionTable::within(&engine, 0, 0.0).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn within(engine: &Engine, output: usize, bound: f64) -> Result<Self, TableError> {
         if bound.is_nan() || bound <= 0.0 {
             return Err(TableError::Bound { bound });
@@ -128,6 +149,17 @@ impl DecisionTable {
 
     /// The value at a point with a coordinate for each axis of the grid, beyond its ends that of the end;
     /// `None` where a grid point around it has none, and for NaN.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// assert!(table.value(&[0.1, 0.2]).unwrap() > 90.0);
+    /// assert_eq!(table.value(&[0.0, 0.0]), None); // no rule speaks there
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn value(&self, point: &[f64]) -> Option<f64> {
         let value = |cell: usize| self.values.get(cell).copied().filter(|v| !v.is_nan());
         self.grid.interpolate(value, point)
@@ -135,16 +167,48 @@ impl DecisionTable {
 
     /// The largest distance from the engine that was measured, in the unit of the output: on a grid four times
     /// as fine on each axis, wherever both have a value. It is measured, not proven.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let coarse = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// let fine = DecisionTable::new(&engine, Grid::new(&engine, 21)?, 0)?;
+    /// assert!(fine.error() < coarse.error());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn error(&self) -> f64 {
         self.error
     }
 
     /// The grid.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// assert_eq!(table.grid().cells(), 11 * 11);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
     /// The values on the cells of the grid, to be written into firmware; `None` where there is none.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = Engine::new(&model)?;
+    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 3)?, 0)?;
+    /// let shares: Vec<Option<u8>> = table.values().map(|risk| Some((risk? * 2.55) as u8)).collect();
+    /// assert_eq!((shares.len(), shares[0]), (9, None));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn values(&self) -> impl ExactSizeIterator<Item = Option<f64>> {
         self.values.iter().map(|v| (!v.is_nan()).then_some(*v))
     }

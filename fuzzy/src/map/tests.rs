@@ -1,64 +1,12 @@
 use alloc::string::ToString;
 
 use super::*;
-use crate::model::{Model, Output, Shape, Variable};
-use crate::rule::{Condition, Rule};
+use crate::model::Model;
 
 /// The rules of the published method, unweighted: margin and spread to risk.
 fn published() -> Model {
-    let triangle = |left, peak, right| Shape::Triangle { left, peak, right };
-    let mut model = Model::builder("published")
-        .input(
-            Variable::new("margin", 0.0, 0.5)
-                .term("very_low", triangle(0.0, 0.0, 0.1))
-                .term("low", triangle(0.0, 0.1, 0.2))
-                .term("medium", triangle(0.1, 0.2, 0.3))
-                .term(
-                    "high",
-                    Shape::RightShoulder {
-                        foot: 0.2,
-                        top: 0.3,
-                    },
-                ),
-        )
-        .input(
-            Variable::new("spread", 0.0, 0.5)
-                .term("low", triangle(0.0, 0.0, 0.1))
-                .term("medium", triangle(0.0, 0.1, 0.2))
-                .term(
-                    "high",
-                    Shape::RightShoulder {
-                        foot: 0.1,
-                        top: 0.2,
-                    },
-                ),
-        )
-        .output(Output::new(
-            Variable::new("risk", 0.0, 100.0)
-                .unit("%")
-                .term("very_low", triangle(0.0, 0.0, 25.0))
-                .term("low", triangle(0.0, 25.0, 50.0))
-                .term("medium", triangle(25.0, 50.0, 75.0))
-                .term("high", triangle(50.0, 75.0, 100.0))
-                .term("very_high", triangle(75.0, 100.0, 100.0)),
-        ))
-        .build();
-    for (margin, spread, risk) in [
-        ("high", "high", "very_low"),
-        ("high", "low", "very_low"),
-        ("high", "medium", "very_low"),
-        ("medium", "high", "very_low"),
-        ("medium", "low", "very_low"),
-        ("medium", "medium", "low"),
-        ("low", "high", "very_high"),
-        ("low", "medium", "medium"),
-        ("very_low", "high", "very_high"),
-        ("very_low", "medium", "very_high"),
-    ] {
-        let condition = Condition::is("margin", margin).and(Condition::is("spread", spread));
-        model.rules.push(Rule::new(condition, "risk", risk).into());
-    }
-    model
+    let text = include_str!("../../../rules/flagred-paper.yaml");
+    crate::yaml::parse(text).unwrap().model
 }
 
 fn map(points: usize) -> DecisionMap {

@@ -5,12 +5,26 @@ use alloc::{string::String, vec::Vec};
 use crate::rule;
 
 mod builder;
-mod shape;
+pub(crate) mod document;
+pub(crate) use crate::shape::{Form, Parts, Role};
+pub use crate::shape::{Shape, ShapeError};
 pub use crate::table::{Aggregation, Conjunction, Disjunction, Implication};
 pub use builder::ModelBuilder;
-pub use shape::{Shape, ShapeError};
 
 /// A rule set: inputs, outputs, operators and rules.
+///
+/// # Example: plain data, from a text and back
+/// ```
+/// let text = "fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// rules: [IF heat IS high THEN speed IS fast]";
+/// let mut model = fuzzy::yaml::parse(text)?.model;
+/// model.rules[0].rule.weight = 0.5;
+/// assert!(fuzzy::yaml::to_string(&model).contains("IF heat IS high THEN speed IS fast WITH 0.5"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     /// The name of the rule set.
@@ -69,6 +83,25 @@ pub struct Output {
 }
 
 /// What an output is where no rule fires.
+///
+/// # Example: one rule, and a value that it says nothing of
+/// ```
+/// use fuzzy::engine::State;
+///
+/// let text = |what: &str| format!("fuzzy: 1
+/// name: fan
+/// inputs: {{heat: {{range: [0, 100], terms: {{high: {{right_shoulder: [60, 90]}}}}}}}}
+/// outputs: {{speed: {{range: [0, 9], partition: [slow, fast], when_no_rule_fires: {what}}}}}
+/// rules: [IF heat IS high THEN speed IS fast]");
+/// let at_20 = |what: &str| -> Result<State, Box<dyn std::error::Error>> {
+///     let model = fuzzy::yaml::parse(&text(what))?.model;
+///     Ok(fuzzy::Engine::new(&model)?.evaluate(&[20.0])?[0].state)
+/// };
+/// assert_eq!(at_20("undefined")?, State::NoRuleFired);
+/// assert_eq!(at_20("{value: 0}")?, State::Default(0.0));
+/// assert!(at_20("error").is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NoRuleFires {
     /// The output is undefined there, and says so.
@@ -117,6 +150,16 @@ pub enum SamplingRule {
 }
 
 /// The operators that all rules of a model share.
+///
+/// # Example
+/// ```
+/// use fuzzy::model::{Aggregation, Conjunction, Operators};
+///
+/// // Mamdani's: minimum, maximum, minimum, maximum.
+/// assert_eq!(Operators::default().and, Conjunction::Minimum);
+/// let summing = Operators { aggregation: Aggregation::Sum, ..Operators::default() };
+/// assert_eq!(summing.and, Conjunction::Minimum);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Operators {
     /// AND.

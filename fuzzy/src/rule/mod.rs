@@ -87,6 +87,13 @@ pub struct Consequent {
 
 impl Rule {
     /// Whether a word, in any case, is one of the rule language, so that a name equal to it stands in quotes.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::rule::Rule;
+    ///
+    /// assert!(Rule::is_keyword("then") && !Rule::is_keyword("margin"));
+    /// ```
     #[must_use]
     pub fn is_keyword(word: &str) -> bool {
         let keywords = ["IF", "IS", "AND", "OR", "THEN", "WITH"];
@@ -124,6 +131,15 @@ impl Condition {
     }
 
     /// Calls `visit` on every proposition, from left to right.
+    ///
+    /// # Example
+    /// ```
+    /// let rule = fuzzy::rule::parse("IF heat IS high AND NOT (sun IS up OR heat IS low) THEN speed IS fast")?;
+    /// let mut asked = Vec::new();
+    /// rule.condition.visit(&mut |proposition| asked.push(proposition.variable.text.as_str()));
+    /// assert_eq!(asked, ["heat", "sun", "heat"]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn visit<'a>(&'a self, visit: &mut impl FnMut(&'a Proposition)) {
         match self {
             Condition::Is(proposition) => visit(proposition),

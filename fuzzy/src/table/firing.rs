@@ -7,7 +7,7 @@ use core::ops::DerefMut;
 
 use super::input::degrees;
 use super::operators::{larger, smaller};
-use super::{Arrays, Conjunction, Conjunctions, Disjunction, Rooms};
+use super::{Arrays, Conjunction, Conjunctions, Disjunction, Line, Rooms};
 
 /// What a rule does with its degree for one consequent.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,6 +128,17 @@ pub struct Partial {
     at: u32,
 }
 
+impl Line {
+    /// Its degree at `x`, and its offset among the cells.
+    #[inline(always)]
+    fn at(&self, x: f64) -> Partial {
+        Partial {
+            strength: self.degree(x),
+            at: self.literal,
+        }
+    }
+}
+
 impl Partial {
     /// None yet.
     pub const NONE: Partial = Partial {
@@ -218,7 +229,11 @@ where
     S: DerefMut<Target = [Strongest]>,
 {
     scratch.heights.fill(0.0);
-    scratch.strongest.fill(Strongest::NONE);
+    // One, which is the rule, without a call.
+    match &mut *scratch.strongest {
+        [one] => *one = Strongest::NONE,
+        all => all.fill(Strongest::NONE),
+    }
     if !scratch.degrees.is_empty() {
         scratch.degrees.fill(0.0);
         for (input, &value) in table.inputs().iter().zip(scratch.values.iter()) {
@@ -331,10 +346,7 @@ fn at<A: Arrays>(table: &A, axis: &Axis, values: &[f64]) -> [Partial; 2] {
     }
     let first = axis.first_line as usize + 2 * interval;
     let lines = &table.lines()[first..first + 2];
-    [&lines[0], &lines[1]].map(|line| Partial {
-        strength: line.degree(x),
-        at: line.literal,
-    })
+    [lines[0].at(x), lines[1].at(x)]
 }
 
 /// Widens partial ANDs input by input; the last input acts at once.

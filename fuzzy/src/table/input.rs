@@ -111,6 +111,7 @@ pub(crate) fn degrees<A: Arrays>(
 
 impl Curve {
     // Not a function of the table: one that is called with all of it would have it built in memory for every evaluation.
+    #[inline(always)]
     fn degree(&self, points: &[[f64; 2]], hedges: &[Hedge], x: f64) -> f64 {
         let degree = self.height * self.kind.membership(&self.parameters, points, x);
         hedges.iter().fold(degree, |degree, hedge| hedge.of(degree))

@@ -14,7 +14,6 @@ mod firing;
 mod input;
 pub(crate) mod operators;
 mod outcome;
-mod shape;
 
 pub use check::Broken;
 pub(crate) use closed::centroid;
@@ -25,8 +24,8 @@ pub(crate) use input::degrees;
 pub use input::{Curve, Input, Line};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
-pub use shape::Kind;
-pub(crate) use shape::{into_unit, piecewise};
+
+pub use crate::shape::Kind;
 
 use closed::closed;
 use firing::fire;

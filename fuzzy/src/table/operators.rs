@@ -90,6 +90,14 @@ impl Hedge {
     ];
 
     /// The word for it in rules.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::rule::Hedge;
+    ///
+    /// let words: Vec<&str> = Hedge::ALL.iter().map(|hedge| hedge.word()).collect();
+    /// assert_eq!(words.join(" "), "NOT very somewhat extremely seldom any");
+    /// ```
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {

@@ -22,6 +22,19 @@ pub struct Outcome {
 }
 
 /// Whether an output has a value.
+///
+/// # Example
+/// ```
+/// use fuzzy::engine::State;
+///
+/// let told = |state: State| match state {
+///     State::Defined(value) => format!("{value} by the rules"),
+///     State::Default(value) => format!("{value}, for no rule fires"),
+///     State::NoRuleFired => "no rule fires".to_string(),
+///     State::InputNotFinite => "an input is unknown".to_string(),
+/// };
+/// assert_eq!(told(State::Default(0.5)), "0.5, for no rule fires");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum State {
     /// Rules fired, and this is the value.
@@ -45,6 +58,15 @@ impl Outcome {
     };
 
     /// The value: of the rules, or the one chosen by the author for where no rule fires. Never NaN.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::engine::{Outcome, State};
+    ///
+    /// let of = |state| Outcome { state, ..Outcome::default() }.value();
+    /// assert_eq!(of(State::Defined(0.3)), Some(0.3));
+    /// assert_eq!(of(State::InputNotFinite), None);
+    /// ```
     pub fn value(&self) -> Option<f64> {
         match self.state {
             State::Defined(value) | State::Default(value) => Some(value),

@@ -15,6 +15,22 @@ pub(crate) use read::duplicate;
 pub use read::{Entry, Fields};
 
 /// A value with its place in the text.
+///
+/// # Example: a file format of one's own
+/// ```
+/// use fuzzy::{diagnostic::Diagnostic, yaml};
+///
+/// let text = "fan: {speed: fast, blades: 5}";
+/// let tree = yaml::read(text)?;
+/// let mut findings: Vec<Diagnostic> = Vec::new();
+/// let fan = tree.fields("the file", &["fan"], &mut findings).and_then(|file| file.get("fan"));
+/// let fields = fan.and_then(|fan| fan.fields("the fan", &["speed", "blades"], &mut findings)).ok_or("no fan")?;
+/// assert_eq!(fields.get("blades").and_then(|node| node.whole("`blades`", 1, &mut findings)), Some(5));
+/// assert_eq!(fields.get("speed").and_then(|node| node.finite("`speed`", &mut findings)), None);
+/// // What is wrong goes to the findings, with its place.
+/// assert_eq!(&text[findings[0].span.clone()], "fast");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// The value.
@@ -67,6 +83,19 @@ pub(crate) struct Letter {
 
 impl Scalar {
     /// The bytes of the document that `part`, some bytes of this scalar's text, came from.
+    ///
+    /// # Example: behind an escape
+    /// ```
+    /// use fuzzy::tree::Value;
+    ///
+    /// let text = "rule: 'it''s on'";
+    /// let tree = fuzzy::yaml::read(text)?;
+    /// let Value::Mapping(entries) = &tree.value else { return Err("no mapping".into()) };
+    /// let Value::Scalar(scalar) = &entries[0].1.value else { return Err("no scalar".into()) };
+    /// assert_eq!(scalar.text, "it's on");
+    /// assert_eq!(&text[scalar.place(5..7)], "on");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn place(&self, part: Range<usize>) -> Range<usize> {
         match &self.places {
@@ -92,11 +121,25 @@ impl Scalar {
 
 impl Node {
     /// Text, without a place.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::tree::Node;
+    ///
+    /// assert_eq!(fuzzy::yaml::to_text(&Node::text("5")), "\"5\"\n"); // quoted, so that it stays text
+    /// ```
     pub fn text(text: impl Into<String>) -> Self {
         Self::scalar(text.into(), true)
     }
 
     /// A number, without a place.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::tree::Node;
+    ///
+    /// assert_eq!(fuzzy::yaml::to_text(&Node::number(5.0)), "5\n");
+    /// ```
     #[must_use]
     pub fn number(number: f64) -> Self {
         let text = if number.is_nan() {
@@ -125,6 +168,13 @@ impl Node {
     }
 
     /// A list, without a place.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::tree::Node;
+    ///
+    /// assert_eq!(fuzzy::yaml::to_text(&Node::list(vec![])), "[]\n");
+    /// ```
     #[must_use]
     pub fn list(items: Vec<Node>) -> Self {
         Node {
@@ -134,6 +184,13 @@ impl Node {
     }
 
     /// A mapping, without a place.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::tree::Node;
+    ///
+    /// assert_eq!(fuzzy::yaml::to_text(&Node::mapping([("blades", Node::number(5.0))])), "blades: 5\n");
+    /// ```
     pub fn mapping<K: Into<String>>(entries: impl IntoIterator<Item = (K, Node)>) -> Self {
         let entries = entries
             .into_iter()
@@ -145,6 +202,14 @@ impl Node {
     }
 
     /// Whether nothing is there.
+    ///
+    /// # Example
+    /// ```
+    /// let tree = fuzzy::yaml::read("[~, 0]")?;
+    /// let items = tree.items("the list", &mut Vec::new()).ok_or("no list")?;
+    /// assert!(items[0].is_null() && !items[1].is_null());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn is_null(&self) -> bool {
         matches!(&self.value, Value::Scalar(scalar) if scalar.is_null())

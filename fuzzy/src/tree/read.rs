@@ -11,6 +11,19 @@ use super::{Node, Scalar, Value};
 use crate::diagnostic::{Diagnostic, suggest};
 
 /// The fields of a mapping whose keys are known.
+///
+/// # Example
+/// ```
+/// # use fuzzy::yaml;
+/// # let mut findings = Vec::new();
+/// let tree = yaml::read("{speed: fast, blades: }")?;
+/// let fields = tree.fields("the fan", &["speed", "blades"], &mut findings).ok_or("no mapping")?;
+/// assert!(fields.get("speed").is_some() && fields.get("blades").is_none());
+/// assert_eq!(fields.entries().len(), 2);
+/// assert!(fields.require("blades", "write `blades: 5`", &mut findings).is_none());
+/// assert_eq!(findings[0].to_string(), "error[missing-key]: `blades` of the fan is empty\n  help: write `blades: 5`");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Fields<'a> {
     /// What the mapping is, for messages: ``input `margin` ``.
     what: String,
@@ -91,6 +104,17 @@ impl<'a> Entry<'a> {
 impl Node {
     /// Reads a mapping of known keys. `what` names it in messages, as in ``input `margin` ``. An unknown key, a key
     /// given twice and anything but a mapping is a finding.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::yaml;
+    /// # let mut findings = Vec::new();
+    /// let tree = yaml::read("{sped: fast}")?;
+    /// let fields = tree.fields("the fan", &["speed"], &mut findings).ok_or("no mapping")?;
+    /// assert_eq!(fields.entries()[0].key, "sped");
+    /// assert_eq!(findings[0].help.as_deref(), Some("did you mean `speed`?"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn fields<'a>(
         &'a self,
         what: &str,
@@ -115,6 +139,16 @@ impl Node {
 
     /// Reads a mapping of names the author chose: of two equal ones the second is a finding `duplicate-<kind>` and
     /// left out.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::yaml;
+    /// # let mut findings = Vec::new();
+    /// let tree = yaml::read("{low: 1, high: 2}")?;
+    /// let entries = tree.entries("the fan", "speed", &mut findings).ok_or("no mapping")?;
+    /// assert_eq!(entries[1].key, "high");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn entries<'a>(
         &'a self,
         what: &str,
@@ -148,6 +182,16 @@ impl Node {
     }
 
     /// Reads a list.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::yaml;
+    /// # let mut findings = Vec::new();
+    /// assert_eq!(yaml::read("[1, 2]")?.items("the speeds", &mut findings).map(|items| items.len()), Some(2));
+    /// assert!(yaml::read("fast")?.items("the speeds", &mut findings).is_none());
+    /// assert_eq!(findings[0].code, "wrong-type");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn items(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&[Node]> {
         match &self.value {
             Value::List(items) => Some(items),
@@ -160,6 +204,16 @@ impl Node {
     }
 
     /// Reads a finite number.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::yaml;
+    /// # let mut findings = Vec::new();
+    /// assert_eq!(yaml::read("1e3")?.finite("`speed`", &mut findings), Some(1000.0));
+    /// assert_eq!(yaml::read(".inf")?.finite("`speed`", &mut findings), None);
+    /// assert_eq!(findings[0].code, "not-finite");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn finite(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<f64> {
         let number = match &self.value {
             Value::Scalar(scalar) => scalar.as_number(),
@@ -187,6 +241,15 @@ impl Node {
     }
 
     /// Reads a whole number from `least` on.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::yaml;
+    /// # let mut findings = Vec::new();
+    /// assert_eq!(yaml::read("5")?.whole("`blades`", 1, &mut findings), Some(5));
+    /// assert_eq!(yaml::read("2.5")?.whole("`blades`", 1, &mut findings), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn whole(&self, what: &str, least: u64, findings: &mut Vec<Diagnostic>) -> Option<u64> {
         let found = match &self.value {
             Value::Scalar(scalar) if !scalar.quoted => scalar.text.parse().ok(),
@@ -206,6 +269,15 @@ impl Node {
     }
 
     /// Reads text. A number or `true` stands for its own letters: names may look like that.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::yaml;
+    /// # let mut findings = Vec::new();
+    /// let tree = yaml::read("12")?;
+    /// assert_eq!(tree.words("the name", &mut findings).map(|word| word.text.as_str()), Some("12"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn words(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&Scalar> {
         match &self.value {
             Value::Scalar(scalar) if !scalar.is_null() => Some(scalar),
@@ -218,6 +290,15 @@ impl Node {
     }
 
     /// Reads `true` or `false`.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::yaml;
+    /// # let mut findings = Vec::new();
+    /// assert_eq!(yaml::read("true")?.boolean("`quiet`", &mut findings), Some(true));
+    /// assert_eq!(yaml::read("1")?.boolean("`quiet`", &mut findings), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn boolean(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<bool> {
         let found = match &self.value {
             Value::Scalar(scalar) if !scalar.quoted => scalar.as_bool(),
@@ -231,6 +312,17 @@ impl Node {
     }
 
     /// Reads one of several words.
+    ///
+    /// # Example
+    /// ```
+    /// # use fuzzy::yaml;
+    /// # let mut findings = Vec::new();
+    /// let choices = [("slow", 1), ("fast", 9)];
+    /// assert_eq!(yaml::read("fast")?.choice("`speed`", &choices, &mut findings), Some(9));
+    /// assert_eq!(yaml::read("fats")?.choice("`speed`", &choices, &mut findings), None);
+    /// assert_eq!(findings[0].help.as_deref(), Some("did you mean `fast`?"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn choice<T: Copy>(
         &self,
         what: &str,
@@ -249,6 +341,13 @@ impl Node {
     }
 
     /// A finding: here stands something else than what was expected.
+    ///
+    /// # Example
+    /// ```
+    /// let finding = fuzzy::yaml::read("fast")?.unexpected("a number");
+    /// assert_eq!(finding.message, "expected a number, found `fast`");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn unexpected(&self, expected: &str) -> Diagnostic {
         let message = format!("expected {expected}, found {}", self.shown());
@@ -332,6 +431,17 @@ pub(crate) fn duplicate(
 
 impl Scalar {
     /// The number it is, if it is one: YAML's forms of decimal numbers, infinities and NaN.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::tree::Value;
+    ///
+    /// let number = |text: &str| match fuzzy::yaml::read(text).ok()?.value {
+    ///     Value::Scalar(scalar) => scalar.as_number(),
+    ///     _ => None,
+    /// };
+    /// assert_eq!((number("-.5"), number("'5'"), number("inf")), (Some(-0.5), None, None));
+    /// ```
     #[must_use]
     pub fn as_number(&self) -> Option<f64> {
         if self.quoted {

@@ -87,6 +87,19 @@ pub fn parse(text: &str) -> Result<Document, Findings> {
 }
 
 /// A rule set as YAML; [`parse`] reads the same model from it.
+///
+/// # Example
+/// ```
+/// let text = "fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// rules: [IF heat IS high THEN speed IS fast]";
+/// let model = fuzzy::yaml::parse(text)?.model;
+/// let written = fuzzy::yaml::to_string(&model);
+/// assert_eq!(fuzzy::yaml::parse(&written)?.model, model);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn to_string(model: &Model) -> String {
     to_text(&format::write(model))

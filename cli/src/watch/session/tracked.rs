@@ -11,7 +11,7 @@ use flightlog::{
 };
 
 use super::{Event, Out, Silent};
-use crate::assess::Tally;
+use crate::assessment::follow::Tally;
 
 /// A link, or the motor commands on it, that are silent for this long are lost.
 const SILENT_S: f64 = 2.0;

@@ -62,8 +62,8 @@ fn motors_on_both_ports_are_complete_with_the_second_and_not_carried_on_without_
     for (name, value) in [
         ("MOT_PWM_MIN", 1000.0),
         ("MOT_PWM_MAX", 2000.0),
-        ("MOT_SPIN_MIN", 0.1),
-        ("MOT_SPIN_MAX", 0.9),
+        ("MOT_SPIN_MIN", 0.125),
+        ("MOT_SPIN_MAX", 0.875),
     ] {
         bench.parameter(name, value);
     }

@@ -1,10 +1,5 @@
 //! `flagred assess`: how risky was this flight?
 
-mod document;
-pub(crate) mod follow;
-mod picture;
-pub(crate) mod words;
-
 use std::{
     io::{IsTerminal, Write},
     path::PathBuf,
@@ -14,13 +9,15 @@ use clap::ValueEnum;
 use flagred::verdict::Level;
 
 use crate::{
+    assessment::{
+        document,
+        follow::{self, Assessed, Verdict},
+        words,
+    },
     failure::{Exit, Failure},
     output, profile,
     report::{self, Subject},
 };
-use follow::Assessed;
-pub(crate) use follow::{Tally, Verdict, word};
-pub(crate) use words::level_style;
 
 /// How long a step of the shown risk is where nothing else is asked for, in seconds.
 const STEP_S: f64 = 0.1;
@@ -122,9 +119,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             head = false;
             if let Verdict::NotAvailable { reason, help } = &assessed.verdict {
                 let failure = Failure::unreadable(format!("`{log}`: no answer: {reason}"));
-                help.iter()
-                    .fold(failure, |failure, help| failure.help(help))
-                    .report();
+                failure.help_if(help.as_ref()).report();
             }
         } else {
             words::write(&mut out, log, &flight, &estimator.profile().name, &assessed)?;

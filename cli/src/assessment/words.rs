@@ -9,12 +9,11 @@ use flagred::{
 };
 use flightlog::Flight;
 
-use crate::report::number;
-
 use super::{
     follow::{Assessed, Summary, Verdict, word},
     picture,
 };
+use crate::drawing::text::number;
 
 /// Columns of the picture of risk over time.
 const PICTURE_COLUMNS: usize = 64;

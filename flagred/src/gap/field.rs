@@ -1,0 +1,77 @@
+//! The knots of a rule set with their values, and which are neighbours.
+
+use alloc::vec::Vec;
+
+use super::knots::Knots;
+
+/// Knots with their values, as the methods see them.
+#[derive(Debug, Clone)]
+pub(super) struct Field<'a> {
+    pub(super) knots: &'a Knots,
+    /// Of the places along each axis, in the methods' measure of distance.
+    pub(super) coordinates: Vec<Vec<f64>>,
+    pub(super) covered: Vec<bool>,
+    pub(super) values: Vec<f64>,
+}
+
+impl Field<'_> {
+    /// The knots that are not covered.
+    pub(super) fn gap(&self) -> Vec<usize> {
+        (0..self.covered.len())
+            .filter(|k| !self.covered[*k])
+            .collect()
+    }
+
+    /// The knots that are covered. Of equally near ones the first counts, so the highest come first: what is not known
+    /// is no reason for ease.
+    pub(super) fn known_highest_first(&self) -> Vec<usize> {
+        let mut known: Vec<usize> = (0..self.covered.len())
+            .filter(|k| self.covered[*k])
+            .collect();
+        known.sort_by(|a, b| self.values[*b].total_cmp(&self.values[*a]).then(a.cmp(b)));
+        known
+    }
+
+    /// The coordinates of a knot.
+    pub(super) fn point(&self, knot: usize) -> Vec<f64> {
+        let axes = self.coordinates.iter().enumerate();
+        axes.map(|(axis, places)| places[self.knots.place(knot, axis)])
+            .collect()
+    }
+
+    /// The coordinates of knots, one after the other.
+    pub(super) fn points(&self, knots: &[usize]) -> Vec<f64> {
+        knots.iter().flat_map(|knot| self.point(*knot)).collect()
+    }
+
+    /// The knots beside one, each with the area of the wall between the two over their distance. The cell around a knot
+    /// reaches half way to its neighbours.
+    pub(super) fn beside(&self, knot: usize) -> Vec<(usize, f64)> {
+        let knots = self.knots;
+        let width = |axis: usize| {
+            let (place, places) = (knots.place(knot, axis), &self.coordinates[axis]);
+            let before = place
+                .checked_sub(1)
+                .map_or(0.0, |b| places[place] - places[b]);
+            let behind = places.get(place + 1).map_or(0.0, |b| b - places[place]);
+            // An input with one place has no width to count.
+            if places.len() > 1 {
+                (before + behind) / 2.0
+            } else {
+                1.0
+            }
+        };
+        let cell: f64 = (0..self.coordinates.len()).map(width).product();
+        let mut beside = Vec::new();
+        for (axis, places) in self.coordinates.iter().enumerate() {
+            for other in [knots.previous(knot, axis), knots.next(knot, axis)] {
+                let Some(other) = other else {
+                    continue;
+                };
+                let step = places[knots.place(other, axis)] - places[knots.place(knot, axis)];
+                beside.push((other, cell / width(axis) / step.abs()));
+            }
+        }
+        beside
+    }
+}

@@ -1,0 +1,103 @@
+//! What of a filling has to be kept to answer where no rule applies: a grid of knots with their values.
+
+/// Knots with what is said there, read linearly along each input between them.
+#[derive(Debug, Clone, Copy)]
+pub struct FilledKnots<'a> {
+    /// The places along each input, rising: those of the first, then those of the second, and so on.
+    pub places: &'a [f64],
+    /// Where, in these, those of each input begin, and where the last one's end.
+    pub starts: &'a [u32],
+    /// The value at each knot, the last input running fastest.
+    pub values: &'a [f64],
+    /// How far each knot is from the nearest that rules cover, in shares of the inputs' ranges.
+    pub distances: &'a [f64],
+}
+
+/// A value read where no rule applies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// The value.
+    pub value: f64,
+    /// How far the nearest covered place is, in shares of the inputs' ranges, read between knots as the value is.
+    pub distance: f64,
+}
+
+impl FilledKnots<'_> {
+    /// What is said at a place with a coordinate for each input; beyond the outermost knots, as there. `None` where the
+    /// point has another number of coordinates, or one is not a number.
+    ///
+    /// # Example: between two knots
+    /// ```
+    /// use flagred::gap::FilledKnots;
+    ///
+    /// let knots = FilledKnots { places: &[0.0, 0.5], starts: &[0, 2], values: &[90.0, 50.0], distances: &[1.0, 0.0] };
+    /// let reading = knots.read(&[0.125]).ok_or("not a point")?;
+    /// assert_eq!((reading.value, reading.distance), (80.0, 0.75));
+    /// # Ok::<(), &str>(())
+    /// ```
+    pub fn read(&self, point: &[f64]) -> Option<Reading> {
+        let axes = self.starts.len().checked_sub(1)?;
+        let axis = |axis: usize| {
+            let (start, end) = (self.starts.get(axis)?, self.starts.get(axis + 1)?);
+            self.places.get(*start as usize..*end as usize)
+        };
+        Some(Reading {
+            value: read(axes, &axis, self.values, point)?,
+            distance: read(axes, &axis, self.distances, point)?,
+        })
+    }
+
+    /// Whether there are places along each input, and a value and a distance for each knot.
+    pub(crate) fn is_whole(&self, inputs: usize) -> bool {
+        let lengths = self.starts.windows(2).map(|pair| match pair {
+            [start, end] => end.saturating_sub(*start) as usize,
+            _ => 0,
+        });
+        let knots = lengths.fold(1, usize::saturating_mul);
+        let rises = |pair: &[u32]| pair.is_sorted();
+        self.starts.len() == inputs + 1
+            && self.starts.windows(2).all(rises)
+            && self.starts.last().map(|end| *end as usize) == Some(self.places.len())
+            && knots > 0
+            && self.values.len() == knots
+            && self.distances.len() == knots
+    }
+}
+
+/// Reads values at knots linearly along each axis between them; beyond the outermost, at these. `None` where the point has
+/// another number of coordinates, or one is not a number.
+pub(super) fn read<'a>(
+    axes: usize,
+    axis: &impl Fn(usize) -> Option<&'a [f64]>,
+    values: &[f64],
+    point: &[f64],
+) -> Option<f64> {
+    let fits = point.len() == axes && point.iter().all(|x| !x.is_nan());
+    fits.then(|| read_from(axis, values, point, 0, 0)).flatten()
+}
+
+fn read_from<'a>(
+    axis: &impl Fn(usize) -> Option<&'a [f64]>,
+    values: &[f64],
+    point: &[f64],
+    depth: usize,
+    knot: usize,
+) -> Option<f64> {
+    let Some(&x) = point.get(depth) else {
+        return values.get(knot).copied();
+    };
+    let places = axis(depth)?;
+    let behind = places.partition_point(|place| *place <= x);
+    let at = |place| read_from(axis, values, point, depth + 1, knot * places.len() + place);
+    let (Some(left), Some(right)) = (
+        behind.checked_sub(1).and_then(|i| places.get(i)),
+        places.get(behind),
+    ) else {
+        return at(behind.saturating_sub(1));
+    };
+    let share = (x - left) / (right - left);
+    if share == 0.0 {
+        return at(behind - 1);
+    }
+    Some((1.0 - share) * at(behind - 1)? + share * at(behind)?)
+}

@@ -1,0 +1,201 @@
+//! The filling of a rule set's gaps: what is said where no rule applies.
+
+use alloc::{vec, vec::Vec};
+
+use fuzzy::{Engine, Model, engine::EvaluateError};
+
+use super::{
+    FilledKnots, GapMethod, GapSettings, Reading, field::Field, harmonic, inverse_distance, is_gap,
+    knots::Knots, metric, neighbours::Tree, thin_plate,
+};
+
+/// What is said where no rule applies.
+///
+/// The rules are asked at the peaks of the terms and half way between them. Those of these knots that are a gap get their
+/// value from the covered ones by a [`GapMethod`], with distances counted in how much the output typically changes;
+/// between knots it is read linearly along each input, and beyond the outermost peaks, where no
+/// rule can tell one place from another, nothing changes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filling {
+    /// As [`FilledKnots`] has them; the values are empty where nothing is covered, or there are too many inputs.
+    places: Vec<f64>,
+    starts: Vec<u32>,
+    values: Vec<f64>,
+    distances: Vec<f64>,
+    coverage_below: f64,
+}
+
+impl Filling {
+    /// Asks the rules at the knots and fills those that are a gap. The engine is that of the model, and `output` one of
+    /// its outputs.
+    ///
+    /// # Errors
+    ///
+    /// There is no such output.
+    ///
+    /// # Example: a gap in the middle of a line
+    ///
+    /// ```
+    /// use flagred::gap::{Filling, GapMethod, GapSettings};
+    /// use fuzzy::Engine;
+    ///
+    /// let model = fuzzy::yaml::parse("
+    /// fuzzy: 1
+    /// name: two ends
+    /// inputs: {x: {range: [0, 1], partition: {low: 0, middle: 0.5, high: 1}}}
+    /// outputs: {y: {range: [0, 100], partition: [small, medium, large]}}
+    /// rules: [IF x IS low THEN y IS small, IF x IS high THEN y IS large]
+    /// ")?.model;
+    /// let engine = Engine::new(&model)?;
+    /// let settings = GapSettings { method: GapMethod::Harmonic, coverage_below: None };
+    /// let filling = Filling::new(&engine, &model, 0, &settings)?;
+    ///
+    /// assert!(filling.is_gap(engine.evaluate(&[0.5])?[0].coverage));
+    /// let middle = filling.read(&[0.5]).ok_or("nothing is covered")?;
+    /// assert!((middle.value - 50.0).abs() < 1e-6);
+    /// assert_eq!(middle.distance, 0.25); // a rule applies up to half way between two peaks
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(
+        engine: &Engine,
+        model: &Model,
+        output: usize,
+        settings: &GapSettings,
+    ) -> Result<Filling, EvaluateError> {
+        let outputs = engine.output_names().len();
+        let Some(variable) = model.outputs.get(output).filter(|_| output < outputs) else {
+            return Err(EvaluateError::WrongNumberOfOutputs {
+                expected: outputs,
+                got: output,
+            });
+        };
+        let variable = &variable.variable;
+        let coverage_below = settings.coverage_below(model);
+        let ask = |knots: &Knots| -> Result<Vec<Option<f64>>, EvaluateError> {
+            let columns = knots.columns();
+            let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+            let outcomes = engine.evaluate_batch(&columns)?;
+            let outcomes = outcomes.iter().skip(output).step_by(outputs);
+            let covered = outcomes.map(|outcome| match is_gap(outcome.coverage, coverage_below) {
+                true => None,
+                false => outcome.value(),
+            });
+            Ok(covered.collect())
+        };
+        let Some(inner) = Knots::of(model) else {
+            return Ok(Filling {
+                places: Vec::new(),
+                starts: Vec::new(),
+                values: Vec::new(),
+                distances: Vec::new(),
+                coverage_below,
+            });
+        };
+        let known = ask(&inner)?;
+        let knots = inner.with_ends(model);
+        let mut values = Vec::new();
+        if known.iter().any(Option::is_some) {
+            let range = (variable.low, variable.high);
+            let filled = fill(&inner, &known, range, settings.method);
+            let points = (0..knots.count()).map(|knot| knots.point(knot));
+            values = points
+                .filter_map(|point| inner.read(&filled, &point))
+                .collect();
+        }
+        let mut starts = vec![0];
+        for places in &knots.axes {
+            starts.push(starts.last().copied().unwrap_or(0) + places.len() as u32);
+        }
+        Ok(Filling {
+            places: knots.axes.concat(),
+            starts,
+            values,
+            distances: distances(&knots, &ask(&knots)?),
+            coverage_below,
+        })
+    }
+
+    /// Whether a place of this coverage is a gap.
+    pub fn is_gap(&self, coverage: f64) -> bool {
+        is_gap(coverage, self.coverage_below)
+    }
+
+    /// What is said at a place in the gap, with a coordinate for each input; beyond the outermost peaks, as there.
+    /// `None` where the rules cover nothing to fill from, there are more inputs than can be filled over (over 15 of two
+    /// terms each), the point has another number of coordinates, or one is not a
+    /// number.
+    pub fn read(&self, point: &[f64]) -> Option<Reading> {
+        self.lend()?.read(point)
+    }
+
+    /// The coverage below which a place is a gap.
+    pub(crate) fn coverage_below(&self) -> f64 {
+        self.coverage_below
+    }
+
+    /// What is read; `None` where there is nothing to fill from.
+    pub(crate) fn lend(&self) -> Option<FilledKnots<'_>> {
+        (!self.values.is_empty()).then_some(FilledKnots {
+            places: &self.places,
+            starts: &self.starts,
+            values: &self.values,
+            distances: &self.distances,
+        })
+    }
+}
+
+/// The values at all knots, those without one filled, within the `range` of the output; at least one is known.
+fn fill(knots: &Knots, known: &[Option<f64>], range: (f64, f64), method: GapMethod) -> Vec<f64> {
+    let covered: Vec<bool> = known.iter().map(Option::is_some).collect();
+    let values: Vec<f64> = known.iter().map(|value| value.unwrap_or(range.0)).collect();
+    let mut field = Field {
+        coordinates: metric::coordinates(knots, &values, &covered),
+        knots,
+        covered,
+        values,
+    };
+    for (knot, (_, from)) in field.gap().into_iter().zip(nearest(&field)) {
+        field.values[knot] = field.values[from];
+    }
+    // From here on the values in the gap are those of the nearest covered knots.
+    match method {
+        GapMethod::Nearest => {}
+        GapMethod::InverseDistance { power, neighbours } => {
+            inverse_distance::fill(&mut field, power, neighbours);
+        }
+        GapMethod::ThinPlate => thin_plate::fill(&mut field, range),
+        GapMethod::Harmonic => harmonic::fill(&mut field),
+    }
+    field.values
+}
+
+/// For each knot of the gap the squared distance to the nearest covered one, and that one.
+fn nearest(field: &Field) -> Vec<(f64, usize)> {
+    let known = field.known_highest_first();
+    let mut tree = Tree::new(field.coordinates.len(), field.points(&known));
+    let mut nearest = |knot: usize| {
+        let found = tree.nearest(&field.point(knot), 1).first().copied();
+        found.map(|(square, index)| (square, known[index]))
+    };
+    field.gap().into_iter().filter_map(&mut nearest).collect()
+}
+
+/// The distance of each knot to the nearest covered one, in shares of the inputs' ranges: 0 for a covered one.
+fn distances(knots: &Knots, known: &[Option<f64>]) -> Vec<f64> {
+    let shares = knots.axes.iter().zip(&knots.ranges);
+    let shares = shares.map(|(places, range)| places.iter().map(|x| x / range).collect());
+    let field = Field {
+        coordinates: shares.collect(),
+        knots,
+        covered: known.iter().map(Option::is_some).collect(),
+        values: vec![0.0; known.len()],
+    };
+    let mut distances = vec![0.0; known.len()];
+    for (knot, (square, _)) in field.gap().into_iter().zip(nearest(&field)) {
+        distances[knot] = libm::sqrt(square);
+    }
+    distances
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,300 @@
+//! The places a rule set is asked at, to fill its gaps from what it says there.
+
+use alloc::{vec, vec::Vec};
+
+use fuzzy::{
+    Model,
+    model::{Shape, Variable},
+};
+
+use super::filled::read;
+
+/// More knots than this are thinned: the cost of filling has a bound in any number of inputs.
+const MOST_KNOTS: usize = 40_000;
+
+/// A grid over the inputs of a rule set, with a place at the peak of every term and one half way between each two.
+///
+/// At a peak a rule says what it says, unmixed with its neighbours; half way between, two share evenly, which is where
+/// the gap of a missing rule ends.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Knots {
+    /// The places along each input, rising.
+    pub(super) axes: Vec<Vec<f64>>,
+    /// The width of each input's range.
+    pub(super) ranges: Vec<f64>,
+    /// By how much the number of a knot grows per place along each input, the last input running fastest.
+    strides: Vec<usize>,
+}
+
+impl Knots {
+    /// The grid over the part of each input in which terms change: beyond, rules cannot tell one place from another.
+    ///
+    /// `None` where even the peaks are too many: so many inputs, 16 of two terms each, have no filling.
+    pub(super) fn of(model: &Model) -> Option<Knots> {
+        let axes = model.inputs.iter().map(|input| {
+            let (first, last) = changing(input);
+            let mut peaks = peaks(input);
+            peaks.retain(|x| (first..=last).contains(x));
+            peaks
+        });
+        let mut axes: Vec<Vec<f64>> = axes.collect();
+        let finer: Vec<Vec<f64>> = axes.iter().map(|peaks| with_middles(peaks)).collect();
+        if count(&finer) <= MOST_KNOTS {
+            axes = finer;
+        }
+        while count(&axes) > MOST_KNOTS {
+            let longest = axes.iter_mut().max_by_key(|axis| axis.len());
+            let longest = longest.filter(|axis| axis.len() > 2)?;
+            let last = longest.len() - 1;
+            let mut i = 0..;
+            longest.retain(|_| i.next().is_some_and(|i| i % 2 == 0 || i == last));
+        }
+        let ranges = model.inputs.iter().map(|i| i.high - i.low);
+        Some(Knots::over(axes, ranges.collect()))
+    }
+
+    /// The same grid with the ends of the inputs' ranges, where it does not reach them and there is room.
+    pub(super) fn with_ends(&self, model: &Model) -> Knots {
+        let axes = self.axes.iter().zip(&model.inputs).map(|(places, input)| {
+            let before = Some(input.low).filter(|low| places.first().is_some_and(|x| low < x));
+            let behind = Some(input.high).filter(|high| places.last().is_some_and(|x| high > x));
+            before
+                .into_iter()
+                .chain(places.iter().copied())
+                .chain(behind)
+                .collect()
+        });
+        let axes: Vec<Vec<f64>> = axes.collect();
+        match count(&axes) <= 4 * MOST_KNOTS {
+            true => Knots::over(axes, self.ranges.clone()),
+            false => self.clone(),
+        }
+    }
+
+    /// A grid of given places.
+    pub(super) fn over(axes: Vec<Vec<f64>>, ranges: Vec<f64>) -> Knots {
+        let mut strides = vec![1; axes.len()];
+        for axis in (1..axes.len()).rev() {
+            strides[axis - 1] = strides[axis] * axes[axis].len();
+        }
+        Knots {
+            axes,
+            ranges,
+            strides,
+        }
+    }
+
+    /// How many knots there are.
+    pub(super) fn count(&self) -> usize {
+        count(&self.axes)
+    }
+
+    /// The place of a knot along an axis.
+    pub(super) fn place(&self, knot: usize, axis: usize) -> usize {
+        knot / self.strides[axis] % self.axes[axis].len()
+    }
+
+    /// Where a knot lies.
+    pub(super) fn point(&self, knot: usize) -> Vec<f64> {
+        let axes = self.axes.iter().enumerate();
+        axes.map(|(axis, places)| places[self.place(knot, axis)])
+            .collect()
+    }
+
+    /// The knot behind this one along an axis.
+    pub(super) fn next(&self, knot: usize, axis: usize) -> Option<usize> {
+        let behind = self.place(knot, axis) + 1 < self.axes[axis].len();
+        behind.then(|| knot + self.strides[axis])
+    }
+
+    /// The knot before this one along an axis.
+    pub(super) fn previous(&self, knot: usize, axis: usize) -> Option<usize> {
+        (self.place(knot, axis) > 0).then(|| knot - self.strides[axis])
+    }
+
+    /// The values of every knot's inputs, a column for each.
+    pub(super) fn columns(&self) -> Vec<Vec<f64>> {
+        let column = |(axis, places): (usize, &Vec<f64>)| {
+            let knots = 0..self.count();
+            knots.map(|knot| places[self.place(knot, axis)]).collect()
+        };
+        self.axes.iter().enumerate().map(column).collect()
+    }
+
+    /// Reads values at the knots, see [`read`].
+    pub(super) fn read(&self, values: &[f64], point: &[f64]) -> Option<f64> {
+        let axis = |axis: usize| self.axes.get(axis).map(Vec::as_slice);
+        read(self.axes.len(), &axis, values, point)
+    }
+}
+
+fn count(axes: &[Vec<f64>]) -> usize {
+    let times = |n: usize, axis: &Vec<f64>| n.saturating_mul(axis.len());
+    axes.iter().fold(1, times)
+}
+
+/// The peaks of a variable's terms and the ends of its range, rising. A flat top has two peaks.
+///
+/// # Example: where the paper's spread is low, medium and high
+///
+/// ```
+/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// assert_eq!(flagred::gap::peaks(&model.inputs[1]), [0.0, 0.1, 0.2, 0.5]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn peaks(variable: &Variable) -> Vec<f64> {
+    let (low, high) = (variable.low, variable.high);
+    let tops = variable.terms.iter().map(|t| top(&t.shape, low, high));
+    let mut peaks = vec![low, high];
+    peaks.extend(tops.flat_map(|(first, last)| [first, last]));
+    peaks.sort_by(f64::total_cmp);
+    // Nobody means a thousandth of a range; the ends stay.
+    let apart = 1e-3 * (high - low);
+    peaks.dedup_by(|next, last| *next - *last < apart);
+    if let Some(last) = peaks.last_mut().filter(|last| high - **last < apart) {
+        *last = high;
+    }
+    peaks
+}
+
+/// The part of a variable's range in which its terms change, from and to; all of it where they change nowhere.
+///
+/// # Example: a shoulder
+///
+/// ```
+/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// assert_eq!(flagred::gap::changing(&model.inputs[0]), (0.0, 0.3)); // from 0.3 to 0.5 the margin is high
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn changing(variable: &Variable) -> (f64, f64) {
+    let peaks = peaks(variable);
+    let changes = |pair: &&[f64]| {
+        let differ = |shape: &Shape| shape.membership(pair[0]) != shape.membership(pair[1]);
+        variable.terms.iter().any(|term| differ(&term.shape))
+    };
+    let first = peaks.windows(2).find(changes);
+    let last = peaks.windows(2).rev().find(changes);
+    match (first, last) {
+        (Some(first), Some(last)) => (first[0], last[1]),
+        _ => (variable.low, variable.high),
+    }
+}
+
+/// Places with another one half way between each two.
+fn with_middles(places: &[f64]) -> Vec<f64> {
+    let middles = places.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
+    let mut all: Vec<f64> = middles.chain(places.iter().copied()).collect();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// Where a shape is highest within a range, from and to.
+fn top(shape: &Shape, low: f64, high: f64) -> (f64, f64) {
+    const STEPS: u32 = 2000;
+    let corners = shape.corners().filter(|corners| corners.len() > 1);
+    let xs: Vec<f64> = match corners {
+        Some(corners) => {
+            let ends = [low, high].into_iter();
+            ends.chain(corners.iter().map(|(x, _)| x.clamp(low, high)))
+                .collect()
+        }
+        None => {
+            let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(STEPS);
+            (0..=STEPS).map(at).collect()
+        }
+    };
+    let highest = xs.iter().map(|x| shape.membership(*x));
+    let highest = highest.fold(f64::NEG_INFINITY, f64::max);
+    let at_top = xs
+        .iter()
+        .filter(|x| shape.membership(**x) >= highest - 1e-9);
+    at_top.fold((high, low), |(first, last), x| (x.min(first), x.max(last)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn knots(inputs: &str) -> Knots {
+        let text = format!(
+            "
+fuzzy: 1
+name: test
+inputs: {{{inputs}}}
+outputs: {{y: {{range: [0, 1], partition: [low, high]}}}}
+rules: []
+"
+        );
+        Knots::of(&fuzzy::yaml::parse(&text).unwrap().model).unwrap()
+    }
+
+    fn places_of(terms: &str) -> Vec<f64> {
+        knots(&format!("x: {{range: [0, 1], {terms}}}"))
+            .axes
+            .remove(0)
+    }
+
+    #[test]
+    fn a_partition_has_its_peaks_and_the_places_between() {
+        let places = places_of("partition: {low: 0.2, middle: 0.4, high: 0.8}");
+        let expected = [0.2, 0.3, 0.4, 0.6, 0.8];
+        assert_eq!(places.len(), expected.len());
+        for (place, expected) in places.iter().zip(expected) {
+            approx::assert_abs_diff_eq!(*place, expected, epsilon = 1e-12);
+        }
+    }
+
+    #[test]
+    fn flat_tops_count_from_both_ends_and_curves_from_their_highest_place() {
+        let peaks = |terms| {
+            let places = places_of(terms);
+            places.into_iter().step_by(2).collect::<Vec<f64>>()
+        };
+        let flat = "terms: {flat: {trapezoid: [0.1, 0.25, 0.5, 0.7]}}";
+        assert_eq!(peaks(flat), [0.0, 0.25, 0.5, 1.0]);
+        let bell = "terms: {bell: {gaussian: {mean: 0.3, sd: 0.1}}}";
+        assert_eq!(peaks(bell), [0.0, 0.3, 1.0]);
+        let beyond = "terms: {beyond: {gaussian: {mean: 3, sd: 1}}}";
+        assert_eq!(peaks(beyond), [0.0, 1.0]);
+        assert_eq!(peaks("terms: {all: {rectangle: [0, 1]}}"), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn the_ends_of_the_range_are_added_where_they_lie_beyond() {
+        let text = "
+fuzzy: 1
+name: test
+inputs: {x: {range: [0, 1], partition: {low: 0, high: 0.5}}}
+outputs: {y: {range: [0, 1], partition: [low, high]}}
+rules: []
+";
+        let model = fuzzy::yaml::parse(text).unwrap().model;
+        let knots = Knots::of(&model).unwrap();
+        assert_eq!(knots.axes, [[0.0, 0.25, 0.5]]);
+        assert_eq!(knots.with_ends(&model).axes, [[0.0, 0.25, 0.5, 1.0]]);
+    }
+
+    #[test]
+    fn reading_is_linear_between_knots_and_level_beyond() {
+        let knots = Knots::over(vec![vec![0.0, 1.0, 3.0], vec![0.0, 2.0]], vec![3.0, 2.0]);
+        let plane: Vec<f64> = (0..6)
+            .map(|knot| knots.axes[0][knot / 2] + 10.0 * knots.axes[1][knot % 2])
+            .collect();
+        let read = |point: &[f64]| knots.read(&plane, point);
+        assert_eq!(read(&[2.0, 0.5]), Some(7.0));
+        assert_eq!(read(&[-5.0, 9.0]), Some(20.0));
+        assert_eq!(read(&[3.0, 2.0]), Some(23.0));
+        assert_eq!((read(&[1.0]), read(&[f64::NAN, 0.0])), (None, None));
+    }
+
+    #[test]
+    fn many_inputs_have_fewer_places_each() {
+        let input = |i| format!("x{i}: {{range: [0, 1], partition: [a, b, c, d, e]}}");
+        let inputs: Vec<String> = (0..7).map(input).collect();
+        let knots = knots(&inputs.join(", "));
+        assert!(knots.count() <= MOST_KNOTS, "{}", knots.count());
+        for places in &knots.axes {
+            assert_eq!((places[0], places[places.len() - 1]), (0.0, 1.0));
+        }
+    }
+}

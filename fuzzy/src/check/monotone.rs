@@ -1,0 +1,154 @@
+//! Whether the outputs rise and fall as their author says.
+
+use alloc::{string::String, vec::Vec};
+use core::str::FromStr;
+
+use serde::Serialize;
+
+use super::probe::{Coordinate, Line, NOTABLE, Probe};
+
+/// What an author says of an output: it never falls, or never rises, when an input rises.
+///
+/// # Example
+/// ```
+/// use fuzzy::check::Monotone;
+///
+/// let claim: Monotone = "margin:decreasing".parse()?;
+/// assert_eq!((claim.input.as_str(), claim.output), ("margin", None));
+/// assert!("margin".parse::<Monotone>().is_err());
+/// # Ok::<(), String>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Monotone {
+    /// The input.
+    pub input: String,
+    /// What the output does when the input rises.
+    pub direction: Direction,
+    /// The output; every output where none is named.
+    pub output: Option<String>,
+}
+
+/// What an output does when an input rises.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Direction {
+    /// It never falls.
+    Increasing,
+    /// It never rises.
+    Decreasing,
+}
+
+impl FromStr for Monotone {
+    type Err = String;
+
+    /// Reads `margin:decreasing`, or `margin:decreasing:risk` for one output of several.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut parts = text.split(':');
+        let (input, direction) = (parts.next().unwrap_or(""), parts.next().unwrap_or(""));
+        let output = parts.next().map(String::from);
+        let direction = match direction {
+            "increasing" => Direction::Increasing,
+            "decreasing" => Direction::Decreasing,
+            _ => return Err("write `input:increasing`, or `input:decreasing:output`".into()),
+        };
+        if input.is_empty() || parts.next().is_some() {
+            return Err("write `input:increasing`, or `input:decreasing:output`".into());
+        }
+        Ok(Monotone {
+            input: input.into(),
+            direction,
+            output,
+        })
+    }
+}
+
+/// A place at which an output does not do what its author says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Counterexample {
+    /// What was said, with the output it was found in.
+    pub claim: Monotone,
+    /// All inputs by name, at the smaller value.
+    pub at: Vec<Coordinate>,
+    /// The larger value of the input.
+    pub to: f64,
+    /// The output at the smaller value.
+    pub from_value: f64,
+    /// The output at the larger value.
+    pub to_value: f64,
+}
+
+impl Probe<'_> {
+    /// The worst counterexample of each output to what its author says.
+    pub(super) fn counterexamples(&mut self, claim: &Monotone) -> Vec<Counterexample> {
+        let Some(input) = self.model.inputs.iter().position(|v| v.name == claim.input) else {
+            return Vec::new();
+        };
+        let sign = match claim.direction {
+            Direction::Increasing => 1.0,
+            Direction::Decreasing => -1.0,
+        };
+        let outputs = self.model.outputs.len();
+        let mut worst: Vec<Option<(f64, Counterexample)>> = alloc::vec![None; outputs];
+        for line in self.lines(input) {
+            // The best value so far on the line, by output, and where it is.
+            let mut best: Vec<Option<(f64, f64)>> = alloc::vec![None; outputs];
+            for (x, values) in &line.values {
+                for (output, value) in values.iter().enumerate() {
+                    let (Some(value), Some(best)) = (*value, best.get_mut(output)) else {
+                        continue;
+                    };
+                    match best {
+                        Some((_, most)) if sign * value < sign * *most => {
+                            let fall = sign * (*most - value);
+                            let example = self.example(claim, output, &line, *best, *x, value);
+                            let place = worst.get_mut(output);
+                            if let (Some(place), Some(example)) = (place, example)
+                                && place.as_ref().is_none_or(|(deepest, _)| fall > *deepest)
+                            {
+                                *place = Some((fall, example));
+                            }
+                        }
+                        _ => *best = Some((*x, value)),
+                    }
+                }
+            }
+        }
+        let notable = |(fall, example): (f64, Counterexample)| {
+            let output = example.claim.output.as_ref()?;
+            let asked = claim.output.as_ref().is_none_or(|name| name == output);
+            let range = self
+                .model
+                .outputs
+                .iter()
+                .find(|o| o.variable.name == *output)?;
+            let range = range.variable.high - range.variable.low;
+            (asked && fall > NOTABLE * range).then_some(example)
+        };
+        worst.into_iter().flatten().filter_map(notable).collect()
+    }
+
+    fn example(
+        &self,
+        claim: &Monotone,
+        output: usize,
+        line: &Line,
+        best: Option<(f64, f64)>,
+        to: f64,
+        to_value: f64,
+    ) -> Option<Counterexample> {
+        let (from, from_value) = best?;
+        let mut point = line.base.clone();
+        *point.get_mut(line.input)? = from;
+        let output = self.model.outputs.get(output)?.variable.name.clone();
+        Some(Counterexample {
+            claim: Monotone {
+                output: Some(output),
+                ..claim.clone()
+            },
+            at: self.named(&point),
+            to,
+            from_value,
+            to_value,
+        })
+    }
+}

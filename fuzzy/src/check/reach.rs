@@ -1,0 +1,97 @@
+//! How far the outputs reach.
+
+use alloc::{string::String, vec::Vec};
+
+use serde::Serialize;
+
+use super::probe::{Coordinate, Probe};
+
+/// The values an output takes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Reach {
+    /// The output.
+    pub output: String,
+    /// The smallest value found.
+    pub low: f64,
+    /// Where it is found.
+    pub low_at: Vec<Coordinate>,
+    /// The largest value found.
+    pub high: f64,
+    /// Where it is found.
+    pub high_at: Vec<Coordinate>,
+    /// The range that the author gave it.
+    pub range: [f64; 2],
+}
+
+impl Probe<'_> {
+    /// The smallest and the largest value of each output, as far as they are found. None for outputs that no point defines.
+    pub(super) fn reach(&mut self) -> Vec<Reach> {
+        let points = self.points(self.evaluations / 2);
+        let none: Option<(f64, Vec<f64>)> = None;
+        let mut lows = alloc::vec![none.clone(); self.model.outputs.len()];
+        let mut highs = alloc::vec![none; self.model.outputs.len()];
+        for point in &points {
+            let values: Vec<Option<f64>> = self.values(point).collect();
+            for ((value, low), high) in values.iter().zip(&mut lows).zip(&mut highs) {
+                let Some(value) = *value else { continue };
+                if low.as_ref().is_none_or(|(least, _)| value < *least) {
+                    *low = Some((value, point.clone()));
+                }
+                if high.as_ref().is_none_or(|(most, _)| value > *most) {
+                    *high = Some((value, point.clone()));
+                }
+            }
+        }
+        let mut found = Vec::new();
+        let budget = self.evaluations / (4 * self.model.outputs.len().max(1));
+        for (output, (low, high)) in lows.into_iter().zip(highs).enumerate() {
+            let (Some(low), Some(high)) = (low, high) else {
+                continue;
+            };
+            let (low, low_at) = self.climb(low, output, -1.0, budget);
+            let (high, high_at) = self.climb(high, output, 1.0, budget);
+            let Some(variable) = self.model.outputs.get(output).map(|o| &o.variable) else {
+                continue;
+            };
+            found.push(Reach {
+                output: variable.name.clone(),
+                low,
+                low_at: self.named(&low_at),
+                high,
+                high_at: self.named(&high_at),
+                range: [variable.low, variable.high],
+            });
+        }
+        found
+    }
+
+    /// Walks from the best point to better ones, one input at a time.
+    fn climb(
+        &mut self,
+        (mut best, mut point): (f64, Vec<f64>),
+        output: usize,
+        sign: f64,
+        mut budget: usize,
+    ) -> (f64, Vec<f64>) {
+        let mut better = true;
+        while better && budget > 0 {
+            better = false;
+            for input in 0..point.len() {
+                for x in self.places.get(input).cloned().unwrap_or_default() {
+                    budget = budget.saturating_sub(1);
+                    let mut there = point.clone();
+                    if let Some(place) = there.get_mut(input) {
+                        *place = x;
+                    }
+                    if budget > 0
+                        && let Some(value) = self.value(&there, output)
+                        && sign * value > sign * best
+                    {
+                        (best, point, better) = (value, there, true);
+                    }
+                }
+            }
+        }
+        (best, point)
+    }
+}

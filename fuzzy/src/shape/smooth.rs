@@ -1,0 +1,73 @@
+//! What curved shapes share: formulas, and where a flank passes levels of degree.
+
+#[cfg(feature = "alloc")]
+use alloc::{vec, vec::Vec};
+
+use libm::exp;
+#[cfg(feature = "alloc")]
+use libm::{log, sqrt};
+
+use super::straight::{falling, rising};
+
+pub(super) fn gaussian(x: f64, mean: f64, sd: f64) -> f64 {
+    let z = (x - mean) / sd;
+    exp(-0.5 * z * z)
+}
+
+pub(super) fn sigmoid(x: f64, inflection: f64, slope: f64) -> f64 {
+    if slope == 0.0 {
+        return 0.5;
+    }
+    1.0 / (1.0 + exp(-slope * (x - inflection)))
+}
+
+/// 0 up to `foot`, `2 t^2` to the middle, `1 - 2 (1 - t)^2` to `top`, with `t = (x - foot) / (top - foot)`.
+pub(super) fn s_shape(x: f64, foot: f64, top: f64) -> f64 {
+    smooth_step(rising(x, foot, top))
+}
+
+pub(super) fn z_shape(x: f64, top: f64, foot: f64) -> f64 {
+    smooth_step(falling(x, top, foot))
+}
+
+fn smooth_step(t: f64) -> f64 {
+    if t <= 0.5 {
+        2.0 * t * t
+    } else {
+        1.0 - 2.0 * (1.0 - t) * (1.0 - t)
+    }
+}
+
+/// Where a curve passes these degrees it is cut, so that no stretch hides a narrow term.
+#[cfg(feature = "alloc")]
+const LEVELS: [f64; 11] = [
+    1e-14, 1e-9, 1e-6, 1e-3, 0.03, 0.2, 0.5, 0.8, 0.97, 0.999, 0.999_999,
+];
+
+/// The middle of a shape, and where its flank passes each level: `width * reach(level)` from the middle.
+#[cfg(feature = "alloc")]
+pub(super) fn flank(middle: f64, width: f64, reach: impl Fn(f64) -> f64) -> Vec<f64> {
+    let mut places = vec![middle];
+    places.extend(LEVELS.map(|level| middle + width * reach(level)));
+    places
+}
+
+/// One flank of a gaussian; `sd` is negative for the left one. It passes a level at `sqrt(-2 ln level)` deviations.
+#[cfg(feature = "alloc")]
+pub(super) fn gaussian_flank(mean: f64, sd: f64) -> Vec<f64> {
+    flank(mean, sd, |level| sqrt(-2.0 * log(level)))
+}
+
+/// Both ends of a sigmoid; one without a slope is the same everywhere.
+#[cfg(feature = "alloc")]
+pub(super) fn sigmoid_flanks(inflection: f64, slope: f64) -> Vec<f64> {
+    if slope == 0.0 {
+        return vec![];
+    }
+    let reach = |level: f64| log(level / (1.0 - level)) / slope;
+    [
+        flank(inflection, 1.0, reach),
+        flank(inflection, -1.0, reach),
+    ]
+    .concat()
+}

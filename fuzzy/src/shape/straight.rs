@@ -1,0 +1,75 @@
+//! What shapes made of straight lines share.
+
+/// Into [0, 1]; NaN, which only parameters that make no shape can give, becomes 0.
+pub(super) fn into_unit(degree: f64) -> f64 {
+    if degree >= 1.0 {
+        1.0
+    } else if degree > 0.0 {
+        degree
+    } else {
+        0.0
+    }
+}
+
+pub(super) fn indicator(inside: bool) -> f64 {
+    if inside { 1.0 } else { 0.0 }
+}
+
+/// 0 up to `foot`, straight up to 1 at `top`; `foot = top` is a step that is 1 at `top`.
+pub(super) fn rising(x: f64, foot: f64, top: f64) -> f64 {
+    if x >= top {
+        1.0
+    } else if x <= foot {
+        0.0
+    } else {
+        (x - foot) / (top - foot)
+    }
+}
+
+/// 1 up to `top`, straight down to 0 at `foot`; `foot = top` is a step that is 1 at `top`.
+pub(super) fn falling(x: f64, top: f64, foot: f64) -> f64 {
+    if x <= top {
+        1.0
+    } else if x >= foot {
+        0.0
+    } else {
+        (x - foot) / (top - foot)
+    }
+}
+
+pub(super) fn trapezoid(x: f64, left: f64, left_top: f64, right_top: f64, right: f64) -> f64 {
+    if x < left_top {
+        rising(x, left, left_top)
+    } else {
+        falling(x, right_top, right)
+    }
+}
+
+/// Straight between the points, measured from the lower one so that small degrees are exact.
+pub(super) fn along(points: impl Iterator<Item = (f64, f64)>, x: f64) -> f64 {
+    let (mut at_step, mut before) = (f64::NEG_INFINITY, None);
+    for (px, py) in points {
+        if px > x {
+            return match before {
+                None => py,
+                Some(_) if at_step > f64::NEG_INFINITY => at_step,
+                Some((bx, by)) => between((bx, by), (px, py), x),
+            };
+        }
+        if px == x {
+            at_step = at_step.max(py);
+        }
+        before = Some((px, py));
+    }
+    match before {
+        Some(_) if at_step > f64::NEG_INFINITY => at_step,
+        Some((_, last)) => last,
+        None => 0.0,
+    }
+}
+
+/// The degree at `x` on the line through `a` and `b`.
+fn between(a: (f64, f64), b: (f64, f64), x: f64) -> f64 {
+    let (low, high) = if a.1 <= b.1 { (a, b) } else { (b, a) };
+    low.1 + (high.1 - low.1) * ((x - low.0) / (high.0 - low.0))
+}

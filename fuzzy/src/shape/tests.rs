@@ -1,0 +1,490 @@
+//! Tables of degrees, held against the formulas by hand, and what is said of parameters that make no shape.
+
+use super::{Shape, straight::along};
+use alloc::{string::ToString, vec};
+
+const INFINITY: f64 = f64::INFINITY;
+const NEG_INFINITY: f64 = f64::NEG_INFINITY;
+const NAN: f64 = f64::NAN;
+
+/// Every row: x and the exact degree.
+fn table(shape: Shape, rows: &[(f64, f64)]) {
+    shape.validate().unwrap();
+    for &(x, degree) in rows {
+        let got = shape.membership(x);
+        assert!(
+            (got - degree).abs() <= 1e-15,
+            "{shape:?} at {x}: {got} instead of {degree}"
+        );
+    }
+    assert_eq!(shape.membership(NAN), 0.0, "{shape:?}");
+    if let Some(corners) = shape.corners() {
+        for &(x, _) in rows {
+            assert_eq!(
+                along(corners.iter().copied(), x),
+                shape.membership(x),
+                "{shape:?} at {x}"
+            );
+        }
+    }
+}
+
+#[test]
+fn triangle() {
+    let shape = |left, peak, right| Shape::Triangle { left, peak, right };
+    table(
+        shape(0.0, 1.0, 3.0),
+        &[
+            (NEG_INFINITY, 0.0),
+            (-1.0, 0.0),
+            (0.0, 0.0),
+            (0.25, 0.25),
+            (1.0, 1.0),
+            (2.0, 0.5),
+            (2.5, 0.25),
+            (3.0, 0.0),
+            (4.0, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
+    // A closed shoulder: 1 at its peak, 0 beyond.
+    table(
+        shape(0.0, 0.0, 0.1),
+        &[(-1e-300, 0.0), (0.0, 1.0), (0.05, 0.5), (0.1, 0.0)],
+    );
+    table(
+        shape(0.0, 2.0, 2.0),
+        &[(0.0, 0.0), (1.0, 0.5), (2.0, 1.0), (2.5, 0.0)],
+    );
+    table(shape(1.0, 1.0, 1.0), &[(0.5, 0.0), (1.0, 1.0), (1.5, 0.0)]);
+}
+
+#[test]
+fn trapezoid_and_shoulders() {
+    table(
+        Shape::Trapezoid {
+            left: 0.0,
+            left_top: 2.0,
+            right_top: 3.0,
+            right: 7.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.0, 0.0),
+            (0.5, 0.25),
+            (2.0, 1.0),
+            (2.5, 1.0),
+            (3.0, 1.0),
+            (4.0, 0.75),
+            (7.0, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        Shape::Trapezoid {
+            left: 1.0,
+            left_top: 1.0,
+            right_top: 2.0,
+            right: 2.0,
+        },
+        &[(0.9, 0.0), (1.0, 1.0), (1.5, 1.0), (2.0, 1.0), (2.1, 0.0)],
+    );
+    table(
+        Shape::LeftShoulder {
+            top: 1.0,
+            foot: 3.0,
+        },
+        &[
+            (NEG_INFINITY, 1.0),
+            (0.0, 1.0),
+            (1.0, 1.0),
+            (2.5, 0.25),
+            (3.0, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        Shape::LeftShoulder {
+            top: 1.0,
+            foot: 1.0,
+        },
+        &[(0.0, 1.0), (1.0, 1.0), (1.1, 0.0)],
+    );
+    table(
+        Shape::RightShoulder {
+            foot: 1.0,
+            top: 3.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (1.0, 0.0),
+            (1.5, 0.25),
+            (3.0, 1.0),
+            (INFINITY, 1.0),
+        ],
+    );
+    table(
+        Shape::RightShoulder {
+            foot: 1.0,
+            top: 1.0,
+        },
+        &[(0.9, 0.0), (1.0, 1.0), (2.0, 1.0)],
+    );
+}
+
+#[test]
+fn rectangle_singleton_piecewise_constant() {
+    table(
+        Shape::Rectangle {
+            left: 1.0,
+            right: 2.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.9, 0.0),
+            (1.0, 1.0),
+            (2.0, 1.0),
+            (2.1, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        Shape::Singleton { at: 1.0 },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.9, 0.0),
+            (1.0, 1.0),
+            (1.1, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
+    // Up, a step down in which the higher degree holds, a step up, a last degree that holds.
+    table(
+        Shape::Piecewise {
+            points: vec![
+                (0.0, 0.25),
+                (1.0, 0.75),
+                (1.0, 0.5),
+                (2.0, 0.0),
+                (2.0, 1.0),
+                (4.0, 0.5),
+            ],
+        },
+        &[
+            (NEG_INFINITY, 0.25),
+            (0.0, 0.25),
+            (0.5, 0.5),
+            (1.0, 0.75),
+            (1.5, 0.25),
+            (2.0, 1.0),
+            (3.0, 0.75),
+            (4.0, 0.5),
+            (INFINITY, 0.5),
+        ],
+    );
+    table(
+        Shape::Constant { value: 0.3 },
+        &[(NEG_INFINITY, 0.3), (0.0, 0.3), (INFINITY, 0.3)],
+    );
+}
+
+#[test]
+fn gaussians() {
+    let at_one_sd = 0.606_530_659_712_633_4; // exp(-1/2)
+    let at_two_sd = 0.135_335_283_236_612_7; // exp(-2)
+    table(
+        Shape::Gaussian { mean: 1.0, sd: 2.0 },
+        &[
+            (NEG_INFINITY, 0.0),
+            (-3.0, at_two_sd),
+            (-1.0, at_one_sd),
+            (1.0, 1.0),
+            (3.0, at_one_sd),
+            (5.0, at_two_sd),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        Shape::Gaussian2 {
+            left_mean: 1.0,
+            left_sd: 0.5,
+            right_mean: 2.0,
+            right_sd: 3.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.5, at_one_sd),
+            (1.0, 1.0),
+            (1.5, 1.0),
+            (2.0, 1.0),
+            (5.0, at_one_sd),
+            (8.0, at_two_sd),
+            (INFINITY, 0.0),
+        ],
+    );
+}
+
+#[test]
+fn bell_and_sigmoids() {
+    table(
+        Shape::Bell {
+            center: 1.0,
+            width: 2.0,
+            slope: 1.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (-3.0, 0.2),
+            (-1.0, 0.5),
+            (1.0, 1.0),
+            (3.0, 0.5),
+            (7.0, 0.1),
+            (INFINITY, 0.0),
+        ],
+    );
+    let third = 3.0_f64.ln();
+    table(
+        Shape::Sigmoid {
+            inflection: 2.0,
+            slope: 1.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (2.0 - third, 0.25),
+            (2.0, 0.5),
+            (2.0 + third, 0.75),
+            (INFINITY, 1.0),
+        ],
+    );
+    table(
+        Shape::Sigmoid {
+            inflection: 2.0,
+            slope: -1.0,
+        },
+        &[
+            (NEG_INFINITY, 1.0),
+            (2.0 + third, 0.25),
+            (2.0, 0.5),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        Shape::SigmoidDifference {
+            left_inflection: 0.0,
+            left_slope: 1.0,
+            right_inflection: third,
+            right_slope: 1.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.0, 0.25),
+            (third, 0.25),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        Shape::SigmoidProduct {
+            left_inflection: 0.0,
+            left_slope: 1.0,
+            right_inflection: 0.0,
+            right_slope: -1.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.0, 0.25),
+            (third, 3.0 / 16.0),
+            (-third, 3.0 / 16.0),
+            (INFINITY, 0.0),
+        ],
+    );
+}
+
+#[test]
+fn s_z_and_pi() {
+    table(
+        Shape::SShape {
+            foot: 0.0,
+            top: 4.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.0, 0.0),
+            (1.0, 0.125),
+            (2.0, 0.5),
+            (3.0, 0.875),
+            (4.0, 1.0),
+            (INFINITY, 1.0),
+        ],
+    );
+    table(
+        Shape::ZShape {
+            top: 0.0,
+            foot: 4.0,
+        },
+        &[
+            (NEG_INFINITY, 1.0),
+            (0.0, 1.0),
+            (1.0, 0.875),
+            (2.0, 0.5),
+            (3.0, 0.125),
+            (4.0, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        Shape::PiShape {
+            left: 0.0,
+            left_top: 2.0,
+            right_top: 3.0,
+            right: 5.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.0, 0.0),
+            (0.5, 0.125),
+            (1.0, 0.5),
+            (2.0, 1.0),
+            (3.0, 1.0),
+            (4.5, 0.125),
+            (5.0, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        Shape::PiShape {
+            left: 1.0,
+            left_top: 1.0,
+            right_top: 1.0,
+            right: 1.0,
+        },
+        &[(0.9, 0.0), (1.0, 1.0), (1.1, 0.0)],
+    );
+}
+
+#[test]
+fn cosine_spike_concave() {
+    table(
+        Shape::Cosine {
+            center: 1.0,
+            width: 4.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (-1.0, 0.0),
+            (0.0, 0.5),
+            (1.0, 1.0),
+            (2.0, 0.5),
+            (3.0, 0.0),
+            (3.5, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
+    let tenth = 0.367_879_441_171_442_33; // exp(-1)
+    table(
+        Shape::Spike {
+            center: 1.0,
+            width: 10.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.0, tenth),
+            (1.0, 1.0),
+            (2.0, tenth),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        Shape::Concave {
+            inflection: 1.0,
+            end: 3.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (-3.0, 0.25),
+            (1.0, 0.5),
+            (2.0, 2.0 / 3.0),
+            (3.0, 1.0),
+            (INFINITY, 1.0),
+        ],
+    );
+    table(
+        Shape::Concave {
+            inflection: 3.0,
+            end: 1.0,
+        },
+        &[
+            (NEG_INFINITY, 1.0),
+            (1.0, 1.0),
+            (2.0, 2.0 / 3.0),
+            (3.0, 0.5),
+            (7.0, 0.25),
+            (INFINITY, 0.0),
+        ],
+    );
+}
+
+#[test]
+fn parameters_that_make_no_shape_still_give_no_nan() {
+    for shape in [
+        Shape::Gaussian { mean: NAN, sd: 0.0 },
+        Shape::Bell {
+            center: 0.0,
+            width: 0.0,
+            slope: NAN,
+        },
+        Shape::Concave {
+            inflection: 1.0,
+            end: INFINITY,
+        },
+        Shape::Piecewise { points: vec![] },
+        Shape::Constant { value: NAN },
+    ] {
+        for x in [NEG_INFINITY, -1.0, 0.0, 1.0, INFINITY, NAN] {
+            let degree = shape.membership(x);
+            assert!((0.0..=1.0).contains(&degree), "{shape:?} at {x}: {degree}");
+        }
+    }
+}
+
+#[test]
+fn says_which_parameter() {
+    let message = |shape: Shape| shape.validate().unwrap_err().to_string();
+    assert_eq!(
+        message(Shape::Gaussian { mean: 1.0, sd: 0.0 }),
+        "`sd` is 0, not over 0"
+    );
+    assert_eq!(
+        message(Shape::Bell {
+            center: f64::NAN,
+            width: 1.0,
+            slope: 1.0
+        }),
+        "`center` is NaN, not a finite number"
+    );
+    assert_eq!(
+        message(Shape::Piecewise {
+            points: vec![(0.0, 0.5), (1.0, 1.5)]
+        }),
+        "the degree 1.5 at 1 is not in [0, 1]"
+    );
+    assert_eq!(
+        message(Shape::Piecewise {
+            points: vec![(1.0, 0.5), (0.0, 0.5)]
+        }),
+        "the point at 0 stands behind 1"
+    );
+    assert_eq!(
+        message(Shape::Concave {
+            inflection: 1.0,
+            end: 1.0
+        }),
+        "`inflection` and `end` are both 1"
+    );
+    assert_eq!(
+        message(Shape::Rectangle {
+            left: -1.7e308,
+            right: 1.7e308
+        }),
+        "`left` is too large a number"
+    );
+}

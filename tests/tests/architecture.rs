@@ -1,0 +1,249 @@
+//! What ARCHITECTURE.md says of where things are: floors, circles, who knows what, and that it leaves nothing out.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+const PACKAGES: [&str; 4] = ["fuzzy", "flagred", "flightlog", "cli"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The source files below a folder, by their path from the repository's root.
+fn sources(folder: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let mut folders = vec![root().join(folder)];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let name = path.strip_prefix(root()).unwrap().display().to_string();
+                found.push((name, fs::read_to_string(&path).unwrap()));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// What is compiled into the package: no tests and no comments.
+fn code(folder: &str) -> Vec<(String, String)> {
+    let is_test = |name: &str| name.ends_with("tests.rs");
+    let files = sources(folder).into_iter().filter(|(n, _)| !is_test(n));
+    let code = files.map(|(name, text)| {
+        let (text, _) = text
+            .split_once("#[cfg(test)]\nmod tests {")
+            .unwrap_or((&text, ""));
+        let lines = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+        (name, lines.collect::<Vec<_>>().join("\n"))
+    });
+    code.collect()
+}
+
+/// The words of a text that could be names.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_alphanumeric() && c != '_')
+}
+
+#[test]
+fn every_package_stands_on_those_below_it_alone() {
+    for (package, below) in [
+        ("fuzzy", &[][..]),
+        ("flightlog", &[]),
+        ("flagred", &["fuzzy"]),
+        ("cli", &["flagred", "flightlog", "fuzzy"]),
+    ] {
+        let manifest = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
+        let (_, dependencies) = manifest.split_once("\n[dependencies]\n").unwrap();
+        let dependencies = dependencies.split("\n[").next().unwrap();
+        let names = dependencies
+            .lines()
+            .filter_map(|line| line.split(['.', ' ']).next());
+        let ours: Vec<&str> = names
+            .filter(|name| ["fuzzy", "flightlog", "flagred", "flagred-cli"].contains(name))
+            .collect();
+        assert_eq!(ours, below, "{package}");
+    }
+}
+
+/// The modules at the top of a package that a text names: `crate::a`, or `crate::{a, b::{..}}`.
+fn named(text: &str) -> BTreeSet<&str> {
+    let mut found = BTreeSet::new();
+    for (at, start) in text.match_indices("crate::") {
+        let rest = &text[at + start.len()..];
+        let Some(list) = rest.strip_prefix('{') else {
+            found.extend(words(rest).next());
+            continue;
+        };
+        let (mut depth, mut is_first) = (0, true);
+        for word in list.split_inclusive(['{', '}', ',', ':']) {
+            if depth == 0 && is_first {
+                found.extend(words(word.trim_start()).next());
+            }
+            is_first = word.ends_with(',');
+            depth += i32::from(word.ends_with('{')) - i32::from(word.ends_with('}'));
+            if depth < 0 {
+                break;
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn no_circle_runs_between_the_modules_of_a_package() {
+    for package in PACKAGES {
+        let files = code(&format!("{package}/src"));
+        let module = |name: &str| {
+            let inside = name.split('/').nth(2).unwrap();
+            inside.trim_end_matches(".rs").to_owned()
+        };
+        let modules: BTreeSet<String> = files.iter().map(|(name, _)| module(name)).collect();
+        // What is exported at the front counts as its module.
+        let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (name, text) in &files {
+            let here = module(name);
+            let others = named(text).into_iter().map(|name| match name {
+                "Engine" => "engine",
+                "Model" => "model",
+                name => name,
+            });
+            let others = others.filter(|name| modules.contains(*name) && *name != here);
+            let others: Vec<String> = others.map(str::to_owned).collect();
+            uses.entry(here).or_default().extend(others);
+        }
+        // Modules that use none but those taken away already are taken away, until none is left.
+        while !uses.is_empty() {
+            let left: Vec<String> = uses.keys().cloned().collect();
+            uses.retain(|_, used| used.iter().any(|name| left.contains(name)));
+            assert!(uses.len() < left.len(), "{package}: a circle in {uses:#?}");
+        }
+    }
+}
+
+#[test]
+fn the_engine_does_no_input_or_output_and_knows_no_drone() {
+    for (name, text) in code("fuzzy/src") {
+        for word in words(&text) {
+            let knows = ["drone", "copter", "motor", "pwm", "mavlink", "flight"]
+                .iter()
+                .any(|subject| word.to_lowercase().contains(subject));
+            assert!(!knows, "{name} names `{word}`");
+        }
+        for outside in [
+            "std::fs",
+            "std::io",
+            "std::net",
+            "std::env",
+            "std::process",
+            "std::time",
+        ] {
+            assert!(!text.contains(outside), "{name} names `{outside}`");
+        }
+    }
+}
+
+#[test]
+fn an_evaluation_takes_no_lock_and_writes_no_log() {
+    for folder in ["engine", "defuzzify", "model"] {
+        for (name, text) in code(&format!("fuzzy/src/{folder}")) {
+            for word in words(&text) {
+                let waits = ["Mutex", "RwLock", "OnceLock", "RefCell", "log", "tracing"];
+                // `libm::log` is a logarithm.
+                let is_logarithm = word == "log" && text.contains("libm");
+                assert!(
+                    !waits.contains(&word) || is_logarithm,
+                    "{name} names `{word}`"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn one_folder_names_the_yaml_library_and_one_package_the_bytes_of_logs() {
+    for package in PACKAGES {
+        for (name, text) in code(&format!("{package}/src")) {
+            let yaml = text.contains("granit_parser");
+            assert!(!yaml || name.starts_with("fuzzy/src/yaml/"), "{name}");
+            let bytes = ["from_le_bytes", "from_be_bytes"]
+                .iter()
+                .any(|f| text.contains(f));
+            assert!(!bytes || name.starts_with("flightlog/"), "{name}");
+        }
+    }
+}
+
+#[test]
+fn the_map_of_the_house_has_every_module_and_names_nothing_that_is_gone() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let spans: BTreeSet<&str> = text.split('`').skip(1).step_by(2).collect();
+    for package in PACKAGES {
+        for entry in fs::read_dir(root().join(package).join("src")).unwrap() {
+            let entry = entry.unwrap().file_name().to_string_lossy().into_owned();
+            let Some(module) = entry.strip_suffix(".rs").or(Some(entry.as_str())) else {
+                continue;
+            };
+            if module.contains('.') || ["lib", "main"].contains(&module) {
+                continue;
+            }
+            let is_there = |span: &&str| {
+                [
+                    module.to_owned(),
+                    format!("{module}/"),
+                    format!("{package}/src/{module}.rs"),
+                ]
+                .contains(&span.trim_end_matches("::").to_owned())
+            };
+            assert!(
+                spans.iter().any(is_there),
+                "{package}/src/{entry} is not in it"
+            );
+        }
+    }
+    let known: String = ["fuzzy", "flagred", "flightlog", "cli", "tests"]
+        .iter()
+        .flat_map(|folder| sources(folder))
+        .map(|(_, text)| text)
+        .collect();
+    for span in spans {
+        let is_path = span.contains('/') && !span.contains([' ', ':', '<']);
+        if is_path
+            && PACKAGES
+                .iter()
+                .chain(&["tests", "scripts", "rules"])
+                .any(|p| span.starts_with(p))
+        {
+            assert!(root().join(span).exists(), "`{span}` is not there");
+        }
+        let is_test = span.matches('_').count() >= 3 && words(span).count() == 1;
+        if is_test {
+            assert!(
+                known.contains(&format!("fn {span}(")),
+                "there is no test `{span}`"
+            );
+        }
+    }
+}
+
+/// An invariant that nothing holds is a wish.
+#[test]
+fn every_invariant_names_what_holds_it() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let (_, invariants) = text.split_once("\n## Invariants\n").unwrap();
+    let invariants: Vec<&str> = invariants.split("\n- **").skip(1).collect();
+    assert!(invariants.len() >= 10);
+    for invariant in invariants {
+        let (_, behind) = invariant
+            .split_once("Held by")
+            .unwrap_or_else(|| panic!("{invariant}"));
+        let files = behind.split('`').skip(1).step_by(2);
+        let held = files.filter(|file| root().join(file).is_file()).count();
+        assert!(held > 0, "{invariant}");
+    }
+}
