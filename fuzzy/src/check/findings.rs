@@ -182,14 +182,24 @@ impl At<'_> {
             .find(|input| input.name == side.input);
         let (low, high) = input.map_or((f64::NAN, f64::NAN), |input| (input.low, input.high));
         let name = &side.input;
-        if side.low == side.high {
-            format!("{name} = {}", shown(side.low))
-        } else if side.low == low {
-            format!("{name} < {}", shown(side.high))
-        } else if side.high == high {
-            format!("{name} > {}", shown(side.low))
+        // Where a slope leaves 0 right behind an end of the range, to a reader that is the end.
+        let at_end = |x: f64| {
+            [low, high]
+                .into_iter()
+                .find(|end| (x - end).abs() < 1e-12 * (high - low))
+        };
+        let (from, to) = (
+            at_end(side.low).unwrap_or(side.low),
+            at_end(side.high).unwrap_or(side.high),
+        );
+        if from == to {
+            format!("{name} = {}", shown(from))
+        } else if from == low {
+            format!("{name} < {}", shown(to))
+        } else if to == high {
+            format!("{name} > {}", shown(from))
         } else {
-            format!("{} < {name} < {}", shown(side.low), shown(side.high))
+            format!("{} < {name} < {}", shown(from), shown(to))
         }
     }
 
