@@ -23,6 +23,7 @@ type Row = [f64; LANES];
 
 /// Above this number of operations a row, visiting only the rules alive is faster.
 const MOST_OPERATIONS: usize = 600;
+const MOST_INPUTS: usize = 8;
 const MOST_TERMS: usize = 32;
 const MOST_PLACES: usize = 33;
 const MOST_RULES: usize = 64;
@@ -71,6 +72,8 @@ struct Rule {
 
 /// What a block is computed in.
 struct Room {
+    /// The values, by their bits, that the degrees of each input are of.
+    known: [[u64; LANES]; MOST_INPUTS],
     degrees: [Row; MOST_TERMS],
     strengths: [Row; MOST_RULES],
     heights: [Row; MOST_PLACES],
@@ -112,6 +115,7 @@ impl Lanes {
         let operations = 12 * slopes.len() + ands + 6 * actions.len() + 20 * ramps.places();
         let fits = and == Conjunction::Minimum
             && operations <= MOST_OPERATIONS
+            && inputs.len() <= MOST_INPUTS
             && slopes.len() <= MOST_TERMS
             && actions.len() <= MOST_RULES
             && ramps.places() <= MOST_PLACES;
@@ -174,13 +178,14 @@ impl Lanes {
         put: &mut impl FnMut(Outcome),
     ) {
         let Room {
+            known,
             degrees,
             strengths,
             heights,
         } = room;
         let heights = &mut heights[..self.ramps.places()];
         let (mut infinite, mut clamped) = ([0; LANES], [0; LANES]);
-        for (input, column) in self.inputs.iter().zip(columns) {
+        for ((input, column), known) in self.inputs.iter().zip(columns).zip(known) {
             let rows = &column[range.clone()];
             let values = Row::try_from(rows).unwrap_or_else(|_| {
                 let mut values = [input.low; LANES];
@@ -193,6 +198,12 @@ impl Lanes {
                 x[lane] = larger(input.low, smaller(input.high, values[lane]));
                 clamped[lane] |= mask(x[lane] != values[lane]);
             }
+            // Along a line of a map all inputs but one stay as they are.
+            let bits = values.map(f64::to_bits);
+            if *known == bits {
+                continue;
+            }
+            *known = bits;
             let literals = input.literals.clone();
             for (slopes, degrees) in self.slopes[literals.clone()]
                 .iter()
@@ -278,6 +289,8 @@ impl<Put: FnMut(Outcome)> Blocks<'_, Put> {
     #[inline(always)]
     fn evaluate(mut self) {
         let mut room = Room {
+            // The bits of no finite number.
+            known: [[u64::MAX; LANES]; MOST_INPUTS],
             degrees: [[0.0; LANES]; MOST_TERMS],
             strengths: [[0.0; LANES]; MOST_RULES],
             heights: [[0.0; LANES]; MOST_PLACES],

@@ -120,20 +120,6 @@ impl Axis {
         self.scale().coordinate(i)
     }
 
-    /// The coordinates of cells from `first` on, where neighbours on this axis stand `stride` cells apart.
-    pub(super) fn coordinates(&self, first: usize, stride: usize, coordinates: &mut [f64]) {
-        let mut i = first / stride % self.points;
-        let mut left = stride - first % stride;
-        let mut rest = coordinates;
-        while !rest.is_empty() {
-            let (run, behind) = rest.split_at_mut(left.min(rest.len()));
-            run.fill(self.coordinate(i));
-            i = (i + 1) % self.points;
-            left = stride;
-            rest = behind;
-        }
-    }
-
     /// The points around `x` and how far it lies between them, in [0, 1]; beyond the ends, the end.
     ///
     /// # Example

@@ -56,6 +56,8 @@ struct Worker<'a> {
     grid: &'a Grid,
     output: usize,
     scratch: Scratch,
+    /// The coordinates along each axis.
+    places: Vec<Vec<f64>>,
     /// One column of coordinates for each input.
     columns: Vec<Vec<f64>>,
 }
@@ -68,11 +70,14 @@ impl<'a> Worker<'a> {
                 column.fill(fixed.value);
             }
         }
+        let places = grid.axes().iter();
+        let places = places.map(|axis| (0..axis.points).map(|i| axis.coordinate(i)).collect());
         Worker {
             engine,
             grid,
             output,
             scratch: engine.scratch(),
+            places: places.collect(),
             columns,
         }
     }
@@ -87,10 +92,15 @@ impl<'a> Worker<'a> {
     ) {
         let cells = values.len();
         let mut stride = self.grid.cells();
-        for axis in self.grid.axes() {
+        for (axis, places) in self.grid.axes().iter().zip(&self.places) {
             stride /= axis.points;
             if let Some(column) = self.columns.get_mut(axis.input) {
-                axis.coordinates(first, stride, column.get_mut(..cells).unwrap_or_default());
+                spread(
+                    places,
+                    first,
+                    stride,
+                    column.get_mut(..cells).unwrap_or_default(),
+                );
             }
         }
         let columns: Vec<&[f64]> = self.columns.iter().map(|column| &**column).collect();
@@ -106,6 +116,22 @@ impl<'a> Worker<'a> {
         };
         self.engine
             .evaluate_rows(&mut self.scratch, &columns, range, put);
+    }
+}
+
+/// Writes the coordinates of cells from `first` on, where neighbours on an axis with these places stand `stride` cells
+/// apart.
+fn spread(places: &[f64], first: usize, stride: usize, mut cells: &mut [f64]) {
+    let mut left = stride - first % stride;
+    let around = places.iter().cycle().skip(first / stride % places.len());
+    for place in around {
+        if cells.is_empty() {
+            return;
+        }
+        let (run, behind) = cells.split_at_mut(left.min(cells.len()));
+        run.fill(*place);
+        left = stride;
+        cells = behind;
     }
 }
 
