@@ -1,6 +1,6 @@
 //! What is learned and how, and why something is not.
 
-use alloc::string::String;
+use alloc::{string::String, vec::Vec};
 
 use crate::rule::Condition;
 
