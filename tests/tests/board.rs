@@ -17,6 +17,7 @@ use flagred::{
     window::Window,
 };
 use flagred_tests::{
+    Folder,
     board::{Moment, PROFILES, estimator, findings, logs, moment, moments, points, told},
     flagred,
 };
@@ -201,20 +202,16 @@ fn a_sample_on_board_allocates_nothing() {
 
 #[test]
 fn what_has_no_closed_form_is_refused_with_what_has() {
-    let folder = std::env::temp_dir().join(format!("flagred-export-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = Folder::new();
     let rules = include_str!("../../rules/flagred-paper.yaml")
         .replace("defuzzifier: centroid", "defuzzifier: bisector");
-    std::fs::write(folder.join("odd-rules.yaml"), rules).unwrap();
+    folder.file("odd-rules.yaml", rules);
     let profile = include_str!("../../rules/profiles/flagred-paper.yaml")
         .replace("rules: flagred-paper ", "rules: odd-rules.yaml ");
-    std::fs::write(folder.join("odd.yaml"), profile).unwrap();
     let output = flagred()
-        .args(["export", "--c"])
-        .arg(folder.join("odd.yaml"))
+        .args(["export", "--c", &folder.file("odd.yaml", profile)])
         .output()
         .unwrap();
-    std::fs::remove_dir_all(&folder).unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(3), "{told}");
     assert!(
@@ -256,11 +253,10 @@ fn library() -> Option<&'static Path> {
 }
 
 /// Compiles a program of C with the library; gives it, and the folder it is in.
-fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(Command, PathBuf)> {
+fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(Command, Folder)> {
     let library = library()?;
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let folder = std::env::temp_dir().join(format!("flagred-c-{}-{name}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = Folder::new();
     let mut cc = Command::new("cc");
     cc.args([
         "-std=c11",
@@ -272,17 +268,17 @@ fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(
     ]);
     cc.arg("-I").arg(root.join("flagred-c/include"));
     if let Some((profile, plan)) = exported {
-        let header = folder.join("profile.h");
+        let header = folder.at("profile.h");
         let status = flagred()
             .args(["export", "--c", profile, "--output"])
             .arg(&header)
             .status();
         assert!(status.unwrap().success(), "{profile}");
-        cc.arg("-I").arg(&folder);
-        cc.arg(format!("-DPROFILE=\"{}\"", header.display()));
+        cc.arg("-I").arg(folder.path());
+        cc.arg(format!("-DPROFILE=\"{header}\""));
         cc.arg(format!("-DPLAN=flagred_plan_{plan}"));
     }
-    let binary = folder.join(name);
+    let binary = folder.at(name);
     cc.arg(root.join(source)).arg("-o").arg(&binary);
     cc.arg(library.join("libflagred.a"));
     let compiled = cc.output().unwrap();
@@ -324,7 +320,7 @@ fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs
                 doubles.extend(&moment.signals);
             }
             doubles.push(2.0);
-            let mut command = Command::new(folder.join(name));
+            let mut command = Command::new(folder.at(name));
             command.arg(flight[0].motors.len().to_string());
             let expected = by_the_monitor(&estimator, &flight);
             let what = format!("{name} in C, {}", log.display());
@@ -335,7 +331,7 @@ fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs
             .iter()
             .flat_map(|point| [1.0].into_iter().chain(point.iter().copied()));
         let found = written(
-            Command::new(folder.join(name)),
+            Command::new(folder.at(name)),
             &doubles.collect::<Vec<f64>>(),
         );
         let expected: Vec<String> = points
@@ -343,26 +339,25 @@ fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs
             .map(|point| moment(estimator.at(point).as_ref()))
             .collect();
         assert_same(&expected, &found, &format!("{name} in C over its inputs"));
-        std::fs::remove_dir_all(&folder).unwrap();
     }
 }
 
 #[test]
 fn the_example_in_c_runs() {
     let profile = ("flagred", "flagred");
-    let Some((mut program, folder)) = program("flagred-c/examples/hover.c", "hover", Some(profile))
+    let Some((mut program, _folder)) =
+        program("flagred-c/examples/hover.c", "hover", Some(profile))
     else {
         return;
     };
     let output = program.output().unwrap();
-    std::fs::remove_dir_all(&folder).unwrap();
     assert!(output.status.success());
     let text = String::from_utf8(output.stdout).unwrap();
     insta::assert_snapshot!(text);
 }
 
 /// Rule sets that use every array of a table: those of `tests/onboard`, each input the latest value of a signal.
-fn profiles_of_every_kind(folder: &Path) -> Vec<(String, Estimator, PathBuf)> {
+fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
     let rule_sets = Path::new(env!("CARGO_MANIFEST_DIR")).join("onboard");
     let mut profiles = Vec::new();
     for entry in std::fs::read_dir(rule_sets).unwrap() {
@@ -377,9 +372,8 @@ fn profiles_of_every_kind(folder: &Path) -> Vec<(String, Estimator, PathBuf)> {
         text += "gap: {method: nearest}\n";
         let profile = flagred::profile::Profile::from_yaml(&text).unwrap();
         let estimator = Estimator::new(&profile, &model).unwrap();
-        let file = folder.join(format!("{name}-profile.yaml"));
-        std::fs::write(folder.join(format!("{name}.yaml")), rules).unwrap();
-        std::fs::write(&file, text).unwrap();
+        folder.file(&format!("{name}.yaml"), rules);
+        let file = folder.file(&format!("{name}-profile.yaml"), text);
         profiles.push((name, estimator, file));
     }
     assert_eq!(profiles.len(), 3);
@@ -388,8 +382,7 @@ fn profiles_of_every_kind(folder: &Path) -> Vec<(String, Estimator, PathBuf)> {
 
 #[test]
 fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
-    let folder = std::env::temp_dir().join(format!("flagred-kinds-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = Folder::new();
     let mut used = Vec::new();
     for (name, estimator, file) in profiles_of_every_kind(&folder) {
         let plan = estimator.plan().unwrap();
@@ -415,18 +408,14 @@ fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
             said.map(|said| moment(said.as_ref())).collect()
         });
         assert_same(&expected, &lent, &name);
-        let profile = file.to_str().unwrap();
-        if let Some((command, folder)) = program("tests/c/follow.c", &name, Some((profile, &name)))
-        {
+        if let Some((command, _folder)) = program("tests/c/follow.c", &name, Some((&file, &name))) {
             let doubles = points
                 .iter()
                 .flat_map(|point| [1.0].into_iter().chain(point.iter().copied()));
             let found = written(command, &doubles.collect::<Vec<f64>>());
-            std::fs::remove_dir_all(&folder).unwrap();
             assert_same(&expected, &found, &format!("{name} in C"));
         }
     }
-    std::fs::remove_dir_all(&folder).unwrap();
     for (_, array) in &used {
         assert!(used.contains(&(true, array)), "no {array} are used");
     }
@@ -449,16 +438,13 @@ fn the_page_in_c_runs() {
     let page = include_str!("../../examples/09-on-board.md");
     let (_, rest) = page.split_once("```c\n").unwrap();
     let (code, _) = rest.split_once("```").unwrap();
-    let source = std::env::temp_dir().join(format!("flagred-page-{}.c", std::process::id()));
-    std::fs::write(&source, code).unwrap();
+    let pages = Folder::new();
     let profile = ("flagred", "flagred");
-    let program = program(source.to_str().unwrap(), "page", Some(profile));
-    std::fs::remove_file(&source).unwrap();
-    let Some((mut program, folder)) = program else {
+    let Some((mut program, _folder)) = program(&pages.file("page.c", code), "page", Some(profile))
+    else {
         return;
     };
     let output = program.output().unwrap();
-    std::fs::remove_dir_all(&folder).unwrap();
     assert!(output.status.success());
     assert_eq!(String::from_utf8(output.stdout).unwrap(), "FAIL\n");
 }
@@ -466,12 +452,11 @@ fn the_page_in_c_runs() {
 #[test]
 fn mistakes_in_c_are_told_and_nothing_is_written() {
     let profile = ("flagred", "flagred");
-    let Some((mut program, folder)) = program("tests/c/mistakes.c", "mistakes", Some(profile))
+    let Some((mut program, _folder)) = program("tests/c/mistakes.c", "mistakes", Some(profile))
     else {
         return;
     };
     let output = program.output().unwrap();
-    std::fs::remove_dir_all(&folder).unwrap();
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{text}");
 }

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use flagred_tests::{
-    shared_data,
+    Folder, STEADY, shared_data,
     vehicle::{Link, Speed, flight},
-    watch::{STEADY, assess, fly_udp, refused},
+    watch::{assess, fly_udp, refused},
 };
 use serde_json::Value;
 
@@ -14,7 +14,8 @@ use serde_json::Value;
 fn a_recording_gives_assess_what_watch_said(log: &Path) {
     let flight = flight(log);
     let name = log.file_stem().unwrap().to_string_lossy().into_owned();
-    let path = std::env::temp_dir().join(format!("flagred-{}-{name}.tlog", std::process::id()));
+    let folder = Folder::new();
+    let path = folder.path().join("flight.tlog");
     let file = path.to_str().unwrap();
     let (said, _) = fly_udp(
         &flight,
@@ -30,7 +31,6 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
     );
     std::fs::write(&path, in_real_time(&std::fs::read(&path).unwrap())).unwrap();
     let assessed = assess(&path);
-    std::fs::remove_file(&path).unwrap();
     assert_eq!(assessed["log"]["format"], "MAVLink tlog");
     assert_eq!(assessed["read"]["skipped_bytes"], 0);
     assert_eq!(
