@@ -23,11 +23,6 @@ use crate::{
     vehicle::{Heard, Link, Progress, Speed, StandIn, Wire},
 };
 
-pub const STEADY: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../examples/flights/steady.BIN"
-);
-
 /// A running watch, and where it listens.
 pub struct Watch {
     child: Child,

@@ -6,9 +6,9 @@ use std::{
 };
 
 use flagred_tests::{
-    shared_data,
+    STEADY, shared_data,
     vehicle::{Link, Speed, StandIn, Wire, flight},
-    watch::{STEADY, Said, Watch, assess, check_texts, compare, fly_udp},
+    watch::{Said, Watch, assess, check_texts, compare, fly_udp},
 };
 use flightlog::{Flight, mavlink::Version};
 

@@ -7,10 +7,10 @@ use std::{
 };
 
 use flagred_tests::{
-    flagred,
+    STEADY, flagred,
     log_writer::Tlog,
     vehicle::{Link, Speed, StandIn, Wire, flight, servo},
-    watch::{STEADY, Watch, check_texts, refused},
+    watch::{Watch, check_texts, refused},
 };
 use flightlog::mavlink::Version;
 

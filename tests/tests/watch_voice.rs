@@ -3,8 +3,9 @@
 use std::{path::Path, time::Duration};
 
 use flagred_tests::{
+    STEADY,
     vehicle::{Link, Speed, flight},
-    watch::{STEADY, Watch, fly_udp},
+    watch::{Watch, fly_udp},
 };
 
 /// How long after a motor command its risk was on the wire, in ms, of the values sent in so many seconds at 50 Hz, in
