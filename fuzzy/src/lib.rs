@@ -25,7 +25,6 @@ pub mod map;
 pub mod model;
 #[cfg(feature = "alloc")]
 pub mod rule;
-pub mod scale;
 mod shape;
 #[cfg_attr(
     not(feature = "alloc"),

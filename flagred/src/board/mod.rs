@@ -55,7 +55,7 @@ use crate::{
     window::Window,
 };
 
-pub use fuzzy::{scale, table};
+pub use fuzzy::table;
 
 mod storage;
 

@@ -3,7 +3,6 @@
 use alloc::{string::String, sync::Arc, vec::Vec};
 
 use crate::Engine;
-use crate::scale::{Scale, interpolate};
 
 /// Equidistant points over some inputs of an engine, the other inputs fixed.
 ///
@@ -94,16 +93,6 @@ pub enum GridError {
 const MOST_CELLS: usize = u32::MAX as usize;
 
 impl Axis {
-    /// The points alone.
-    pub fn scale(&self) -> Scale {
-        Scale {
-            low: self.low,
-            high: self.high,
-            // A grid has no more cells than 32 bits count.
-            points: u32::try_from(self.points).unwrap_or(u32::MAX),
-        }
-    }
-
     /// The coordinate of a point: `low + i (high - low) / (points - 1)`; the last is `high` itself.
     ///
     /// # Example
@@ -117,7 +106,11 @@ impl Axis {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn coordinate(&self, i: usize) -> f64 {
-        self.scale().coordinate(i)
+        if i + 1 >= self.points {
+            self.high
+        } else {
+            self.low + (self.high - self.low) * (i as f64 / (self.points - 1) as f64)
+        }
     }
 
     /// The points around `x` and how far it lies between them, in [0, 1]; beyond the ends, the end.
@@ -134,7 +127,14 @@ impl Axis {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn locate(&self, x: f64) -> (usize, f64) {
-        self.scale().locate(x)
+        let last = self.points.saturating_sub(2);
+        let place = (x - self.low) / (self.high - self.low) * (self.points - 1) as f64;
+        if place > 0.0 {
+            let i = (place as usize).min(last);
+            (i, (place - i as f64).min(1.0))
+        } else {
+            (0, 0.0)
+        }
     }
 }
 
@@ -375,7 +375,30 @@ impl Grid {
         if point.len() != self.axes.len() || point.iter().any(|x| x.is_nan()) {
             return None;
         }
-        let scales = |i: usize| self.axes.get(i).map(Axis::scale);
-        interpolate(&scales, &mut |cell| value(cell), point)
+        self.corner_sum(&value, point, 0, 0)
+    }
+
+    /// Interpolates along one axis between what the further axes give on both sides.
+    fn corner_sum(
+        &self,
+        value: &impl Fn(usize) -> Option<f64>,
+        point: &[f64],
+        depth: usize,
+        cell: usize,
+    ) -> Option<f64> {
+        let (Some(axis), Some(&x)) = (self.axes.get(depth), point.get(depth)) else {
+            return value(cell);
+        };
+        let (i, between) = axis.locate(x);
+        let first = cell * axis.points + i;
+        if between == 0.0 {
+            return self.corner_sum(value, point, depth + 1, first);
+        }
+        let right = self.corner_sum(value, point, depth + 1, first + 1)?;
+        if between == 1.0 {
+            return Some(right);
+        }
+        let left = self.corner_sum(value, point, depth + 1, first)?;
+        Some(left + (right - left) * between)
     }
 }
