@@ -133,8 +133,14 @@ pub(crate) fn push(
     motors: impl Iterator<Item = f64> + Clone,
     named: &[f64],
 ) {
+    let mut before: Option<(&Channel, Moments)> = None;
     for (channel, seen) in channels.iter().zip(seen) {
-        let now = channel.reduce(motors.clone(), named);
+        // Neighbours often differ in their windows alone.
+        let now = match before {
+            Some((same, now)) if same.sees_as(channel) => now,
+            _ => channel.reduce(motors.clone(), named),
+        };
+        before = Some((channel, now));
         seen.last = now.mean();
         if now.weight() > 0.0 {
             // A sample weighs its time, however many motors it knows.
@@ -184,6 +190,12 @@ pub struct Observation {
 }
 
 impl Channel {
+    /// Whether another channel makes the same of a sample, over whatever window.
+    fn sees_as(&self, other: &Channel) -> bool {
+        let window_s = self.window_s;
+        *self == Channel { window_s, ..*other }
+    }
+
     /// The values of one sample, each motor known with weight 1.
     fn reduce(&self, motors: impl Iterator<Item = f64>, named: &[f64]) -> Moments {
         let observe: fn(f64) -> f64 = match self.observed {
