@@ -279,7 +279,10 @@ fn write_whole(
         let reading = filled.filled(cell);
         let (value, distance) = match reading {
             Some(reading) => (Some(reading.value), Some(reading.distance)),
-            None => (filled.value(cell), filled.value(cell).map(|_| 0.0)),
+            None => {
+                let value = filled.value(cell);
+                (value, value.map(|_| 0.0))
+            }
         };
         writeln!(
             out,

@@ -22,8 +22,10 @@ struct Candidate {
     said: &'static str,
     /// Column, range and terms of each input.
     inputs: &'static [(&'static str, &'static str)],
-    /// The rest of the rule set: the output's terms, the operators and the written rules.
+    /// The output's terms and the operators.
     rest: &'static str,
+    /// The rules that are written.
+    rules: &'static str,
     resolution: Resolution,
     /// Whether the risk may not fall when an input other than the margin rises.
     monotone: bool,
@@ -69,14 +71,12 @@ const ALL: &[(&str, &str)] = &[
 /// The paper's terms and operators.
 const MAMDANI: &str = "
 outputs: {risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}}
-operators: {and: minimum, or: maximum, implication: minimum, aggregation: maximum}
-rules: []";
+operators: {and: minimum, or: maximum, implication: minimum, aggregation: maximum}";
 
 /// The paper's terms, since votes need a term at every risk; product and sum.
 const OVERLAPPING: &str = "
 outputs: {risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}}
-operators: {and: product, or: maximum, implication: product, aggregation: sum}
-rules: []";
+operators: {and: product, or: maximum, implication: product, aggregation: sum}";
 
 /// Terms of equal width, product and sum: the centroid is the mean of the peaks, weighted with the strengths.
 const LINEAR: &str = "
@@ -85,23 +85,10 @@ outputs:
     range: [0, 100]
     terms: {very_low: {triangle: [0, 5, 10]}, low: {triangle: [20, 25, 30]}, medium: {triangle: [45, 50, 55]},
       high: {triangle: [70, 75, 80]}, very_high: {triangle: [90, 95, 100]}}
-operators: {and: product, or: maximum, implication: product, aggregation: sum}
-rules: []";
+operators: {and: product, or: maximum, implication: product, aggregation: sum}";
 
-/// The same with a rule that was written.
-const LINEAR_WITH_LIMIT: &str = "
-outputs:
-  risk:
-    range: [0, 100]
-    terms: {very_low: {triangle: [0, 5, 10]}, low: {triangle: [20, 25, 30]}, medium: {triangle: [45, 50, 55]},
-      high: {triangle: [70, 75, 80]}, very_high: {triangle: [90, 95, 100]}}
-operators: {and: product, or: maximum, implication: product, aggregation: sum}
-rules: [IF at_limit IS much THEN risk IS very_high]";
-
-const MAMDANI_WITH_LIMIT: &str = "
-outputs: {risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}}
-operators: {and: minimum, or: maximum, implication: minimum, aggregation: maximum}
-rules: [IF at_limit IS much THEN risk IS very_high]";
+const NO_RULES: &str = "";
+const AT_ITS_LIMIT: &str = "IF at_limit IS much THEN risk IS very_high";
 
 fn candidates() -> Vec<Candidate> {
     use Resolution::{Heaviest, Mean, Strongest};
@@ -109,13 +96,15 @@ fn candidates() -> Vec<Candidate> {
         said,
         inputs,
         rest,
+        rules: NO_RULES,
         resolution,
         monotone,
         learned_from: [true, true],
     };
     let shipped = |said, learned_from| Candidate {
         learned_from,
-        ..row(said, ALL, LINEAR_WITH_LIMIT, Mean, true)
+        rules: AT_ITS_LIMIT,
+        ..row(said, ALL, LINEAR, Mean, true)
     };
     vec![
         row(
@@ -175,20 +164,11 @@ fn candidates() -> Vec<Candidate> {
             Mean,
             true,
         ),
-        row(
-            "**both, load and at limit: as shipped**",
-            ALL,
-            LINEAR_WITH_LIMIT,
-            Mean,
-            true,
-        ),
-        row(
-            "... min/min/max, terms to 0 and 100",
-            ALL,
-            MAMDANI_WITH_LIMIT,
-            Mean,
-            true,
-        ),
+        shipped("**both, load and at limit: as shipped**", [true, true]),
+        Candidate {
+            rest: MAMDANI,
+            ..shipped("... min/min/max, terms to 0 and 100", [true, true])
+        },
         shipped(
             "as shipped, learned from whole flights alone",
             [false, true],
@@ -259,8 +239,8 @@ fn areas(candidate: &Candidate, tables: &[Table; 2]) -> Result<[f64; 2], Failure
         .map(|(name, terms)| format!("\n  {name}: {terms}"))
         .collect();
     let text = format!(
-        "fuzzy: 1\nname: candidate\ninputs:{inputs}{}",
-        candidate.rest
+        "fuzzy: 1\nname: candidate\ninputs:{inputs}{}\nrules: [{}]",
+        candidate.rest, candidate.rules
     );
     let blank = fuzzy::yaml::parse(&text)
         .map_err(|findings| format!("{findings:?}"))?

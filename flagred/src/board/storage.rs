@@ -70,9 +70,7 @@ impl Plan<'_> {
             channels: self.channels.len(),
         }
     }
-}
 
-impl Plan<'_> {
     /// At most so many bytes hold the plan's and the monitor's own data, all its memory, and for each motor its limits and
     /// its command; pieces may be aligned to 16 bytes.
     pub const fn bytes(&self, motors: usize) -> usize {
