@@ -14,7 +14,7 @@ use crate::table::{
 };
 
 /// The arrays of a [`Table`], owned.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Arrays {
     and: Conjunction,
     or: Disjunction,
@@ -43,43 +43,6 @@ pub(super) struct Arrays {
 }
 
 table::arrays_of_fields!(Arrays);
-
-impl Default for Arrays {
-    fn default() -> Self {
-        Arrays {
-            and: Conjunction::Minimum,
-            or: Disjunction::Maximum,
-            conjunctions: table::Conjunctions::Trie,
-            sizes: Sizes {
-                degrees: 0,
-                alive: 0,
-                partial: 1,
-                stack: 0,
-                heights: 1,
-            },
-            inputs: Vec::new(),
-            cuts: Vec::new(),
-            starts: Vec::new(),
-            lines: Vec::new(),
-            curves: Vec::new(),
-            points: Vec::new(),
-            hedges: Vec::new(),
-            axes: Vec::new(),
-            dimensions: Vec::new(),
-            cells: Vec::new(),
-            nodes: Vec::new(),
-            edges: Vec::new(),
-            actions: Vec::new(),
-            programs: Vec::new(),
-            steps: Vec::new(),
-            outputs: Vec::new(),
-            pairs: Vec::new(),
-            moments: Vec::new(),
-            consequences: Vec::new(),
-            coefficients: Vec::new(),
-        }
-    }
-}
 
 impl Arrays {
     pub(super) fn new(

@@ -160,7 +160,7 @@ pub enum SamplingRule {
 /// let summing = Operators { aggregation: Aggregation::Sum, ..Operators::default() };
 /// assert_eq!(summing.and, Conjunction::Minimum);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Operators {
     /// AND.
     pub and: Conjunction,
@@ -196,16 +196,4 @@ pub struct Beaten {
     pub degree: f64,
     /// How many samples stood behind it.
     pub support: u64,
-}
-
-impl Default for Operators {
-    /// Mamdani's: minimum, maximum, minimum, maximum.
-    fn default() -> Self {
-        Operators {
-            and: Conjunction::Minimum,
-            or: Disjunction::Maximum,
-            implication: Implication::Minimum,
-            aggregation: Aggregation::Maximum,
-        }
-    }
 }

@@ -85,7 +85,7 @@ pub struct Table<'a> {
 }
 
 /// How the rules that are plain ANDs of terms of different inputs are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Conjunctions {
     /// A cell for each combination of terms, and two terms alive on each axis.
     Uniform {
@@ -99,11 +99,12 @@ pub enum Conjunctions {
     /// A cell for each combination of terms.
     Dense,
     /// Rules as paths of terms.
+    #[default]
     Trie,
 }
 
 /// What an evaluation needs to work in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(C)]
 pub struct Sizes {
     /// The degrees of literals; 0 where they are not needed by their index.

@@ -1,9 +1,10 @@
 //! The operators and hedges, and their formulas.
 
 /// AND of two degrees: a t-norm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Conjunction {
     /// `min(a, b)`.
+    #[default]
     Minimum,
     /// `a b`.
     Product,
@@ -20,9 +21,10 @@ pub enum Conjunction {
 }
 
 /// OR of two degrees: an s-norm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Disjunction {
     /// `max(a, b)`.
+    #[default]
     Maximum,
     /// `a + b - a b`.
     ProbabilisticSum,
@@ -39,18 +41,20 @@ pub enum Disjunction {
 }
 
 /// How a firing strength `h` and a membership `m` make an activated consequent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Implication {
     /// `min(h, m)` (Mamdani).
+    #[default]
     Minimum,
     /// `h m` (Larsen).
     Product,
 }
 
 /// How activated consequents of one output join.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Aggregation {
     /// `max(a, b)`.
+    #[default]
     Maximum,
     /// `a + b - a b`.
     ProbabilisticSum,
