@@ -197,27 +197,22 @@ impl Channel {
     }
 
     /// The values of one sample, each motor known with weight 1.
-    fn reduce(&self, motors: impl Iterator<Item = f64>, named: &[f64]) -> Moments {
-        let observe: fn(f64) -> f64 = match self.observed {
-            Observed::Named(index) => {
-                let value = named.get(index).copied().unwrap_or(f64::NAN);
-                return self.threshold(value);
-            }
-            Observed::Command | Observed::LowSide => |e| e,
-            Observed::Margin => margin,
-            Observed::HighSide => |e| 1.0 - e,
-        };
+    fn reduce(&self, motors: impl Iterator<Item = f64> + Clone, named: &[f64]) -> Moments {
+        match self.observed {
+            Observed::Named(index) => self.threshold(named.get(index).copied().unwrap_or(f64::NAN)),
+            Observed::Command | Observed::LowSide => self.over(motors),
+            Observed::Margin => self.over(motors.map(margin)),
+            Observed::HighSide => self.over(motors.map(|e| 1.0 - e)),
+        }
+    }
+
+    /// The values of the motors, NaN where one is unknown.
+    fn over(&self, motors: impl Iterator<Item = f64> + Clone) -> Moments {
+        let known = motors.filter(|value| value.is_finite());
         if self.motors == Motors::Pooled {
-            let mut all = Moments::EMPTY;
-            for e in motors {
-                all.merge(&self.threshold(observe(e)));
-            }
-            return all;
+            return Moments::alike(known.map(|value| self.counted(value)));
         }
-        let mut all = Moments::EMPTY;
-        for e in motors.filter(|e| e.is_finite()) {
-            all.merge(&Moments::of(observe(e), 1.0));
-        }
+        let all = Moments::alike(known);
         let one = match self.motors {
             Motors::Pooled | Motors::Mean => all.mean(),
             Motors::Std => all.std(),
@@ -227,16 +222,21 @@ impl Channel {
         self.threshold(one.unwrap_or(f64::NAN))
     }
 
-    /// The value itself, or for a share whether it is beyond the threshold.
+    /// One value, NaN where it is unknown.
     fn threshold(&self, value: f64) -> Moments {
-        if !value.is_finite() {
-            return Moments::EMPTY;
+        if value.is_finite() {
+            Moments::of(self.counted(value), 1.0)
+        } else {
+            Moments::EMPTY
         }
-        let counted = match self.threshold {
+    }
+
+    /// The value itself, or for a share whether it is beyond the threshold.
+    fn counted(&self, value: f64) -> f64 {
+        match self.threshold {
             None => value,
             Some(Threshold::Below(limit)) => f64::from(u8::from(value < limit)),
             Some(Threshold::Above(limit)) => f64::from(u8::from(value > limit)),
-        };
-        Moments::of(counted, 1.0)
+        }
     }
 }

@@ -67,6 +67,26 @@ impl Moments {
         }
     }
 
+    /// Of finite values that weigh 1 each.
+    pub(crate) fn alike(values: impl Iterator<Item = f64> + Clone) -> Moments {
+        let mut all = Moments::EMPTY;
+        // Counted from the first value, so that equal values have exactly it as their mean, and no spread.
+        let Some(first) = values.clone().next() else {
+            return all;
+        };
+        for value in values.clone() {
+            all.weight += 1.0;
+            all.mean += value - first;
+            all.min = all.min.min(value);
+            all.max = all.max.max(value);
+        }
+        all.mean = first + all.mean / all.weight;
+        for value in values {
+            all.squares += (value - all.mean) * (value - all.mean);
+        }
+        all
+    }
+
     /// Adds the values behind `other`.
     pub fn merge(&mut self, other: &Moments) {
         if other.weight <= 0.0 {
@@ -471,6 +491,24 @@ mod tests {
                 prop_assert!((total.mean().unwrap() - mean).abs() < 1e-6);
                 prop_assert!((total.std().unwrap() - std).abs() < 1e-6);
             }
+        }
+
+        #[test]
+        fn values_alike_are_those_merged_one_by_one(values in prop::collection::vec(-1.0..1.0f64, 0..20)) {
+            let mut merged = Moments::EMPTY;
+            for value in &values {
+                merged.merge(&Moments::of(*value, 1.0));
+            }
+            let alike = Moments::alike(values.iter().copied());
+            prop_assert_eq!((alike.weight(), alike.min(), alike.max()), (merged.weight(), merged.min(), merged.max()));
+            prop_assert!((alike.mean().unwrap_or(9.0) - merged.mean().unwrap_or(9.0)).abs() < 1e-14);
+            prop_assert!((alike.std().unwrap_or(9.0) - merged.std().unwrap_or(9.0)).abs() < 1e-14);
+        }
+
+        #[test]
+        fn equal_values_have_no_spread(value in -1.0..1.0f64, count in 1usize..20) {
+            let alike = Moments::alike(core::iter::repeat_n(value, count));
+            prop_assert_eq!((alike.mean(), alike.std()), (Some(value), Some(0.0)));
         }
 
         #[test]
