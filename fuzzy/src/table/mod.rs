@@ -14,16 +14,18 @@ mod firing;
 mod input;
 pub(crate) mod operators;
 mod outcome;
+mod rules;
 
 pub use check::Broken;
 pub(crate) use closed::centroid;
 pub use closed::{Coefficient, Consequence, Moment, Pair, Set};
-pub use firing::{Action, Axis, Dimension, Edge, Node, Op, Partial, Program, Step, Strongest};
+pub use firing::{Partial, Strongest};
 #[cfg(test)]
 pub(crate) use input::degrees;
 pub use input::{Curve, Input, Line};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
+pub use rules::{Action, Axis, Dimension, Edge, Node, Op, Program, Step};
 
 pub use crate::shape::Kind;
 
