@@ -7,6 +7,7 @@ pub mod reference;
 pub mod simulated;
 pub mod vehicle;
 pub mod watch;
+pub mod wire;
 
 pub use folder::Folder;
 
@@ -55,6 +56,7 @@ pub fn flagred() -> Command {
                 "flagred-cli",
                 "--message-format=json",
             ])
+            .args((!cfg!(debug_assertions)).then_some("--release"))
             .current_dir(workspace)
             .output();
         let output = match built {
