@@ -2,8 +2,6 @@
 
 use std::{
     collections::VecDeque,
-    io::{ErrorKind, Read, Write},
-    net::{SocketAddr, TcpStream, UdpSocket},
     path::Path,
     sync::{
         Arc,
@@ -24,116 +22,7 @@ use flightlog::{
     },
 };
 
-/// What a link does to packets, both ways for what it loses, and to those of the vehicle else.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Link {
-    /// The share that is lost.
-    pub loss: f64,
-    /// The share that arrives after later ones.
-    pub reordered: f64,
-    /// The share that arrives twice.
-    pub repeated: f64,
-}
-
-/// How fast a flight is flown again.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Speed {
-    /// As fast as it goes.
-    Fastest,
-    /// So many times as fast as it was.
-    Times(f64),
-}
-
-/// The wire to the other side.
-pub enum Wire {
-    /// Datagrams.
-    Udp(UdpSocket),
-    /// A connection, and what is still to be written to it: a radio sends many small packets at once too.
-    Tcp(TcpStream, Vec<u8>),
-}
-
-/// So many bytes are written at once.
-const SEGMENT: usize = 1200;
-
-impl Wire {
-    /// Datagrams to `address`.
-    ///
-    /// # Panics
-    ///
-    /// Where the machine has no loopback.
-    pub fn udp(address: SocketAddr) -> Wire {
-        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
-        socket.connect(address).unwrap();
-        socket.set_nonblocking(true).unwrap();
-        Wire::Udp(socket)
-    }
-
-    /// An open connection.
-    ///
-    /// # Panics
-    ///
-    /// Where it cannot be set up.
-    pub fn tcp(stream: TcpStream) -> Wire {
-        stream.set_nodelay(true).unwrap();
-        // The shortest time-out of a read is a tick of the kernel: milliseconds for every look.
-        stream.set_nonblocking(true).unwrap();
-        Wire::Tcp(stream, Vec::new())
-    }
-
-    /// Sends some bytes as they are. A link may fail; what comes of it is what is tested.
-    pub fn send(&mut self, bytes: &[u8]) {
-        match self {
-            Wire::Udp(socket) => drop(socket.send(bytes)),
-            Wire::Tcp(_, waiting) => {
-                waiting.extend(bytes);
-                if waiting.len() >= SEGMENT {
-                    self.flush();
-                }
-            }
-        }
-    }
-
-    /// Writes what waits.
-    fn flush(&mut self) {
-        let Wire::Tcp(stream, waiting) = self else {
-            return;
-        };
-        let bytes = std::mem::take(waiting);
-        let mut rest = bytes.as_slice();
-        while !rest.is_empty() {
-            match stream.write(rest) {
-                Ok(0) => return,
-                Ok(written) => rest = &rest[written..],
-                Err(error) if error.kind() == ErrorKind::WouldBlock => {
-                    std::thread::sleep(Duration::from_micros(100));
-                }
-                Err(_) => return,
-            }
-        }
-    }
-
-    fn receive(&mut self, stream: &mut Stream) -> bool {
-        let mut buffer = [0; 2048];
-        let read = match self {
-            Wire::Udp(socket) => socket.recv(&mut buffer),
-            Wire::Tcp(stream, _) => stream.read(&mut buffer),
-        };
-        match read {
-            Ok(0) => false,
-            Ok(count) => {
-                stream.push(&buffer[..count]);
-                true
-            }
-            Err(error) => {
-                assert!(
-                    !matches!(error.kind(), ErrorKind::InvalidInput),
-                    "the wire is broken: {error}"
-                );
-                false
-            }
-        }
-    }
-}
+use crate::wire::{Link, Speed, Wire};
 
 /// What the other side said.
 #[derive(Debug, Default)]
@@ -205,8 +94,12 @@ pub struct StandIn {
     pub progress: Option<Arc<Progress>>,
     /// How many ends of flights were marked so far.
     marks: u8,
+    /// What the vehicle's clock says when the log's says 0, in seconds.
+    pub clock_s: f64,
     /// Whether requests are answered.
     pub answers: bool,
+    /// How often it looks for what came while it waits for its next command.
+    pub look_every: Duration,
     asked: bool,
 }
 
@@ -239,7 +132,9 @@ impl StandIn {
             sent: Vec::new(),
             progress: None,
             marks: 0,
+            clock_s: 0.0,
             answers: true,
+            look_every: Duration::from_millis(2),
             asked: false,
         }
     }
@@ -258,8 +153,14 @@ impl StandIn {
         }
     }
 
-    /// Flies a log from `from_s` on; gives the time at which it ended.
+    /// Flies the part of a log between two of its times, until the other side has followed to the end.
     pub fn fly(&mut self, flight: &Flight, speed: Speed, from_s: f64, to_s: f64) {
+        self.fly_on(flight, speed, from_s, to_s);
+        self.settle();
+    }
+
+    /// Flies the part of a log between two of its times.
+    pub fn fly_on(&mut self, flight: &Flight, speed: Speed, from_s: f64, to_s: f64) {
         let outputs: Vec<usize> = flight.motors.iter().map(|m| output(&m.output)).collect();
         let mut state = None;
         let mut next_beat_s = f64::NEG_INFINITY;
@@ -274,7 +175,7 @@ impl StandIn {
                 let due = Duration::from_secs_f64((t_s - first_s) / times);
                 while start.elapsed() < due {
                     self.listen();
-                    std::thread::sleep(Duration::from_micros(200));
+                    std::thread::sleep(self.look_every);
                 }
             }
             let armed = flight
@@ -290,31 +191,33 @@ impl StandIn {
             }
             if changed || t_s >= next_state_s {
                 next_state_s = t_s + 0.25;
-                self.tell_state(t_s, now.1);
+                self.tell_state(t_s + self.clock_s, now.1);
             }
+            let clock_s = t_s + self.clock_s;
             let mut pulses = [0; 16];
             for (&output, &raw) in outputs.iter().zip(row) {
                 pulses[output] = raw as u16;
             }
-            self.sent.push(((t_s * 1e3).round() as u32, Instant::now()));
-            self.send(&servo((t_s * 1e6).round() as u32, &pulses));
+            self.sent
+                .push(((clock_s * 1e3).round() as u32, Instant::now()));
+            // The microseconds start over after 71 minutes.
+            self.send(&servo((clock_s * 1e6).round() as u64 as u32, &pulses));
             count += 1;
             if speed != Speed::Fastest {
                 self.wire.flush();
             }
             self.listen();
             if speed == Speed::Fastest && count % 16 == 0 {
-                self.wait_for_the_other_side(t_s, now.1);
+                self.wait_for_the_other_side(clock_s, now.1);
             }
         }
         while let Some((_, packet)) = self.late.pop_front() {
             self.wire.send(&packet);
         }
-        self.settle();
     }
 
     /// Waits until the other side has followed to the end: packets stay in order, and it tells of another vehicle.
-    fn settle(&mut self) {
+    pub fn settle(&mut self) {
         let Some(progress) = self.progress.clone() else {
             self.linger(Duration::from_millis(200));
             return;

@@ -20,7 +20,8 @@ use serde_json::Value;
 
 use crate::{
     flagred,
-    vehicle::{Heard, Link, Progress, Speed, StandIn, Wire},
+    vehicle::{Heard, Progress, StandIn},
+    wire::{Link, Speed, Wire},
 };
 
 /// A running watch, and where it listens.
@@ -34,6 +35,11 @@ pub struct Watch {
 
 impl Watch {
     pub fn start(endpoint: &str, options: &[&str]) -> Watch {
+        Watch::start_keeping(endpoint, options, |_| true)
+    }
+
+    /// One whose events are kept where they are worth it.
+    pub fn start_keeping(endpoint: &str, options: &[&str], keep: fn(&Value) -> bool) -> Watch {
         let mut child = flagred()
             .args(["watch", endpoint, "--jsonl"])
             .args(options)
@@ -69,7 +75,7 @@ impl Watch {
                     }
                     event
                 });
-                events.collect()
+                events.filter(keep).collect()
             }),
             progress,
         }
@@ -81,6 +87,14 @@ impl Watch {
 
     pub fn address(&self) -> SocketAddr {
         self.address.unwrap()
+    }
+
+    /// How much memory it takes, in kB.
+    pub fn resident_kb(&self) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
+        let line = status.lines().find(|line| line.starts_with("VmRSS:"));
+        let kb = line.unwrap().split_whitespace().nth(1).unwrap();
+        kb.parse().unwrap()
     }
 
     /// A vehicle that sends it datagrams.

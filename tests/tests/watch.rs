@@ -7,67 +7,91 @@ use std::{
 
 use flagred_tests::{
     STEADY, shared_data,
-    vehicle::{Link, Speed, StandIn, Wire, flight},
+    vehicle::{StandIn, flight},
     watch::{Said, Watch, assess, check_texts, compare, fly_udp},
+    wire::{Link, Speed, Wire},
 };
 use flightlog::{Flight, mavlink::Version};
+use serde_json::{Value, json};
 
-/// A log over UDP and TCP and over bad links: the verdict is that of `assess`.
-fn every_link_gives_the_verdict_of_assess(log: &Path) {
-    let flight = flight(log);
-    let assessed = assess(log);
-    let verdict = assessed["verdict"].as_str().unwrap();
-    let name = log.file_name().unwrap().to_string_lossy().into_owned();
+const PERFECT: Link = Link {
+    loss: 0.0,
+    reordered: 0.0,
+    repeated: 0.0,
+};
+
+/// A good link and two bad ones.
+fn links() -> [Link; 3] {
     let bad = |loss| Link {
         loss,
         reordered: 0.05,
         repeated: 0.02,
     };
-    for link in [Link::default(), bad(0.05), bad(0.3)] {
-        let (said, vehicle) = fly_udp(&flight, link, &[], Speed::Fastest);
-        let case = format!("{name}, {link:?}");
-        assert_eq!(said.verdict(), verdict, "{case}");
-        assert_eq!(
-            said.one("ready")["assumed"],
-            serde_json::json!([]),
-            "{case}"
-        );
-        let (share, difference) = compare(&said, &assessed);
-        eprintln!(
-            "{case}: {:.1} % of samples, difference {difference:.3}",
-            100.0 * share
-        );
-        if link.loss == 0.0 {
-            assert!(share > 0.999, "{case}: {share}");
-            assert!(difference <= 2.0, "{case}: {difference} points");
-        }
-        check_texts(&said, &vehicle.heard);
-        if verdict == "GOOD" {
-            assert_eq!(vehicle.heard.texts(), [], "{case}");
-        }
-        assert_eq!(
-            said.code,
-            Some(i32::from(matches!(verdict, "WARN" | "FAIL"))),
-            "{case}"
-        );
-    }
-
-    let (said, vehicle) = fly_tcp(&flight, Speed::Fastest);
-    assert_eq!(said.verdict(), verdict, "{name} over TCP");
-    let (share, difference) = compare(&said, &assessed);
-    assert!(
-        share > 0.999 && difference <= 2.0,
-        "{name} over TCP: {share} {difference}"
-    );
-    check_texts(&said, &vehicle.heard);
+    [PERFECT, bad(0.05), bad(0.3)]
 }
 
-/// Flies a log over TCP, in MAVLink 1.
-fn fly_tcp(flight: &Flight, speed: Speed) -> (Said, StandIn) {
+/// A log over UDP and TCP and over bad links: the verdict is that of `assess`.
+fn every_link_gives_the_verdict_of_assess(log: &Path) {
+    let flight = flight(log);
+    let assessed = assess(log);
+    for link in links() {
+        let told = fly_udp(&flight, link, &[], Speed::Fastest);
+        says_what_assess_says(
+            &told,
+            &assessed,
+            &format!("{}, {link:?}", log.display()),
+            link,
+        );
+    }
+    let told = fly_tcp(&flight, Speed::Fastest);
+    says_what_assess_says(
+        &told,
+        &assessed,
+        &format!("{} over TCP", log.display()),
+        PERFECT,
+    );
+}
+
+/// The same verdict, the same risk where no packet is lost, and one text for each change of state.
+fn says_what_assess_says(
+    (said, vehicle): &(Said, StandIn),
+    assessed: &Value,
+    case: &str,
+    link: Link,
+) {
+    let verdict = assessed["verdict"].as_str().unwrap();
+    assert_eq!(said.verdict(), verdict, "{case}");
+    assert_eq!(said.one("ready")["assumed"], json!([]), "{case}");
+    let (share, difference) = compare(said, assessed);
+    eprintln!(
+        "{case}: {:.1} % of samples, difference {difference:.3}",
+        100.0 * share
+    );
+    if link.loss == 0.0 {
+        assert!(share > 0.999, "{case}: {share}");
+        assert!(difference <= 2.0, "{case}: {difference} points");
+    }
+    check_texts(said, &vehicle.heard);
+    if verdict == "GOOD" {
+        assert_eq!(vehicle.heard.texts(), [], "{case}");
+    }
+    let risky = matches!(verdict, "WARN" | "FAIL");
+    assert_eq!(said.code, Some(i32::from(risky)), "{case}");
+}
+
+/// A watch that a vehicle has a connection to, in MAVLink 1.
+fn watch_tcp(flight: &Flight, keep: fn(&Value) -> bool) -> (Watch, StandIn) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let watch = Watch::start(&format!("tcp:{}", listener.local_addr().unwrap()), &[]);
+    let endpoint = format!("tcp:{}", listener.local_addr().unwrap());
+    let watch = Watch::start_keeping(&endpoint, &[], keep);
     let wire = Wire::tcp(listener.accept().unwrap().0);
-    let mut vehicle = watch.vehicle_on(flight, wire, Link::default(), Version::V1);
+    let vehicle = watch.vehicle_on(flight, wire, PERFECT, Version::V1);
+    (watch, vehicle)
+}
+
+/// Flies a log over TCP.
+fn fly_tcp(flight: &Flight, speed: Speed) -> (Said, StandIn) {
+    let (watch, mut vehicle) = watch_tcp(flight, |_| true);
     vehicle.meet();
     vehicle.fly(flight, speed, 0.0, f64::INFINITY);
     (watch.end(), vehicle)
@@ -109,24 +133,60 @@ fn reference_flights_get_the_verdict_of_assess_in_real_time() {
     logs.sort();
     assert_eq!(logs.len(), 6);
     std::thread::scope(|scope| {
-        for (log, over_tcp) in logs.iter().flat_map(|log| [(log, false), (log, true)]) {
+        // `None` is over TCP.
+        let wires = links().map(Some).into_iter().chain([None]);
+        for (log, link) in logs
+            .iter()
+            .flat_map(|log| wires.clone().map(move |link| (log, link)))
+        {
             scope.spawn(move || {
                 let flight = flight(log);
                 let assessed = assess(log);
-                let (said, vehicle) = if over_tcp {
-                    fly_tcp(&flight, Speed::Times(1.0))
-                } else {
-                    fly_udp(&flight, Link::default(), &[], Speed::Times(1.0))
+                let told = match link {
+                    Some(link) => fly_udp(&flight, link, &[], Speed::Times(1.0)),
+                    None => fly_tcp(&flight, Speed::Times(1.0)),
                 };
-                assert_eq!(said.verdict(), assessed["verdict"], "{}", log.display());
-                let (share, difference) = compare(&said, &assessed);
-                assert!(share > 0.999 && difference <= 2.0, "{share} {difference}");
-                check_texts(&said, &vehicle.heard);
-                let values = vehicle.heard.values("FR_RISK");
+                let case = format!("{}, {link:?}", log.display());
+                let link = link.unwrap_or(PERFECT);
+                says_what_assess_says(&told, &assessed, &case, link);
+                let values = told.1.heard.values("FR_RISK");
                 let rate_hz =
                     values.len() as f64 / assessed["summary"]["assessed_s"].as_f64().unwrap();
-                assert!((1.0..=2.1).contains(&rate_hz), "{rate_hz} Hz");
+                assert!((1.0..=2.1).contains(&rate_hz), "{case}: {rate_hz} Hz");
             });
         }
     });
+}
+
+/// One flight after the other, all day, as fast as it goes: `scripts/measure-live`.
+#[test]
+#[ignore = "a day of flights"]
+fn a_day_of_flights_takes_no_more_memory_than_an_hour() {
+    const DAY_S: f64 = 24.0 * 3600.0;
+    let eventful = shared_data().map(|data| data.join("flights").join("intermittent.BIN"));
+    let flight = flight(eventful.as_deref().unwrap_or(Path::new(STEADY)));
+    let [first_s, .., last_s] = flight.commands.t_s() else {
+        panic!("no flight");
+    };
+    let length_s = last_s - first_s + 1.0;
+    let (watch, mut vehicle) = watch_tcp(&flight, |event| event["event"] != "risk");
+    vehicle.meet();
+    let (mut flights, mut hour_kb) = (0, None);
+    while vehicle.clock_s < DAY_S {
+        vehicle.fly_on(&flight, Speed::Fastest, 0.0, f64::INFINITY);
+        vehicle.heard.messages.clear();
+        vehicle.sent.clear();
+        vehicle.clock_s += length_s;
+        flights += 1;
+        if vehicle.clock_s > 3600.0 {
+            hour_kb.get_or_insert_with(|| watch.resident_kb());
+        }
+    }
+    vehicle.settle();
+    let (hour_kb, day_kb) = (hour_kb.unwrap(), watch.resident_kb());
+    println!("{hour_kb} kB after an hour, {day_kb} kB after a day of {flights} flights");
+    assert!(day_kb < hour_kb + 512, "{hour_kb} kB, {day_kb} kB");
+    let said = watch.end();
+    assert_eq!(said.all("landed").count(), flights);
+    assert_eq!(said.all("rebooted").count(), 0);
 }

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use flagred_tests::{
     Folder, STEADY, shared_data,
-    vehicle::{Link, Speed, flight},
+    vehicle::flight,
     watch::{assess, fly_udp, refused},
+    wire::{Link, Speed},
 };
 use serde_json::Value;
 

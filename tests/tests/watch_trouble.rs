@@ -9,8 +9,9 @@ use std::{
 use flagred_tests::{
     STEADY, flagred,
     log_writer::Tlog,
-    vehicle::{Link, Speed, StandIn, Wire, flight, servo},
+    vehicle::{StandIn, flight, servo},
     watch::{Watch, check_texts, refused},
+    wire::{Link, Speed, Wire},
 };
 use flightlog::mavlink::Version;
 

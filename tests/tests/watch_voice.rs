@@ -4,8 +4,9 @@ use std::{path::Path, time::Duration};
 
 use flagred_tests::{
     STEADY,
-    vehicle::{Link, Speed, flight},
+    vehicle::flight,
     watch::{Watch, fly_udp},
+    wire::{Link, Speed},
 };
 
 /// How long after a motor command its risk was on the wire, in ms, of the values sent in so many seconds at 50 Hz, in
@@ -14,6 +15,7 @@ fn late_ms(seconds: f64) -> Vec<f64> {
     let flight = flight(Path::new(STEADY));
     let watch = Watch::udp(&[]);
     let mut vehicle = watch.vehicle(&flight, Link::default());
+    vehicle.look_every = Duration::from_micros(200);
     vehicle.meet();
     // The log has 25 Hz, so twice as fast.
     let air = flight.in_air.as_ref().unwrap().spans[0];

@@ -334,39 +334,3 @@ fn a_clock_that_starts_over_goes_on() {
     let latest = bench.session.view().unwrap().latest.unwrap();
     assert!(latest.risk.is_ok() && latest.t_s > 4299.0, "{latest:?}");
 }
-
-/// A day in the air, as fast as it goes: `cargo test --release -p flagred-cli -- --ignored a_day`.
-#[test]
-#[ignore = "a day of samples"]
-fn a_day_takes_no_more_memory_than_a_minute() {
-    let resident_kb = || -> u64 {
-        let status = std::fs::read_to_string("/proc/self/status").unwrap();
-        let line = status
-            .lines()
-            .find(|line| line.starts_with("VmRSS:"))
-            .unwrap();
-        line.split_whitespace().nth(1).unwrap().parse().unwrap()
-    };
-    let estimator = estimator();
-    let mut bench = Bench::new(&estimator, Some(191));
-    bench.beat(false);
-    bench.all_parameters();
-    let mut first_kb = None;
-    let start = std::time::Instant::now();
-    for minute in 0..24 * 60 {
-        // Calm and at the limit by turns, so that levels come and go.
-        let pulse = if minute % 3 == 0 { 1895 } else { 1500 };
-        bench.hover(10.0 + 60.0 * f64::from(minute), 60.0, pulse);
-        bench.events.clear();
-        bench.sent.clear();
-        if minute == 9 {
-            first_kb = Some(resident_kb());
-        }
-    }
-    let (first_kb, last_kb) = (first_kb.unwrap(), resident_kb());
-    eprintln!(
-        "{first_kb} kB after 10 minutes, {last_kb} kB after a day; {:?}",
-        start.elapsed()
-    );
-    assert!(last_kb < first_kb + 512, "{first_kb} kB, {last_kb} kB");
-}
