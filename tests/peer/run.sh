@@ -1,8 +1,12 @@
 #!/bin/sh
-# Runs the tests with pymavlink as the peer, in a Python environment of their own under `target/`.
+# Runs the tests with pymavlink as the peer, in a Python environment of their own under `target/`. Exits with 3 where there
+# is no Python to make one with.
 set -eu
 cd "$(dirname "$0")/../.."
 venv=target/pymavlink
-[ -x "$venv/bin/python" ] || python3 -m venv "$venv"
+if [ ! -x "$venv/bin/pip" ] && ! python3 -m venv "$venv"; then
+  echo "pymavlink was not asked: it takes python3 with venv (Debian: apt-get install python3-venv)" >&2
+  exit 3
+fi
 "$venv/bin/pip" install --quiet "pymavlink>=2.4"
 FLAGRED_PYTHON="$PWD/$venv/bin/python" cargo test -p flagred-tests --test pymavlink
