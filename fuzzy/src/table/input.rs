@@ -66,7 +66,7 @@ pub struct Curve {
 
 impl Line {
     /// The same degree everywhere.
-    pub const fn flat(literal: u32, degree: f64) -> Self {
+    pub(crate) const fn flat(literal: u32, degree: f64) -> Self {
         Line {
             literal,
             foot: 0.0,
