@@ -64,6 +64,18 @@ pub enum Severity {
 }
 
 /// Another place that explains a finding: where the first of two equal names stands.
+///
+/// # Example: a term defined twice
+/// ```
+/// use fuzzy::diagnostic::Related;
+///
+/// let text = "{speed: fast, speed: slow}";
+/// let mut findings = Vec::new();
+/// fuzzy::yaml::read(text)?.fields("the fan", &["speed"], &mut findings);
+/// let Related { span, message } = &findings[0].related[0];
+/// assert_eq!((&text[span.clone()], message.as_str()), ("speed", "the first one"));
+/// # Ok::<(), fuzzy::diagnostic::Findings>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Related {
     /// The bytes of the text.

@@ -72,6 +72,31 @@ impl Default for Options {
 }
 
 /// All that was found. Rules count from 0, as in the model.
+///
+/// # Example: three rules, and most of what can be wrong with them
+/// ```
+/// use fuzzy::check::{self, Antecedent, Contradiction, Side, Subsumed, TermOf, Uncovered};
+///
+/// let text = "fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 100], partition: [low, high]}, sun: {range: [0, 1], partition: [down, up]}}
+/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// rules:
+///   - IF heat IS high THEN speed IS fast
+///   - IF heat IS high AND sun IS up THEN speed IS fast
+///   - IF heat IS high THEN speed IS slow";
+/// let model = fuzzy::yaml::parse(text)?.model;
+/// let report = check::check(&model, &fuzzy::Engine::new(&model)?, &check::Options::default())?;
+///
+/// assert_eq!(report.subsumed, [Subsumed { rule: 1, by: 0 }]);
+/// let Contradiction { first, second, .. } = &report.contradictions[0];
+/// assert_eq!((*first, *second), (0, 2));
+/// let Uncovered { sides, missing, .. } = &report.uncovered[1]; // the first one is where no rule fires at all
+/// assert_eq!(sides[..], [Side { input: "heat".into(), low: 0.0, high: 50.0 }]);
+/// assert_eq!(missing[0], [Antecedent { input: "heat".into(), term: "low".into() }]);
+/// assert!(report.unused.contains(&TermOf { variable: "sun".into(), term: Some("down".into()) }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
     /// Boxes of the input space without a rule.

@@ -63,6 +63,22 @@ impl FromStr for Monotone {
 }
 
 /// A place at which an output does not do what its author says.
+///
+/// # Example: a fan that slows down in the heat
+/// ```
+/// # use fuzzy::{Engine, check::{Counterexample, Options, check}};
+/// # let text = "fuzzy: 1
+/// # name: fan
+/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// # rules: [IF heat IS low THEN speed IS fast, IF heat IS high THEN speed IS slow]";
+/// # let model = fuzzy::yaml::parse(text)?.model;
+/// let options = Options { monotone: vec!["heat:increasing".parse()?], ..Options::default() };
+/// let report = check(&model, &Engine::new(&model)?, &options)?;
+/// let Counterexample { at, to, from_value, to_value, .. } = &report.counterexamples[0];
+/// assert!(at[0].value < *to && from_value > to_value);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Counterexample {
     /// What was said, with the output it was found in.

@@ -50,6 +50,21 @@ impl Engine {
     ///
     /// # Errors
     /// As [`Engine::evaluate_batch`]; and not one place for each row and output.
+    ///
+    /// # Example: outcomes that are used again and again
+    /// ```
+    /// use fuzzy::{Engine, engine::Outcome};
+    ///
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = Engine::new(&model)?;
+    /// let mut outcomes = [Outcome::default(); 2];
+    /// let (margin, spread) = ([0.4, f64::NAN], [0.1, 0.1]);
+    /// engine.evaluate_batch_into(&[&margin, &spread], &mut outcomes)?;
+    /// assert!(outcomes[0].value() < Some(10.0));
+    /// assert_eq!(outcomes[1].value(), None, "an unknown margin is no margin");
+    /// assert!(engine.evaluate_batch_into(&[&margin, &spread], &mut outcomes[..1]).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn evaluate_batch_into(
         &self,
         columns: &[&[f64]],

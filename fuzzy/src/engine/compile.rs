@@ -27,6 +27,20 @@ impl Engine {
     ///
     /// # Errors
     /// Every problem of the model that keeps it from being evaluated on every finite input.
+    ///
+    /// # Example: all problems at once
+    /// ```
+    /// use fuzzy::{Engine, Model, model::{Output, Variable}, rule};
+    ///
+    /// let model = Model::builder("fan")
+    ///     .input(Variable::new("heat", 100.0, 0.0))
+    ///     .output(Output::new(Variable::new("speed", 0.0, 9.0)))
+    ///     .rule(rule::parse("IF heat IS high THEN speed IS fast")?)
+    ///     .build();
+    /// let error = Engine::new(&model).unwrap_err();
+    /// assert_eq!(error.problems.len(), 3, "the range is upside down, and both terms are unknown: {error}");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(model: &Model) -> Result<Self, CompileError> {
         let mut compiler = Compiler {
             model,

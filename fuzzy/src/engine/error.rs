@@ -3,6 +3,20 @@
 use alloc::sync::Arc;
 
 /// Why inputs could not be evaluated.
+///
+/// # Example: a value too few
+/// ```
+/// use fuzzy::engine::EvaluateError;
+///
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// let engine = fuzzy::Engine::new(&model)?;
+/// let refused = engine.evaluate(&[0.1]).unwrap_err();
+/// assert_eq!(refused, EvaluateError::WrongNumberOfInputs { expected: 2, got: 1 });
+/// // An unknown value is no error to an evaluation, which says so in its outcome, but nothing can be explained.
+/// assert!(engine.evaluate(&[0.1, f64::NAN]).is_ok());
+/// assert_eq!(engine.explain(&model, &[0.1, f64::NAN]), Err(EvaluateError::InputNotFinite));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EvaluateError {

@@ -16,6 +16,21 @@ use crate::model::{Aggregation, Model, Operators, Output, Shape, Term, Variable}
 use crate::rule::{Condition, Proposition};
 
 /// All that an evaluation rests on.
+///
+/// # Example: what a margin of 0.05 means, and the rules that speak of it
+/// ```
+/// use fuzzy::engine::{Degree, ExplainedInput, FiredRule};
+///
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// let explanation = fuzzy::Engine::new(&model)?.explain(&model, &[0.05, 0.9])?;
+/// let ExplainedInput { terms, .. } = &explanation.inputs[0];
+/// assert_eq!(terms[0], Degree { term: "very_low".into(), degree: 0.5 });
+/// let ExplainedInput { given, value, .. } = &explanation.inputs[1];
+/// assert_eq!((*given, *value), (0.9, 0.5)); // out of its range
+/// let strengths = explanation.rules.iter().map(|FiredRule { rule, strength, .. }| (*rule, *strength));
+/// assert!(strengths.eq([(6, 0.5), (8, 0.5)]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Explanation {
     /// The inputs, with the degree of each of their terms.
@@ -62,6 +77,19 @@ pub struct FiredRule {
 }
 
 /// An output, and how it came about.
+///
+/// # Example: two rules share a result
+/// ```
+/// use fuzzy::engine::{ExplainedOutput, Share};
+///
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// let explanation = fuzzy::Engine::new(&model)?.explain(&model, &[0.1, 0.15])?;
+/// let ExplainedOutput { coverage, rules, is_default, .. } = &explanation.outputs[0];
+/// assert!((coverage - 0.5).abs() < 1e-12 && !is_default);
+/// let terms: Vec<&str> = rules.iter().map(|Share { term, .. }| term.as_str()).collect();
+/// assert_eq!(terms, ["medium", "very_high"]); // at the same strength `medium` is the wider set
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExplainedOutput {
     /// Its name.

@@ -191,6 +191,16 @@ impl Engine {
 
     /// The compiled arrays, to be evaluated without this engine or written out: see [`table`]. Outputs whose set is
     /// [`Set::OPEN`](table::Set::OPEN) have no closed form, and only the engine knows their values.
+    ///
+    /// # Example: the tables of the paper's rules
+    /// ```
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = fuzzy::Engine::new(&model)?;
+    /// let table = engine.table();
+    /// assert_eq!((table.inputs.len(), table.outputs.len()), (2, 1));
+    /// assert_eq!(table.check(), Ok(()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn table(&self) -> Table<'_> {
         self.arrays.table()
     }

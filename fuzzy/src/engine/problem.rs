@@ -58,6 +58,20 @@ impl CompileError {
 }
 
 /// One reason why a model makes no engine. `rule` is an index into [`Model::rules`](crate::Model::rules); messages count from 1.
+///
+/// # Example: which rule names what there is not?
+/// ```
+/// use fuzzy::{Engine, engine::Problem, model::{Model, Output, Variable}, rule};
+///
+/// let model = Model::builder("fan")
+///     .output(Output::new(Variable::new("speed", 0.0, 9.0)))
+///     .rule(rule::parse("IF heat IS high THEN speed IS fast")?)
+///     .build();
+/// let error = Engine::new(&model).unwrap_err();
+/// let unknown = Problem::Unknown { rule: 0, name: "heat".into(), kind: "input".into() };
+/// assert!(error.problems.contains(&unknown), "{error}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Problem {

@@ -64,6 +64,26 @@ pub struct Learner {
 }
 
 /// The rules that were learned, and what was learned about the data.
+///
+/// # Example: two samples that disagree
+/// ```
+/// # let text = "fuzzy: 1
+/// # name: fan
+/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// # rules: []";
+/// # let model = fuzzy::yaml::parse(text)?.model;
+/// use fuzzy::learn::{Learned, Learner, Settings};
+///
+/// let mut learner = Learner::new(&model, Settings::default())?;
+/// learner.add(&[90.0, 9.0], 1.0)?;
+/// learner.add(&[80.0, 0.0], 1.0)?;
+/// let Learned { conflicts, missing, missing_antecedents, model, .. } = learner.finish();
+/// assert_eq!((conflicts, missing), (1, 1));
+/// assert_eq!(missing_antecedents[0].to_string(), "heat IS low");
+/// assert_eq!(model.rules[0].against[0].term, "slow"); // 0.8 against 0.9
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Learned {
     /// The model with the rules: those it came with, then the learned ones in the order of their antecedents.

@@ -5,6 +5,28 @@ use alloc::{string::String, vec::Vec};
 use crate::rule::Condition;
 
 /// What decides between the consequents that samples of one antecedent vote for.
+///
+/// # Example: one sure sample against two
+/// ```
+/// # let text = "fuzzy: 1
+/// # name: fan
+/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// # rules: []";
+/// # let model = fuzzy::yaml::parse(text)?.model;
+/// use fuzzy::learn::{Learner, Resolution, Settings};
+///
+/// let concluded = |resolution| -> Result<String, Box<dyn std::error::Error>> {
+///     let mut learner = Learner::new(&model, Settings { resolution, ..Settings::default() })?;
+///     for sample in [[90.0, 9.0], [70.0, 0.0], [80.0, 0.0]] {
+///         learner.add(&sample, 1.0)?;
+///     }
+///     Ok(learner.finish().model.rules[0].rule.consequents[0].term.text.clone())
+/// };
+/// assert_eq!(concluded(Resolution::Strongest)?, "fast"); // 0.9 over 0.8
+/// assert_eq!(concluded(Resolution::Heaviest)?, "slow"); // 0.9 under 0.7 + 0.8
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Resolution {
     /// The consequent of the one vote with the highest degree wins: Wang and Mendel's, and the FLAGRED paper's.
@@ -20,6 +42,26 @@ pub enum Resolution {
 }
 
 /// Which way the output must go when an input rises.
+///
+/// # Example: a fan that never slows down in the heat
+/// ```
+/// # let text = "fuzzy: 1
+/// # name: fan
+/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// # rules: []";
+/// # let model = fuzzy::yaml::parse(text)?.model;
+/// use fuzzy::learn::{Direction, Learner, Settings};
+///
+/// let monotone = vec![("heat".to_string(), Direction::Rising)];
+/// let mut learner = Learner::new(&model, Settings { monotone, ..Settings::default() })?;
+/// for sample in [[10.0, 9.0], [90.0, 0.0], [90.0, 0.0]] {
+///     learner.add(&sample, 1.0)?;
+/// }
+/// let rules = learner.finish().model.rules;
+/// assert_eq!(rules[0].rule.consequents, rules[1].rule.consequents); // averaged until they agree
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// It never falls.
@@ -29,6 +71,24 @@ pub enum Direction {
 }
 
 /// What is learned, and how.
+///
+/// # Example: rules for what no sample says, too
+/// ```
+/// # let text = "fuzzy: 1
+/// # name: fan
+/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// # rules: []";
+/// # let model = fuzzy::yaml::parse(text)?.model;
+/// use fuzzy::learn::{Learner, Settings};
+///
+/// let mut learner = Learner::new(&model, Settings { complete: true, ..Settings::default() })?;
+/// learner.add(&[90.0, 9.0], 1.0)?;
+/// let learned = learner.finish();
+/// assert_eq!((learned.completed, learned.missing), (1, 0));
+/// assert!(learned.model.rules.iter().any(|rule| rule.note.is_some()), "a completed rule says so");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
     /// What decides where samples disagree.
@@ -49,6 +109,14 @@ pub struct Settings {
 }
 
 /// Why nothing can be learned with a model and settings.
+///
+/// # Example
+/// ```
+/// use fuzzy::{Model, learn::{LearnError, Learner, Settings}};
+///
+/// let nothing = Learner::new(&Model::builder("empty").build(), Settings::default()).unwrap_err();
+/// assert_eq!(nothing, LearnError::Outputs { outputs: 0 });
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LearnError {
@@ -84,6 +152,23 @@ pub enum LearnError {
 }
 
 /// Why a sample was not learned from.
+///
+/// # Example: a speed that the fan does not have
+/// ```
+/// # let text = "fuzzy: 1
+/// # name: fan
+/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// # rules: []";
+/// # let model = fuzzy::yaml::parse(text)?.model;
+/// use fuzzy::learn::{Learner, Refusal, Settings};
+///
+/// let mut learner = Learner::new(&model, Settings::default())?;
+/// let refused = learner.add(&[90.0, 12.0], 1.0).unwrap_err();
+/// assert!(matches!(&refused, Refusal::OutOfRange { variable, .. } if variable == "speed"));
+/// assert_eq!(refused.to_string(), "`speed` is 12, outside its range from 0 to 9");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {

@@ -32,6 +32,18 @@ pub struct Grid {
 }
 
 /// One input of a grid.
+///
+/// # Example
+/// ```
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let engine = fuzzy::Engine::new(&model)?;
+/// use fuzzy::map::{Axis, Grid};
+///
+/// let grid = Grid::new(&engine, 11)?;
+/// let spread = Axis { name: "spread".into(), input: 1, low: 0.0, high: 0.5, points: 11 };
+/// assert_eq!(grid.axes()[1], spread);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// The input's name.
@@ -47,6 +59,18 @@ pub struct Axis {
 }
 
 /// An input that has one value all over a grid.
+///
+/// # Example: along the margin at one spread
+/// ```
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let engine = fuzzy::Engine::new(&model)?;
+/// use fuzzy::map::{Fixed, Grid};
+///
+/// let grid = Grid::new(&engine, 11)?.fix("spread", 0.2)?;
+/// assert_eq!(grid.fixed(), [Fixed { name: "spread".into(), input: 1, value: 0.2 }]);
+/// assert_eq!(grid.axes().len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fixed {
     /// The input's name.
@@ -58,6 +82,18 @@ pub struct Fixed {
 }
 
 /// Why a grid cannot be laid.
+///
+/// # Example
+/// ```
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let engine = fuzzy::Engine::new(&model)?;
+/// use fuzzy::map::{Grid, GridError};
+///
+/// assert_eq!(Grid::new(&engine, 1), Err(GridError::TooFewPoints { points: 1 }));
+/// let fixed_twice = Grid::new(&engine, 11)?.fix("spread", 0.2)?.fix("spread", 0.3);
+/// assert_eq!(fixed_twice, Err(GridError::NoAxis { name: "spread".into() }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {

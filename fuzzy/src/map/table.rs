@@ -40,6 +40,17 @@ pub struct DecisionTable {
 }
 
 /// Why there is no table.
+///
+/// # Example
+/// ```
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let engine = fuzzy::Engine::new(&model)?;
+/// use fuzzy::map::{DecisionTable, TableError};
+///
+/// // No table of numbers is exact.
+/// assert_eq!(DecisionTable::within(&engine, 0, 0.0), Err(TableError::Bound { bound: 0.0 }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TableError {

@@ -7,6 +7,23 @@ use super::Model;
 use crate::diagnostic::Findings;
 
 /// A model as it was read, and where its parts stand in the text.
+///
+/// # Example: from a rule back to its place
+/// ```
+/// use fuzzy::format::{Document, VariablePlaces};
+///
+/// let text = "fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// rules: [IF heat IS high THEN speed IS fast]";
+/// let Document { model, places, warnings } = fuzzy::yaml::parse(text)?;
+/// assert_eq!((model.rules.len(), warnings.0.len()), (1, 0));
+/// assert_eq!(&text[places.rules[0].clone()], "IF heat IS high THEN speed IS fast");
+/// let VariablePlaces { name, terms } = &places.inputs[0];
+/// assert_eq!((&text[name.clone()], &text[terms[1].clone()]), ("heat", "high"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Document {
     /// What the author wrote.

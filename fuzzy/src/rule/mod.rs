@@ -18,6 +18,19 @@ pub use parse::{DEEPEST_NESTING, parse};
 /// A name as the author wrote it, with its byte span in the source text.
 ///
 /// Two names are equal when their text is: where a name stands does not change what a rule means.
+///
+/// # Example: equal wherever it stands
+/// ```
+/// use fuzzy::rule::{Name, parse};
+///
+/// let text = "IF 'air flow' IS low THEN speed IS fast";
+/// let flow = parse(text)?.condition.and(parse(text)?.condition);
+/// let mut names: Vec<Name> = Vec::new();
+/// flow.visit(&mut |proposition| names.push(proposition.variable.clone()));
+/// assert_eq!(names[0], Name::from("air flow"));
+/// assert_eq!(&text[names[0].span.clone()], "'air flow'");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Eq)]
 pub struct Name {
     /// The name itself, without quotes.
@@ -42,6 +55,17 @@ impl From<&str> for Name {
 }
 
 /// One rule: what must hold, what follows, and how much the rule counts.
+///
+/// # Example: the parts of a rule
+/// ```
+/// use fuzzy::rule::{Consequent, Rule};
+///
+/// let rule: Rule = "IF heat IS high THEN speed IS fast AND lamp IS on WITH 0.5".parse()?;
+/// let Consequent { output, term } = &rule.consequents[1];
+/// assert_eq!((output.text.as_str(), term.text.as_str()), ("lamp", "on"));
+/// assert_eq!(rule.weight, 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
     /// The antecedent.
@@ -53,6 +77,15 @@ pub struct Rule {
 }
 
 /// The antecedent of a rule, as a tree.
+///
+/// # Example: AND binds closer than OR
+/// ```
+/// use fuzzy::rule::{Condition, parse};
+///
+/// let Condition::Or(any) = parse("IF a IS low OR b IS low AND NOT c IS low THEN y IS low")?.condition else { return Ok(()) };
+/// assert!(matches!(&any[..], [Condition::Is(_), Condition::And(all)] if matches!(all[1], Condition::Not(_))));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
     /// `variable IS hedge* term`.
@@ -66,6 +99,17 @@ pub enum Condition {
 }
 
 /// `variable IS hedge* term`. `variable IS NOT term` is the hedge [`Hedge::Not`].
+///
+/// # Example: what stands between IS and the term
+/// ```
+/// use fuzzy::rule::{Condition, Hedge, Proposition, parse};
+///
+/// let Condition::Is(Proposition { variable, hedges, term }) = parse("IF heat IS NOT very high THEN speed IS slow")?.condition
+/// else { return Err("more than one".into()) };
+/// assert_eq!((variable.text.as_str(), term), ("heat", Some("high".into())));
+/// assert_eq!(hedges, [Hedge::Not, Hedge::Very]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposition {
     /// The input.

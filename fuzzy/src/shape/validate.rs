@@ -5,6 +5,14 @@ use alloc::{format, string::String, vec::Vec};
 use super::{Parts, Role, Shape};
 
 /// Why the parameters of a shape make no membership function.
+///
+/// # Example: a bell without a width
+/// ```
+/// use fuzzy::model::{Shape, ShapeError};
+///
+/// let refused: ShapeError = Shape::Gaussian { mean: 20.0, sd: 0.0 }.validate().unwrap_err();
+/// assert_eq!(refused.to_string(), "`sd` is 0, not over 0");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct ShapeError {

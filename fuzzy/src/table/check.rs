@@ -3,6 +3,17 @@
 use super::{Conjunctions, Op, Scratch, Set, Table};
 
 /// What is wrong with a table: the array in which a number points beyond what it points into.
+///
+/// # Example: rules that lost an output
+/// ```
+/// use fuzzy::table::{Broken, Table};
+///
+/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// let engine = fuzzy::Engine::new(&model)?;
+/// let Err(Broken(array)) = Table { outputs: &[], ..engine.table() }.check() else { return Err("whole".into()) };
+/// assert_eq!(array, "actions");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Broken(pub &'static str);
 
@@ -20,6 +31,19 @@ impl Table<'_> {
     ///
     /// # Errors
     /// The first array with a number that points beyond.
+    ///
+    /// # Example: a table whose lines were cut short
+    /// ```
+    /// use fuzzy::table::Table;
+    ///
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = fuzzy::Engine::new(&model)?;
+    /// let table = engine.table();
+    /// assert_eq!(table.check(), Ok(()));
+    /// let damaged = Table { lines: &table.lines[1..], ..table }.check().unwrap_err();
+    /// assert_eq!(damaged.to_string(), "the table is damaged: its axes point beyond it");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn check(&self) -> Result<(), Broken> {
         let within = |first: u32, end: u32, length: usize| first <= end && end as usize <= length;
         let holds = |holds: bool, array| holds.then_some(()).ok_or(Broken(array));
@@ -107,6 +131,28 @@ impl Table<'_> {
     }
 
     /// Whether scratch has the sizes of the table.
+    ///
+    /// # Example: room for one of two inputs
+    /// ```
+    /// # use fuzzy::table::{Partial, Scratch, Strongest};
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let engine = fuzzy::Engine::new(&model)?;
+    /// # let sizes = engine.table().sizes;
+    /// # let mut degrees = vec![0.0; sizes.degrees as usize];
+    /// # let mut stack = vec![0.0; sizes.stack as usize];
+    /// # let mut heights = vec![0.0; sizes.heights as usize];
+    /// # let mut alive = vec![Partial::NONE; sizes.alive as usize];
+    /// # let mut partial = vec![Partial::NONE; sizes.partial as usize];
+    /// # let mut next = partial.clone();
+    /// # let mut strongest = [Strongest::NONE];
+    /// # let (degrees, stack, heights) = (&mut degrees[..], &mut stack[..], &mut heights[..]);
+    /// # let (alive, partial, next) = (&mut alive[..], &mut partial[..], &mut next[..]);
+    /// # let strongest = &mut strongest[..];
+    /// let values = &mut [0.0];
+    /// let scratch = Scratch { values, degrees, alive, partial, next, stack, heights, strongest };
+    /// assert!(!engine.table().fits(&scratch));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn fits(&self, scratch: &Scratch<'_>) -> bool {
         let Scratch {
             values,

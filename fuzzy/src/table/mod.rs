@@ -182,6 +182,30 @@ impl Table<'_> {
     ///
     /// A value outside its input's range is taken as the range's end, and the outcome says so. A value that is NaN or
     /// infinite makes every outcome [`State::InputNotFinite`].
+    ///
+    /// # Example: the bits of the engine, in memory of one's own
+    /// ```
+    /// use fuzzy::table::{Outcome, Partial, Scratch, Strongest};
+    ///
+    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let engine = fuzzy::Engine::new(&model)?;
+    /// let table = engine.table();
+    /// let sizes = table.sizes;
+    /// let mut scratch = Scratch {
+    ///     values: &mut [0.0; 2],
+    ///     degrees: &mut vec![0.0; sizes.degrees as usize],
+    ///     alive: &mut vec![Partial::NONE; sizes.alive as usize],
+    ///     partial: &mut vec![Partial::NONE; sizes.partial as usize],
+    ///     next: &mut vec![Partial::NONE; sizes.partial as usize],
+    ///     stack: &mut vec![0.0; sizes.stack as usize],
+    ///     heights: &mut vec![0.0; sizes.heights as usize],
+    ///     strongest: &mut [Strongest::NONE],
+    /// };
+    /// let mut outcomes = [Outcome::UNDEFINED];
+    /// table.evaluate(&mut scratch, &[0.05, 0.2], &mut outcomes);
+    /// assert_eq!(outcomes[..], engine.evaluate(&[0.05, 0.2])?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn evaluate(&self, scratch: &mut Scratch<'_>, inputs: &[f64], outcomes: &mut [Outcome]) {
         evaluate(self, scratch, inputs, outcomes, |_, _, _| None);
     }

@@ -40,6 +40,17 @@ pub struct Node {
 }
 
 /// A value of a document.
+///
+/// # Example: what a text is made of
+/// ```
+/// use fuzzy::tree::Value;
+///
+/// let Value::Mapping(entries) = fuzzy::yaml::read("{blades: [5, 7], blades: 9}")?.value else { return Err("no mapping".into()) };
+/// assert_eq!(entries.len(), 2); // a double is for the reader to complain about
+/// assert!(matches!(&entries[0].1.value, Value::List(items) if items.len() == 2));
+/// assert!(matches!(&entries[1].1.value, Value::Scalar(scalar) if scalar.text == "9"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// Text, a number, yes or no, or nothing at all.
@@ -51,6 +62,17 @@ pub enum Value {
 }
 
 /// A scalar as it was written; whether it is a number is for its reader to decide.
+///
+/// # Example: a number, and text that looks like one
+/// ```
+/// use fuzzy::tree::{Scalar, Value};
+///
+/// let Value::List(items) = fuzzy::yaml::read("[5, '5']")?.value else { return Err("no list".into()) };
+/// let [Value::Scalar(number), Value::Scalar(text)] = [&items[0].value, &items[1].value] else { return Err("no scalars".into()) };
+/// assert_eq!((number.text.as_str(), number.quoted), ("5", false));
+/// assert_eq!((text.text.as_str(), text.quoted, text.as_number()), ("5", true, None));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scalar {
     /// What it says, escapes and line breaks resolved.

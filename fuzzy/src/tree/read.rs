@@ -33,6 +33,18 @@ pub struct Fields<'a> {
 }
 
 /// A key and what stands behind it.
+///
+/// # Example: where a key stands
+/// ```
+/// use fuzzy::tree::Entry;
+///
+/// let text = "{speed: fast}";
+/// let tree = fuzzy::yaml::read(text)?;
+/// let fields = tree.fields("the fan", &["speed"], &mut Vec::new()).ok_or("no mapping")?;
+/// let Entry { key, key_span, value } = &fields.entries()[0];
+/// assert_eq!((*key, &text[key_span.clone()], &text[value.span.clone()]), ("speed", "speed", "fast"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone)]
 pub struct Entry<'a> {
     /// The key.
@@ -45,12 +57,33 @@ pub struct Entry<'a> {
 
 impl<'a> Fields<'a> {
     /// The value behind a key; a key with nothing behind it counts as absent.
+    ///
+    /// # Example: nothing behind a key is as good as no key
+    /// ```
+    /// let tree = fuzzy::yaml::read("{speed: fast, blades: }")?;
+    /// let fields = tree.fields("the fan", &["speed", "blades"], &mut Vec::new()).ok_or("no mapping")?;
+    /// assert!(fields.get("speed").is_some());
+    /// assert_eq!((fields.get("blades"), fields.get("colour")), (None, None));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&'a Node> {
         self.entry(key).map(|entry| entry.value)
     }
 
     /// The key and the value behind it; a key with nothing behind it counts as absent.
+    ///
+    /// # Example: a finding at the key
+    /// ```
+    /// use fuzzy::diagnostic::Diagnostic;
+    ///
+    /// let tree = fuzzy::yaml::read("{blades: 5, speed: fast}")?;
+    /// let fields = tree.fields("the fan", &["speed", "blades"], &mut Vec::new()).ok_or("no mapping")?;
+    /// let speed = fields.entry("speed").ok_or("no speed")?;
+    /// let finding = Diagnostic::note("unused", speed.key_span.clone(), "the fan has one speed");
+    /// assert_eq!(finding.span, 12..17);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn entry(&self, key: &str) -> Option<&Entry<'a>> {
         self.entries
@@ -59,12 +92,33 @@ impl<'a> Fields<'a> {
     }
 
     /// All keys that are there once, with their values.
+    ///
+    /// # Example: a key given twice counts once, and is a finding
+    /// ```
+    /// let mut findings = Vec::new();
+    /// let tree = fuzzy::yaml::read("{speed: fast, blades: 5, speed: slow}")?;
+    /// let fields = tree.fields("the fan", &["speed", "blades"], &mut findings).ok_or("no mapping")?;
+    /// let keys: Vec<&str> = fields.entries().iter().map(|entry| entry.key).collect();
+    /// assert_eq!((keys, findings[0].code), (vec!["speed", "blades"], "duplicate-key"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn entries(&self) -> &[Entry<'a>] {
         &self.entries
     }
 
     /// The value behind a key that has to be there.
+    ///
+    /// # Example
+    /// ```
+    /// let mut findings = Vec::new();
+    /// let tree = fuzzy::yaml::read("{speed: fast}")?;
+    /// let fields = tree.fields("the fan", &["speed", "blades"], &mut findings).ok_or("no mapping")?;
+    /// assert!(fields.require("speed", "write `speed: fast`", &mut findings).is_some());
+    /// assert!(fields.require("blades", "write `blades: 5`", &mut findings).is_none());
+    /// assert_eq!(findings[0].to_string(), "error[missing-key]: the fan has no `blades`\n  help: write `blades: 5`");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn require(
         &self,
         key: &str,
@@ -87,6 +141,18 @@ impl<'a> Fields<'a> {
 
 impl<'a> Entry<'a> {
     /// [`Node::fields`] of the value; what is missing in it is told at the key.
+    ///
+    /// # Example: what is missing is told at the key
+    /// ```
+    /// let text = "{fan: {speed: fast}}";
+    /// let mut findings = Vec::new();
+    /// let tree = fuzzy::yaml::read(text)?;
+    /// let file = tree.fields("the file", &["fan"], &mut findings).ok_or("no mapping")?;
+    /// let fan = file.entries()[0].fields("the fan", &["speed", "blades"], &mut findings).ok_or("no mapping")?;
+    /// fan.require("blades", "write `blades: 5`", &mut findings);
+    /// assert_eq!(&text[findings[0].span.clone()], "fan");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn fields(
         &self,
         what: &str,
