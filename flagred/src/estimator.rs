@@ -152,11 +152,6 @@ impl Estimator {
         &self.profile
     }
 
-    /// The compiled rule set.
-    pub fn engine(&self) -> &Engine {
-        &self.engine
-    }
-
     /// The risk at the values of the inputs, in the order of the profile: what a monitor says at such a moment.
     /// `None` where rules say nothing and there is nothing to fill from, or a value is not finite.
     ///

@@ -95,29 +95,11 @@ impl Profile {
     }
 
     /// What it says about time.
-    pub fn settings(&self) -> Settings {
+    pub(crate) fn settings(&self) -> Settings {
         Settings {
             sampling: self.sampling,
             elevated_risk: self.elevated_risk,
             verdict: self.verdict,
         }
-    }
-
-    /// The longest window of an input, in seconds.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::profile::Profile;
-    /// # let profile = Profile::from_yaml("flagred: 1
-    /// # name: windy
-    /// # rules: my.yaml
-    /// # inputs: {margin: {mean: motor_margin, window_s: 5}, wind: {last: wind_m_s}, gust: {max: wind_m_s, window_s: 20}}")?;
-    /// assert_eq!(profile.longest_window_s(), 20.0);
-    /// # Ok::<(), fuzzy::diagnostic::Findings>(())
-    /// ```
-    pub fn longest_window_s(&self) -> f64 {
-        self.inputs
-            .iter()
-            .fold(0.0, |longest, i| f64::max(longest, i.source.window_s))
     }
 }
