@@ -16,6 +16,21 @@ pub struct Sample<'a> {
 }
 
 /// What is known after a sample.
+///
+/// # Example: nothing is said on the ground
+/// ```
+/// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
+/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// # let estimator = Estimator::new(&profile, &rules)?;
+/// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+/// use flagred::assessment::{Assessment, Unknown};
+///
+/// let parked = Sample { t_s: 0.0, motors: &[0.0; 4], in_air: false, signals: &[] };
+/// let Assessment { risk, elevated_risk_pct, level, .. } = monitor.push(&parked);
+/// assert_eq!((risk, elevated_risk_pct, level), (Err(Unknown::OnGround), None, None));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assessment {
     /// When, in seconds.
@@ -33,6 +48,22 @@ pub struct Assessment {
 }
 
 /// What is said about a moment whose inputs are known.
+///
+/// # Example: what rules say, and what is filled in
+/// ```
+/// # use flagred::{estimator::Estimator, shipped};
+/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// # let estimator = Estimator::new(&profile, &rules)?;
+/// use flagred::assessment::Estimate;
+///
+/// let Estimate { coverage, filled_from, dominant_rule, clamped, .. } = estimator.at(&[0.3, 0.1]).ok_or("unknown")?;
+/// assert_eq!((coverage, filled_from, dominant_rule, clamped), (1.0, None, Some(2), false));
+/// // No rule speaks of a saturated vehicle whose motors all do the same, and a spread of 0.7 is off the map.
+/// assert!(estimator.at(&[0.0, 0.0]).is_some_and(|saturated| saturated.filled_from.is_some()));
+/// assert!(estimator.at(&[0.3, 0.7]).is_some_and(|off| off.clamped));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// The risk in %, from 0 to 100.
@@ -49,6 +80,22 @@ pub struct Estimate {
 }
 
 /// Why a risk is unknown.
+///
+/// # Example: the first samples of a flight
+/// ```
+/// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
+/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// # let estimator = Estimator::new(&profile, &rules)?;
+/// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+/// use flagred::assessment::Unknown;
+///
+/// let mut why = |t_s| monitor.push(&Sample { t_s, motors: &[0.5; 4], in_air: true, signals: &[] }).risk.err();
+/// assert_eq!(why(0.0), Some(Unknown::NoValue { input: 0 })); // a first sample stands for no time yet
+/// assert_eq!(why(0.1), Some(Unknown::WarmingUp { input: 0 }));
+/// assert_eq!(why(0.1), Some(Unknown::OutOfOrder)); // the same again
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unknown {
     /// The vehicle is on the ground.
@@ -77,6 +124,17 @@ pub enum Unknown {
 }
 
 /// When an input counts as known.
+///
+/// # Example: keys of a profile
+/// ```
+/// use flagred::{assessment::Sampling, profile::Profile};
+///
+/// let text = "flagred: 1\nname: patient\nrules: my.yaml\nmin_samples: 20\ninputs: {margin: {mean: motor_margin}}";
+/// let patient = Sampling { min_samples: 20, ..Sampling::default() };
+/// assert_eq!(Profile::from_yaml(text)?.sampling, patient);
+/// assert_eq!((patient.warm_up_s, patient.longest_gap_s), (1.0, 2.0));
+/// # Ok::<(), fuzzy::diagnostic::Findings>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
     /// The fewest samples a window must hold: at a few samples per second a spread means little.

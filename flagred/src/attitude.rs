@@ -4,6 +4,14 @@
 pub const CRITICAL_ERROR_DEG: f64 = 5.0;
 
 /// Roll and pitch, wanted and actual, in degrees.
+///
+/// # Example: a pitch that lags behind
+/// ```
+/// use flagred::attitude::Attitude;
+///
+/// let attitude = Attitude { roll_des_deg: 0.0, roll_deg: 0.0, pitch_des_deg: 10.0, pitch_deg: 7.0 };
+/// assert_eq!(attitude.squared_error_deg2(), 9.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attitude {
     /// The roll that the controller wants.

@@ -20,6 +20,24 @@ use crate::{
 pub use crate::assessment::Estimate;
 
 /// A profile and its rule set, compiled: immutable, and shared by any number of monitors.
+///
+/// # Example: one for all flights
+/// ```
+/// # use flagred::shipped;
+/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor};
+///
+/// let estimator = Estimator::new(&profile, &rules)?;
+/// let (mut quad, mut octa) = (Monitor::new(&estimator, 4, &[])?, Monitor::new(&estimator, 8, &[])?);
+/// for i in 0..100 {
+///     let t_s = f64::from(i) * 0.04;
+///     quad.push(&Sample { t_s, motors: &[0.5; 4], in_air: true, signals: &[] });
+///     octa.push(&Sample { t_s, motors: &[0.5; 8], in_air: true, signals: &[] });
+/// }
+/// assert_eq!(quad.margin(), octa.margin()); // the number of motors does not matter
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Estimator {
     profile: Profile,
@@ -34,6 +52,19 @@ pub struct Estimator {
 }
 
 /// Why a profile and a rule set make no estimator.
+///
+/// # Example: a profile that forgets an input of its rules
+/// ```
+/// # use flagred::{estimator::Estimator, shipped};
+/// # let mut profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// use flagred::estimator::EstimatorError;
+///
+/// profile.inputs.retain(|input| input.name != "spread");
+/// let refused = Estimator::new(&profile, &rules).unwrap_err();
+/// assert_eq!(refused, EstimatorError::NoSource { input: "spread".into() });
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EstimatorError {
@@ -74,6 +105,21 @@ pub enum EstimatorError {
 }
 
 /// The value of an output takes more than a table of numbers, so it cannot fly on board.
+///
+/// # Example: a bisector has none
+/// ```
+/// # use flagred::{estimator::Estimator, shipped};
+/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let mut rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// use flagred::estimator::NoClosedForm;
+/// use fuzzy::model::Defuzzifier;
+///
+/// rules.outputs[0].defuzzifier = Defuzzifier::Bisector;
+/// let estimator = Estimator::new(&profile, &rules)?;
+/// assert!(estimator.at(&[0.3, 0.1]).is_some(), "with the standard library there is an answer");
+/// assert_eq!(estimator.plan().err(), Some(NoClosedForm { output: "risk".into() }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the value of output `{output}` has no closed form, so it cannot be written as a table")]
 pub struct NoClosedForm {
@@ -83,6 +129,14 @@ pub struct NoClosedForm {
 
 impl NoClosedForm {
     /// What has one.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::estimator::NoClosedForm;
+    ///
+    /// let refused = NoClosedForm { output: "risk".into() };
+    /// assert!(refused.help().starts_with("closed forms have: the centroid"));
+    /// ```
     pub fn help(&self) -> &'static str {
         "closed forms have: the centroid over straight terms that overlap only where one falls while the next one rises \
          (a `partition`), with minimum and maximum; the centroid with `implication: product` and `aggregation: sum`, over \
@@ -96,6 +150,18 @@ impl Estimator {
     /// # Errors
     ///
     /// Where the rule set does not compile, the two do not name the same inputs, or the output is no percentage.
+    ///
+    /// # Example: an output that is no percentage
+    /// ```
+    /// # use flagred::{estimator::Estimator, shipped};
+    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// # let mut rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// assert!(Estimator::new(&profile, &rules).is_ok());
+    /// rules.outputs[0].variable.high = 200.0;
+    /// let refused = Estimator::new(&profile, &rules).unwrap_err();
+    /// assert_eq!(refused.to_string(), "output `risk` goes from 0 to 200, but a risk goes from 0 to 100 %");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(profile: &Profile, model: &Model) -> Result<Estimator, EstimatorError> {
         let engine = Engine::new(model)?;
         let output =
@@ -148,6 +214,16 @@ impl Estimator {
     }
 
     /// The profile it was made of.
+    ///
+    /// # Example
+    /// ```
+    /// # use flagred::{estimator::Estimator, shipped};
+    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// # let estimator = Estimator::new(&profile, &rules)?;
+    /// assert_eq!(estimator.profile().name, "flagred-paper");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn profile(&self) -> &Profile {
         &self.profile
     }

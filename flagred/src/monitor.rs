@@ -48,6 +48,21 @@ impl Unknown {
 }
 
 /// Why a monitor cannot be made.
+///
+/// # Example: a battery that nobody tells of
+/// ```
+/// # use flagred::{estimator::Estimator, profile::Profile, shipped, source::Signal};
+/// # let mut profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// use flagred::monitor::{Monitor, MonitorError};
+///
+/// profile.inputs[1].source.signal = Signal::named("battery_v");
+/// let estimator = Estimator::new(&profile, &rules)?;
+/// assert!(Monitor::new(&estimator, 4, &["battery_v"]).is_ok());
+/// let refused = Monitor::new(&estimator, 4, &[]).unwrap_err();
+/// assert_eq!(refused, MonitorError::NoSignal { signal: "battery_v".into() });
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MonitorError {

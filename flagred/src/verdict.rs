@@ -61,6 +61,14 @@ impl Threshold {
 }
 
 /// When a level is raised and until when it is held.
+///
+/// # Example: raised at 67 % for a fifth of a second, held down to 25 %
+/// ```
+/// use flagred::verdict::{LevelSettings, VerdictSettings};
+///
+/// let LevelSettings { raise, after_s, until } = VerdictSettings::default().warn;
+/// assert_eq!((raise.risk_pct, after_s, until.risk_pct), (Some(67.0), 0.2, Some(25.0)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelSettings {
     /// The level is raised when this is reached ...
@@ -99,6 +107,17 @@ pub struct VerdictSettings {
 }
 
 /// How a risk counts while the motors idle: near their lower limit all at once, they hold nothing in the air.
+///
+/// # Example: a key of a profile
+/// ```
+/// use flagred::{profile::Profile, verdict::Idle};
+///
+/// let text = "flagred: 1\nname: p\nrules: my.yaml\ninputs: {margin: {mean: motor_margin}}
+/// verdict: {idle: {command_below: 0.2, risk_at_most: 50}}";
+/// let idle = Idle { command_below: 0.2, risk_at_most_pct: 50.0 };
+/// assert_eq!(Profile::from_yaml(text)?.verdict.idle, idle);
+/// # Ok::<(), fuzzy::diagnostic::Findings>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Idle {
     /// The motors idle while their mean effective command is below this.
@@ -137,6 +156,27 @@ impl Default for VerdictSettings {
 }
 
 /// A time at or above a level: what is FAIL for a while is one finding of that while, within one of WARN.
+///
+/// # Example: ten seconds of motors at their limits
+/// ```
+/// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
+/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// # let estimator = Estimator::new(&profile, &rules)?;
+/// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+/// use flagred::{margin::Side, verdict::{Finding, Level, Measure, MotorFinding}};
+///
+/// for i in 0..500 {
+///     let t_s = f64::from(i) * 0.04;
+///     let motors = if t_s < 10.0 { [0.5; 4] } else { [0.0, 0.9, 1.0, 0.1] };
+///     monitor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
+/// }
+/// let Finding { level, from_s, raised_s, measure, motor, .. } = monitor.finish()[1].ok_or("nothing found")?;
+/// assert!(level == Level::Fail && from_s > 10.0 && raised_s >= from_s + 0.4 && measure == Measure::Risk);
+/// let MotorFinding { motor, side, least_margin, .. } = motor.ok_or("no motor")?;
+/// assert_eq!((motor, side, least_margin), (0, Side::Low, 0.0)); // the first of two without any margin
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
     /// The level.

@@ -14,6 +14,18 @@ const ECHO_S: f64 = 1.0;
 const ROUNDING_S: f64 = 1e-6;
 
 /// An episode, and the warning on it.
+///
+/// # Example: a warning that comes late, and none
+/// ```
+/// use flagred::evaluation::{Answer, Span, judge};
+///
+/// let span = |from_s, to_s| Span { from_s, to_s };
+/// let episodes = [span(10.0, 15.0), span(30.0, 33.0)];
+/// let judged = judge(&[span(11.0, 20.0)], &episodes, &[span(0.0, 60.0)], None);
+/// let late = Answer { episode: episodes[0], warned_s: Some(11.0) };
+/// assert_eq!(judged.answers, [late, Answer { episode: episodes[1], warned_s: None }]);
+/// assert_eq!((late.lead_s(), late.is_announced()), (Some(-1.0), false));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
     /// The episode.
@@ -53,6 +65,15 @@ impl Answer {
 }
 
 /// A time of warnings.
+///
+/// # Example: a warning for nothing
+/// ```
+/// use flagred::evaluation::{Span, Warning, judge};
+///
+/// let span = Span { from_s: 5.0, to_s: 8.0 };
+/// let judged = judge(&[span], &[], &[Span { from_s: 0.0, to_s: 60.0 }], None);
+/// assert_eq!(judged.warnings, [Warning { span, is_false: true }]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Warning {
     /// When, within the judged times.
@@ -62,6 +83,15 @@ pub struct Warning {
 }
 
 /// What the warnings of a flight come to.
+///
+/// # Example: a flight that nobody warned of
+/// ```
+/// use flagred::evaluation::{Judged, Span, judge};
+///
+/// let crash = Span { from_s: 30.0, to_s: 33.0 };
+/// let Judged { answers, warnings } = judge(&[], &[crash], &[Span { from_s: 0.0, to_s: 60.0 }], None);
+/// assert!(warnings.is_empty() && answers[0].warned_s.is_none());
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Judged {
     /// The episodes that start within the judged times.

@@ -46,6 +46,15 @@ struct Place {
 }
 
 /// The areas under the two curves.
+///
+/// # Example: scores that say nothing
+/// ```
+/// use flagred::evaluation::{Areas, Prediction, Ranking};
+///
+/// let guessed = [true, false, false, false].map(|critical| Prediction { score: 0.5, critical, group: 0 });
+/// // Half of the pairs, and the share of critical ones: what a risk must do better than.
+/// assert_eq!(Ranking::new(guessed).areas(), Some(Areas { roc: 0.5, precision_recall: 0.25 }));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Areas {
     /// Under the receiver operating characteristic: the share of pairs of a critical prediction and another in which the
@@ -66,6 +75,17 @@ pub struct Interval {
 }
 
 /// The intervals of [`Areas`].
+///
+/// # Example: one flight tells nothing of others
+/// ```
+/// use flagred::evaluation::{Interval, Intervals, Prediction, Ranking};
+///
+/// let told = [(0.9, true), (0.8, false), (0.7, true), (0.1, false)];
+/// let one_flight = Ranking::new(told.map(|(score, critical)| Prediction { score, critical, group: 0 }));
+/// let Intervals { roc, .. } = one_flight.bootstrap(100, 7).ok_or("needs both kinds")?;
+/// assert_eq!(roc, Interval { low: 0.75, high: 0.75 }); // every resample is that flight again
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intervals {
     /// Of the area under the receiver operating characteristic.
@@ -75,6 +95,17 @@ pub struct Intervals {
 }
 
 /// A point of the receiver operating characteristic.
+///
+/// # Example: from no warning at all to a warning always
+/// ```
+/// use flagred::evaluation::{Prediction, Ranking, RocPoint};
+///
+/// let told = [(0.9, true), (0.1, false)];
+/// let curve = Ranking::new(told.map(|(score, critical)| Prediction { score, critical, group: 0 })).roc(10);
+/// let at = |false_positive_rate, true_positive_rate| RocPoint { false_positive_rate, true_positive_rate };
+/// assert_eq!((curve.first(), curve.last()), (Some(&at(0.0, 0.0)), Some(&at(1.0, 1.0))));
+/// assert!(curve.contains(&at(0.0, 1.0)), "one threshold tells them apart");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RocPoint {
     /// The share of the others that are at or above a score.
@@ -299,6 +330,16 @@ fn interval(values: &mut [f64]) -> Option<Interval> {
 }
 
 /// What became of the predictions of a band of risk.
+///
+/// # Example: what became of risks from 90 % on
+/// ```
+/// use flagred::evaluation::{Band, Prediction, reliability};
+///
+/// let bands = reliability([(95.0, true), (100.0, false)].map(|(score, critical)| Prediction { score, critical, group: 0 }));
+/// let Band { from_pct, predictions, critical, .. } = bands[9];
+/// assert_eq!((from_pct, predictions, critical), (90.0, 2, 1));
+/// assert_eq!(bands[0].mean_risk_pct, None);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// The lower end of the band in %; it belongs to it.

@@ -14,6 +14,20 @@ pub struct FilledKnots<'a> {
 }
 
 /// A value read where no rule applies.
+///
+/// # Example: the farther from what rules cover, the less to be relied on
+/// ```
+/// # use flagred::gap::{Filling, GapSettings};
+/// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// # let engine = fuzzy::Engine::new(&model)?;
+/// # let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+/// use flagred::gap::Reading;
+///
+/// let Reading { value, distance } = filling.read(&[0.0, 0.0]).ok_or("nothing is covered")?;
+/// assert!(value > 75.0);
+/// assert!((distance - 0.1).abs() < 1e-9); // rules begin at a spread of 0.05, a tenth of its range
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
     /// The value.

@@ -116,6 +116,16 @@ impl Filling {
     }
 
     /// Whether a place of this coverage is a gap.
+    ///
+    /// # Example: the paper's rules are sure of a place from one half on
+    /// ```
+    /// # use flagred::gap::{Filling, GapSettings};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = fuzzy::Engine::new(&model)?;
+    /// let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+    /// assert!(filling.is_gap(0.49) && !filling.is_gap(0.5));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn is_gap(&self, coverage: f64) -> bool {
         is_gap(coverage, self.coverage_below)
     }
@@ -124,6 +134,18 @@ impl Filling {
     /// `None` where the rules cover nothing to fill from, there are more inputs than can be filled over (over 15 of two
     /// terms each), the point has another number of coordinates, or one is not a
     /// number.
+    ///
+    /// # Example: beyond the outermost peak nothing changes, and what is unknown stays unknown
+    /// ```
+    /// # use flagred::gap::{Filling, GapSettings};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = fuzzy::Engine::new(&model)?;
+    /// let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+    /// let value = |point: [f64; 2]| filling.read(&point).map(|reading| reading.value);
+    /// assert_eq!(value([0.3, 0.0]), value([0.45, 0.0]));
+    /// assert_eq!(value([f64::NAN, 0.0]), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
         self.lend()?.read(point)
     }

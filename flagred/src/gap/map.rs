@@ -5,6 +5,20 @@ use fuzzy::map::DecisionMap;
 use super::{Filling, Reading};
 
 /// A decision map without gaps: what rules cover is as they say, what they do not is filled from there.
+///
+/// # Example: the corner that rules leave open
+/// ```
+/// # use flagred::gap::{FilledMap, Filling, GapSettings};
+/// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+/// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// # let engine = Engine::new(&model)?;
+/// # let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+/// # let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+/// let bare = map.coverage(0);
+/// let filled = FilledMap::new(map, filling);
+/// assert!(bare < 0.5 && filled.value(0) > Some(75.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct FilledMap {
     map: DecisionMap,
@@ -35,16 +49,60 @@ impl FilledMap {
     }
 
     /// The map before it was filled, with its grid.
+    ///
+    /// # Example: the grid that cells are counted on
+    /// ```
+    /// # use flagred::gap::{FilledMap, Filling, GapSettings};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// # let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// let filled = FilledMap::new(map, filling);
+    /// assert_eq!(filled.map().grid().point(0), [0.0, 0.0]);
+    /// assert_eq!(filled.map().value(0), None); // before it was filled
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn map(&self) -> &DecisionMap {
         &self.map
     }
 
     /// Whether a cell is not as rules say.
+    ///
+    /// # Example: margins below 0.15 at a spread of 0
+    /// ```
+    /// # use flagred::gap::{FilledMap, Filling, GapSettings};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// # let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// let filled = FilledMap::new(map, filling);
+    /// let row = (0..11).map(|margin| 11 * margin); // a step of 0.05 in the margin is 11 cells on
+    /// let open: Vec<usize> = row.filter(|&cell| filled.is_filled(cell)).collect();
+    /// assert_eq!(open, [0, 11, 22]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn is_filled(&self, cell: usize) -> bool {
         self.filling.is_gap(self.map.coverage(cell)) || self.map.value(cell).is_none()
     }
 
     /// The filling at a cell; `None` where rules say what it is, or there is nothing to fill from.
+    ///
+    /// # Example: how far it was filled from
+    /// ```
+    /// # use flagred::gap::{FilledMap, Filling, GapSettings};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// # let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// let filled = FilledMap::new(map, filling);
+    /// let corner = filled.filled(0).ok_or("not filled")?;
+    /// assert!((corner.distance - 0.1).abs() < 1e-9);
+    /// assert_eq!(filled.filled(11 * 11 - 1), None); // rules speak there
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn filled(&self, cell: usize) -> Option<Reading> {
         if !self.is_filled(cell) || cell >= self.map.grid().cells() {
             return None;
@@ -61,6 +119,22 @@ impl FilledMap {
     }
 
     /// The value of a cell; `None` where nothing is covered to fill it from, and off the grid.
+    ///
+    /// # Example: where rules speak they are left alone
+    /// ```
+    /// # use flagred::gap::{FilledMap, Filling, GapSettings};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// # let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// let (said, cells) = (map.value(11 * 11 - 1), map.grid().cells());
+    /// let filled = FilledMap::new(map, filling);
+    /// assert_eq!(filled.value(11 * 11 - 1), said);
+    /// assert!((0..cells).all(|cell| filled.value(cell).is_some()));
+    /// assert_eq!(filled.value(cells), None); // off the grid
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn value(&self, cell: usize) -> Option<f64> {
         match self.is_filled(cell) {
             true => self.filled(cell).map(|reading| reading.value),
@@ -69,6 +143,18 @@ impl FilledMap {
     }
 
     /// The share of the cells that were filled.
+    ///
+    /// # Example: 3 of 121 cells
+    /// ```
+    /// # use flagred::gap::{FilledMap, Filling, GapSettings};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// # let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// assert_eq!(FilledMap::new(map, filling).filled_share(), 3.0 / 121.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn filled_share(&self) -> f64 {
         let cells = self.map.grid().cells();
         let filled = (0..cells).filter(|cell| self.is_filled(*cell)).count();
@@ -77,6 +163,22 @@ impl FilledMap {
 
     /// The value at a point with a coordinate for each axis of the grid, N-linearly between cells; beyond the grid,
     /// at its end. `None` where nothing is covered, or the point has another number of coordinates.
+    ///
+    /// # Example: half way between two cells
+    /// ```
+    /// # use flagred::gap::{FilledMap, Filling, GapSettings};
+    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
+    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+    /// # let engine = Engine::new(&model)?;
+    /// # let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
+    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+    /// let filled = FilledMap::new(map, filling);
+    /// let (here, next) = (filled.value(0).ok_or("unknown")?, filled.value(1).ok_or("unknown")?);
+    /// let between = filled.read(&[0.0, 0.025]).ok_or("unknown")?;
+    /// assert!((between - (here + next) / 2.0).abs() < 1e-9);
+    /// assert_eq!(filled.read(&[-1.0, 0.0]), Some(here)); // beyond the grid, as at its end
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn read(&self, point: &[f64]) -> Option<f64> {
         let grid = self.map.grid();
         grid.interpolate(|cell| self.value(cell), point)

@@ -61,6 +61,17 @@ pub struct Profile {
 }
 
 /// An input of the rule set and where it comes from.
+///
+/// # Example
+/// ```
+/// use flagred::profile::{Profile, ProfileInput};
+/// use flagred::source::{Motors, Signal, Source, Statistic};
+///
+/// let text = "flagred: 1\nname: windy\nrules: my.yaml\ninputs: {wind: {last: wind_m_s}}";
+/// let source = Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 2.0 };
+/// assert_eq!(Profile::from_yaml(text)?.inputs, [ProfileInput { name: "wind".into(), source }]);
+/// # Ok::<(), fuzzy::diagnostic::Findings>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProfileInput {
     /// The name of the input in the rule set.
