@@ -21,7 +21,22 @@ pub struct Row {
     pub group: Option<u32>,
 }
 
-/// How far predictions are from what the rows say, in the unit of the output; rows count by their weight.
+/// How far predictions are from what the rows say, in the unit of the output; rows count by their weight. Where no row was
+/// compared the errors are NaN.
+///
+/// # Example: one row cannot be predicted from no other
+/// ```
+/// # use flagred::{gap::GapSettings, learning::{Row, cross_validate}};
+/// # use fuzzy::learn::Settings;
+/// # let mut model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// # model.rules.clear();
+/// use flagred::learning::Errors;
+///
+/// let only = Row { values: vec![0.1, 0.1, 50.0], weight: 1.0, group: None };
+/// let Errors { rows, rmse, .. } = cross_validate(&model, &Settings::default(), &GapSettings::default(), &[only])?;
+/// assert!(rows == 0 && rmse.is_nan(), "unknown, which is not 0");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Errors {
     /// The rows compared.
@@ -62,13 +77,8 @@ impl Tally {
     }
 
     fn errors(&self) -> Errors {
-        let mean = |sum: f64| {
-            if self.weight > 0.0 {
-                sum / self.weight
-            } else {
-                0.0
-            }
-        };
+        // NaN of nothing: no error at all would be the best there is.
+        let mean = |sum: f64| sum / self.weight;
         Errors {
             rows: self.rows,
             without_prediction: self.without_prediction,
@@ -238,7 +248,8 @@ fn parts(rows: &[Row]) -> Vec<u32> {
     rows.iter()
         .map(|row| match row.group {
             Some(group) if groups.len() <= MOST_GROUPS => group,
-            Some(group) => group % FOLDS,
+            // By its rank: numbers that share their last digit would all be one part.
+            Some(group) => groups.partition_point(|other| *other < group) as u32 % FOLDS,
             None => (fingerprint(&row.values) % u64::from(FOLDS)) as u32,
         })
         .collect()
@@ -289,7 +300,8 @@ pub struct GapComparison {
 pub struct MethodErrors {
     /// Each row counts.
     pub by_row: Errors,
-    /// Each rule counts the same, however many samples it has: the mean of its mean absolute error.
+    /// Each rule counts the same, however many samples it has: the mean of its mean absolute error. Rules none of whose
+    /// rows could be predicted do not count; NaN where that is all of them.
     pub by_rule_mean_absolute: f64,
 }
 
@@ -339,7 +351,7 @@ pub fn leave_one_rule_out(
             of_rule.entry(rule).or_default().push(row);
         }
     }
-    let mut totals = vec![(Tally::default(), 0.0); methods.len() + 1];
+    let mut totals = vec![(Tally::default(), Tally::default()); methods.len() + 1];
     let mut rules = 0;
     for (rule, rows) in &of_rule {
         let mut without = model.clone();
@@ -377,12 +389,13 @@ pub fn leave_one_rule_out(
         }
         rules += 1;
         for ((_, by_rule), tally) in totals.iter_mut().zip(tallies) {
-            *by_rule += tally.errors().mean_absolute;
+            let predicted = (tally.rows > 0).then(|| tally.errors().mean_absolute);
+            by_rule.add(predicted, 0.0, 1.0);
         }
     }
     let mut all = totals.into_iter().map(|(tally, by_rule)| MethodErrors {
         by_row: tally.errors(),
-        by_rule_mean_absolute: by_rule / f64::from(rules.max(1)),
+        by_rule_mean_absolute: by_rule.errors().mean_absolute,
     });
     Ok(GapComparison {
         rules,
@@ -468,6 +481,35 @@ rules: []
             assert_eq!(errors.by_row.rows, 380, "{method:?}");
             // A neighbour across the spread knows the same as the rule that is gone.
             assert!(errors.by_rule_mean_absolute < 15.0, "{method:?} {errors:?}");
+        }
+    }
+
+    #[test]
+    fn many_groups_are_left_out_in_tenths_whatever_their_numbers() {
+        let mut rows = rows(Some(60));
+        let validate = |rows: &[Row]| {
+            let gap = GapSettings::default();
+            cross_validate(&blank(), &Settings::default(), &gap, rows).unwrap()
+        };
+        let errors = validate(&rows);
+        for row in &mut rows {
+            row.group = row.group.map(|group| 10 * group);
+        }
+        assert_eq!((errors.rows, validate(&rows)), (400, errors));
+    }
+
+    #[test]
+    fn the_only_rule_leaves_nothing_to_fill_its_gap_from() {
+        let mut only = learned();
+        only.rules.truncate(1);
+        let compared = leave_one_rule_out(&only, &rows(None), &GapMethod::ALL, None).unwrap();
+        assert_eq!(compared.rules, 1);
+        assert!(compared.with_the_rule.by_rule_mean_absolute < 15.0);
+        for (method, errors) in &compared.methods {
+            assert_eq!(errors.by_row.rows, 0, "{method:?}");
+            assert!(errors.by_row.without_prediction > 0, "{method:?}");
+            let unknown = [errors.by_row.rmse, errors.by_rule_mean_absolute];
+            assert!(unknown.iter().all(|error| error.is_nan()), "{method:?}");
         }
     }
 

@@ -219,3 +219,24 @@ fn the_shipped_rules_are_what_the_documented_command_learns() {
         "run scripts/learn-flagred on the data and commit rules/flagred.yaml"
     );
 }
+
+#[test]
+fn an_error_on_no_rows_is_unknown_and_not_nought() {
+    let folder = Folder::new();
+    let model = folder.file("model.yaml", VARIABLES);
+    // One row makes one rule, and without that one there is nothing to fill its gap from.
+    let data = folder.file("data.csv", "margin,spread,risk\n0.1,0.1,50\n");
+    let out = folder.at("out.yaml");
+    let output = learn(&[&model, &data, "-o", &out, "--compare-gaps", "--json"]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let gaps = &report["gap_methods"];
+    assert_eq!(gaps["with_the_rule"]["rows"], 1);
+    assert_eq!(gaps["methods"][0]["by_row"]["without_prediction"], 1);
+    assert_eq!(gaps["methods"][0]["by_row"]["rmse"], Value::Null);
+    assert_eq!(gaps["methods"][0]["by_rule_mean_absolute"], Value::Null);
+    let output = learn(&[&model, &data, "-o", &out, "--compare-gaps"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let nearest = text.lines().find(|line| line.contains("nearest")).unwrap();
+    let figures: Vec<&str> = nearest.split_whitespace().skip(1).collect();
+    assert_eq!(figures, ["NA"; 4], "{text}");
+}

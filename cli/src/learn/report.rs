@@ -114,12 +114,24 @@ pub(super) fn words(
         let with = ("(with the rule)", &gaps.with_the_rule);
         let methods = gaps.methods.iter().map(|(m, e)| (m.name(), e));
         for (name, errors) in [with].into_iter().chain(methods) {
+            let Errors {
+                rows,
+                rmse,
+                mean_absolute,
+                bias,
+                ..
+            } = errors.by_row;
+            if rows == 0 {
+                writeln!(
+                    out,
+                    "           {name:<18} {:>8} {:>8} {:>8} {:>16}",
+                    "NA", "NA", "NA", "NA"
+                )?;
+                continue;
+            }
             writeln!(
                 out,
-                "           {name:<18} {:>8.2} {:>8.2} {:>+8.2} {:>16.2}",
-                errors.by_row.rmse,
-                errors.by_row.mean_absolute,
-                errors.by_row.bias,
+                "           {name:<18} {rmse:>8.2} {mean_absolute:>8.2} {bias:>+8.2} {:>16.2}",
                 errors.by_rule_mean_absolute
             )?;
         }
