@@ -74,6 +74,14 @@ pub(crate) struct RunningSum {
 
 impl Accumulator {
     /// An accumulator at 0 %.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::accumulator::{Accumulator, AccumulatorSettings};
+    ///
+    /// let accumulator = Accumulator::new(AccumulatorSettings::default());
+    /// assert_eq!(accumulator.elevated_risk_pct(), 0.0);
+    /// ```
     pub const fn new(settings: AccumulatorSettings) -> Accumulator {
         Accumulator {
             risks: Window::new(settings.window_s),
@@ -82,16 +90,48 @@ impl Accumulator {
     }
 
     /// Forgets everything and starts at 0 % again.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::accumulator::{Accumulator, AccumulatorSettings};
+    ///
+    /// let mut accumulator = Accumulator::new(AccumulatorSettings::default());
+    /// accumulator.push(1.0, 1.0, 90.0);
+    /// accumulator.clear();
+    /// assert_eq!(accumulator.elevated_risk_pct(), 0.0);
+    /// ```
     pub fn clear(&mut self) {
         self.sum.clear(&mut self.risks);
     }
 
     /// Adds the risk at `t_s`, which stood for the `held_s` seconds before; gives the elevated risk in %.
+    ///
+    /// # Example: ten seconds at 90 %, ten at nothing
+    /// ```
+    /// use flagred::accumulator::{Accumulator, AccumulatorSettings};
+    ///
+    /// let mut accumulator = Accumulator::new(AccumulatorSettings::default());
+    /// let after_10_s = (1..=10).map(|t_s| accumulator.push(f64::from(t_s), 1.0, 90.0)).last();
+    /// assert_eq!(after_10_s, Some(15.0)); // 1.5 % a second
+    /// let after_20_s = (11..=20).map(|t_s| accumulator.push(f64::from(t_s), 1.0, 0.0)).last();
+    /// assert!(after_20_s > Some(10.0), "it falls only as the high risks leave its window");
+    /// ```
     pub fn push(&mut self, t_s: f64, held_s: f64, risk_pct: f64) -> f64 {
         self.sum.push(&mut self.risks, (t_s, held_s), risk_pct)
     }
 
     /// The elevated risk in %.
+    ///
+    /// # Example: never over 100 %
+    /// ```
+    /// use flagred::accumulator::{Accumulator, AccumulatorSettings};
+    ///
+    /// let mut accumulator = Accumulator::new(AccumulatorSettings::default());
+    /// for t_s in 1..=120 {
+    ///     accumulator.push(f64::from(t_s), 1.0, 90.0);
+    /// }
+    /// assert_eq!(accumulator.elevated_risk_pct(), 100.0);
+    /// ```
     pub fn elevated_risk_pct(&self) -> f64 {
         self.sum.elevated_pct
     }

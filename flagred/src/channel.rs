@@ -7,6 +7,24 @@ use crate::{
 };
 
 /// A statistic over time.
+///
+/// # Example: one second of wind, half of it at 2 m/s and half at 4
+/// ```
+/// # use flagred::source::{Motors, Observer, Signal, Source};
+/// use flagred::channel::Statistic;
+///
+/// let of = |statistic| -> Result<f64, String> {
+///     # let wind = Source { statistic, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 1.0 };
+///     # let mut observer = Observer::new([&wind], &["wind_m_s"])?;
+///     # for i in 1..=8 { observer.push(f64::from(i) * 0.125, 0.125, &[], &[if i <= 4 { 2.0 } else { 4.0 }]); }
+///     let observed = observer.value(0).ok_or("nothing observed")?;
+///     Ok(observed.value)
+/// };
+/// assert_eq!((of(Statistic::Mean)?, of(Statistic::Std)?), (3.0, 1.0));
+/// assert_eq!((of(Statistic::Min)?, of(Statistic::Last)?), (2.0, 4.0));
+/// assert_eq!(of(Statistic::ShareAbove(3.0))?, 0.5);
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Statistic {
     /// The mean.
@@ -28,6 +46,24 @@ pub enum Statistic {
 }
 
 /// How the motors of one sample become one value.
+///
+/// # Example: one motor at 0.25 and one at 0.75
+/// ```
+/// # use flagred::source::{Observer, Signal, Source};
+/// use flagred::channel::{Motors, Statistic};
+///
+/// let of = |statistic, motors| -> Result<f64, String> {
+///     # let source = Source { statistic, motors, signal: Signal::MotorCommand, window_s: 1.0 };
+///     # let mut observer = Observer::new([&source], &[])?;
+///     # for i in 1..=8 { observer.push(f64::from(i) * 0.125, 0.125, &[0.25, 0.75], &[]); }
+///     let observed = observer.value(0).ok_or("nothing observed")?;
+///     Ok(observed.value)
+/// };
+/// assert_eq!(of(Statistic::Std, Motors::Pooled)?, 0.25); // of all values there are
+/// assert_eq!(of(Statistic::Std, Motors::Mean)?, 0.0); // of what they do together, which does not change
+/// assert_eq!(of(Statistic::Mean, Motors::Std)?, 0.25); // how far apart they are
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Motors {
     /// They do not: the statistic is over all motors and the whole window at once.
@@ -68,6 +104,21 @@ pub enum Threshold {
 }
 
 /// One thing to observe over one window.
+///
+/// # Example: what the paper's second input observes
+/// ```
+/// # use flagred::{estimator::Estimator, shipped};
+/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// # let estimator = Estimator::new(&profile, &rules)?;
+/// use flagred::channel::{Channel, Input, Motors, Observed, Statistic};
+///
+/// let plan = estimator.plan()?;
+/// assert_eq!(plan.inputs[1], Input { channel: 1, statistic: Statistic::Std });
+/// let spread = Channel { observed: Observed::Command, motors: Motors::Pooled, threshold: None, window_s: 2.0 };
+/// assert_eq!(plan.channels[1], spread);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Channel {
     /// What.
@@ -177,6 +228,20 @@ pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Obs
 }
 
 /// The value of an input, and what is behind it.
+///
+/// # Example: a second of a window of five
+/// ```
+/// use flagred::source::{Motors, Observation, Observer, Signal, Source, Statistic};
+///
+/// let load = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorCommand, window_s: 5.0 };
+/// let mut observer = Observer::new([&load], &[])?;
+/// for i in 1..=4 {
+///     observer.push(f64::from(i) * 0.25, 0.25, &[0.5; 4], &[]);
+/// }
+/// let observed = Observation { value: 0.5, samples: Some(4), covered_s: 1.0, window_s: 5.0 };
+/// assert_eq!(observer.value(0), Some(observed));
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
     /// The value.

@@ -16,6 +16,16 @@ pub use crate::assessment::{Assessment, Sample, Unknown};
 
 impl Unknown {
     /// The reason in words, and what helps.
+    ///
+    /// # Example: a log of one sample a second
+    /// ```
+    /// use flagred::{monitor::Unknown, shipped};
+    ///
+    /// let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// let why = Unknown::TooFewSamples { input: 1, samples: 2 }.explain(&profile);
+    /// assert_eq!(why, "input `spread` has 2 samples in 2 s and needs 5: log the motors at 2.5 Hz or more");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn explain(&self, profile: &Profile) -> String {
         let name = |input: &usize| {
             let input = profile.inputs.get(*input);
@@ -132,6 +142,25 @@ impl<'a> Monitor<'a> {
     /// # Errors
     ///
     /// Where the profile needs a signal that is not among them, or there is no motor.
+    ///
+    /// # Example: samples that carry a signal beside the motors
+    /// ```
+    /// # use flagred::{estimator::Estimator, profile::Profile, shipped, source::Signal};
+    /// # let mut profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// use flagred::monitor::{Monitor, MonitorError, Sample};
+    ///
+    /// profile.inputs[0].source.signal = Signal::named("margin_of_thrust"); // in place of the motors' own
+    /// let estimator = Estimator::new(&profile, &rules)?;
+    /// let mut monitor = Monitor::new(&estimator, 4, &["wind_m_s", "margin_of_thrust"])?;
+    /// for i in 0..100 {
+    ///     let t_s = f64::from(i) * 0.04;
+    ///     monitor.push(&Sample { t_s, motors: &[0.5; 4], in_air: true, signals: &[3.0, 0.3] });
+    /// }
+    /// assert!((monitor.inputs()[0] - 0.3).abs() < 1e-9);
+    /// assert_eq!(Monitor::new(&estimator, 0, &["margin_of_thrust"]).err(), Some(MonitorError::NoMotors));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(
         estimator: &'a Estimator,
         motors: usize,
@@ -171,6 +200,23 @@ impl<'a> Monitor<'a> {
     }
 
     /// Takes a sample in.
+    ///
+    /// # Example: hovering in still air
+    /// ```
+    /// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
+    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// # let estimator = Estimator::new(&profile, &rules)?;
+    /// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+    /// let mut risk_pct = None;
+    /// for i in 0..100 {
+    ///     let t_s = f64::from(i) * 0.04;
+    ///     let said = monitor.push(&Sample { t_s, motors: &[0.5; 4], in_air: true, signals: &[] });
+    ///     risk_pct = said.risk.ok().map(|estimate| estimate.risk_pct);
+    /// }
+    /// assert!(risk_pct.is_some_and(|risk_pct| risk_pct < 10.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn push(&mut self, sample: &Sample<'_>) -> Assessment {
         let Monitor {
             estimator,
@@ -186,27 +232,111 @@ impl<'a> Monitor<'a> {
     }
 
     /// The values of the inputs after the latest sample, in the order of the profile; NaN is unknown.
+    ///
+    /// # Example: two motors at 0.4 and two at 0.6
+    /// ```
+    /// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
+    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// # let estimator = Estimator::new(&profile, &rules)?;
+    /// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+    /// assert!(monitor.inputs().iter().all(|value| value.is_nan()), "nothing is known yet");
+    /// for i in 0..100 {
+    ///     let t_s = f64::from(i) * 0.04;
+    ///     monitor.push(&Sample { t_s, motors: &[0.4, 0.6, 0.4, 0.6], in_air: true, signals: &[] });
+    /// }
+    /// let [margin, spread] = monitor.inputs() else { return Err("two inputs".into()) };
+    /// assert!((margin - 0.4).abs() < 1e-9 && (spread - 0.1).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn inputs(&self) -> &[f64] {
         &self.room.inputs
     }
 
     /// The finding that the level rests on, as it stands so far; `None` while the level is good.
+    ///
+    /// # Example: while motors are at their limits
+    /// ```
+    /// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
+    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// # let estimator = Estimator::new(&profile, &rules)?;
+    /// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+    /// for i in 0..300 {
+    ///     let t_s = f64::from(i) * 0.04;
+    ///     let motors = if t_s < 10.0 { [0.5; 4] } else { [0.0, 1.0, 0.0, 1.0] };
+    ///     monitor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
+    ///     assert!(t_s >= 10.0 || monitor.open_finding().is_none());
+    /// }
+    /// assert!(monitor.open_finding().is_some_and(|finding| finding.peak_pct >= finding.threshold_pct));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn open_finding(&self) -> Option<Finding> {
         self.follower.open_finding(&self.room.motors)
     }
 
     /// Ends the flight: the findings that were still open.
+    ///
+    /// # Example: a log that ends in trouble
+    /// ```
+    /// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
+    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// # let estimator = Estimator::new(&profile, &rules)?;
+    /// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+    /// for i in 0..300 {
+    ///     let t_s = f64::from(i) * 0.04;
+    ///     let motors = if t_s < 10.0 { [0.5; 4] } else { [0.0, 1.0, 0.0, 1.0] };
+    ///     monitor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
+    /// }
+    /// let [warn, fail] = monitor.finish();
+    /// assert!(warn.is_some() && fail.is_some_and(|fail| fail.to_s > 11.9));
+    /// assert_eq!(monitor.finish(), [None, None]); // they are told once
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn finish(&mut self) -> Ended {
         self.follower.finish(&mut self.room.lend())
     }
 
     /// The mean margin over all motors and the profile's window: the paper's first input, whatever the rules look at.
+    ///
+    /// # Example: with rules that ask for something else
+    /// ```
+    /// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
+    /// let profile = shipped::profile("flagred").ok_or("not shipped")??; // its inputs have other names
+    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// # let estimator = Estimator::new(&profile, &rules)?;
+    /// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+    /// assert_eq!(monitor.margin(), None);
+    /// for i in 0..100 {
+    ///     let t_s = f64::from(i) * 0.04;
+    ///     monitor.push(&Sample { t_s, motors: &[0.25, 0.5, 0.5, 0.75], in_air: true, signals: &[] });
+    /// }
+    /// assert!(monitor.margin().is_some_and(|margin| (margin - 0.375).abs() < 1e-9));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn margin(&self) -> Option<f64> {
         self.reading(self.room.inputs.len())
     }
 
     /// The standard deviation of the effective commands over all motors and the profile's window: the paper's second
     /// input, whatever the rules look at.
+    ///
+    /// # Example: a saturated motor beside three that rest in the middle
+    /// ```
+    /// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
+    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+    /// # let estimator = Estimator::new(&profile, &rules)?;
+    /// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+    /// for i in 0..100 {
+    ///     let t_s = f64::from(i) * 0.04;
+    ///     monitor.push(&Sample { t_s, motors: &[0.5, 0.5, 0.5, 1.0], in_air: true, signals: &[] });
+    /// }
+    /// let expected = 0.046875_f64.sqrt(); // the mean square of 0.125, 0.125, 0.125 and 0.375
+    /// assert!(monitor.spread().is_some_and(|spread| (spread - expected).abs() < 1e-9));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn spread(&self) -> Option<f64> {
         self.reading(self.room.inputs.len() + 1)
     }
