@@ -62,6 +62,10 @@ const NO_PULSE: [u16; 2] = [0, u16::MAX];
 /// No output and no limit of one is longer, in us; what is longer is damaged.
 const LONGEST_PULSE_US: f64 = 3000.0;
 
+/// The latest pulses of each port, and whether they came since commands were last told.
+type Outputs = [([u16; OUTPUTS_A_PORT], bool); PORTS];
+const NO_OUTPUTS: Outputs = [([u16::MAX; OUTPUTS_A_PORT], false); PORTS];
+
 /// The vehicle that a heartbeat speaks for; `None` for other messages and for what is no vehicle, such as ground
 /// stations, gimbals and radios, whose heartbeats have an armed flag too.
 ///
@@ -149,6 +153,43 @@ pub fn is_in_air(armed: bool, state: Option<MavState>, landed: Option<MavLandedS
 }
 
 /// What a packet changed.
+///
+/// # Example: a vehicle that starts anew in the middle of a flight
+/// ```
+/// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+/// # fn packet(bytes: &[u8]) -> Packet<'_> {
+/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+/// #     packet
+/// # }
+/// # let mut autopilot = Sender::new(1);
+/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+/// #     system_status: MavState::MAV_STATE_ACTIVE,
+/// #     ..HEARTBEAT_DATA::default()
+/// # });
+/// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+/// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+/// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+/// use flightlog::mavlink::News;
+///
+/// let mut told = Vec::new();
+/// let mut commands = [0.0; 4];
+/// for t_ms in (100_000..101_000).chain(1_000..2_000).step_by(40) {
+///     let servo = SERVO_OUTPUT_RAW_DATA { time_usec: 1000 * t_ms, servo1_raw: 1500, ..Default::default() };
+///     let bytes = autopilot.packet(Version::V2, 1, &MavMessage::SERVO_OUTPUT_RAW(servo));
+///     told.push(telemetry.receive(&packet(&bytes)));
+///     telemetry.effective_commands(&telemetry.setup(), &mut commands);
+///     if told.last() == Some(&News::Rebooted) {
+///         assert!(commands[0].is_nan(), "what was before is forgotten");
+///     }
+/// }
+/// assert!(matches!(told[20], News::Commands { t_s } if t_s > 100.0));
+/// assert_eq!(told.iter().filter(|news| **news == News::Rebooted).count(), 1);
+/// assert!(commands[0] > 0.0);
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum News {
     /// Nothing that matters here.
@@ -239,8 +280,7 @@ pub struct Telemetry {
     boot_clock: Clock,
     /// The latest time stamps of either clock as they came: a packet that comes twice is no witness of itself.
     stamps: [Option<u32>; 2],
-    /// The latest pulses of each port, and whether they came since commands were last told.
-    outputs: [([u16; OUTPUTS_A_PORT], bool); PORTS],
+    outputs: Outputs,
     /// The port that completes the commands of all motors.
     last_port: usize,
     commands_seen: u64,
@@ -263,7 +303,7 @@ impl Telemetry {
             clock: Clock::default(),
             boot_clock: Clock::default(),
             stamps: [None; 2],
-            outputs: [([u16::MAX; OUTPUTS_A_PORT], false); PORTS],
+            outputs: NO_OUTPUTS,
             last_port: 0,
             commands_seen: 0,
             interval_refused: false,
@@ -514,3 +554,4 @@ fn seconds(micros: u32, last_s: Option<f64>) -> f64 {
     let rounds = last_s.map_or(0.0, |last_s| ((last_s - t_s) / ROUND_S).round().max(0.0));
     t_s + rounds * ROUND_S
 }
+        self.outputs = NO_OUTPUTS;
