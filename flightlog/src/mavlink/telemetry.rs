@@ -244,8 +244,6 @@ pub enum News {
 /// }
 /// assert!(matches!(news, News::Commands { t_s } if (t_s - 0.4).abs() < 1e-9));
 ///
-/// assert!(telemetry.commands_seen() == 10 && !telemetry.interval_refused());
-///
 /// // A parameter, as it comes when asked for.
 /// let bytes = autopilot.packet(Version::V2, 1, &MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
 ///     param_id: "MOT_SPIN_MIN".into(),
@@ -336,12 +334,12 @@ impl Telemetry {
     }
 
     /// How many SERVO_OUTPUT_RAW came so far.
-    pub fn commands_seen(&self) -> u64 {
+    pub(super) fn commands_seen(&self) -> u64 {
         self.commands_seen
     }
 
     /// Whether it refused MAV_CMD_SET_MESSAGE_INTERVAL.
-    pub fn interval_refused(&self) -> bool {
+    pub(super) fn interval_refused(&self) -> bool {
         self.interval_refused
     }
 
