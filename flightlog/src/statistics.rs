@@ -6,6 +6,17 @@ use crate::{Flight, Gap};
 ///
 /// The margin of a command `c` is `min(c, 1 - c)`; standard deviations are those of the
 /// whole population (divided by the number of values, not by one less).
+///
+/// # Example: two motors, one of them at its limit
+/// ```
+/// use flightlog::Statistics;
+///
+/// let log = "t_s,motor1,motor2\n0,0.5,1\n0.1,0.5,1\n";
+/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
+/// let Statistics { samples, margin_mean, margin_min, command_std, .. } = flight.statistics()?;
+/// assert_eq!((samples, margin_mean, margin_min, command_std), (2, 0.25, 0.0, 0.25));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
     /// Rows of motor commands in the air.

@@ -79,16 +79,77 @@ pub struct Requests {
 
 impl Requests {
     /// Asks for everything anew.
+    ///
+    /// # Example
+    /// ```
+    /// assert!(!flightlog::mavlink::Requests::new().parameters_done());
+    /// ```
     pub fn new() -> Requests {
         Requests::default()
     }
 
     /// Whether all parameters came, or were asked for often enough.
+    ///
+    /// # Example: a vehicle that never answers
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # use flightlog::mavlink::Requests;
+    /// let mut requests = Requests::new();
+    /// for i in 0..60 {
+    ///     requests.due(f64::from(i) * 0.5, &telemetry, &mut Vec::new());
+    /// }
+    /// assert!(requests.parameters_done(), "half a minute of asking is enough");
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn parameters_done(&self) -> bool {
         self.parameters_done
     }
 
     /// Adds what is to be sent now. The time is the receiver's own, in seconds.
+    ///
+    /// # Example: how often motors are to be told
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, Requests};
+    /// let mut out = Vec::new();
+    /// Requests::new().due(0.0, &telemetry, &mut out);
+    /// let interval_us = out.iter().find_map(|message| match message {
+    ///     MavMessage::COMMAND_LONG(asked) if asked.param1 == 36.0 => Some(f64::from(asked.param2)), // SERVO_OUTPUT_RAW
+    ///     _ => None,
+    /// });
+    /// assert_eq!(interval_us, Some(1e6 / MOTOR_RATE_HZ));
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn due(&mut self, now_s: f64, telemetry: &Telemetry, out: &mut Vec<MavMessage>) {
         self.ask_rates(now_s, telemetry, out);
         if !self.parameters_done {

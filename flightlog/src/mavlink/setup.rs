@@ -8,6 +8,32 @@ use crate::{Motor, Range, Vehicle, ardupilot, parameters::Parameters, px4};
 const AUX_OUTPUTS: usize = 8;
 
 /// Motors and the range of their commands, with where each is known from.
+///
+/// # Example: a quadrotor that told nothing yet
+/// ```
+/// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+/// # fn packet(bytes: &[u8]) -> Packet<'_> {
+/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+/// #     packet
+/// # }
+/// # let mut autopilot = Sender::new(1);
+/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+/// #     system_status: MavState::MAV_STATE_ACTIVE,
+/// #     ..HEARTBEAT_DATA::default()
+/// # });
+/// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+/// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+/// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+/// use flightlog::mavlink::Setup;
+///
+/// let Setup { motors, range, assumed, .. } = telemetry.setup();
+/// assert_eq!((motors.len(), range.low, range.high), (4, 1000.0, 2000.0));
+/// assert!(assumed.contains(&"commands from 1000 to 2000 us".to_string()));
+/// # Ok::<(), &str>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
     /// The motors in order of their number.

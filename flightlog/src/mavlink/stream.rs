@@ -3,6 +3,20 @@
 use super::{Next, Packet, Why, next_packet};
 
 /// What was passed over.
+///
+/// # Example: noise, and a packet that was damaged on its way
+/// ```
+/// # let mut heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
+/// use flightlog::mavlink::{Skipped, Stream};
+///
+/// let mut stream = Stream::new();
+/// stream.push(b"noise");
+/// heartbeat[8] ^= 1;
+/// stream.push(&heartbeat);
+/// assert!(stream.packet().is_none());
+/// let Skipped { bytes, checksums, .. } = stream.skipped();
+/// assert_eq!((bytes, checksums), (5 + heartbeat.len() as u64, 1));
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Skipped {
     /// Bytes that belong to no packet that could be read.

@@ -287,6 +287,29 @@ pub struct Telemetry {
 
 impl Telemetry {
     /// Starts with the heartbeat that [`vehicle_of`] told the vehicle from.
+    ///
+    /// # Example: nothing is known yet but what the heartbeat says of the vehicle
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// assert_eq!(telemetry.vehicle().motors, Some(4));
+    /// assert!(!telemetry.is_armed(), "that is told by the heartbeats it receives");
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn new(heartbeat: &Packet<'_>, vehicle: Vehicle) -> Telemetry {
         Telemetry {
             system: heartbeat.system,
@@ -309,26 +332,145 @@ impl Telemetry {
     }
 
     /// The system it follows.
+    ///
+    /// # Example
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// assert_eq!(telemetry.system(), 1);
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn system(&self) -> u8 {
         self.system
     }
 
     /// The vehicle as its heartbeat describes it.
+    ///
+    /// # Example
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// assert_eq!(telemetry.vehicle().kind, flightlog::VehicleKind::Multirotor);
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
     }
 
     /// The version of the protocol that it speaks.
+    ///
+    /// # Example: a vehicle that falls back to MAVLink 1
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// assert_eq!(telemetry.version(), Version::V2);
+    /// let old = autopilot.packet(Version::V1, 1, &heartbeat);
+    /// telemetry.receive(&packet(&old));
+    /// assert_eq!(telemetry.version(), Version::V1);
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn version(&self) -> Version {
         self.version
     }
 
     /// Whether the motors are armed.
+    ///
+    /// # Example
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// telemetry.receive(&packet(&heard)); // a heartbeat with the flag MAV_MODE_FLAG_SAFETY_ARMED
+    /// assert!(telemetry.is_armed());
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn is_armed(&self) -> bool {
         self.is_armed
     }
 
     /// Whether it is in the air.
+    ///
+    /// # Example: the landed state knows better than the heartbeat
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// telemetry.receive(&packet(&heard)); // armed and active
+    /// assert!(telemetry.is_in_air());
+    /// let landed_state = MavLandedState::MAV_LANDED_STATE_ON_GROUND;
+    /// let state = MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA { landed_state, ..Default::default() });
+    /// telemetry.receive(&packet(&autopilot.packet(Version::V2, 1, &state)));
+    /// assert!(telemetry.is_armed() && !telemetry.is_in_air());
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn is_in_air(&self) -> bool {
         is_in_air(self.is_armed, self.state, self.landed)
     }
@@ -344,16 +486,103 @@ impl Telemetry {
     }
 
     /// The value of a parameter, where it is known.
+    ///
+    /// # Example: the first value counts
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// for value in [0.125, 0.5] {
+    ///     let told = MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+    ///         param_id: "MOT_SPIN_MIN".into(),
+    ///         param_value: value,
+    ///         param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+    ///         ..PARAM_VALUE_DATA::default()
+    ///     });
+    ///     telemetry.receive(&packet(&autopilot.packet(Version::V2, 1, &told)));
+    /// }
+    /// assert_eq!((telemetry.parameter("MOT_SPIN_MIN"), telemetry.parameter("MOT_SPIN_MAX")), (Some(0.125), None));
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn parameter(&self, name: &str) -> Option<f64> {
         self.parameters.get(name)
     }
 
     /// Whether parameters came since this was last asked.
+    ///
+    /// # Example: when to ask for the set-up anew
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # let told = MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+    /// #     param_id: "MOT_SPIN_MIN".into(),
+    /// #     param_value: 0.125,
+    /// #     param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+    /// #     ..PARAM_VALUE_DATA::default()
+    /// # });
+    /// assert!(!telemetry.take_parameters_changed());
+    /// telemetry.receive(&packet(&autopilot.packet(Version::V2, 1, &told))); // MOT_SPIN_MIN = 0.125
+    /// assert!(telemetry.take_parameters_changed() && !telemetry.take_parameters_changed());
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn take_parameters_changed(&mut self) -> bool {
         std::mem::take(&mut self.parameters_changed)
     }
 
     /// Takes in a packet; those of other systems tell nothing.
+    ///
+    /// # Example: another vehicle on the same link
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// use flightlog::mavlink::News;
+    ///
+    /// let servo = MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA { time_usec: 40_000, ..Default::default() });
+    /// let foreign = Sender::new(2).packet(Version::V2, 1, &servo);
+    /// assert_eq!(telemetry.receive(&packet(&foreign)), News::Nothing);
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn receive(&mut self, packet: &Packet<'_>) -> News {
         if packet.system != self.system {
             return News::Nothing;
@@ -464,12 +693,47 @@ impl Telemetry {
         self.clock = Clock::default();
         self.boot_clock = Clock::default();
         self.stamps = [None; 2];
+        self.outputs = NO_OUTPUTS;
         self.interval_refused = false;
         self.last_port = 0;
         News::Rebooted
     }
 
     /// Motors and ranges from what is known; what is not is assumed, and said to be.
+    ///
+    /// # Example: parameters in place of an assumption
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// for (name, value) in [("MOT_SPIN_MIN", 0.125), ("MOT_SPIN_MAX", 0.875)] {
+    ///     // One of the two is no range yet.
+    ///     assert!(telemetry.setup().assumed.contains(&"flown between 0.15 and 0.95 of that".to_string()));
+    ///     let told = MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+    ///         param_id: name.into(),
+    ///         param_value: value,
+    ///         param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+    ///         ..PARAM_VALUE_DATA::default()
+    ///     });
+    ///     telemetry.receive(&packet(&autopilot.packet(Version::V2, 1, &told)));
+    /// }
+    /// let effective = telemetry.setup().effective;
+    /// assert_eq!((effective.low, effective.high), (0.125, 0.875));
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn setup(&self) -> Setup {
         Setup::of(&self.parameters, &self.vehicle, self.is_px4)
     }
@@ -480,6 +744,30 @@ impl Telemetry {
     }
 
     /// The latest commands on the effective range, 0..1, a value a motor; NaN where it is not known.
+    ///
+    /// # Example: nothing came yet
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// let mut commands = [0.0; 4];
+    /// telemetry.effective_commands(&telemetry.setup(), &mut commands);
+    /// assert!(commands.iter().all(|command| command.is_nan()), "unknown, which is not stopped");
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn effective_commands(&self, setup: &Setup, commands: &mut [f64]) {
         for (command, &output) in commands.iter_mut().zip(&setup.outputs) {
             let index = output.checked_sub(1);
@@ -500,6 +788,28 @@ impl Telemetry {
     }
 
     /// Whether the vehicle is one that FLAGRED knows about; a generic vehicle may be.
+    ///
+    /// # Example
+    /// ```
+    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
+    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
+    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
+    /// #     packet
+    /// # }
+    /// # let mut autopilot = Sender::new(1);
+    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
+    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
+    /// #     system_status: MavState::MAV_STATE_ACTIVE,
+    /// #     ..HEARTBEAT_DATA::default()
+    /// # });
+    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
+    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
+    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// assert!(telemetry.may_be_multirotor());
+    /// # Ok::<(), &str>(())
+    /// ```
     pub fn may_be_multirotor(&self) -> bool {
         matches!(
             self.vehicle.kind,
@@ -552,4 +862,3 @@ fn seconds(micros: u32, last_s: Option<f64>) -> f64 {
     let rounds = last_s.map_or(0.0, |last_s| ((last_s - t_s) / ROUND_S).round().max(0.0));
     t_s + rounds * ROUND_S
 }
-        self.outputs = NO_OUTPUTS;
