@@ -150,7 +150,8 @@ pub struct Seen {
 
 impl Seen {
     /// Nothing yet, over a window of so many seconds.
-    pub const fn new(window_s: f64) -> Seen {
+    #[cfg(feature = "std")]
+    pub(crate) const fn new(window_s: f64) -> Seen {
         Seen {
             window: Window::new(window_s),
             last: None,

@@ -14,19 +14,8 @@ const TIME_RESOLUTION_S: f64 = 1e-6;
 ///
 /// Two of them merge into one without a subtraction of sums (Chan, Golub and LeVeque 1983), so nothing
 /// cancels and nothing drifts.
-///
-/// # Example: the spread of a motor that spends a quarter of its time at full power
-///
-/// ```
-/// use flagred::window::Moments;
-///
-/// let mut command = Moments::of(0.5, 3.0);
-/// command.merge(&Moments::of(1.0, 1.0));
-/// assert_eq!(command.mean(), Some(0.625));
-/// assert_eq!(command.std(), Some(0.046875_f64.sqrt()));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Moments {
+pub(crate) struct Moments {
     weight: f64,
     mean: f64,
     /// `sum(weight (value - mean)^2)`.
@@ -37,7 +26,7 @@ pub struct Moments {
 
 impl Moments {
     /// Of no value at all.
-    pub const EMPTY: Moments = Moments {
+    pub(crate) const EMPTY: Moments = Moments {
         weight: 0.0,
         mean: 0.0,
         squares: 0.0,
@@ -46,7 +35,7 @@ impl Moments {
     };
 
     /// Of one finite value with a weight over 0.
-    pub fn of(value: f64, weight: f64) -> Moments {
+    pub(crate) fn of(value: f64, weight: f64) -> Moments {
         Moments {
             weight,
             mean: value,
@@ -57,7 +46,7 @@ impl Moments {
     }
 
     /// Of a finite value that moves evenly from one end to the other, with a weight over 0.
-    pub fn between(from: f64, to: f64, weight: f64) -> Moments {
+    pub(crate) fn between(from: f64, to: f64, weight: f64) -> Moments {
         Moments {
             weight,
             mean: (from + to) / 2.0,
@@ -88,7 +77,7 @@ impl Moments {
     }
 
     /// Adds the values behind `other`.
-    pub fn merge(&mut self, other: &Moments) {
+    pub(crate) fn merge(&mut self, other: &Moments) {
         if other.weight <= 0.0 {
             return;
         }
@@ -108,7 +97,7 @@ impl Moments {
 
     /// The same values with their weights multiplied by `factor`.
     #[must_use]
-    pub fn scaled(&self, factor: f64) -> Moments {
+    pub(crate) fn scaled(&self, factor: f64) -> Moments {
         Moments {
             weight: self.weight * factor,
             squares: self.squares * factor,
@@ -117,34 +106,34 @@ impl Moments {
     }
 
     /// The sum of the weights; in a [`Window`], seconds.
-    pub fn weight(&self) -> f64 {
+    pub(crate) fn weight(&self) -> f64 {
         self.weight
     }
 
     /// The weighted mean; `None` without a value.
-    pub fn mean(&self) -> Option<f64> {
+    pub(crate) fn mean(&self) -> Option<f64> {
         self.known(self.mean)
     }
 
     /// The weighted standard deviation of the population; `None` without a value.
-    pub fn std(&self) -> Option<f64> {
+    pub(crate) fn std(&self) -> Option<f64> {
         self.known(libm::sqrt(self.squares / self.weight))
     }
 
     /// The weighted root mean square; `None` without a value.
-    pub fn rms(&self) -> Option<f64> {
+    pub(crate) fn rms(&self) -> Option<f64> {
         self.known(libm::sqrt(
             self.squares / self.weight + self.mean * self.mean,
         ))
     }
 
     /// The smallest value; `None` without a value.
-    pub fn min(&self) -> Option<f64> {
+    pub(crate) fn min(&self) -> Option<f64> {
         self.known(self.min)
     }
 
     /// The largest value; `None` without a value.
-    pub fn max(&self) -> Option<f64> {
+    pub(crate) fn max(&self) -> Option<f64> {
         self.known(self.max)
     }
 
@@ -162,20 +151,23 @@ impl Moments {
 /// slot, of which a part has already left the window, is counted in proportion to the part inside, and the
 /// extremes may remember it for 1/128 of the length too long.
 ///
-/// # Example: a second of silence leaves a one-second window empty
+/// It is memory to be lent to a [`board::Monitor`](crate::board::Monitor), and what a
+/// [`source::Observer`](crate::source::Observer) keeps.
+///
+/// # Example: a second of silence leaves a window of one second empty
 ///
 /// ```
-/// use flagred::window::{Moments, Window};
+/// use flagred::source::{Motors, Observer, Signal, Source, Statistic};
 ///
-/// let mut margin = Window::new(1.0);
+/// let margin = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorMargin, window_s: 1.0 };
+/// let mut observer = Observer::new([&margin], &[])?;
 /// for i in 1..=50 {
-///     let t_s = f64::from(i) * 0.04;
-///     margin.push(t_s, 0.04, &Moments::of(0.3, 0.04));
+///     observer.push(f64::from(i) * 0.04, 0.04, &[0.3], &[]);
 /// }
-/// assert_eq!(margin.samples(), 25);
-/// assert!((margin.total().weight() - 1.0).abs() < 1e-9);
-/// margin.advance(3.0);
-/// assert_eq!(margin.total().mean(), None);
+/// assert_eq!(observer.value(0).and_then(|observed| observed.samples), Some(25));
+/// observer.push(3.0, 1.0, &[f64::NAN], &[]);
+/// assert_eq!(observer.value(0), None);
+/// # Ok::<(), String>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Window {
@@ -205,7 +197,7 @@ struct Slot {
 }
 
 impl Window {
-    /// Memory for a window, all zeros, so that a static one costs no place in firmware; see [`Window::restart`].
+    /// Memory for a window, all zeros, so that a static one costs no place in firmware; a monitor makes it a window.
     pub const IDLE: Window = {
         const NOTHING: Moments = Moments {
             min: 0.0,
@@ -233,7 +225,7 @@ impl Window {
     };
 
     /// An empty window over the last `length_s` seconds (over 0).
-    pub const fn new(length_s: f64) -> Window {
+    pub(crate) const fn new(length_s: f64) -> Window {
         Window {
             length_s,
             now_s: f64::NEG_INFINITY,
@@ -243,19 +235,19 @@ impl Window {
     }
 
     /// Makes it an empty window over the last `length_s` seconds, where it is.
-    pub fn restart(&mut self, length_s: f64) {
+    pub(crate) fn restart(&mut self, length_s: f64) {
         self.length_s = length_s;
         self.oldest = 0;
         self.clear();
     }
 
     /// Its length in seconds.
-    pub fn length_s(&self) -> f64 {
+    pub(crate) fn length_s(&self) -> f64 {
         self.length_s
     }
 
     /// Forgets everything.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.len = 0;
         self.samples = 0;
         self.front = 0;
@@ -267,7 +259,7 @@ impl Window {
     /// that stands for no time at all does not count.
     ///
     /// `t_s` must not fall; a sample older than the newest one is taken as if it came with that one.
-    pub fn push(&mut self, t_s: f64, held_s: f64, moments: &Moments) {
+    pub(crate) fn push(&mut self, t_s: f64, held_s: f64, moments: &Moments) {
         self.advance(t_s);
         if held_s <= 0.0 {
             return;
@@ -300,7 +292,7 @@ impl Window {
     }
 
     /// Lets time pass until `t_s`: what is older than the window leaves it.
-    pub fn advance(&mut self, t_s: f64) {
+    pub(crate) fn advance(&mut self, t_s: f64) {
         self.now_s = self.now_s.max(t_s);
         let start_s = self.now_s - self.length_s;
         while self.len > 0 && self.slots[self.oldest].end_s - start_s <= TIME_RESOLUTION_S {
@@ -317,7 +309,7 @@ impl Window {
     }
 
     /// The statistics of what is in the window; the weight is the time it covers in seconds.
-    pub fn total(&self) -> Moments {
+    pub(crate) fn total(&self) -> Moments {
         if self.front == 0 {
             return self.back.scaled(self.inside_of_oldest());
         }
@@ -332,7 +324,7 @@ impl Window {
     }
 
     /// The number of samples in the window.
-    pub fn samples(&self) -> u32 {
+    pub(crate) fn samples(&self) -> u32 {
         self.samples
     }
 
@@ -457,6 +449,26 @@ mod tests {
                 epsilon = 0.005
             );
         }
+    }
+
+    #[test]
+    fn a_quarter_of_the_time_at_full_power_is_a_quarter_of_the_weight() {
+        let mut command = Moments::of(0.5, 3.0);
+        command.merge(&Moments::of(1.0, 1.0));
+        assert_eq!(command.mean(), Some(0.625));
+        assert_eq!(command.std(), Some(0.046875_f64.sqrt()));
+    }
+
+    #[test]
+    fn silence_empties_a_window() {
+        let mut window = Window::new(1.0);
+        for i in 1..=50 {
+            window.push(f64::from(i) * 0.04, 0.04, &Moments::of(0.3, 0.04));
+        }
+        assert_eq!(window.samples(), 25);
+        approx::assert_abs_diff_eq!(window.total().weight(), 1.0, epsilon = 1e-9);
+        window.advance(3.0);
+        assert_eq!((window.samples(), window.total().mean()), (0, None));
     }
 
     #[test]
