@@ -95,6 +95,21 @@ pub enum Observed {
 }
 
 /// The values that count, where a share of time is asked for.
+///
+/// # Example: the share of time that motors of the shipped profile are at a limit
+/// ```
+/// # use flagred::{estimator::Estimator, shipped};
+/// # let profile = shipped::profile("flagred").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// # let estimator = Estimator::new(&profile, &rules)?;
+/// use flagred::channel::{Statistic, Threshold};
+///
+/// let plan = estimator.plan()?;
+/// let at_limit = plan.inputs[3];
+/// assert_eq!(at_limit.statistic, Statistic::ShareBelow(0.006));
+/// assert_eq!(plan.channels[at_limit.channel].threshold, Some(Threshold::Below(0.006)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Threshold {
     /// Those below.

@@ -9,6 +9,20 @@ use crate::{
 };
 
 /// What a profile says about time: when inputs count as known, how risks add up, when levels change.
+///
+/// # Example: what of a profile goes on board beside its rules
+/// ```
+/// # use flagred::{estimator::Estimator, shipped};
+/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
+/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
+/// # let estimator = Estimator::new(&profile, &rules)?;
+/// use flagred::follower::Settings;
+///
+/// let Settings { sampling, elevated_risk, verdict } = estimator.plan()?.settings;
+/// assert_eq!((sampling, elevated_risk), (profile.sampling, profile.elevated_risk));
+/// assert_eq!(verdict, profile.verdict);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// When an input counts as known.
