@@ -55,7 +55,7 @@ impl Engine {
     /// ```
     /// use fuzzy::{Engine, engine::Outcome};
     ///
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = Engine::new(&model)?;
     /// let mut outcomes = [Outcome::default(); 2];
     /// let (margin, spread) = ([0.4, f64::NAN], [0.1, 0.1]);

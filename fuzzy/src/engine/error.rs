@@ -8,7 +8,7 @@ use alloc::sync::Arc;
 /// ```
 /// use fuzzy::engine::EvaluateError;
 ///
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// let engine = fuzzy::Engine::new(&model)?;
 /// let refused = engine.evaluate(&[0.1]).unwrap_err();
 /// assert_eq!(refused, EvaluateError::WrongNumberOfInputs { expected: 2, got: 1 });

@@ -21,7 +21,7 @@ use crate::rule::{Condition, Proposition};
 /// ```
 /// use fuzzy::engine::{Degree, ExplainedInput, FiredRule};
 ///
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// let explanation = fuzzy::Engine::new(&model)?.explain(&model, &[0.05, 0.9])?;
 /// let ExplainedInput { terms, .. } = &explanation.inputs[0];
 /// assert_eq!(terms[0], Degree { term: "very_low".into(), degree: 0.5 });
@@ -82,7 +82,7 @@ pub struct FiredRule {
 /// ```
 /// use fuzzy::engine::{ExplainedOutput, Share};
 ///
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// let explanation = fuzzy::Engine::new(&model)?.explain(&model, &[0.1, 0.15])?;
 /// let ExplainedOutput { coverage, rules, is_default, .. } = &explanation.outputs[0];
 /// assert!((coverage - 0.5).abs() < 1e-12 && !is_default);
@@ -139,7 +139,7 @@ impl Engine {
     /// ```
     /// use fuzzy::Engine;
     ///
-    /// let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = Engine::new(&model)?;
     /// let explanation = engine.explain(&model, &[0.007969, 0.226310])?;
     /// let strongest = &explanation.rules[0];

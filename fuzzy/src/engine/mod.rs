@@ -34,7 +34,7 @@ pub use problem::{CompileError, Problem};
 /// ```
 /// use fuzzy::Engine;
 ///
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// let engine = Engine::new(&model)?;
 /// let outcome = engine.evaluate(&[0.1, 0.1])?[0];
 /// assert!((outcome.value().unwrap() - 50.0).abs() < 1e-9);
@@ -77,7 +77,7 @@ struct CompiledOutput {
 /// ```
 /// use fuzzy::{Engine, engine::Outcome};
 ///
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// let engine = Engine::new(&model)?;
 /// let (mut scratch, mut outcomes) = (engine.scratch(), [Outcome::default()]);
 /// for spread in [0.1, 0.2, 0.3] {
@@ -98,7 +98,7 @@ impl Engine {
     ///
     /// # Example
     /// ```
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = fuzzy::Engine::new(&model)?;
     /// let mut values = [0.1; 2];
     /// values[engine.input("spread").ok_or("no such input")?] = 0.2;
@@ -113,7 +113,7 @@ impl Engine {
     ///
     /// # Example
     /// ```
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = fuzzy::Engine::new(&model)?;
     /// assert_eq!((engine.output("risk"), engine.output("margin")), (Some(0), None));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -126,7 +126,7 @@ impl Engine {
     ///
     /// # Example
     /// ```
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = fuzzy::Engine::new(&model)?;
     /// assert!(engine.input_names().eq(["margin", "spread"]));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -139,7 +139,7 @@ impl Engine {
     ///
     /// # Example
     /// ```
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = fuzzy::Engine::new(&model)?;
     /// assert!(engine.output_names().eq(["risk"]));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -162,7 +162,7 @@ impl Engine {
     ///
     /// # Example
     /// ```
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = fuzzy::Engine::new(&model)?;
     /// let mut scratch = engine.scratch();
     /// let mut outcomes = [Default::default()];
@@ -194,7 +194,7 @@ impl Engine {
     ///
     /// # Example: the tables of the paper's rules
     /// ```
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = fuzzy::Engine::new(&model)?;
     /// let table = engine.table();
     /// assert_eq!((table.inputs.len(), table.outputs.len()), (2, 1));
@@ -217,7 +217,7 @@ impl Engine {
     /// ```
     /// use fuzzy::engine::State;
     ///
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = fuzzy::Engine::new(&model)?;
     /// let high = engine.evaluate(&[0.05, 0.2])?[0];
     /// assert!(high.value().unwrap() > 90.0 && !high.clamped);
@@ -242,7 +242,7 @@ impl Engine {
     /// ```
     /// use fuzzy::engine::Outcome;
     ///
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = fuzzy::Engine::new(&model)?;
     /// let mut scratch = engine.scratch();
     /// let mut outcomes = [Outcome::default()];

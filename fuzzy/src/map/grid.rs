@@ -35,7 +35,7 @@ pub struct Grid {
 ///
 /// # Example
 /// ```
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// # let engine = fuzzy::Engine::new(&model)?;
 /// use fuzzy::map::{Axis, Grid};
 ///
@@ -62,7 +62,7 @@ pub struct Axis {
 ///
 /// # Example: along the margin at one spread
 /// ```
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// # let engine = fuzzy::Engine::new(&model)?;
 /// use fuzzy::map::{Fixed, Grid};
 ///
@@ -85,7 +85,7 @@ pub struct Fixed {
 ///
 /// # Example
 /// ```
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// # let engine = fuzzy::Engine::new(&model)?;
 /// use fuzzy::map::{Grid, GridError};
 ///
@@ -134,7 +134,7 @@ impl Axis {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 11)?;
     /// let margin = &grid.axes()[0];
@@ -154,7 +154,7 @@ impl Axis {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 3)?; // points at 0, 0.25 and 0.5
     /// let margin = &grid.axes()[0];
@@ -183,7 +183,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 11)?;
     /// assert_eq!(grid.cells(), 11 * 11);
@@ -217,7 +217,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 11)?.points("spread", 3)?;
     /// assert_eq!(grid.cells(), 11 * 3);
@@ -238,7 +238,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let line = Grid::new(&engine, 11)?.fix("spread", 0.1)?;
     /// assert_eq!((line.cells(), line.axes().len()), (11, 1));
@@ -283,7 +283,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 11)?;
     /// assert_eq!(&*grid.axes()[1].name, "spread");
@@ -298,7 +298,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let line = Grid::new(&engine, 11)?.fix("spread", 0.1)?;
     /// assert_eq!((&*line.fixed()[0].name, line.fixed()[0].value), ("spread", 0.1));
@@ -313,7 +313,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 11)?;
     /// let corners = (0..grid.cells()).filter(|&cell| grid.indices(cell).iter().all(|i| i % 10 == 0));
@@ -329,7 +329,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 11)?;
     /// assert_eq!(grid.indices(25), [2, 3]); // the last axis runs fastest
@@ -356,7 +356,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 11)?;
     /// assert_eq!(grid.cell(&[2, 3]), Some(25));
@@ -380,7 +380,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 11)?;
     /// assert_eq!(grid.point(25), [0.1, 0.15]);
@@ -400,7 +400,7 @@ impl Grid {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let grid = Grid::new(&engine, 3)?;
     /// let sum = |cell| Some(grid.point(cell).iter().sum());

@@ -147,7 +147,7 @@ impl DecisionMap {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
     /// assert_eq!(map.grid().cells(), 51 * 51);
@@ -211,7 +211,7 @@ impl DecisionMap {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
     /// assert_eq!(map.grid().point(0), [0.0, 0.0]);
@@ -226,7 +226,7 @@ impl DecisionMap {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
     /// assert_eq!((map.output(), map.range()), ("risk", (0.0, 100.0)));
@@ -241,7 +241,7 @@ impl DecisionMap {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
     /// let (low, high) = map.range();
@@ -258,7 +258,7 @@ impl DecisionMap {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
     /// assert_eq!(map.value(0), None); // no margin, no spread: the paper has no rule
@@ -274,7 +274,7 @@ impl DecisionMap {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
     /// // The corner that the paper marks: no rule reaches one half there.
@@ -292,7 +292,7 @@ impl DecisionMap {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
     /// let calm = map.grid().cell(&[50, 0]).and_then(|cell| map.dominant(cell));
@@ -309,7 +309,7 @@ impl DecisionMap {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
     /// let between = map.interpolate(&[0.123, 0.234]).ok_or("not covered")?;
@@ -326,7 +326,7 @@ impl DecisionMap {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
     /// assert_eq!(map.state(0), engine.evaluate(&[0.0, 0.0])?[0].state);

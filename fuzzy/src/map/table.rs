@@ -43,7 +43,7 @@ pub struct DecisionTable {
 ///
 /// # Example
 /// ```
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// # let engine = fuzzy::Engine::new(&model)?;
 /// use fuzzy::map::{DecisionTable, TableError};
 ///
@@ -92,7 +92,7 @@ impl DecisionTable {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
     /// assert!(table.error() > 0.0, "it is measured, and no map is flat");
@@ -128,7 +128,7 @@ impl DecisionTable {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let table = DecisionTable::within(&engine, 0, 10.0)?;
     /// assert!(table.error() <= 10.0);
@@ -164,7 +164,7 @@ impl DecisionTable {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
     /// assert!(table.value(&[0.1, 0.2]).unwrap() > 90.0);
@@ -182,7 +182,7 @@ impl DecisionTable {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let coarse = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
     /// let fine = DecisionTable::new(&engine, Grid::new(&engine, 21)?, 0)?;
@@ -198,7 +198,7 @@ impl DecisionTable {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
     /// assert_eq!(table.grid().cells(), 11 * 11);
@@ -213,7 +213,7 @@ impl DecisionTable {
     /// # Example
     /// ```
     /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = Engine::new(&model)?;
     /// let table = DecisionTable::new(&engine, Grid::new(&engine, 3)?, 0)?;
     /// let shares: Vec<Option<u8>> = table.values().map(|risk| Some((risk? * 2.55) as u8)).collect();

@@ -8,7 +8,7 @@ use super::{Conjunctions, Op, Scratch, Set, Table};
 /// ```
 /// use fuzzy::table::{Broken, Table};
 ///
-/// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
 /// let engine = fuzzy::Engine::new(&model)?;
 /// let Err(Broken(array)) = Table { outputs: &[], ..engine.table() }.check() else { return Err("whole".into()) };
 /// assert_eq!(array, "actions");
@@ -36,7 +36,7 @@ impl Table<'_> {
     /// ```
     /// use fuzzy::table::Table;
     ///
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = fuzzy::Engine::new(&model)?;
     /// let table = engine.table();
     /// assert_eq!(table.check(), Ok(()));
@@ -135,7 +135,7 @@ impl Table<'_> {
     /// # Example: room for one of two inputs
     /// ```
     /// # use fuzzy::table::{Partial, Scratch, Strongest};
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// # let engine = fuzzy::Engine::new(&model)?;
     /// # let sizes = engine.table().sizes;
     /// # let mut degrees = vec![0.0; sizes.degrees as usize];

@@ -187,7 +187,7 @@ impl Table<'_> {
     /// ```
     /// use fuzzy::table::{Outcome, Partial, Scratch, Strongest};
     ///
-    /// # let model = fuzzy::yaml::parse(include_str!("../../../rules/flagred-paper.yaml"))?.model;
+    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = fuzzy::Engine::new(&model)?;
     /// let table = engine.table();
     /// let sizes = table.sizes;
