@@ -4,6 +4,8 @@
 //! Nothing here opens a port: bytes come in, packets and bytes to send go out, and time is passed in.
 
 mod checksum;
+#[cfg(feature = "mavlink")]
+mod heartbeat;
 pub(crate) mod packet;
 #[cfg(feature = "mavlink")]
 mod requests;
@@ -20,6 +22,8 @@ mod telemetry;
 #[cfg(feature = "mavlink")]
 pub use ::mavlink::dialects::ardupilotmega as dialect;
 
+#[cfg(feature = "mavlink")]
+pub use heartbeat::{is_in_air, vehicle_of};
 pub use packet::{Next, Packet, Version, Why, next_packet};
 #[cfg(feature = "mavlink")]
 pub use requests::{MOTOR_RATE_HZ, Requests, parameters_known};
@@ -29,4 +33,4 @@ pub use send::Sender;
 pub use setup::Setup;
 pub use stream::{Skipped, Stream};
 #[cfg(feature = "mavlink")]
-pub use telemetry::{News, Telemetry, is_in_air, vehicle_of};
+pub use telemetry::{News, Telemetry};

@@ -39,19 +39,10 @@ const PARAMETER_TRIES: u32 = 20;
 ///
 /// # Example: what is asked for first
 /// ```
-/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-/// # fn packet(bytes: &[u8]) -> Packet<'_> {
-/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-/// #     packet
-/// # }
-/// # let mut autopilot = Sender::new(1);
-/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-/// #     system_status: MavState::MAV_STATE_ACTIVE,
-/// #     ..HEARTBEAT_DATA::default()
-/// # });
+/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+/// # use flightlog::mavlink::{Requests, Telemetry, Version, vehicle_of};
+/// # use vehicle::packet;
+/// # let (mut autopilot, heartbeat) = vehicle::autopilot();
 /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
 /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
 /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
@@ -92,22 +83,8 @@ impl Requests {
     ///
     /// # Example: a vehicle that never answers
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # let (_, _, _, telemetry) = vehicle::followed();
     /// # use flightlog::mavlink::Requests;
     /// let mut requests = Requests::new();
     /// for i in 0..60 {
@@ -124,22 +101,9 @@ impl Requests {
     ///
     /// # Example: how often motors are to be told
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # use flightlog::mavlink::dialect::*;
+    /// # let (_, _, _, telemetry) = vehicle::followed();
     /// # use flightlog::mavlink::{MOTOR_RATE_HZ, Requests};
     /// let mut out = Vec::new();
     /// Requests::new().due(0.0, &telemetry, &mut out);
@@ -238,19 +202,10 @@ impl Requests {
 ///
 /// # Example
 /// ```
-/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-/// # fn packet(bytes: &[u8]) -> Packet<'_> {
-/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-/// #     packet
-/// # }
-/// # let mut autopilot = Sender::new(1);
-/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-/// #     system_status: MavState::MAV_STATE_ACTIVE,
-/// #     ..HEARTBEAT_DATA::default()
-/// # });
+/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+/// # use flightlog::mavlink::{Telemetry, Version, parameters_known, vehicle_of};
+/// # use vehicle::packet;
+/// # let (mut autopilot, heartbeat) = vehicle::autopilot();
 /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
 /// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
 /// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);

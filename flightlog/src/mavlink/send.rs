@@ -8,19 +8,10 @@ use super::{Version, dialect::MavMessage};
 ///
 /// # Example: a component of the vehicle's own system
 /// ```
-/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-/// # fn packet(bytes: &[u8]) -> Packet<'_> {
-/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-/// #     packet
-/// # }
-/// # let mut autopilot = Sender::new(1);
-/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-/// #     system_status: MavState::MAV_STATE_ACTIVE,
-/// #     ..HEARTBEAT_DATA::default()
-/// # });
+/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+/// # use flightlog::mavlink::{Sender, Version, dialect::*};
+/// # use vehicle::packet;
+/// # let (mut autopilot, heartbeat) = vehicle::autopilot();
 /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
 /// let mut sender = Sender::new(191);
 /// let bytes = sender.packet(Version::V2, 1, &MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));

@@ -11,22 +11,8 @@ const AUX_OUTPUTS: usize = 8;
 ///
 /// # Example: a quadrotor that told nothing yet
 /// ```
-/// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-/// # fn packet(bytes: &[u8]) -> Packet<'_> {
-/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-/// #     packet
-/// # }
-/// # let mut autopilot = Sender::new(1);
-/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-/// #     system_status: MavState::MAV_STATE_ACTIVE,
-/// #     ..HEARTBEAT_DATA::default()
-/// # });
-/// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-/// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-/// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+/// # let (_, _, _, telemetry) = vehicle::followed();
 /// use flightlog::mavlink::Setup;
 ///
 /// let Setup { motors, range, assumed, .. } = telemetry.setup();

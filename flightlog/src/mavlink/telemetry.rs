@@ -1,60 +1,24 @@
 //! What the packets of one vehicle tell about its motors.
 
-use ::mavlink::Message;
-
 use super::{
     Packet, Setup, Version,
     dialect::{
-        COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd,
-        MavLandedState, MavMessage, MavModeFlag, MavParamType, MavResult, MavState,
-        PARAM_VALUE_DATA, SERVO_OUTPUT_RAW_DATA,
+        COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavCmd, MavLandedState,
+        MavMessage, MavModeFlag, MavParamType, MavResult, MavState, PARAM_VALUE_DATA,
+        SERVO_OUTPUT_RAW_DATA,
     },
 };
-use super::{servo::OUTPUTS_A_PORT, setup::missing};
+use super::{
+    heartbeat::{AUTOPILOT, is_in_air},
+    servo::OUTPUTS_A_PORT,
+    setup::missing,
+};
 use crate::{
     Vehicle, VehicleKind,
     clock::{Clock, Placed},
-    mav_type::{MavType, mav_type},
     parameters::Parameters,
 };
 
-impl Packet<'_> {
-    /// The message; `None` where a field holds a value that the dialect does not know.
-    ///
-    /// # Example
-    /// ```
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// assert!(matches!(packet(&heartbeat).message(), Some(MavMessage::HEARTBEAT(_))));
-    /// ```
-    pub fn message(&self) -> Option<MavMessage> {
-        MavMessage::parse(self.version.into(), self.id, self.payload).ok()
-    }
-}
-
-impl From<Version> for ::mavlink::MavlinkVersion {
-    fn from(version: Version) -> Self {
-        match version {
-            Version::V1 => Self::V1,
-            Version::V2 => Self::V2,
-        }
-    }
-}
-
-/// The component that is the autopilot.
-const AUTOPILOT: u8 = 1;
 /// Ports of SERVO_OUTPUT_RAW: the second has ArduPilot's outputs from 17 on, and PX4's AUX outputs.
 const PORTS: usize = 2;
 /// What an output that is not driven, or not known, reads.
@@ -66,112 +30,14 @@ const LONGEST_PULSE_US: f64 = 3000.0;
 type Outputs = [([u16; OUTPUTS_A_PORT], bool); PORTS];
 const NO_OUTPUTS: Outputs = [([u16::MAX; OUTPUTS_A_PORT], false); PORTS];
 
-/// The vehicle that a heartbeat speaks for; `None` for other messages and for what is no vehicle, such as ground
-/// stations, gimbals and radios, whose heartbeats have an armed flag too.
-///
-/// # Example
-/// ```
-/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-/// # fn packet(bytes: &[u8]) -> Packet<'_> {
-/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-/// #     packet
-/// # }
-/// # let mut autopilot = Sender::new(1);
-/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-/// #     system_status: MavState::MAV_STATE_ACTIVE,
-/// #     ..HEARTBEAT_DATA::default()
-/// # });
-/// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-/// let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-/// assert_eq!((vehicle.motors, vehicle.firmware.as_deref()), (Some(4), Some("ArduPilot")));
-///
-/// // A ground station beats too, and is no vehicle.
-/// let ground_station = Sender::new(190).packet(Version::V2, 255, &MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
-/// assert!(vehicle_of(&packet(&ground_station)).is_none());
-/// # Ok::<(), &str>(())
-/// ```
-pub fn vehicle_of(packet: &Packet<'_>) -> Option<Vehicle> {
-    if packet.component != AUTOPILOT || packet.id != 0 {
-        return None;
-    }
-    let Some(MavMessage::HEARTBEAT(heartbeat)) = packet.message() else {
-        return None;
-    };
-    if heartbeat.autopilot == MavAutopilot::MAV_AUTOPILOT_INVALID {
-        return None;
-    }
-    let number = heartbeat.mavtype as i64;
-    let firmware = match heartbeat.autopilot {
-        MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA => Some("ArduPilot".to_owned()),
-        MavAutopilot::MAV_AUTOPILOT_PX4 => Some("PX4".to_owned()),
-        _ => None,
-    };
-    let mut vehicle = Vehicle {
-        source: format!("HEARTBEAT, type {number}"),
-        firmware,
-        ..Vehicle::default()
-    };
-    if let Some(MavType { kind, name, motors }) = mav_type(number) {
-        vehicle.kind = kind;
-        vehicle.frame = Some(name.to_owned());
-        vehicle.motors = motors;
-    }
-    Some(vehicle)
-}
-
-/// Whether a vehicle is in the air, by what it says of itself.
-///
-/// EXTENDED_SYS_STATE says so in words. Without it, the state of the heartbeat is what tells: ArduPilot's is
-/// "standby" while landed and "active", or "critical" after a failsafe, while not.
-///
-/// # Example
-/// ```
-/// use flightlog::mavlink::{dialect::{MavLandedState, MavState}, is_in_air};
-///
-/// assert!(is_in_air(true, Some(MavState::MAV_STATE_ACTIVE), None));
-/// assert!(!is_in_air(true, Some(MavState::MAV_STATE_ACTIVE), Some(MavLandedState::MAV_LANDED_STATE_ON_GROUND)));
-/// assert!(!is_in_air(false, Some(MavState::MAV_STATE_ACTIVE), None));
-/// ```
-pub fn is_in_air(armed: bool, state: Option<MavState>, landed: Option<MavLandedState>) -> bool {
-    use MavLandedState::{
-        MAV_LANDED_STATE_IN_AIR as IN_AIR, MAV_LANDED_STATE_LANDING as LANDING,
-        MAV_LANDED_STATE_ON_GROUND as ON_GROUND, MAV_LANDED_STATE_TAKEOFF as TAKE_OFF,
-    };
-    use MavState::{
-        MAV_STATE_ACTIVE as ACTIVE, MAV_STATE_CRITICAL as CRITICAL,
-        MAV_STATE_EMERGENCY as EMERGENCY,
-    };
-    armed
-        && match landed {
-            Some(IN_AIR | LANDING | TAKE_OFF) => true,
-            Some(ON_GROUND) => false,
-            _ => matches!(state, Some(ACTIVE | CRITICAL | EMERGENCY)),
-        }
-}
-
 /// What a packet changed.
 ///
 /// # Example: a vehicle that starts anew in the middle of a flight
 /// ```
-/// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-/// # fn packet(bytes: &[u8]) -> Packet<'_> {
-/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-/// #     packet
-/// # }
-/// # let mut autopilot = Sender::new(1);
-/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-/// #     system_status: MavState::MAV_STATE_ACTIVE,
-/// #     ..HEARTBEAT_DATA::default()
-/// # });
-/// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-/// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-/// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+/// # use flightlog::mavlink::{Version, dialect::*};
+/// # use vehicle::packet;
+/// # let (mut autopilot, _, _, mut telemetry) = vehicle::followed();
 /// use flightlog::mavlink::News;
 ///
 /// let mut told = Vec::new();
@@ -211,19 +77,10 @@ pub enum News {
 ///
 /// # Example: from a heartbeat to motor commands
 /// ```
-/// # use flightlog::mavlink::{MOTOR_RATE_HZ, News, Next, Packet, Requests, Sender, Telemetry, Version, dialect::*, is_in_air, next_packet, parameters_known, vehicle_of};
-/// # fn packet(bytes: &[u8]) -> Packet<'_> {
-/// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-/// #     packet
-/// # }
-/// # let mut autopilot = Sender::new(1);
-/// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-/// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-/// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-/// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-/// #     system_status: MavState::MAV_STATE_ACTIVE,
-/// #     ..HEARTBEAT_DATA::default()
-/// # });
+/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+/// # use flightlog::mavlink::{News, Telemetry, Version, dialect::*, is_in_air, vehicle_of};
+/// # use vehicle::packet;
+/// # let (mut autopilot, heartbeat) = vehicle::autopilot();
 /// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
 /// let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
 /// let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
@@ -290,22 +147,8 @@ impl Telemetry {
     ///
     /// # Example: nothing is known yet but what the heartbeat says of the vehicle
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # let (_, _, _, telemetry) = vehicle::followed();
     /// assert_eq!(telemetry.vehicle().motors, Some(4));
     /// assert!(!telemetry.is_armed(), "that is told by the heartbeats it receives");
     /// # Ok::<(), &str>(())
@@ -335,22 +178,8 @@ impl Telemetry {
     ///
     /// # Example
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # let (_, _, _, telemetry) = vehicle::followed();
     /// assert_eq!(telemetry.system(), 1);
     /// # Ok::<(), &str>(())
     /// ```
@@ -362,22 +191,8 @@ impl Telemetry {
     ///
     /// # Example
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # let (_, _, _, telemetry) = vehicle::followed();
     /// assert_eq!(telemetry.vehicle().kind, flightlog::VehicleKind::Multirotor);
     /// # Ok::<(), &str>(())
     /// ```
@@ -389,22 +204,10 @@ impl Telemetry {
     ///
     /// # Example: a vehicle that falls back to MAVLink 1
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # use flightlog::mavlink::Version;
+    /// # use vehicle::packet;
+    /// # let (mut autopilot, heartbeat, _, mut telemetry) = vehicle::followed();
     /// assert_eq!(telemetry.version(), Version::V2);
     /// let old = autopilot.packet(Version::V1, 1, &heartbeat);
     /// telemetry.receive(&packet(&old));
@@ -419,22 +222,9 @@ impl Telemetry {
     ///
     /// # Example
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # use vehicle::packet;
+    /// # let (_, heartbeat, heard, mut telemetry) = vehicle::followed();
     /// telemetry.receive(&packet(&heard)); // a heartbeat with the flag MAV_MODE_FLAG_SAFETY_ARMED
     /// assert!(telemetry.is_armed());
     /// # Ok::<(), &str>(())
@@ -447,22 +237,10 @@ impl Telemetry {
     ///
     /// # Example: the landed state knows better than the heartbeat
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # use flightlog::mavlink::{Version, dialect::*};
+    /// # use vehicle::packet;
+    /// # let (mut autopilot, _, heard, mut telemetry) = vehicle::followed();
     /// telemetry.receive(&packet(&heard)); // armed and active
     /// assert!(telemetry.is_in_air());
     /// let landed_state = MavLandedState::MAV_LANDED_STATE_ON_GROUND;
@@ -489,22 +267,10 @@ impl Telemetry {
     ///
     /// # Example: the first value counts
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # use flightlog::mavlink::{Version, dialect::*};
+    /// # use vehicle::packet;
+    /// # let (mut autopilot, _, _, mut telemetry) = vehicle::followed();
     /// for value in [0.125, 0.5] {
     ///     let told = MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
     ///         param_id: "MOT_SPIN_MIN".into(),
@@ -525,22 +291,10 @@ impl Telemetry {
     ///
     /// # Example: when to ask for the set-up anew
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # use flightlog::mavlink::{Version, dialect::*};
+    /// # use vehicle::packet;
+    /// # let (mut autopilot, _, _, mut telemetry) = vehicle::followed();
     /// # let told = MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
     /// #     param_id: "MOT_SPIN_MIN".into(),
     /// #     param_value: 0.125,
@@ -560,22 +314,10 @@ impl Telemetry {
     ///
     /// # Example: another vehicle on the same link
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # use flightlog::mavlink::{Sender, Version, dialect::*};
+    /// # use vehicle::packet;
+    /// # let (_, _, _, mut telemetry) = vehicle::followed();
     /// use flightlog::mavlink::News;
     ///
     /// let servo = MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA { time_usec: 40_000, ..Default::default() });
@@ -703,22 +445,10 @@ impl Telemetry {
     ///
     /// # Example: parameters in place of an assumption
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # use flightlog::mavlink::{Version, dialect::*};
+    /// # use vehicle::packet;
+    /// # let (mut autopilot, _, _, mut telemetry) = vehicle::followed();
     /// for (name, value) in [("MOT_SPIN_MIN", 0.125), ("MOT_SPIN_MAX", 0.875)] {
     ///     // One of the two is no range yet.
     ///     assert!(telemetry.setup().assumed.contains(&"flown between 0.15 and 0.95 of that".to_string()));
@@ -747,22 +477,8 @@ impl Telemetry {
     ///
     /// # Example: nothing came yet
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # let (_, _, _, telemetry) = vehicle::followed();
     /// let mut commands = [0.0; 4];
     /// telemetry.effective_commands(&telemetry.setup(), &mut commands);
     /// assert!(commands.iter().all(|command| command.is_nan()), "unknown, which is not stopped");
@@ -791,22 +507,8 @@ impl Telemetry {
     ///
     /// # Example
     /// ```
-    /// # use flightlog::mavlink::{Next, Packet, Sender, Telemetry, Version, dialect::*, next_packet, vehicle_of};
-    /// # fn packet(bytes: &[u8]) -> Packet<'_> {
-    /// #     let Next::Packet(packet) = next_packet(bytes) else { panic!("no packet") };
-    /// #     packet
-    /// # }
-    /// # let mut autopilot = Sender::new(1);
-    /// # let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-    /// #     mavtype: MavType::MAV_TYPE_QUADROTOR,
-    /// #     autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-    /// #     base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-    /// #     system_status: MavState::MAV_STATE_ACTIVE,
-    /// #     ..HEARTBEAT_DATA::default()
-    /// # });
-    /// # let heard = autopilot.packet(Version::V2, 1, &heartbeat);
-    /// # let vehicle = vehicle_of(&packet(&heard)).ok_or("no vehicle")?;
-    /// # let mut telemetry = Telemetry::new(&packet(&heard), vehicle);
+    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
+    /// # let (_, _, _, telemetry) = vehicle::followed();
     /// assert!(telemetry.may_be_multirotor());
     /// # Ok::<(), &str>(())
     /// ```
