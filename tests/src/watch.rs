@@ -111,8 +111,9 @@ impl Watch {
 
     /// Interrupts it; gives all it said.
     pub fn end(mut self) -> Said {
-        let interrupted = Command::new("kill")
-            .args(["-INT", &self.child.id().to_string()])
+        // The shell's own: the program of that name is not on every machine.
+        let interrupted = Command::new("sh")
+            .args(["-c", &format!("kill -INT {}", self.child.id())])
             .status();
         assert!(interrupted.unwrap().success());
         let events = self.reader.join().unwrap();
