@@ -35,7 +35,8 @@ pub fn shared_data() -> Option<PathBuf> {
 /// The `flagred` binary of this workspace, built as the tests are, ready to be given arguments.
 ///
 /// Cargo gives a path to a binary only to tests of its own package; these are in another, so the binary is built
-/// here, once for each test program. It is up to date or built already in all but the first.
+/// here, as one of the package's own tests has it built: `cargo test --workspace` has done so already, with these very
+/// features of all dependencies, and nothing is left to do.
 ///
 /// # Panics
 ///
@@ -49,13 +50,8 @@ pub fn flagred() -> Command {
     let binary = BINARY.get_or_init(|| {
         let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
         let built = Command::new(env!("CARGO"))
-            .args([
-                "build",
-                "--quiet",
-                "-p",
-                "flagred-cli",
-                "--message-format=json",
-            ])
+            .args(["test", "--workspace", "--no-run", "--test", "authoring"])
+            .args(["--quiet", "--message-format=json"])
             .args((!cfg!(debug_assertions)).then_some("--release"))
             .current_dir(workspace)
             .output();
@@ -66,8 +62,11 @@ pub fn flagred() -> Command {
         };
         let messages = String::from_utf8_lossy(&output.stdout);
         let path = messages.lines().find_map(|line| {
-            let (_, rest) = line.split_once("\"executable\":\"")?;
-            rest.split_once('"').map(|(path, _)| PathBuf::from(path))
+            let message: serde_json::Value = serde_json::from_str(line).ok()?;
+            let target = &message["target"];
+            let is_binary = target["name"] == "flagred" && target["kind"][0] == "bin";
+            let path = message["executable"].as_str().filter(|_| is_binary)?;
+            Some(PathBuf::from(path))
         });
         path.unwrap_or_else(|| panic!("cargo named no binary: {messages}"))
     });
