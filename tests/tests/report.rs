@@ -164,6 +164,37 @@ fn nothing_in_a_log_is_markup() {
     );
 }
 
+/// Calm, and then two motors each at a limit, in turns: WARN and, within it, FAIL.
+fn saturating_log() -> String {
+    let mut log =
+        String::from("## pwm_low_us: 1000\n## pwm_high_us: 2000\nt_s,pwm1,pwm2,pwm3,pwm4,in_air\n");
+    for i in 0..1500 {
+        let (high, low) = if i % 20 < 10 {
+            (2000, 1000)
+        } else {
+            (1000, 2000)
+        };
+        let _ = match i {
+            0..1000 => writeln!(log, "{},1500,1510,1490,1500,1", f64::from(i) * 0.04),
+            _ => writeln!(log, "{},{high},{low},{high},{low},1", f64::from(i) * 0.04),
+        };
+    }
+    log
+}
+
+#[test]
+fn the_gravest_finding_is_on_top_and_scales_have_units() {
+    let folder = Folder::new();
+    let html = report(&[&folder.file("log.csv", saturating_log())], &folder);
+    let risk = html.split("Risk over time").nth(1).unwrap();
+    let warn = risk.find("<rect class=\"warn\"").unwrap();
+    let fail = risk.find("<rect class=\"fail\"").unwrap();
+    assert!(warn < fail, "what is drawn later is on top");
+    for said in ["WARN from 67 %", "FAIL from 85 %", ">100 %<"] {
+        assert!(risk.contains(said), "no `{said}`");
+    }
+}
+
 #[test]
 fn several_flights_are_compared_on_one_scale() {
     let folder = Folder::new();

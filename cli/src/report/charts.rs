@@ -10,9 +10,12 @@ use fuzzy::Model;
 
 use super::{
     curve::{Stretch, path},
-    panel::{Line, Panel, Size, Timeline},
+    panel::{Line, Mark, Panel, Size, Timeline},
 };
-use crate::assessment::follow::{Assessed, Step};
+use crate::{
+    assessment::follow::{Assessed, Step, word},
+    drawing::text::number,
+};
 
 /// Signals beside those of the profile that a report draws.
 pub(crate) const SIGNALS: [&str; 6] = [
@@ -61,7 +64,8 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessed) -> Timeline {
             modes.push((span, mode.what.clone(), kind));
         }
     }
-    let findings = assessed.findings.iter().map(|finding| {
+    // The gravest come first; drawn last, they are not hidden by what goes on about them.
+    let findings = assessed.findings.iter().rev().map(|finding| {
         let span = Stretch {
             start_s: finding.from_s,
             end_s: finding.to_s,
@@ -132,10 +136,16 @@ pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch)
         return None;
     }
     let verdict = &estimator.profile().verdict;
-    let level = |threshold: &Threshold, class| threshold.risk_pct.map(|risk_pct| (risk_pct, class));
-    let levels = [
-        level(&verdict.warn.raise, "warn"),
-        level(&verdict.fail.raise, "fail"),
+    let mark = |threshold: &Threshold, level| {
+        threshold.risk_pct.map(|risk_pct| Mark {
+            value: risk_pct,
+            class: level_class(level),
+            name: format!("{} from {} %", word(level), number(risk_pct, 1)),
+        })
+    };
+    let marks = [
+        mark(&verdict.warn.raise, Level::Warn),
+        mark(&verdict.fail.raise, Level::Fail),
     ];
     Some(Panel {
         title: "Risk".into(),
@@ -155,7 +165,7 @@ pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch)
                 data: risk,
             },
         ],
-        levels: levels.into_iter().flatten().collect(),
+        marks: marks.into_iter().flatten().collect(),
         zones: Vec::new(),
         input: None,
     })
@@ -197,7 +207,7 @@ pub(crate) fn margins(
             line("low", "to its lower limit", low),
             line("high", "to its upper limit", least(&|e| 1.0 - e)),
         ],
-        levels: Vec::new(),
+        marks: Vec::new(),
         zones: Vec::new(),
         input: None,
     })
@@ -207,6 +217,11 @@ pub(crate) fn margins(
 pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
     let gap_s = gap_s(estimator, flight.command_rate_hz());
     let limits = &flight.effective;
+    let limit = |share: f64| Mark {
+        value: share * 100.0,
+        class: "limit",
+        name: String::new(),
+    };
     let panel = |(i, motor): (usize, &flightlog::Motor)| {
         let rows = flight.commands.rows().map(|(t_s, row)| {
             let command = row.get(i).and_then(|raw| flight.command(*raw));
@@ -223,10 +238,7 @@ pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -
                 name: motor.output.clone(),
                 data: path(rows, stretch, gap_s, 1),
             }],
-            levels: vec![
-                (limits.low * 100.0, "limit"),
-                (limits.high * 100.0, "limit"),
-            ],
+            marks: [limits.low, limits.high].map(limit).into(),
             zones: vec![(0.0, limits.low * 100.0), (limits.high * 100.0, 100.0)],
             input: None,
         }
@@ -261,7 +273,7 @@ pub(crate) fn inputs(
                 name: unit.unwrap_or_default().to_owned(),
                 data,
             }],
-            levels: Vec::new(),
+            marks: Vec::new(),
             zones: Vec::new(),
             input: Some(i),
         }
@@ -318,7 +330,11 @@ pub(crate) fn attitude_error(
             name: "roll and pitch against their set points".into(),
             data: path(errors.into_iter(), stretch, gap_s, 2),
         }],
-        levels: vec![(critical_deg, "limit")],
+        marks: vec![Mark {
+            value: critical_deg,
+            class: "limit",
+            name: "critical".into(),
+        }],
         zones: Vec::new(),
         input: None,
     };
@@ -348,7 +364,7 @@ pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) 
             name: signal.label.source.clone(),
             data: curve(&signal, decimals),
         }],
-        levels: Vec::new(),
+        marks: Vec::new(),
         zones: Vec::new(),
         input: None,
     };

@@ -49,21 +49,9 @@ pub(crate) fn report(subject: &Subject, loaded: &Loaded) -> String {
     let mut body = head(subject);
     body += &findings(subject);
     body += &figures(subject);
-    let section = |body: &mut String, title: &str, panels: Vec<Panel>, timeline: &Timeline| {
-        if !panels.is_empty() {
-            let _ = write!(body, "<h2>{title}</h2>");
-            for panel in panels {
-                *body += &panel.html(timeline);
-            }
-        }
-    };
     let risk = charts::risk(assessed, estimator, stretch);
-    section(
-        &mut body,
-        "Risk over time",
-        risk.into_iter().collect(),
-        &timeline,
-    );
+    let risk: Vec<Panel> = risk.into_iter().collect();
+    section(&mut body, "Risk over time", "", risk, &timeline);
     if let Some(map) = decision::html(estimator, &loaded.model, &assessed.steps) {
         let _ = write!(body, "<h2>Why: the rules and their inputs</h2>{map}");
     }
@@ -74,16 +62,31 @@ pub(crate) fn report(subject: &Subject, loaded: &Loaded) -> String {
     let margins = charts::margins(flight, assessed, estimator, stretch);
     let mut motors: Vec<Panel> = margins.into_iter().collect();
     motors.extend(charts::motors(flight, estimator, stretch));
-    section(&mut body, "Motors", motors, &timeline);
+    let limits = "Each command on its full range; it flies between the dashed limits.";
+    section(&mut body, "Motors", limits, motors, &timeline);
     let mut vehicle: Vec<Panel> = charts::attitude_error(flight, estimator, stretch)
         .into_iter()
         .collect();
     vehicle.extend(charts::battery(flight, estimator, stretch));
-    section(&mut body, "Attitude and battery", vehicle, &timeline);
+    section(&mut body, "Attitude and battery", "", vehicle, &timeline);
     body += &events(&timeline);
     body += &read(subject, loaded);
     body += &texts(loaded);
     page(subject.title(), &body)
+}
+
+/// A heading with its panels, and what has to be said of all of them; nothing where there is none.
+fn section(body: &mut String, title: &str, note: &str, panels: Vec<Panel>, timeline: &Timeline) {
+    if panels.is_empty() {
+        return;
+    }
+    let _ = write!(body, "<h2>{title}</h2>");
+    if !note.is_empty() {
+        let _ = write!(body, r#"<p class="soft">{note}</p>"#);
+    }
+    for panel in panels {
+        *body += &panel.html(timeline);
+    }
 }
 
 /// A comparison of several flights on one scale of time.
@@ -222,6 +225,8 @@ fn findings(subject: &Subject) -> String {
 
 fn figures(subject: &Subject) -> String {
     let summary = &subject.assessed.summary;
+    let in_air = subject.flight.in_air.as_ref();
+    let in_air_s = in_air.map_or(summary.in_air_s, |air| air.duration_s());
     let at = |peak: Option<(f64, f64)>| {
         peak.map_or("unknown".into(), |(t_s, value)| {
             format!("{value:.0} % at {t_s:.1} s")
@@ -233,7 +238,7 @@ fn figures(subject: &Subject) -> String {
         ("Highest risk", at(summary.risk_max)),
         ("Mean risk", percent(summary.risk_mean_pct)),
         ("Highest elevated risk", at(summary.elevated_risk_max)),
-        ("In the air", format!("{:.1} s", summary.in_air_s)),
+        ("In the air", format!("{in_air_s:.1} s")),
         ("Risk known", share(summary.assessed_s)),
         ("Filled in beside the rules", share(summary.filled_s)),
         (
@@ -249,20 +254,25 @@ fn figures(subject: &Subject) -> String {
     format!("<dl class=\"figures\">{items}</dl><p class=\"soft\">{quiet}</p>")
 }
 
-/// The rules, and how long each of them said most.
+/// The rules that said most at some time, those that did so longest first; all of them stand in the rule set below.
 fn rules(model: &Model, assessed: &Assessed) -> String {
     let known = assessed.steps.iter().filter_map(|step| step.estimate);
     let total = known.clone().count();
     if total == 0 {
         return String::new();
     }
+    let mut steps = vec![0usize; model.rules.len()];
+    for rule in known.filter_map(|estimate| estimate.dominant_rule) {
+        if let Some(steps) = steps.get_mut(rule) {
+            *steps += 1;
+        }
+    }
+    let mut said: Vec<_> = model.rules.iter().zip(steps).enumerate().collect();
+    said.retain(|(_, (_, steps))| *steps > 0);
+    said.sort_by_key(|(_, (_, steps))| std::cmp::Reverse(*steps));
     let mut rows = String::new();
-    for (i, rule) in model.rules.iter().enumerate() {
-        let fired = known
-            .clone()
-            .filter(|estimate| estimate.dominant_rule == Some(i))
-            .count();
-        let share = 100.0 * fired as f64 / total as f64;
+    for (i, (rule, steps)) in &said {
+        let share = 100.0 * *steps as f64 / total as f64;
         let support = rule.support.map(|n| n.to_string()).unwrap_or_default();
         let _ = write!(
             rows,
@@ -273,7 +283,9 @@ fn rules(model: &Model, assessed: &Assessed) -> String {
         );
     }
     format!(
-        r#"<div class="scroll"><table class="rules"><thead><tr><th class="n">#</th><th>Rule</th><th class="n">Support</th><th class="n">Said most</th></tr></thead><tbody>{rows}</tbody></table></div>"#
+        r#"<div class="scroll"><table class="rules"><thead><tr><th class="n">#</th><th>Rule</th><th class="n">Support</th><th class="n">Said most</th></tr></thead><tbody>{rows}</tbody></table></div><p class="soft">{} of {} rules said most at some time.</p>"#,
+        said.len(),
+        model.rules.len(),
     )
 }
 

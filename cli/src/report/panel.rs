@@ -28,6 +28,14 @@ pub(crate) struct Line {
     pub(crate) data: String,
 }
 
+/// A value that is marked over all of the time.
+pub(crate) struct Mark {
+    pub(crate) value: f64,
+    pub(crate) class: &'static str,
+    /// What it is; empty where that need not be said at every panel.
+    pub(crate) name: String,
+}
+
 /// Values over time on one scale.
 pub(crate) struct Panel {
     pub(crate) title: String,
@@ -36,8 +44,7 @@ pub(crate) struct Panel {
     pub(crate) high: f64,
     pub(crate) size: Size,
     pub(crate) lines: Vec<Line>,
-    /// Levels with the class of their line.
-    pub(crate) levels: Vec<(f64, &'static str)>,
+    pub(crate) marks: Vec<Mark>,
     /// What is out of reach, from one value to another.
     pub(crate) zones: Vec<(f64, f64)>,
     /// Which input of the rules it shows, for the picture of the map to follow.
@@ -83,6 +90,19 @@ fn value_ticks(low: f64, high: f64, small: bool) -> Vec<f64> {
 }
 
 impl Panel {
+    /// What is written beside the values: the highest has the unit.
+    fn scale(&self, small: bool, decimals: usize) -> Vec<(f64, String)> {
+        let ticks = value_ticks(self.low, self.high, small);
+        let mut labels: Vec<(f64, String)> = ticks
+            .into_iter()
+            .map(|value| (value, number(value, decimals)))
+            .collect();
+        if let Some((_, highest)) = labels.last_mut().filter(|_| !self.unit.is_empty()) {
+            let _ = write!(highest, " {}", self.unit);
+        }
+        labels
+    }
+
     /// What is drawn, in a nested SVG whose x is seconds since the start and whose y is the value upwards.
     fn drawing(&self, timeline: &Timeline, place: &str) -> String {
         let (low, high) = (self.low, self.high);
@@ -119,7 +139,8 @@ impl Panel {
         }
         let ticks = value_ticks(low, high, self.size == Size::Small);
         let levels = ticks.into_iter().map(|value| (value, "grid"));
-        for (value, class) in levels.chain(self.levels.iter().copied()) {
+        let marks = self.marks.iter().map(|mark| (mark.value, mark.class));
+        for (value, class) in levels.chain(marks) {
             let _ = write!(
                 svg,
                 r#"<path class="{class}" d="M0 {}H{length}"/>"#,
@@ -176,15 +197,22 @@ impl Panel {
                 Escaped(&line.name)
             );
         }
+        for mark in self.marks.iter().filter(|mark| !mark.name.is_empty()) {
+            let _ = write!(
+                html,
+                r#" <span class="key dashed {}">{}</span>"#,
+                mark.class,
+                Escaped(&mark.name)
+            );
+        }
         html += "</figcaption><div class=\"frame\">";
         let small = self.size == Size::Small;
-        for value in value_ticks(self.low, self.high, small) {
+        for (value, label) in self.scale(small, 3) {
             let share = (value - self.low) / (self.high - self.low);
             let _ = write!(
                 html,
-                r#"<span class="y" style="bottom:{}%">{}</span>"#,
+                r#"<span class="y" style="bottom:{}%">{label}</span>"#,
                 number(share * 100.0, 2),
-                number(value, 3)
             );
         }
         html += "<div class=\"area\">";
@@ -229,18 +257,10 @@ impl Panel {
                 Escaped(words)
             );
         };
-        let ticks = value_ticks(self.low, self.high, false);
-        let highest = ticks.last().copied();
-        for value in ticks {
+        for (value, label) in self.scale(false, 4) {
             let share = (value - self.low) / (self.high - self.low);
             let y = top + height * (1.0 - share) + 4.0;
-            let unit = if highest == Some(value) {
-                self.unit
-            } else {
-                ""
-            };
-            let label = format!("{} {unit}", number(value, 4));
-            text("y", left - 6.0, y, label.trim_end());
+            text("y", left - 6.0, y, &label);
         }
         let last = time_ticks(timeline.stretch).len().saturating_sub(1);
         for (i, t_s) in time_ticks(timeline.stretch).into_iter().enumerate() {
