@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
+    rule_set::no_profile,
 };
 
 #[derive(clap::Args)]
@@ -74,6 +75,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     for path in &arguments.models {
         let text = read_text(path)?;
         let file = path.display().to_string();
+        no_profile(&file, &text)?;
         let (findings, analysed) = examine(&text, arguments)?;
         let mut out = anstream::stdout().lock();
         if arguments.json {

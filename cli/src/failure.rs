@@ -1,6 +1,8 @@
 //! How a command ends: its exit code, and what it says when it cannot go on.
 
-use std::{fmt, io, io::Write, process::ExitCode};
+use std::{fmt, io, io::Write, path::Path, process::ExitCode};
+
+use clap::error::{ContextKind, ContextValue};
 
 /// How a command that ran to its end ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -86,6 +88,17 @@ impl Failure {
         }
         ExitCode::from(self.code)
     }
+}
+
+/// A file where the command should stand, as in `flagred flight.bin`.
+pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
+        return None;
+    };
+    Path::new(word).exists().then(|| {
+        Failure::usage(format!("`{word}` is a file, and no command"))
+            .help(format!("how risky a flight was: `flagred assess {word}`"))
+    })
 }
 
 /// A log that cannot be read: exit code 3.

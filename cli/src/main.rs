@@ -117,7 +117,14 @@ impl Command {
 }
 
 fn main() -> ExitCode {
-    match Arguments::parse().command.run() {
+    let ran = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command.run(),
+        Err(error) => match failure::command_forgotten(&error) {
+            Some(failure) => Err(failure),
+            None => error.exit(),
+        },
+    };
+    match ran {
         Ok(exit) => exit.into(),
         Err(failure) => failure.report(),
     }

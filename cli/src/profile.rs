@@ -60,8 +60,19 @@ pub(crate) fn read(name: &str) -> Result<(Profile, String, Option<PathBuf>), Fai
             (text, path.parent().map(Path::to_owned))
         }
     };
-    let profile = Profile::from_yaml(&text).map_err(|findings| refuse(&findings, name, &text))?;
+    let profile = Profile::from_yaml(&text).map_err(|findings| {
+        if fuzzy::yaml::parse(&text).is_ok() {
+            return Failure::unreadable(format!("`{name}` is a rule set, not a profile"))
+                .help(format!("write a profile that names it, with `rules: {}` and where each input comes from", file_name(path)));
+        }
+        refuse(&findings, name, &text)
+    })?;
     Ok((profile, text, folder))
+}
+
+fn file_name(path: &Path) -> String {
+    let file = path.file_name().unwrap_or(path.as_os_str());
+    file.to_string_lossy().into_owned()
 }
 
 /// The file and the text of the rule set that a profile names.

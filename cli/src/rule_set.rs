@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use flagred::profile::Profile;
 use fuzzy::{Engine, Model};
 
 use crate::{
@@ -9,13 +10,27 @@ use crate::{
     failure::Failure,
 };
 
-/// Reads and compiles a rule set. What is wrong with it is drawn on standard error; warnings are not: `flagred check`
-/// tells them.
-pub(crate) fn load(path: &Path) -> Result<(Model, Engine), Failure> {
+/// Reads a rule set. What is wrong with it is drawn on standard error; warnings are not: `flagred check` tells them.
+pub(crate) fn read(path: &Path) -> Result<(Model, String), Failure> {
     let text = read_text(path)?;
     let file = path.display().to_string();
+    no_profile(&file, &text)?;
     let document = fuzzy::yaml::parse(&text).map_err(|findings| refuse(&findings, &file, &text))?;
-    let model = document.model;
+    Ok((document.model, text))
+}
+
+/// Reads and compiles a rule set.
+pub(crate) fn load(path: &Path) -> Result<(Model, Engine), Failure> {
+    let (model, text) = read(path)?;
+    let file = path.display().to_string();
     let engine = Engine::new(&model).map_err(|error| refuse(&error.findings(), &file, &text))?;
     Ok((model, engine))
+}
+
+/// Refuses a profile where a rule set is asked for: one thing to say, where its keys would be a page of mistakes.
+pub(crate) fn no_profile(file: &str, text: &str) -> Result<(), Failure> {
+    Profile::from_yaml(text).map_or(Ok(()), |profile| {
+        let failure = Failure::unreadable(format!("`{file}` is a profile, not a rule set"));
+        Err(failure.help(format!("its rule set is `{}`", profile.rules)))
+    })
 }

@@ -1,5 +1,7 @@
 //! Why a file could not be read at all.
 
+use std::io::ErrorKind;
+
 /// A log that could not be read. A damaged log is no error: it gives what is there,
 /// and says in its [`Report`](crate::Report) what is missing.
 ///
@@ -14,7 +16,7 @@
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file could not be opened, or reading it failed.
-    #[error("cannot read `{path}`: {source}")]
+    #[error("`{path}` cannot be read: {source}")]
     Io {
         /// The path as the user gave it; `standard input`, or `the log` for a reader.
         path: String,
@@ -60,11 +62,18 @@ impl ReadError {
     /// ```
     pub fn help(&self) -> Option<&str> {
         match self {
-            Self::Io { .. } => None,
+            Self::Io { source, .. } => match source.kind() {
+                ErrorKind::NotFound => Some("check the path"),
+                ErrorKind::IsADirectory => Some("name the logs in it"),
+                _ => None,
+            },
             Self::Empty { .. } => Some("the download or copy may have failed: fetch the log again"),
             Self::NotALog { what, .. } if what.contains("git-lfs") => {
                 Some("fetch the log itself with `git lfs pull`")
             }
+            Self::NotALog { what, .. } if what == TEXT => Some(
+                "a flight CSV begins with the names of its columns, commas between them: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
+            ),
             Self::NotALog { .. } => Some(
                 "flight logs are ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog and flight CSV, plain or gzipped",
             ),
@@ -82,6 +91,9 @@ impl ReadError {
         self
     }
 }
+
+/// What a file is that is text and no log.
+pub(crate) const TEXT: &str = "a text file";
 
 /// What a log is called in an error until the caller names it.
 pub(crate) const UNNAMED: &str = "the log";

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::error::{UNNAMED, io_error};
+use crate::error::{TEXT, UNNAMED, io_error};
 use crate::input::Input;
 use crate::{Flight, ReadError, csv, dataflash, tlog, ulog};
 
@@ -174,6 +174,6 @@ fn sniff(start: &[u8]) -> Content {
     }
     match std::str::from_utf8(&start[..start.len().min(1024)]) {
         Err(error) if error.error_len().is_some() => Content::Other("an unknown binary file"),
-        _ => Content::Other("a text file"),
+        _ => Content::Other(TEXT),
     }
 }

@@ -113,6 +113,11 @@ fn what_is_no_log_is_named_for_what_it_is() {
             "is a text file, not a flight log",
         ),
         ("picture.png", picture, "is a PNG picture, not a flight log"),
+        (
+            "semicolons.csv",
+            b"t_s;pwm1;pwm2\n0;1500;1500\n",
+            "a flight CSV begins with the names of its columns, commas between them",
+        ),
     ] {
         let output = assess(&[&folder.file(name, bytes)]);
         let told = String::from_utf8(output.stderr).unwrap();

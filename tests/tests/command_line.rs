@@ -1,12 +1,68 @@
 //! The command line as its users meet it: exit codes, and what is said where.
 
-use flagred_tests::flagred;
+use flagred_tests::{STEADY, flagred};
 
 #[test]
 fn wrong_usage_is_2_and_says_what_is_right() {
     let output = flagred().arg("asses").output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("assess"));
+}
+
+/// What a user has in mind is nearly there: what is said leads to it.
+#[test]
+fn what_stands_in_the_wrong_place_is_told_where_it_belongs() {
+    let rules = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred.yaml");
+    let profile = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../rules/profiles/multirotor.yaml"
+    );
+    let folder = env!("CARGO_MANIFEST_DIR");
+    let profile_of_rules = ["assess", "--profile", rules, STEADY];
+    for (arguments, code, said, help) in [
+        (
+            &[STEADY][..],
+            2,
+            "is a file, and no command",
+            "`flagred assess ",
+        ),
+        (
+            &profile_of_rules,
+            3,
+            "is a rule set, not a profile",
+            "`rules: flagred.yaml`",
+        ),
+        (
+            &["check", profile],
+            3,
+            "is a profile, not a rule set",
+            "`flagred`",
+        ),
+        (
+            &["map", profile],
+            3,
+            "is a profile, not a rule set",
+            "`flagred`",
+        ),
+        (
+            &["assess", folder],
+            3,
+            "cannot be read: is a directory",
+            "name the logs in it",
+        ),
+        (
+            &["assess", "nowhere.bin"],
+            3,
+            "`nowhere.bin` cannot be read",
+            "check the path",
+        ),
+    ] {
+        let output = flagred().args(arguments).output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{told}");
+        assert!(told.contains(said) && told.lines().count() == 2, "{told}");
+        assert!(told.contains("  help: ") && told.contains(help), "{told}");
+    }
 }
 
 #[test]

@@ -109,14 +109,16 @@ const ONE_MESSAGE_BYTES: u64 = 256;
 /// What is wrong with the log, and that it was read all the same.
 pub(crate) fn damage(report: &flightlog::Report) -> String {
     if report.truncated && report.bad_messages == 0 && report.skipped_bytes <= ONE_MESSAGE_BYTES {
-        return format!(
-            "the log ends inside a message: its last {} bytes are left out",
-            report.skipped_bytes
-        );
+        let (last, are) = match report.skipped_bytes {
+            1 => ("last byte".to_owned(), "is"),
+            bytes => (format!("last {bytes} bytes"), "are"),
+        };
+        return format!("the log ends inside a message: its {last} {are} left out");
     }
     let mut parts = Vec::new();
     if report.bad_messages > 0 {
-        parts.push(format!("{} bad messages", report.bad_messages));
+        let plural = if report.bad_messages == 1 { "" } else { "s" };
+        parts.push(format!("{} bad message{plural}", report.bad_messages));
     }
     if report.skipped_bytes > 0 {
         parts.push(format!(

@@ -21,9 +21,8 @@ use fuzzy::{
 };
 
 use crate::{
-    diagnostics::{read_text, refuse},
     failure::{Exit, Failure},
-    output,
+    output, rule_set,
 };
 
 #[derive(clap::Args)]
@@ -136,10 +135,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .help("name another file"));
     }
     let name = arguments.model.display().to_string();
-    let text = read_text(&arguments.model)?;
-    let mut model = fuzzy::yaml::parse(&text)
-        .map_err(|findings| refuse(&findings, &name, &text))?
-        .model;
+    let (mut model, text) = rule_set::read(&arguments.model)?;
     if !arguments.keep_rules {
         model.rules.clear();
     }

@@ -19,10 +19,9 @@ use fuzzy::{
 };
 
 use crate::{
-    diagnostics::{read_text, refuse},
     drawing::text::number,
     failure::{Exit, Failure},
-    output,
+    output, rule_set,
 };
 use slice::Slice;
 
@@ -165,11 +164,7 @@ pub(crate) fn points_along(inputs: usize) -> usize {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let name = arguments.model.display().to_string();
-    let text = read_text(&arguments.model)?;
-    let model = fuzzy::yaml::parse(&text)
-        .map_err(|findings| refuse(&findings, &name, &text))?
-        .model;
+    let (model, _) = rule_set::read(&arguments.model)?;
     let evaluated = evaluate(arguments, model)?;
     let mut out = anstream::stdout().lock();
     let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();
