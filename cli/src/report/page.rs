@@ -273,10 +273,15 @@ fn rules(model: &Model, assessed: &Assessed) -> String {
     let mut rows = String::new();
     for (i, (rule, steps)) in &said {
         let share = 100.0 * *steps as f64 / total as f64;
+        let shown = if share < 0.5 {
+            "&lt; 1".into()
+        } else {
+            format!("{share:.0}")
+        };
         let support = rule.support.map(|n| n.to_string()).unwrap_or_default();
         let _ = write!(
             rows,
-            r#"<tr><td class="n">{}</td><td>{}</td><td class="n">{support}</td><td class="n">{share:.0} % <span class="bar" style="width:{}rem"></span></td></tr>"#,
+            r#"<tr><td class="n">{}</td><td>{}</td><td class="n">{support}</td><td class="n">{shown} % <span class="bar" style="width:{}rem"></span></td></tr>"#,
             i + 1,
             Escaped(&rule.rule.to_string()),
             number(share / 25.0, 2),
