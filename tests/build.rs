@@ -6,7 +6,15 @@ fn main() -> std::io::Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     println!("cargo::rerun-if-changed=build.rs");
     let mut tests = String::new();
-    for folder in ["", "docs", "examples"] {
+    for folder in [
+        "",
+        "docs",
+        "examples",
+        "fuzzy",
+        "flagred",
+        "flightlog",
+        "cli",
+    ] {
         let folder = root.join(folder);
         println!("cargo::rerun-if-changed={}", folder.display());
         let Ok(entries) = fs::read_dir(&folder) else {
@@ -17,8 +25,9 @@ fn main() -> std::io::Result<()> {
         for page in pages {
             if page.extension().is_some_and(|extension| extension == "md") {
                 println!("cargo::rerun-if-changed={}", page.display());
-                let name = page.file_stem().unwrap_or_default().to_string_lossy();
-                add(&mut tests, &name, &fs::read_to_string(&page)?);
+                let name = page.strip_prefix(&root).unwrap_or(&page).with_extension("");
+                let text = fs::read_to_string(&page)?;
+                add(&mut tests, &name.to_string_lossy(), &text);
             }
         }
     }

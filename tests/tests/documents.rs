@@ -29,9 +29,19 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The Markdown files of the repository's root, of `docs/` and of `examples/`.
+/// The Markdown files of the repository's root, of `docs/`, of `examples/` and of the packages.
 fn documents() -> Vec<PathBuf> {
-    let folders = ["", "docs", "examples"].map(|folder| root().join(folder));
+    let folders = [
+        "",
+        "docs",
+        "examples",
+        "fuzzy",
+        "flagred",
+        "flightlog",
+        "cli",
+        "flagred-c",
+    ];
+    let folders = folders.map(|folder| root().join(folder));
     let files = folders
         .iter()
         .filter_map(|folder| fs::read_dir(folder).ok());
