@@ -2,6 +2,7 @@
 //! exported C, over grids of inputs and over every flight there is.
 
 use std::{
+    collections::BTreeMap,
     io::Write,
     path::{Path, PathBuf},
     process::{Command, Stdio},
@@ -17,7 +18,7 @@ use flagred::{
     window::Window,
 };
 use flagred_tests::{
-    Folder,
+    Folder, STEADY,
     board::{Moment, PROFILES, estimator, findings, logs, moment, moments, points, told},
     flagred,
 };
@@ -354,6 +355,46 @@ fn the_example_in_c_runs() {
     assert!(output.status.success());
     let text = String::from_utf8(output.stdout).unwrap();
     insta::assert_snapshot!(text);
+}
+
+/// Time in us and risk of every row that has one.
+fn risks(csv: &[u8]) -> BTreeMap<u64, f64> {
+    let text = std::str::from_utf8(csv).unwrap();
+    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let column = names.iter().position(|name| *name == "risk").unwrap();
+    let rows = text.lines().skip(1).filter_map(|line| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let t_us = (cells[0].parse::<f64>().unwrap() * 1e6).round() as u64;
+        Some((t_us, cells[column].parse().ok()?))
+    });
+    rows.collect()
+}
+
+#[test]
+fn a_log_flown_again_in_c_has_the_risk_of_assess() {
+    let profile = ("flagred", "flagred");
+    let Some((mut program, folder)) =
+        program("flagred-c/examples/replay.c", "replay", Some(profile))
+    else {
+        return;
+    };
+    let csv = folder.at("steady.csv");
+    let converted = flagred()
+        .args(["convert", STEADY, "--output", &csv])
+        .output();
+    assert!(converted.unwrap().status.success());
+    let flown = program.stdin(std::fs::File::open(&csv).unwrap()).output();
+    let flown = risks(&flown.unwrap().stdout);
+    let assessed = flagred().args(["assess", "--csv", &csv]).output().unwrap();
+    let assessed = risks(&assessed.stdout);
+    assert!(assessed.len() > 1000, "{}", assessed.len());
+    for (t_us, risk_pct) in &assessed {
+        let by_c = flown.get(t_us).copied().unwrap_or(f64::NAN);
+        assert!(
+            (by_c - risk_pct).abs() <= 1e-6,
+            "{t_us} us: {by_c} is not {risk_pct}"
+        );
+    }
 }
 
 /// Rule sets that use every array of a table: those of `tests/onboard`, each input the latest value of a signal.

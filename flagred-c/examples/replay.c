@@ -1,0 +1,42 @@
+/* Flies a log again on board: a flight CSV of a quadrotor in, the time and the risk out.
+ *
+ *   flagred convert flight.BIN -o flight.csv
+ *   flagred export --c --output profile.h
+ *   cargo build -p flagred-c --no-default-features --profile onboard
+ *   cc -DPROFILE='"profile.h"' -I flagred-c/include -I . flagred-c/examples/replay.c target/onboard/libflagred.a -o replay
+ *   ./replay < flight.csv */
+#include <math.h>
+#include <stdio.h>
+
+#include PROFILE
+
+static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
+
+int main(void) {
+    /* The whole range, as in the log at hand: MOT_SPIN_MIN 0, MOT_SPIN_MAX 1. */
+    const flagred_limits limits[4] = {{1000, 2000}, {1000, 2000}, {1000, 2000}, {1000, 2000}};
+    flagred_monitor *monitor;
+    if (flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor) != FLAGRED_OK) {
+        return 1;
+    }
+    char line[1024];
+    puts("t_s,risk");
+    while (fgets(line, sizeof line, stdin)) {
+        double commands[4];
+        flagred_sample sample = {.commands = commands, .motors = 4};
+        if (sscanf(line, "%lf,%lf,%lf,%lf,%lf,%d", &sample.t_s, &commands[0], &commands[1], &commands[2], &commands[3],
+                   &sample.in_air) != 6) {
+            continue; /* a comment, or the names of the columns */
+        }
+        flagred_assessment said;
+        if (flagred_push(monitor, &sample, &said) != FLAGRED_OK) {
+            return 1;
+        }
+        if (isnan(said.risk_pct)) {
+            printf("%.6f,\n", said.t_s); /* unknown is no number */
+        } else {
+            printf("%.6f,%.6f\n", said.t_s, said.risk_pct);
+        }
+    }
+    return 0;
+}
