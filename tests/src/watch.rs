@@ -24,9 +24,20 @@ use crate::{
     wire::{Link, Speed, Wire},
 };
 
+/// A process that goes with the test, also where that fails.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // Neither can be told to anybody: it has ended already, or the test has failed.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 /// A running watch, and where it listens.
 pub struct Watch {
-    child: Child,
+    child: Running,
     address: Option<SocketAddr>,
     /// Reads along: a watch whose output nobody takes would have to wait.
     reader: JoinHandle<Vec<Value>>,
@@ -40,13 +51,13 @@ impl Watch {
 
     /// One whose events are kept where they are worth it.
     pub fn start_keeping(endpoint: &str, options: &[&str], keep: fn(&Value) -> bool) -> Watch {
-        let mut child = flagred()
+        let child = flagred()
             .args(["watch", endpoint, "--jsonl"])
             .args(options)
             .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(child.stdout.take().unwrap());
+            .spawn();
+        let mut child = Running(child.unwrap());
+        let mut lines = BufReader::new(child.0.stdout.take().unwrap());
         let mut first = String::new();
         lines.read_line(&mut first).unwrap();
         let started: Value = serde_json::from_str(&first).unwrap();
@@ -91,7 +102,7 @@ impl Watch {
 
     /// How much memory it takes, in kB.
     pub fn resident_kb(&self) -> u64 {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.0.id())).unwrap();
         let line = status.lines().find(|line| line.starts_with("VmRSS:"));
         let kb = line.unwrap().split_whitespace().nth(1).unwrap();
         kb.parse().unwrap()
@@ -113,11 +124,11 @@ impl Watch {
     pub fn end(mut self) -> Said {
         // The shell's own: the program of that name is not on every machine.
         let interrupted = Command::new("sh")
-            .args(["-c", &format!("kill -INT {}", self.child.id())])
+            .args(["-c", &format!("kill -INT {}", self.child.0.id())])
             .status();
         assert!(interrupted.unwrap().success());
         let events = self.reader.join().unwrap();
-        let code = self.child.wait().unwrap().code();
+        let code = self.child.0.wait().unwrap().code();
         Said { events, code }
     }
 }
