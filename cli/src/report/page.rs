@@ -35,6 +35,12 @@ impl Subject {
         let file = std::path::Path::new(&self.name).file_name();
         file.and_then(|file| file.to_str()).unwrap_or(&self.name)
     }
+
+    /// As the log tells it; else what was followed of it.
+    fn in_air_s(&self) -> f64 {
+        let told = self.flight.in_air.as_ref();
+        told.map_or(self.assessed.summary.in_air_s, |air| air.duration_s())
+    }
 }
 
 /// The report of one flight.
@@ -102,10 +108,10 @@ pub(crate) fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
         let peak = |peak: Option<(f64, f64)>| percent(peak.map(|(_, value)| value));
         let _ = write!(
             rows,
-            r##"<tr><td>{}</td><td><a href="#flight{i}">{}</a></td><td class="n">{} s</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td></tr>"##,
+            r##"<tr><td>{}</td><td class="name"><a href="#flight{i}">{}</a></td><td class="n">{} s</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td></tr>"##,
             badge(&subject.assessed.verdict),
             Escaped(subject.title()),
-            number(summary.in_air_s, 0),
+            number(subject.in_air_s(), 0),
             percent(summary.risk_mean_pct),
             peak(summary.risk_max),
             peak(summary.elevated_risk_max),
@@ -225,8 +231,6 @@ fn findings(subject: &Subject) -> String {
 
 fn figures(subject: &Subject) -> String {
     let summary = &subject.assessed.summary;
-    let in_air = subject.flight.in_air.as_ref();
-    let in_air_s = in_air.map_or(summary.in_air_s, |air| air.duration_s());
     let at = |peak: Option<(f64, f64)>| {
         peak.map_or("unknown".into(), |(t_s, value)| {
             format!("{value:.0} % at {t_s:.1} s")
@@ -238,7 +242,7 @@ fn figures(subject: &Subject) -> String {
         ("Highest risk", at(summary.risk_max)),
         ("Mean risk", percent(summary.risk_mean_pct)),
         ("Highest elevated risk", at(summary.elevated_risk_max)),
-        ("In the air", format!("{in_air_s:.1} s")),
+        ("In the air", format!("{:.1} s", subject.in_air_s())),
         ("Risk known", share(summary.assessed_s)),
         ("Filled in beside the rules", share(summary.filled_s)),
         (

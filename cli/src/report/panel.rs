@@ -156,7 +156,7 @@ impl Panel {
                 Escaped(text),
             );
         }
-        for line in &self.lines {
+        for line in self.lines.iter().filter(|line| !line.data.is_empty()) {
             let _ = write!(
                 svg,
                 r#"<path class="line {}" d="{}"/>"#,
@@ -188,7 +188,7 @@ impl Panel {
             number(timeline.stretch.length_s(), 3),
         );
         let _ = write!(html, "<b>{}</b>", Escaped(&self.title));
-        for line in &self.lines {
+        for line in self.lines.iter().filter(|line| !line.data.is_empty()) {
             let bare = if line.name.is_empty() { " bare" } else { "" };
             let _ = write!(
                 html,
@@ -295,10 +295,13 @@ fn time_axis(stretch: Stretch) -> String {
     let ticks = time_ticks(stretch);
     let last = ticks.len().saturating_sub(1);
     for (i, t_s) in ticks.into_iter().enumerate() {
+        let share = stretch.share(t_s);
+        // Beyond the right edge there is nothing on a phone.
+        let class = if share > 0.94 { r#" class="end""# } else { "" };
         let _ = write!(
             html,
-            r#"<span style="left:{}%">{}{}</span>"#,
-            number(stretch.share(t_s) * 100.0, 2),
+            r#"<span{class} style="left:{}%">{}{}</span>"#,
+            number(share * 100.0, 2),
             number(t_s, 1),
             if i == last { " s" } else { "" }
         );
