@@ -3,7 +3,10 @@
 
 use std::{env, error::Error, process::ExitCode};
 
-use flagred_tests::vehicle::{Link, Speed, StandIn, Wire, flight};
+use flagred_tests::{
+    vehicle::{StandIn, flight},
+    wire::{Link, Speed, Wire},
+};
 use flightlog::mavlink::Version;
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {

@@ -102,7 +102,8 @@ impl Watch {
 
     /// How much memory it takes, in kB.
     pub fn resident_kb(&self) -> u64 {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.0.id())).unwrap();
+        let status =
+            std::fs::read_to_string(format!("/proc/{}/status", self.child.0.id())).unwrap();
         let line = status.lines().find(|line| line.starts_with("VmRSS:"));
         let kb = line.unwrap().split_whitespace().nth(1).unwrap();
         kb.parse().unwrap()
