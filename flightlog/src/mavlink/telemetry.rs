@@ -143,7 +143,7 @@ pub struct Telemetry {
 }
 
 impl Telemetry {
-    /// Starts with the heartbeat that [`vehicle_of`] told the vehicle from.
+    /// Starts with the heartbeat that [`vehicle_of`](super::vehicle_of) told the vehicle from.
     ///
     /// # Example: nothing is known yet but what the heartbeat says of the vehicle
     /// ```
