@@ -411,7 +411,7 @@ fn rule_text() -> Node {
 mod tests {
     use super::*;
 
-    /// `UPDATE_SCHEMA=1 cargo test -p fuzzy schema` writes the file anew.
+    /// `UPDATE_SCHEMA=1 cargo test -p flagred-fuzzy schema` writes the file anew.
     #[test]
     fn the_file_is_what_the_types_say() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/schema.json");
