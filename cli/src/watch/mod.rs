@@ -300,7 +300,7 @@ impl Display {
             && self.drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME)
         {
             self.drawn = Some(Instant::now());
-            let frame = screen.frame(session.view().as_ref(), estimator);
+            let frame = screen.frame(session.view().as_ref(), estimator, screen::size());
             self.printer.print(frame)?;
         }
         Ok(())

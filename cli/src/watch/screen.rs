@@ -20,6 +20,8 @@ const CLEAR_REST: &str = "\x1b[J";
 const BAR: usize = 40;
 /// Events kept in sight.
 const LATEST: usize = 8;
+/// Where the words of an event begin.
+const INDENT: usize = 12;
 
 /// What happened last, for a picture of how things stand.
 pub(crate) struct Screen {
@@ -47,11 +49,35 @@ impl Screen {
         }
     }
 
-    /// All of the screen, to be written over what it showed before.
-    pub(crate) fn frame(&self, view: Option<&View<'_>>, estimator: &Estimator) -> String {
+    /// All of a screen of so many columns and rows, to be written over what it showed before. How things stand comes
+    /// first; what happened last takes the rows that are left.
+    pub(crate) fn frame(
+        &self,
+        view: Option<&View<'_>>,
+        estimator: &Estimator,
+        (columns, rows): (usize, usize),
+    ) -> String {
+        let now = match view {
+            None => "waiting for a vehicle\n".to_owned(),
+            Some(view) => standing(view, estimator),
+        };
+        let title = format!("FLAGRED  {}", self.title);
+        let mut lines = wrapped([title.as_str(), ""].into_iter().chain(now.lines()), columns);
+        let latest = wrapped(self.latest.iter().map(String::as_str), columns);
+        // A line end in the last row would move the first out of sight.
+        let room = rows.saturating_sub(1);
+        let left = room.saturating_sub(lines.len() + 3);
+        lines.push(String::new());
+        lines.extend_from_slice(
+            latest
+                .get(latest.len().saturating_sub(left)..)
+                .unwrap_or(&[]),
+        );
+        lines.extend([String::new(), "Ctrl-C ends the watch".to_owned()]);
+        lines.truncate(room);
         let mut frame = HOME.to_owned();
-        for line in picture(&self.title, view, estimator, &self.latest).lines() {
-            frame += line;
+        for line in lines {
+            frame += &line;
             frame += CLEAR_LINE;
             frame += "\r\n";
         }
@@ -59,24 +85,41 @@ impl Screen {
     }
 }
 
-fn picture(
-    title: &str,
-    view: Option<&View<'_>>,
-    estimator: &Estimator,
-    latest: &VecDeque<String>,
-) -> String {
-    let mut text = format!("FLAGRED  {title}\n\n");
-    match view {
-        None => text += "waiting for a vehicle\n",
-        Some(view) => text += &standing(view, estimator),
+/// Columns and rows of the terminal; the usual ones where it does not say.
+pub(crate) fn size() -> (usize, usize) {
+    terminal_size::terminal_size().map_or((80, 24), |(width, height)| {
+        (width.0.into(), height.0.into())
+    })
+}
+
+/// Lines that leave the last column free, where a terminal is about to go on below; broken between words where there are
+/// any. Those with a style are short.
+fn wrapped<'a>(lines: impl Iterator<Item = &'a str>, columns: usize) -> Vec<String> {
+    let width = columns.saturating_sub(1).max(1);
+    let mut all = Vec::new();
+    for line in lines {
+        let mut rest = line.to_owned();
+        while let Some((end, _)) = rest
+            .char_indices()
+            .nth(width)
+            .filter(|_| !line.contains('\x1b'))
+        {
+            let spaces = rest
+                .char_indices()
+                .take(width + 1)
+                .filter(|(_, letter)| *letter == ' ');
+            let word_end = spaces
+                .map(|(at, _)| at)
+                .last()
+                .filter(|at| !rest[..*at].trim().is_empty());
+            let below = rest.split_off(word_end.unwrap_or(end));
+            all.push(rest);
+            let indent = if width > 2 * INDENT { INDENT } else { 0 };
+            rest = " ".repeat(indent) + below.trim_start();
+        }
+        all.push(rest);
     }
-    text += "\n";
-    for line in latest {
-        text += line;
-        text += "\n";
-    }
-    text += "\nCtrl-C ends the watch\n";
-    text
+    all
 }
 
 fn standing(view: &View<'_>, estimator: &Estimator) -> String {
@@ -150,4 +193,69 @@ fn row(name: &str, share: f64, value: &str) -> String {
     let full = (share.clamp(0.0, 1.0) * BAR as f64).round() as usize;
     let bar = "█".repeat(full) + &"·".repeat(BAR - full);
     format!("{name:<9} {bar} {value}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::watch::session::tests::{Bench, estimator};
+
+    fn rows(frame: &str) -> Vec<String> {
+        let shown = frame.trim_start_matches(HOME).trim_end_matches(CLEAR_REST);
+        let rows = shown.split_terminator("\r\n");
+        rows.map(|row| row.trim_end_matches(CLEAR_LINE).to_owned())
+            .collect()
+    }
+
+    #[test]
+    fn the_risk_stays_in_sight_however_small_the_terminal() {
+        let estimator = estimator();
+        let mut bench = Bench::new(&estimator, Some(191));
+        bench.beat(false);
+        bench.all_parameters();
+        bench.hover(10.0, 20.0, 1500);
+        let mut screen = Screen::new("listening at 127.0.0.1:14550, profile flagred-paper".into());
+        for i in 0..20 {
+            let text = format!(
+                "note {i} {}",
+                "which is longer than a line: 1000 µs ".repeat(5)
+            );
+            screen.add(f64::from(i), &Event::Note { text });
+        }
+        let view = bench.session.view();
+        for size in [(80, 24), (60, 20), (40, 12), (20, 8), (1, 1), (0, 0)] {
+            let shown = rows(&screen.frame(view.as_ref(), &estimator, size));
+            let (columns, most) = size;
+            assert!(
+                shown.len() <= most.saturating_sub(1),
+                "{size:?}: {shown:#?}"
+            );
+            let widest = shown
+                .iter()
+                .filter(|row| !row.contains('\x1b'))
+                .map(|row| row.chars().count())
+                .max();
+            assert!(
+                widest.unwrap_or(0) <= columns.saturating_sub(1).max(1),
+                "{size:?}: {shown:#?}"
+            );
+            if most >= 20 {
+                assert!(
+                    shown.iter().any(|row| row.starts_with("risk ")),
+                    "{shown:#?}"
+                );
+                assert!(
+                    shown.iter().any(|row| row.starts_with("motor 4")),
+                    "{shown:#?}"
+                );
+                assert_eq!(shown.last().unwrap(), "Ctrl-C ends the watch");
+            }
+        }
+        let shown = rows(&screen.frame(view.as_ref(), &estimator, (200, 50)));
+        assert_eq!(
+            shown.iter().filter(|row| row.contains("note ")).count(),
+            LATEST
+        );
+        assert!(shown.iter().any(|row| row.contains("note 19 ")));
+    }
 }

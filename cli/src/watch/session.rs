@@ -303,4 +303,4 @@ impl<'e> Session<'e> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -13,22 +13,22 @@ use super::*;
 mod outputs;
 
 /// A session, the vehicle's side of the link, and the clock of both.
-struct Bench<'e> {
-    session: Session<'e>,
+pub(crate) struct Bench<'e> {
+    pub(crate) session: Session<'e>,
     vehicle: Sender,
     now_s: f64,
     events: Vec<Event>,
     sent: Vec<MavMessage>,
 }
 
-fn estimator() -> Estimator {
+pub(crate) fn estimator() -> Estimator {
     let profile: Profile = shipped::profile("flagred-paper").unwrap().unwrap();
     let rules = shipped::rule_set(&profile.rules).unwrap().unwrap();
     Estimator::new(&profile, &rules).unwrap()
 }
 
 impl<'e> Bench<'e> {
-    fn new(estimator: &'e Estimator, component: Option<u8>) -> Bench<'e> {
+    pub(crate) fn new(estimator: &'e Estimator, component: Option<u8>) -> Bench<'e> {
         Bench {
             session: Session::new(estimator, component),
             vehicle: Sender::new(1),
@@ -57,7 +57,7 @@ impl<'e> Bench<'e> {
         self.take(out);
     }
 
-    fn beat(&mut self, in_air: bool) {
+    pub(crate) fn beat(&mut self, in_air: bool) {
         let mut base_mode = MavModeFlag::empty();
         base_mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, in_air);
         self.hear(&MavMessage::HEARTBEAT(HEARTBEAT_DATA {
@@ -99,7 +99,7 @@ impl<'e> Bench<'e> {
         }));
     }
 
-    fn all_parameters(&mut self) {
+    pub(crate) fn all_parameters(&mut self) {
         for (name, value) in [
             ("MOT_PWM_MIN", 1000.0),
             ("MOT_PWM_MAX", 2000.0),
@@ -115,7 +115,7 @@ impl<'e> Bench<'e> {
     }
 
     /// Hovers at 25 Hz from a time of the vehicle's clock on.
-    fn hover(&mut self, from_s: f64, seconds: f64, pulse: u16) {
+    pub(crate) fn hover(&mut self, from_s: f64, seconds: f64, pulse: u16) {
         for i in 0..(seconds * 25.0) as u32 {
             if i % 25 == 0 {
                 self.beat(true);
