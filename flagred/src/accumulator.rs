@@ -11,7 +11,7 @@
 //! The paper gives no time step and no values. Ours are rates in % per second, so the result does not depend
 //! on the sample rate.
 
-use crate::window::{Moments, Window};
+use crate::{moments::Moments, window::Window};
 
 /// The parameters of an [`Accumulator`].
 #[derive(Debug, Clone, Copy, PartialEq)]

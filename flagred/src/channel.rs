@@ -1,10 +1,7 @@
 //! Channels: one thing observed over one window, and the statistics taken of it. What is to be observed is plain data,
 //! which can lie in a table; what was seen is the caller's memory.
 
-use crate::{
-    margin::margin,
-    window::{Moments, Window},
-};
+use crate::{margin::margin, moments::Moments, window::Window};
 
 /// A statistic over time.
 ///

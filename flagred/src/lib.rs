@@ -22,6 +22,7 @@ pub mod gap;
 pub mod learning;
 mod lookup;
 pub mod margin;
+mod moments;
 #[cfg(feature = "std")]
 pub mod monitor;
 #[cfg(feature = "std")]

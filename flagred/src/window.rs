@@ -4,143 +4,13 @@
 //! `(t - length, t]` and do not depend on the sample rate; at an even rate they are the plain statistics of
 //! the samples in the window.
 
+use crate::moments::Moments;
+
 /// Over how many slots the samples of a window are spread. See [`Window`].
 const SLOTS: usize = 128;
 
 /// A sample that reaches into the window by less than this has left it: time stamps are in microseconds.
 const TIME_RESOLUTION_S: f64 = 1e-6;
-
-/// Mean, spread and extremes of weighted values.
-///
-/// Two of them merge into one without a subtraction of sums (Chan, Golub and LeVeque 1983), so nothing
-/// cancels and nothing drifts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Moments {
-    weight: f64,
-    mean: f64,
-    /// `sum(weight (value - mean)^2)`.
-    squares: f64,
-    min: f64,
-    max: f64,
-}
-
-impl Moments {
-    /// Of no value at all.
-    pub(crate) const EMPTY: Moments = Moments {
-        weight: 0.0,
-        mean: 0.0,
-        squares: 0.0,
-        min: f64::INFINITY,
-        max: f64::NEG_INFINITY,
-    };
-
-    /// Of one finite value with a weight over 0.
-    pub(crate) fn of(value: f64, weight: f64) -> Moments {
-        Moments {
-            weight,
-            mean: value,
-            squares: 0.0,
-            min: value,
-            max: value,
-        }
-    }
-
-    /// Of a finite value that moves evenly from one end to the other, with a weight over 0.
-    pub(crate) fn between(from: f64, to: f64, weight: f64) -> Moments {
-        Moments {
-            weight,
-            mean: (from + to) / 2.0,
-            squares: weight * (to - from) * (to - from) / 12.0,
-            min: from.min(to),
-            max: from.max(to),
-        }
-    }
-
-    /// Of finite values that weigh 1 each.
-    pub(crate) fn alike(values: impl Iterator<Item = f64> + Clone) -> Moments {
-        let mut all = Moments::EMPTY;
-        // Counted from the first value, so that equal values have exactly it as their mean, and no spread.
-        let Some(first) = values.clone().next() else {
-            return all;
-        };
-        for value in values.clone() {
-            all.weight += 1.0;
-            all.mean += value - first;
-            all.min = all.min.min(value);
-            all.max = all.max.max(value);
-        }
-        all.mean = first + all.mean / all.weight;
-        for value in values {
-            all.squares += (value - all.mean) * (value - all.mean);
-        }
-        all
-    }
-
-    /// Adds the values behind `other`.
-    pub(crate) fn merge(&mut self, other: &Moments) {
-        if other.weight <= 0.0 {
-            return;
-        }
-        if self.weight <= 0.0 {
-            *self = *other;
-            return;
-        }
-        let weight = self.weight + other.weight;
-        let share = other.weight / weight;
-        let step = other.mean - self.mean;
-        self.mean += step * share;
-        self.squares += other.squares + step * step * self.weight * share;
-        self.weight = weight;
-        self.min = self.min.min(other.min);
-        self.max = self.max.max(other.max);
-    }
-
-    /// The same values with their weights multiplied by `factor`.
-    #[must_use]
-    pub(crate) fn scaled(&self, factor: f64) -> Moments {
-        Moments {
-            weight: self.weight * factor,
-            squares: self.squares * factor,
-            ..*self
-        }
-    }
-
-    /// The sum of the weights; in a [`Window`], seconds.
-    pub(crate) fn weight(&self) -> f64 {
-        self.weight
-    }
-
-    /// The weighted mean; `None` without a value.
-    pub(crate) fn mean(&self) -> Option<f64> {
-        self.known(self.mean)
-    }
-
-    /// The weighted standard deviation of the population; `None` without a value.
-    pub(crate) fn std(&self) -> Option<f64> {
-        self.known(libm::sqrt(self.squares / self.weight))
-    }
-
-    /// The weighted root mean square; `None` without a value.
-    pub(crate) fn rms(&self) -> Option<f64> {
-        self.known(libm::sqrt(
-            self.squares / self.weight + self.mean * self.mean,
-        ))
-    }
-
-    /// The smallest value; `None` without a value.
-    pub(crate) fn min(&self) -> Option<f64> {
-        self.known(self.min)
-    }
-
-    /// The largest value; `None` without a value.
-    pub(crate) fn max(&self) -> Option<f64> {
-        self.known(self.max)
-    }
-
-    fn known(&self, statistic: f64) -> Option<f64> {
-        (self.weight > 0.0).then_some(statistic)
-    }
-}
 
 /// The statistics of a signal over the last `length_s` seconds.
 ///
@@ -199,18 +69,13 @@ struct Slot {
 impl Window {
     /// Memory for a window, all zeros, so that a static one costs no place in firmware; a monitor makes it a window.
     pub const IDLE: Window = {
-        const NOTHING: Moments = Moments {
-            min: 0.0,
-            max: 0.0,
-            ..Moments::EMPTY
-        };
         const FREE: Slot = Slot {
             index: 0.0,
             start_s: 0.0,
             end_s: 0.0,
             samples: 0,
-            moments: NOTHING,
-            and_later: NOTHING,
+            moments: Moments::IDLE,
+            and_later: Moments::IDLE,
         };
         Window {
             length_s: 0.0,
@@ -220,7 +85,7 @@ impl Window {
             len: 0,
             samples: 0,
             front: 0,
-            back: NOTHING,
+            back: Moments::IDLE,
         }
     };
 
@@ -452,14 +317,6 @@ mod tests {
     }
 
     #[test]
-    fn a_quarter_of_the_time_at_full_power_is_a_quarter_of_the_weight() {
-        let mut command = Moments::of(0.5, 3.0);
-        command.merge(&Moments::of(1.0, 1.0));
-        assert_eq!(command.mean(), Some(0.625));
-        assert_eq!(command.std(), Some(0.046875_f64.sqrt()));
-    }
-
-    #[test]
     fn silence_empties_a_window() {
         let mut window = Window::new(1.0);
         for i in 1..=50 {
@@ -503,37 +360,6 @@ mod tests {
                 prop_assert!((total.mean().unwrap() - mean).abs() < 1e-6);
                 prop_assert!((total.std().unwrap() - std).abs() < 1e-6);
             }
-        }
-
-        #[test]
-        fn values_alike_are_those_merged_one_by_one(values in prop::collection::vec(-1.0..1.0f64, 0..20)) {
-            let mut merged = Moments::EMPTY;
-            for value in &values {
-                merged.merge(&Moments::of(*value, 1.0));
-            }
-            let alike = Moments::alike(values.iter().copied());
-            prop_assert_eq!((alike.weight(), alike.min(), alike.max()), (merged.weight(), merged.min(), merged.max()));
-            prop_assert!((alike.mean().unwrap_or(9.0) - merged.mean().unwrap_or(9.0)).abs() < 1e-14);
-            prop_assert!((alike.std().unwrap_or(9.0) - merged.std().unwrap_or(9.0)).abs() < 1e-14);
-        }
-
-        #[test]
-        fn equal_values_have_no_spread(value in -1.0..1.0f64, count in 1usize..20) {
-            let alike = Moments::alike(core::iter::repeat_n(value, count));
-            prop_assert_eq!((alike.mean(), alike.std()), (Some(value), Some(0.0)));
-        }
-
-        #[test]
-        fn merging_is_pooling(a in prop::collection::vec((-5.0..5.0f64, 0.1..2.0f64), 1..20), cut in 0usize..20) {
-            let pooled = a.iter().fold(Moments::EMPTY, |mut m, (x, w)| { m.merge(&Moments::of(*x, *w)); m });
-            let cut = cut.min(a.len());
-            let (mut left, mut right) = (Moments::EMPTY, Moments::EMPTY);
-            for (x, w) in &a[..cut] { left.merge(&Moments::of(*x, *w)); }
-            for (x, w) in &a[cut..] { right.merge(&Moments::of(*x, *w)); }
-            left.merge(&right);
-            prop_assert!((left.mean().unwrap() - pooled.mean().unwrap()).abs() < 1e-12);
-            prop_assert!((left.std().unwrap() - pooled.std().unwrap()).abs() < 1e-9);
-            prop_assert!((left.rms().unwrap().powi(2) - left.mean().unwrap().powi(2) - left.std().unwrap().powi(2)).abs() < 1e-9);
         }
     }
 }

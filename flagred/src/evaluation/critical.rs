@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 use super::Span;
 use crate::{
     attitude::{Attitude, CRITICAL_ERROR_DEG},
-    window::{Moments, Window},
+    moments::Moments,
+    window::Window,
 };
 
 /// The attitude error counts as its root mean square over so many seconds: a shorter one is a twitch.
