@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
-    rule_set::no_profile,
+    rule_set::profile_instead,
 };
 
 #[derive(clap::Args)]
@@ -75,8 +75,12 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     for path in &arguments.models {
         let text = read_text(path)?;
         let file = path.display().to_string();
-        no_profile(&file, &text)?;
         let (findings, analysed) = examine(&text, arguments)?;
+        if analysed.is_none()
+            && let Some(failure) = profile_instead(&file, &text)
+        {
+            return Err(failure);
+        }
         let mut out = anstream::stdout().lock();
         if arguments.json {
             let json = Json {

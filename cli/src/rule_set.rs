@@ -14,8 +14,9 @@ use crate::{
 pub(crate) fn read(path: &Path) -> Result<(Model, String), Failure> {
     let text = read_text(path)?;
     let file = path.display().to_string();
-    no_profile(&file, &text)?;
-    let document = fuzzy::yaml::parse(&text).map_err(|findings| refuse(&findings, &file, &text))?;
+    let document = fuzzy::yaml::parse(&text).map_err(|findings| {
+        profile_instead(&file, &text).unwrap_or_else(|| refuse(&findings, &file, &text))
+    })?;
     Ok((document.model, text))
 }
 
@@ -27,10 +28,10 @@ pub(crate) fn load(path: &Path) -> Result<(Model, Engine), Failure> {
     Ok((model, engine))
 }
 
-/// Refuses a profile where a rule set is asked for: one thing to say, where its keys would be a page of mistakes.
-pub(crate) fn no_profile(file: &str, text: &str) -> Result<(), Failure> {
-    Profile::from_yaml(text).map_or(Ok(()), |profile| {
-        let failure = Failure::unreadable(format!("`{file}` is a profile, not a rule set"));
-        Err(failure.help(format!("its rule set is `{}`", profile.rules)))
-    })
+/// What to say of a text that is no rule set because it is a profile: one thing, where its keys would be a page of
+/// mistakes.
+pub(crate) fn profile_instead(file: &str, text: &str) -> Option<Failure> {
+    let profile = Profile::from_yaml(text).ok()?;
+    let failure = Failure::unreadable(format!("`{file}` is a profile, not a rule set"));
+    Some(failure.help(format!("its rule set is `{}`", profile.rules)))
 }
