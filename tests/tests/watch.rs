@@ -14,12 +14,6 @@ use flagred_tests::{
 use flightlog::{Flight, mavlink::Version};
 use serde_json::{Value, json};
 
-const PERFECT: Link = Link {
-    loss: 0.0,
-    reordered: 0.0,
-    repeated: 0.0,
-};
-
 /// A good link and two bad ones.
 fn links() -> [Link; 3] {
     let bad = |loss| Link {
@@ -27,7 +21,7 @@ fn links() -> [Link; 3] {
         reordered: 0.05,
         repeated: 0.02,
     };
-    [PERFECT, bad(0.05), bad(0.3)]
+    [Link::default(), bad(0.05), bad(0.3)]
 }
 
 /// A log over UDP and TCP and over bad links: the verdict is that of `assess`.
@@ -48,7 +42,7 @@ fn every_link_gives_the_verdict_of_assess(log: &Path) {
         &told,
         &assessed,
         &format!("{} over TCP", log.display()),
-        PERFECT,
+        Link::default(),
     );
 }
 
@@ -85,7 +79,7 @@ fn watch_tcp(flight: &Flight, keep: fn(&Value) -> bool) -> (Watch, StandIn) {
     let endpoint = format!("tcp:{}", listener.local_addr().unwrap());
     let watch = Watch::start_keeping(&endpoint, &[], keep);
     let wire = Wire::tcp(listener.accept().unwrap().0);
-    let vehicle = watch.vehicle_on(flight, wire, PERFECT, Version::V1);
+    let vehicle = watch.vehicle_on(flight, wire, Link::default(), Version::V1);
     (watch, vehicle)
 }
 
@@ -147,7 +141,7 @@ fn reference_flights_get_the_verdict_of_assess_in_real_time() {
                     None => fly_tcp(&flight, Speed::Times(1.0)),
                 };
                 let case = format!("{}, {link:?}", log.display());
-                let link = link.unwrap_or(PERFECT);
+                let link = link.unwrap_or_default();
                 says_what_assess_says(&told, &assessed, &case, link);
                 let values = told.1.heard.values("FR_RISK");
                 let rate_hz =
