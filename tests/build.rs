@@ -1,11 +1,11 @@
-//! Makes a test of every Rust block of every document, so that what is printed is what runs.
+//! Finds the documents, and makes a test of every Rust block in them, so that what is printed is what runs.
 
 use std::{env, fmt::Write as _, fs, path::Path};
 
 fn main() -> std::io::Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     println!("cargo::rerun-if-changed=build.rs");
-    let mut tests = String::new();
+    let (mut names, mut tests) = (Vec::new(), String::new());
     for folder in [
         "",
         "docs",
@@ -14,6 +14,7 @@ fn main() -> std::io::Result<()> {
         "flagred",
         "flightlog",
         "cli",
+        "flagred-c",
     ] {
         let folder = root.join(folder);
         println!("cargo::rerun-if-changed={}", folder.display());
@@ -25,12 +26,18 @@ fn main() -> std::io::Result<()> {
         for page in pages {
             if page.extension().is_some_and(|extension| extension == "md") {
                 println!("cargo::rerun-if-changed={}", page.display());
-                let name = page.strip_prefix(&root).unwrap_or(&page).with_extension("");
+                let name = page.strip_prefix(&root).unwrap_or(&page);
                 let text = fs::read_to_string(&page)?;
-                add(&mut tests, &name.to_string_lossy(), &text);
+                add(
+                    &mut tests,
+                    &name.with_extension("").to_string_lossy(),
+                    &text,
+                );
+                names.push(name.to_owned());
             }
         }
     }
+    let _ = writeln!(tests, "pub const PAGES: &[&str] = &{names:?};");
     let out = env::var_os("OUT_DIR").unwrap_or_default();
     fs::write(Path::new(&out).join("documents.rs"), tests)
 }

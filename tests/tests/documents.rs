@@ -31,25 +31,7 @@ fn root() -> PathBuf {
 
 /// The Markdown files of the repository's root, of `docs/`, of `examples/` and of the packages.
 fn documents() -> Vec<PathBuf> {
-    let folders = [
-        "",
-        "docs",
-        "examples",
-        "fuzzy",
-        "flagred",
-        "flightlog",
-        "cli",
-        "flagred-c",
-    ];
-    let folders = folders.map(|folder| root().join(folder));
-    let files = folders
-        .iter()
-        .filter_map(|folder| fs::read_dir(folder).ok());
-    let mut pages: Vec<PathBuf> = files
-        .flat_map(|entries| entries.map(|entry| entry.unwrap().path()))
-        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
-        .collect();
-    pages.sort();
+    let pages: Vec<PathBuf> = rust::PAGES.iter().map(|page| root().join(page)).collect();
     assert!(pages.len() >= 5, "{pages:?}");
     pages
 }
