@@ -267,7 +267,7 @@ fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(
         "-Wpedantic",
         "-Werror",
     ]);
-    cc.arg("-I").arg(root.join("flagred-c/include"));
+    cc.arg("-I").arg(root.join("bindings/c/include"));
     if let Some((profile, plan)) = exported {
         let header = folder.at("profile.h");
         let status = flagred()
@@ -347,7 +347,7 @@ fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs
 fn the_example_in_c_runs() {
     let profile = ("flagred", "flagred");
     let Some((mut program, _folder)) =
-        program("flagred-c/examples/hover.c", "hover", Some(profile))
+        program("bindings/c/examples/hover.c", "hover", Some(profile))
     else {
         return;
     };
@@ -374,7 +374,7 @@ fn risks(csv: &[u8]) -> BTreeMap<u64, f64> {
 fn a_log_flown_again_in_c_has_the_risk_of_assess() {
     let profile = ("flagred", "flagred");
     let Some((mut program, folder)) =
-        program("flagred-c/examples/replay.c", "replay", Some(profile))
+        program("bindings/c/examples/replay.c", "replay", Some(profile))
     else {
         return;
     };

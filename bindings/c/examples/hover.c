@@ -2,7 +2,7 @@
  *
  *   flagred export --c --output profile.h
  *   cargo build -p flagred-c --no-default-features --profile onboard
- *   cc -DPROFILE='"profile.h"' -I flagred-c/include flagred-c/examples/hover.c target/onboard/libflagred.a -o hover */
+ *   cc -DPROFILE='"profile.h"' -I bindings/c/include bindings/c/examples/hover.c target/onboard/libflagred.a -o hover */
 #include <stdio.h>
 
 #include PROFILE

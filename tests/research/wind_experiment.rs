@@ -1,7 +1,7 @@
 //! A flight in wind: the risk from its motors beside the autopilot's own wind estimate and, where the log of a simulator
 //! has it, the true wind.
 //!
-//! `cargo run -p flagred-examples --bin wind_experiment -- FLIGHT.BIN wind.svg`
+//! `cargo run -p flagred-tests --example wind_experiment -- FLIGHT.BIN wind.svg`
 
 use std::{error::Error, fmt::Write as _, fs};
 
