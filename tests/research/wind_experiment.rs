@@ -6,8 +6,7 @@
 use std::{error::Error, fmt::Write as _, fs};
 
 use flagred::{
-    estimator::Estimator,
-    monitor::{Monitor, Sample},
+    monitor::{Craft, Monitor, Sample},
     shipped,
 };
 use flightlog::Flight;
@@ -28,10 +27,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Seconds and risk in %, where it is known.
 fn risks(flight: &Flight) -> Result<Vec<(f64, f64)>, Box<dyn Error>> {
-    let profile = shipped::profile("flagred").ok_or("not shipped")??;
-    let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    let estimator = Estimator::new(&profile, &rules)?;
-    let mut monitor = Monitor::new(&estimator, flight.motors.len(), &[])?;
+    let estimator = shipped::flagred();
+    let mut monitor = Monitor::new(&estimator, Craft::new(flight.motors.len()))?;
     let mut risks = Vec::new();
     for (t_s, row) in flight.commands.rows() {
         let effective = |raw: &f64| flight.effective_command(*raw).unwrap_or(f64::NAN);

@@ -3,9 +3,9 @@
 use std::{fmt::Write, path::PathBuf};
 
 use flagred::{
-    assessment::{Assessment, Estimate, Sample},
     estimator::Estimator,
     profile::Profile,
+    sample::{Estimate, Sample, Update},
     verdict::{Ended, Finding},
 };
 use flightlog::{Flight, Options};
@@ -39,7 +39,7 @@ pub fn estimator(profile: &str) -> Estimator {
         _ => "profiles/flagred-battery.yaml",
     };
     let text = std::fs::read_to_string(folder.join(file)).unwrap();
-    let profile = Profile::from_yaml(&text).unwrap();
+    let profile = text.parse::<Profile>().unwrap();
     let name = profile.rules.rsplit('/').next().unwrap_or_default();
     let name = name.trim_end_matches(".yaml");
     let rules = std::fs::read_to_string(folder.join(format!("{name}.yaml"))).unwrap();
@@ -196,8 +196,8 @@ pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
 }
 
 /// Everything an assessment says, bit for bit, as the harness in C writes it.
-pub fn told(said: &Assessment) -> String {
-    use flagred::assessment::Unknown;
+pub fn told(said: &Update) -> String {
+    use flagred::sample::Unknown;
     let (unknown, input) = match said.risk {
         Ok(_) => (0, -1),
         Err(Unknown::OnGround) => (1, -1),

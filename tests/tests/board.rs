@@ -13,7 +13,7 @@ use flagred::{
     board::{self, Memory, Parts, Plan, table},
     channel::Seen,
     estimator::Estimator,
-    monitor::Monitor,
+    monitor::{Craft, Monitor},
     verdict::Motor,
     window::Window,
 };
@@ -67,7 +67,11 @@ fn with_monitor<R>(
 /// What the monitor says of a flight, sample by sample, and at its end.
 fn by_the_monitor(estimator: &Estimator, flight: &[Moment]) -> Vec<String> {
     let signals = estimator.profile().signals();
-    let mut monitor = Monitor::new(estimator, flight[0].motors.len(), &signals).unwrap();
+    let mut monitor = Monitor::new(
+        estimator,
+        Craft::new(flight[0].motors.len()).with_signals(&signals),
+    )
+    .unwrap();
     let said = flight
         .iter()
         .map(|moment| told(&monitor.push(&moment.sample())));
@@ -411,7 +415,7 @@ fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
             text += &format!("  {0}: {{last: signal_{0}}}\n", input.name);
         }
         text += "gap: {method: nearest}\n";
-        let profile = flagred::profile::Profile::from_yaml(&text).unwrap();
+        let profile = text.parse::<flagred::profile::Profile>().unwrap();
         let estimator = Estimator::new(&profile, &model).unwrap();
         folder.file(&format!("{name}.yaml"), rules);
         let file = folder.file(&format!("{name}-profile.yaml"), text);

@@ -37,7 +37,7 @@ int main(void) {
     }
     for (int step = 0; step < 2500; step++) {
         double commands[4];
-        flagred_assessment said;
+        flagred_update said;
         commands_at(step, commands);
         flagred_sample sample = {.t_s = step * STEP_S, .commands = commands, .motors = 4, .in_air = 1};
         status = flagred_push(monitor, &sample, &said);

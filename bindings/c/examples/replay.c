@@ -28,7 +28,7 @@ int main(void) {
                    &sample.in_air) != 6) {
             continue; /* a comment, or the names of the columns */
         }
-        flagred_assessment said;
+        flagred_update said;
         if (flagred_push(monitor, &sample, &said) != FLAGRED_OK) {
             return 1;
         }

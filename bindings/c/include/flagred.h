@@ -8,7 +8,7 @@
  *     static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
  *     flagred_monitor *monitor;
  *     flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor);
- *     flagred_push(monitor, &sample, &assessment);             // for every sample of the motors
+ *     flagred_push(monitor, &sample, &update);             // for every sample of the motors
  *
  * Functions do not block, lock or write anywhere but to what they are given. A monitor is for one thread at a time.
  * What is not known is NAN, or a reason; never a number that could be taken for a risk.
@@ -90,7 +90,7 @@ typedef struct flagred_finding {
 } flagred_finding;
 
 /* What is known after a sample. */
-typedef struct flagred_assessment {
+typedef struct flagred_update {
     double t_s;
     double risk_pct;            /* NAN where unknown */
     double elevated_risk_pct;   /* NAN where unknown */
@@ -103,7 +103,7 @@ typedef struct flagred_assessment {
     int32_t change;             /* flagred_level: the new level where this sample changed it */
     int32_t unknown;            /* flagred_unknown */
     int32_t unknown_input;      /* the input of the profile that is unknown, counted from 0; else -1 */
-} flagred_assessment;
+} flagred_update;
 
 typedef struct flagred_plan flagred_plan;
 typedef struct flagred_monitor flagred_monitor;
@@ -125,7 +125,7 @@ int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_lim
                       flagred_monitor **monitor);
 
 /* Takes a sample in and says what is known. */
-int32_t flagred_push(flagred_monitor *monitor, const flagred_sample *sample, flagred_assessment *assessment);
+int32_t flagred_push(flagred_monitor *monitor, const flagred_sample *sample, flagred_update *update);
 
 /* The finding that the level rests on, as it stands; one of FLAGRED_LEVEL_NONE while the level is good. */
 int32_t flagred_open_finding(const flagred_monitor *monitor, flagred_finding *finding);
@@ -135,7 +135,7 @@ int32_t flagred_finish(flagred_monitor *monitor, flagred_finding ended[2]);
 
 /* The risk at values of the profile's inputs, in its order, whatever was flown: for tests and for maps. Fills in what is
  * said of one moment: the risk, coverage, filled_from, dominant_rule, clamped. */
-int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t count, flagred_assessment *assessment);
+int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t count, flagred_update *update);
 
 /* ---- Exported data: written by `flagred export --c`, not by hand --------------------------------------------------- */
 

@@ -4,26 +4,26 @@
 //! `unsafe` of the workspace.
 #![cfg_attr(not(feature = "std"), no_std)]
 
-mod assessment;
 mod memory;
 mod plan;
 mod status;
+mod update;
 
 use core::ffi::{CStr, c_char};
 
 use flagred::{
-    assessment::Sample,
     board::{Memory, Monitor, Parts},
     channel::Seen,
     margin::Range,
+    sample::Sample,
     verdict::Motor,
     window::Window,
 };
 
-use assessment::{Assessment, Finding, findings};
 use memory::Block;
 use plan::{Array, Plan};
 use status::Status;
+use update::{Finding, Update, findings};
 
 /// The limits of a motor.
 #[derive(Debug, Clone, Copy)]
@@ -172,17 +172,17 @@ unsafe fn start(
 ///
 /// # Safety
 /// `monitor` is null or came from [`flagred_start`]; `sample` is null or points to a sample whose arrays are as long as it
-/// says; `assessment` is null or can be written.
+/// says; `update` is null or can be written.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_push(
     monitor: *mut CMonitor,
     sample: *const CSample,
-    assessment: *mut Assessment,
+    update: *mut Update,
 ) -> i32 {
     // SAFETY: the caller's promises.
     let (monitor, sample) = unsafe { (monitor.as_mut(), sample.as_ref()) };
-    let (Some(monitor), Some(sample), false) = (monitor, sample, assessment.is_null()) else {
+    let (Some(monitor), Some(sample), false) = (monitor, sample, update.is_null()) else {
         return Status::NullPointer as i32;
     };
     // SAFETY: the caller's promise on the sample's arrays, which are used in this call alone.
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn flagred_push(
         signals,
     });
     // SAFETY: not null, and the caller lets it be written.
-    unsafe { assessment.write(Assessment::of(&said)) };
+    unsafe { update.write(Update::of(&said)) };
     Status::Ok as i32
 }
 
@@ -249,7 +249,7 @@ pub unsafe extern "C" fn flagred_finish(monitor: *mut CMonitor, ended: *mut [Fin
 /// The risk at values of the profile's inputs, whatever was flown.
 ///
 /// # Safety
-/// `monitor` is null or came from [`flagred_start`]; `inputs` is null or points to `count` numbers; `assessment` is null
+/// `monitor` is null or came from [`flagred_start`]; `inputs` is null or points to `count` numbers; `update` is null
 /// or can be written.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
@@ -257,7 +257,7 @@ pub unsafe extern "C" fn flagred_evaluate(
     monitor: *mut CMonitor,
     inputs: *const f64,
     count: usize,
-    assessment: *mut Assessment,
+    update: *mut Update,
 ) -> i32 {
     let inputs = Array {
         items: inputs,
@@ -265,12 +265,12 @@ pub unsafe extern "C" fn flagred_evaluate(
     };
     // SAFETY: the caller's promises.
     let (monitor, inputs) = unsafe { (monitor.as_mut(), inputs.read()) };
-    let (Some(monitor), Ok(inputs), false) = (monitor, inputs, assessment.is_null()) else {
+    let (Some(monitor), Ok(inputs), false) = (monitor, inputs, update.is_null()) else {
         return Status::NullPointer as i32;
     };
     let said = monitor.monitor.at(inputs);
     // SAFETY: not null, and the caller lets it be written.
-    unsafe { assessment.write(Assessment::of_moment(said)) };
+    unsafe { update.write(Update::of_moment(said)) };
     Status::Ok as i32
 }
 

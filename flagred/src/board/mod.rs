@@ -8,13 +8,11 @@
 //!
 //! ```
 //! use flagred::{
-//!     assessment::Sample, board::{Memory, Monitor, Parts, table::{Outcome, Partial, Strongest}},
+//!     sample::Sample, board::{Memory, Monitor, Parts, table::{Outcome, Partial, Strongest}},
 //!     channel::Seen, estimator::Estimator, shipped, verdict::Motor, window::Window,
 //! };
 //!
-//! let profile = shipped::profile("flagred").ok_or("not shipped")??;
-//! let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-//! let estimator = Estimator::new(&profile, &rules)?;
+//! let estimator = shipped::flagred();
 //! let plan = estimator.plan()?;
 //!
 //! let sizes = plan.sizes();
@@ -46,11 +44,11 @@
 use fuzzy::table::{Broken, Outcome, Scratch, Table};
 
 use crate::{
-    assessment::{Assessment, Estimate, Sample},
     channel::{Channel, Input, Observed, Seen},
     follower::{Follower, Room, Settings},
     gap::FilledKnots,
     lookup::Lookup,
+    sample::{Estimate, Sample, Update},
     verdict::{Ended, Finding, Motor},
     window::Window,
 };
@@ -62,20 +60,6 @@ mod storage;
 pub use storage::{Parts, Sizes, Storage};
 
 /// A profile and its rule set, compiled, as plain data.
-///
-/// # Example: what an exported profile is made of
-/// ```
-/// # use flagred::{estimator::Estimator, shipped};
-/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
-/// use flagred::board::Plan;
-///
-/// let Plan { name, channels, inputs, signals, coverage_below, filled, .. } = estimator.plan()?;
-/// assert_eq!((name, channels.len(), inputs.len(), signals), ("flagred-paper", 2, 2, 0));
-/// assert!(coverage_below == 0.5 && filled.is_some());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Plan<'a> {
     /// The name of the profile.
@@ -101,22 +85,6 @@ pub struct Plan<'a> {
 }
 
 /// Why there is no monitor.
-///
-/// # Example: memory of another plan, and of no motors
-/// ```
-/// # use flagred::{estimator::Estimator, shipped};
-/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
-/// use flagred::board::{Refused, Storage};
-///
-/// let plan = estimator.plan()?;
-/// let mut too_small: Storage<13, 12, 1, 2, 4> = Storage::new();
-/// assert_eq!(too_small.monitor(&plan).err(), Some(Refused::Memory));
-/// let mut no_motors: Storage<14, 12, 1, 2, 0> = Storage::new();
-/// assert_eq!(no_motors.monitor(&plan).err(), Some(Refused::NoMotors));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Refused {
@@ -164,21 +132,6 @@ impl Plan<'_> {
     ///
     /// # Errors
     /// What points beyond what it points into.
-    ///
-    /// # Example: an input that no channel feeds
-    /// ```
-    /// # use flagred::{estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// use flagred::board::{Plan, table::Broken};
-    ///
-    /// let plan = estimator.plan()?;
-    /// assert_eq!(plan.check(), Ok(()));
-    /// let damaged = Plan { channels: &plan.channels[..1], ..plan };
-    /// assert_eq!(damaged.check(), Err(Broken("inputs of the profile")));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn check(&self) -> Result<(), Broken> {
         self.table.check()?;
         let holds = |holds: bool, array| holds.then_some(()).ok_or(Broken(array));
@@ -241,24 +194,6 @@ impl Plan<'_> {
 ///
 /// It allocates nothing, and a sample costs the same whatever the lengths of the windows. A flight stack that has no
 /// static place for a monitor can keep one as a local variable: it is a few hundred bytes, the rest is in the memory.
-///
-/// # Example: the same bits as where there is a standard library
-/// ```
-/// # use flagred::{estimator::Estimator, shipped};
-/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
-/// use flagred::{assessment::Sample, board::Storage, monitor};
-///
-/// let plan = estimator.plan()?;
-/// let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
-/// let (mut on_board, mut at_home) = (storage.monitor(&plan)?, monitor::Monitor::new(&estimator, 4, &[])?);
-/// for i in 0..500 {
-///     let sample = Sample { t_s: f64::from(i) * 0.02, motors: &[0.3, 0.6, 0.4, 0.9], in_air: true, signals: &[] };
-///     assert_eq!(on_board.push(&sample), at_home.push(&sample));
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct Monitor<'a> {
     plan: &'a Plan<'a>,
@@ -271,29 +206,6 @@ impl<'a> Monitor<'a> {
     ///
     /// # Errors
     /// The memory is not of the plan's sizes, there is no motor, or the plan is damaged.
-    ///
-    /// # Example: in memory that is lent
-    /// ```
-    /// # use flagred::{estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// # use flagred::{board::{Memory, Monitor, Parts, table::{Outcome, Partial, Strongest}}, channel::Seen, verdict::Motor, window::Window};
-    /// # let plan = estimator.plan()?;
-    /// # let sizes = plan.sizes();
-    /// # let (mut numbers, mut partials) = (vec![0.0; sizes.numbers], vec![Partial::NONE; sizes.partials]);
-    /// # let (mut strongest, mut outcomes) = ([Strongest::NONE], [Outcome::UNDEFINED]);
-    /// # let (mut seen, mut risks) = (vec![Seen::IDLE; sizes.channels], Window::IDLE);
-    /// # let mut motors = [Motor::UNKNOWN; 4];
-    /// # let parts = Parts {
-    /// #     numbers: &mut numbers, partials: &mut partials, strongest: &mut strongest, outcomes: &mut outcomes,
-    /// #     seen: &mut seen, risks: &mut risks, motors: &mut motors,
-    /// # };
-    /// let memory = Memory::of(&plan, parts).ok_or("another plan's memory")?;
-    /// let monitor = Monitor::new(&plan, memory)?;
-    /// assert!(monitor.inputs().iter().all(|value| value.is_nan()), "nothing is known yet");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, Refused> {
         plan.check().map_err(Refused::Plan)?;
         if !plan.fits(&memory) {
@@ -316,26 +228,7 @@ impl<'a> Monitor<'a> {
     }
 
     /// Takes a sample in.
-    ///
-    /// # Example: hovering in still air
-    /// ```
-    /// # use flagred::{assessment::Sample, board::{Monitor, Storage}, estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// # let plan = estimator.plan()?;
-    /// # let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
-    /// # let mut monitor: Monitor<'_> = storage.monitor(&plan)?;
-    /// let mut risk_pct = None;
-    /// for i in 0..100 {
-    ///     let t_s = f64::from(i) * 0.04;
-    ///     let said = monitor.push(&Sample { t_s, motors: &[0.5; 4], in_air: true, signals: &[] });
-    ///     risk_pct = said.risk.ok().map(|estimate| estimate.risk_pct);
-    /// }
-    /// assert!(risk_pct.is_some_and(|risk_pct| risk_pct < 10.0));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn push(&mut self, sample: &Sample<'_>) -> Assessment {
+    pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let Memory {
             scratch,
             outcomes,
@@ -360,21 +253,6 @@ impl<'a> Monitor<'a> {
 
     /// The risk at values of the inputs, in the order of the profile, whatever was flown: what it says at such a moment.
     /// `None` where rules say nothing and there is nothing to fill from, or a value is not finite.
-    ///
-    /// # Example: on the ground, before anything was flown
-    /// ```
-    /// # use flagred::{assessment::Sample, board::{Monitor, Storage}, estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// # let plan = estimator.plan()?;
-    /// # let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
-    /// # let mut monitor: Monitor<'_> = storage.monitor(&plan)?;
-    /// let gusty = monitor.at(&[0.05, 0.2]).ok_or("unknown")?; // margin and spread
-    /// assert!(gusty.risk_pct > 90.0);
-    /// assert_eq!(monitor.at(&[f64::NAN, 0.2]), None);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn at(&mut self, inputs: &[f64]) -> Option<Estimate> {
         let Memory {
             scratch,
@@ -386,71 +264,16 @@ impl<'a> Monitor<'a> {
     }
 
     /// The values of the inputs after the latest sample, in the order of the profile; NaN is unknown.
-    ///
-    /// # Example: two motors at 0.4 and two at 0.6
-    /// ```
-    /// # use flagred::{assessment::Sample, board::{Monitor, Storage}, estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// # let plan = estimator.plan()?;
-    /// # let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
-    /// # let mut monitor: Monitor<'_> = storage.monitor(&plan)?;
-    /// for i in 0..100 {
-    ///     let t_s = f64::from(i) * 0.04;
-    ///     monitor.push(&Sample { t_s, motors: &[0.4, 0.6, 0.4, 0.6], in_air: true, signals: &[] });
-    /// }
-    /// let [margin, spread] = monitor.inputs() else { return Err("two inputs".into()) };
-    /// assert!((margin - 0.4).abs() < 1e-9 && (spread - 0.1).abs() < 1e-9);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn inputs(&self) -> &[f64] {
         self.memory.inputs
     }
 
     /// The finding that the level rests on, as it stands so far; `None` while the level is good.
-    ///
-    /// # Example: while motors are at their limits
-    /// ```
-    /// # use flagred::{assessment::Sample, board::{Monitor, Storage}, estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// # let plan = estimator.plan()?;
-    /// # let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
-    /// # let mut monitor: Monitor<'_> = storage.monitor(&plan)?;
-    /// for i in 0..300 {
-    ///     let t_s = f64::from(i) * 0.04;
-    ///     let motors = if t_s < 10.0 { [0.5; 4] } else { [0.0, 1.0, 0.0, 1.0] };
-    ///     monitor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
-    /// }
-    /// assert!(monitor.open_finding().is_some_and(|finding| finding.from_s > 10.0));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn open_finding(&self) -> Option<Finding> {
         self.follower.open_finding(self.memory.motors)
     }
 
     /// Ends the flight: the findings that were still open.
-    ///
-    /// # Example: a flight that ends in trouble
-    /// ```
-    /// # use flagred::{assessment::Sample, board::{Monitor, Storage}, estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// # let plan = estimator.plan()?;
-    /// # let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
-    /// # let mut monitor: Monitor<'_> = storage.monitor(&plan)?;
-    /// for i in 0..300 {
-    ///     let t_s = f64::from(i) * 0.04;
-    ///     let motors = if t_s < 10.0 { [0.5; 4] } else { [0.0, 1.0, 0.0, 1.0] };
-    ///     monitor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
-    /// }
-    /// let [warn, fail] = monitor.finish();
-    /// assert!(warn.is_some() && fail.is_some());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn finish(&mut self) -> Ended {
         let Memory {
             inputs,

@@ -14,22 +14,6 @@ use crate::{
 /// profile names the sizes.
 ///
 /// A static one is all zeros, so it takes memory but no place in firmware.
-///
-/// # Example: what the exported paper's profile calls `Storage<4>`
-/// ```
-/// # use flagred::{estimator::Estimator, shipped};
-/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
-/// use flagred::{assessment::{Sample, Unknown}, board::Storage};
-///
-/// let plan = estimator.plan()?; // on board, the exported `PLAN`
-/// let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
-/// let mut monitor = storage.monitor(&plan)?;
-/// let said = monitor.push(&Sample { t_s: 0.0, motors: &[0.0; 4], in_air: false, signals: &[] });
-/// assert_eq!(said.risk, Err(Unknown::OnGround));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct Storage<
     const NUMBERS: usize,
@@ -48,19 +32,6 @@ pub struct Storage<
 }
 
 /// How much memory a plan needs beside its motors.
-///
-/// # Example: what the paper's profile needs
-/// ```
-/// # use flagred::{estimator::Estimator, shipped};
-/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
-/// use flagred::board::Sizes;
-///
-/// let sizes = Sizes { numbers: 14, partials: 12, outputs: 1, channels: 2 };
-/// assert_eq!(estimator.plan()?.sizes(), sizes);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sizes {
     /// Numbers, of all kinds.
@@ -88,18 +59,6 @@ pub struct Parts<'m> {
 
 impl Plan<'_> {
     /// How much memory it needs.
-    ///
-    /// # Example: a window for each thing that is observed
-    /// ```
-    /// # use flagred::{estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// let plan = estimator.plan()?;
-    /// assert_eq!(plan.sizes().channels, plan.channels.len());
-    /// assert_eq!(plan.sizes().outputs, 1);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub const fn sizes(&self) -> Sizes {
         let inputs = self.table.inputs.len();
         let sizes = self.table.sizes;
@@ -114,18 +73,6 @@ impl Plan<'_> {
 
     /// At most so many bytes hold the plan's and the monitor's own data, all its memory, and for each motor its limits and
     /// its command; pieces may be aligned to 16 bytes.
-    ///
-    /// # Example: the paper's profile on a quadrotor
-    /// ```
-    /// # use flagred::{estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// let plan = estimator.plan()?;
-    /// assert!((40_000..50_000).contains(&plan.bytes(4)));
-    /// assert!(plan.bytes(8) - plan.bytes(4) < 1000, "a motor takes little beside the windows");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub const fn bytes(&self, motors: usize) -> usize {
         const ALIGNED: usize = 15;
         let sizes = self.sizes();
@@ -142,29 +89,6 @@ impl Plan<'_> {
 
 impl<'m> Memory<'m> {
     /// The memory of a monitor of its parts; `None` where they are not of the plan's sizes.
-    ///
-    /// # Example: a number too few
-    /// ```
-    /// # use flagred::{estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// # use flagred::{board::{Memory, table::{Outcome, Partial, Strongest}}, channel::Seen, verdict::Motor, window::Window};
-    /// # let plan = estimator.plan()?;
-    /// # let sizes = plan.sizes();
-    /// # let mut partials = vec![Partial::NONE; sizes.partials];
-    /// # let (mut strongest, mut outcomes) = ([Strongest::NONE], [Outcome::UNDEFINED]);
-    /// # let (mut seen, mut risks) = (vec![Seen::IDLE; sizes.channels], Window::IDLE);
-    /// # let mut motors = [Motor::UNKNOWN; 4];
-    /// # let (partials, strongest, outcomes) = (&mut partials[..], &mut strongest[..], &mut outcomes[..]);
-    /// # let (seen, risks, motors) = (&mut seen[..], &mut risks, &mut motors[..]);
-    /// use flagred::board::Parts;
-    ///
-    /// let numbers = &mut vec![0.0; sizes.numbers - 1];
-    /// let parts = Parts { numbers, partials, strongest, outcomes, seen, risks, motors };
-    /// assert!(Memory::of(&plan, parts).is_none());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn of(plan: &Plan<'_>, parts: Parts<'m>) -> Option<Memory<'m>> {
         let sizes = plan.table.sizes;
         let inputs = plan.table.inputs.len();
@@ -214,15 +138,6 @@ impl<
 > Storage<NUMBERS, PARTIALS, OUTPUTS, CHANNELS, MOTORS>
 {
     /// Memory that holds nothing yet.
-    ///
-    /// # Example: a static one
-    /// ```
-    /// use flagred::board::Storage;
-    /// use std::sync::Mutex;
-    ///
-    /// static STORAGE: Mutex<Storage<14, 12, 1, 2, 4>> = Mutex::new(Storage::new());
-    /// assert!(size_of_val(&STORAGE) < 50_000);
-    /// ```
     pub const fn new() -> Self {
         Storage {
             numbers: [0.0; NUMBERS],
@@ -239,26 +154,6 @@ impl<
     ///
     /// # Errors
     /// The plan is another than the one that the sizes were made for, it is damaged, or there is no motor.
-    ///
-    /// # Example: a flight after a flight
-    /// ```
-    /// # use flagred::{estimator::Estimator, shipped};
-    /// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-    /// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    /// # let estimator = Estimator::new(&profile, &rules)?;
-    /// use flagred::{assessment::Sample, board::Storage};
-    ///
-    /// let plan = estimator.plan()?;
-    /// let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
-    /// for _ in 0..2 {
-    ///     let mut flight = storage.monitor(&plan)?;
-    ///     assert!(flight.inputs()[0].is_nan(), "nothing is left of the one before");
-    ///     for t_s in [0.0, 0.5, 1.0] {
-    ///         flight.push(&Sample { t_s, motors: &[0.5; 4], in_air: true, signals: &[] });
-    ///     }
-    /// }
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn monitor<'a>(&'a mut self, plan: &'a Plan<'a>) -> Result<Monitor<'a>, Refused> {
         let parts = Parts {
             numbers: &mut self.numbers,

@@ -1,8 +1,8 @@
 //! What is known, as C has it.
 
 use flagred::{
-    assessment::{self, Estimate, Unknown},
     margin::Side,
+    sample::{self, Estimate, Unknown},
     verdict::{self, Ended, Level, Measure},
 };
 
@@ -26,7 +26,7 @@ pub struct Finding {
 /// What is known after a sample.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
-pub struct Assessment {
+pub struct Update {
     t_s: f64,
     risk_pct: f64,
     elevated_risk_pct: f64,
@@ -81,8 +81,8 @@ pub(crate) fn findings(ended: Ended) -> [Finding; 2] {
     ended.map(Finding::of)
 }
 
-impl Assessment {
-    pub(crate) fn of(said: &assessment::Assessment) -> Assessment {
+impl Update {
+    pub(crate) fn of(said: &sample::Update) -> Update {
         let (unknown, unknown_input) = match said.risk {
             Ok(_) => (0, -1),
             Err(Unknown::OnGround) => (1, -1),
@@ -92,7 +92,7 @@ impl Assessment {
             Err(Unknown::NoValue { input }) => (5, index(input)),
             Err(Unknown::NoRule) => (6, -1),
         };
-        Assessment {
+        Update {
             t_s: said.t_s,
             elevated_risk_pct: said.elevated_risk_pct.unwrap_or(f64::NAN),
             ended: findings(said.ended),
@@ -100,14 +100,14 @@ impl Assessment {
             change: level(said.change),
             unknown,
             unknown_input,
-            ..Assessment::of_moment(said.risk.ok())
+            ..Update::of_moment(said.risk.ok())
         }
     }
 
     /// What is said of one moment, whatever came before.
-    pub(crate) fn of_moment(said: Option<Estimate>) -> Assessment {
+    pub(crate) fn of_moment(said: Option<Estimate>) -> Update {
         let known = |value: fn(&Estimate) -> f64| said.as_ref().map_or(f64::NAN, value);
-        Assessment {
+        Update {
             t_s: f64::NAN,
             risk_pct: known(|said| said.risk_pct),
             elevated_risk_pct: f64::NAN,
