@@ -1,6 +1,7 @@
 //! What ArduPilot's parameters and messages say about the vehicle: its kind, its motors,
 //! the range of their commands.
 
+use crate::geometry::tables;
 use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
 
@@ -32,18 +33,21 @@ pub(crate) fn motors(
     if !has_functions(parameters) {
         let frame = vehicle.frame.as_deref().unwrap_or_default();
         let source = format!("frame {frame} (the log has no SERVOn_FUNCTION)");
-        return numbered_motors(vehicle.motors.unwrap_or(0), name, &source);
+        return match vehicle.motors.unwrap_or(0) {
+            TRI => [1, 2, REAR_OF_TRI]
+                .map(|number| (motor(number, name(number), &source), number))
+                .into(),
+            count => numbered_motors(count, name, &source),
+        };
     }
     let mut motors: Vec<(Motor, u16)> = (1..=32)
         .filter_map(|output| {
             let parameter = format!("SERVO{output}_FUNCTION");
             let function = parameters.get(&parameter)?;
-            let motor = Motor {
-                number: motor_of_function(function as i64)?,
-                output: name(output),
-                source: format!("{parameter} = {function}"),
-            };
-            Some((motor, output))
+            let number = motor_of_function(function as i64)?;
+            let source = format!("{parameter} = {function}");
+            let is_servo = vehicle.motors == Some(TRI) && number == SERVO_OF_TRI;
+            (!is_servo).then(|| (motor(number, name(output), &source), output))
         })
         .collect();
     motors.sort_by_key(|(motor, output)| (motor.number, *output));
@@ -57,16 +61,22 @@ pub(crate) fn numbered_motors(
     source: &str,
 ) -> Vec<(Motor, u16)> {
     (1..=motors)
-        .map(|number| {
-            let motor = Motor {
-                number,
-                output: name(number),
-                source: source.into(),
-            };
-            (motor, number)
-        })
+        .map(|number| (motor(number, name(number), source), number))
         .collect()
 }
+
+fn motor(number: u16, output: String, source: &str) -> Motor {
+    Motor {
+        number,
+        output,
+        source: source.into(),
+    }
+}
+
+/// Motors of a tricopter: 1, 2 and 4. Motor 7 stands for the servo that tilts the rear motor.
+const TRI: u16 = 3;
+const REAR_OF_TRI: u16 = 4;
+const SERVO_OF_TRI: u16 = 7;
 
 /// Armed and in-air times from the commands alone, for logs without events: armed while
 /// any motor runs, in the air while the mean command is above 0.2.
@@ -154,36 +164,7 @@ const COPTER_MODES: &[&str] = &[
 
 /// Number of motors of a frame by the name or class that the log gives it.
 fn motors_of_frame(frame: &str) -> Option<u16> {
-    let class = frame.split(['/', ' ']).next().unwrap_or(frame);
-    Some(match class.to_ascii_uppercase().as_str() {
-        "QUAD" | "QUAD_X" => 4,
-        "TRI" => 3,
-        "HEXA" | "Y6" => 6,
-        "OCTA" | "OCTA_QUAD" | "OCTAQUAD" => 8,
-        "DODECAHEXA" => 12,
-        "DECA" => 10,
-        _ => return None,
-    })
-}
-
-/// Name of a FRAME_CLASS.
-fn frame_of_class(class: i64) -> Option<&'static str> {
-    Some(match class {
-        1 => "QUAD",
-        2 => "HEXA",
-        3 => "OCTA",
-        4 => "OCTA_QUAD",
-        5 => "Y6",
-        6 => "HELI",
-        7 => "TRI",
-        8 => "SINGLE",
-        9 => "COAX",
-        11 => "HELI_DUAL",
-        12 => "DODECAHEXA",
-        13 => "HELI_QUAD",
-        14 => "DECA",
-        _ => return None,
-    })
+    tables::motors_of_class(tables::parse(frame)?.0)
 }
 
 /// Full range of the motor outputs: MOT_PWM_MIN/MAX if both are above 0, else
@@ -241,7 +222,7 @@ pub(crate) fn vehicle<'a>(
         .filter_map(|text| text.strip_prefix("Frame: "))
         .map(str::to_owned)
         .next()
-        .or_else(|| frame_of_class(class?).map(str::to_owned));
+        .or_else(|| tables::name_of_class(class?).map(str::to_owned));
     let (mut kind, mut source) = match firmware {
         Some(text) => (
             kind_of_firmware(text).unwrap_or_default(),

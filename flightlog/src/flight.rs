@@ -1,6 +1,6 @@
 //! `Flight`: one shape for every log.
 
-use crate::{Intervals, Report, Series, Signal};
+use crate::{Geometry, Intervals, Report, Series, Signal};
 
 /// The kind of log a flight was read from.
 ///
@@ -327,6 +327,9 @@ pub struct Flight {
     pub vehicle: Vehicle,
     /// The motors in order of their number; a column of `commands` each.
     pub motors: Vec<Motor>,
+    /// How much each motor rolls, pitches and yaws the vehicle; `None` where the log does not
+    /// tell and the commands do not either.
+    pub geometry: Option<Geometry>,
     /// Range of the raw commands, 0 % to 100 %; `None` when the log does not tell.
     pub range: Option<Range>,
     /// The part of the range that is used in flight, as fractions of it: a motor at its
@@ -360,6 +363,7 @@ impl Flight {
             format,
             vehicle: Vehicle::default(),
             motors: Vec::new(),
+            geometry: None,
             range: None,
             effective: whole_range("the log names no tighter limits"),
             commands: Commands::default(),

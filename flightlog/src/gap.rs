@@ -139,8 +139,8 @@ impl Flight {
         } else if self.commands.is_empty() {
             gaps.push(Gap::NoCommands);
         }
-        let numbers = self.motors.iter().map(|motor| motor.number.into());
-        let expected = numbers.chain(self.vehicle.motors.map(usize::from)).max();
+        let numbers = self.motors.iter().map(|motor| motor.number).max();
+        let expected = self.vehicle.motors.or(numbers).map(usize::from);
         let found = self.motors.len();
         if let Some(expected) = expected.filter(|&expected| expected > found && found > 0) {
             gaps.push(Gap::MotorsMissing { found, expected });

@@ -8,6 +8,7 @@ use csv::{ByteRecord, ReaderBuilder};
 
 use crate::error::io_error;
 use crate::flight::whole_range;
+use crate::geometry::{self, Declared, tables};
 use crate::input::Input;
 use crate::signal::{Label, preferred};
 use crate::{
@@ -71,7 +72,8 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     flight.in_air = Some(rows.in_air());
     flight.commands = rows.commands;
     flight.series = preferred(vec![rows.series]);
-    apply_header(&mut flight, header, &layout)?;
+    let declared = apply_header(&mut flight, header, &layout)?;
+    flight.geometry = geometry::find(&flight, &declared);
     Ok(flight)
 }
 
@@ -353,7 +355,7 @@ fn apply_header(
     flight: &mut Flight,
     header: Vec<HeaderLine>,
     layout: &Layout,
-) -> Result<(), ReadError> {
+) -> Result<Declared, ReadError> {
     let value = |key: &str| -> Result<Option<f64>, ReadError> {
         let Some(entry) = header.iter().find(|entry| entry.key == key) else {
             return Ok(None);
@@ -418,9 +420,75 @@ fn apply_header(
         }
     }
     flight.utc_at_zero_s = value("utc_at_zero_s")?;
+    let declared = geometry_of(&header, layout.motors.len())?;
     flight.header = header
         .into_iter()
         .map(|entry| (entry.key, entry.value))
         .collect();
-    Ok(())
+    Ok(declared)
+}
+
+/// The motor layout by `motorN_factors` of every motor, by `frame`, or by `frame_class` and
+/// `frame_type`.
+fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<Declared, ReadError> {
+    let entry = |key: &str| header.iter().find(|entry| entry.key == key);
+    let frame = entry("frame")
+        .map(|entry| {
+            let known = tables::parse(&entry.value).ok_or_else(|| {
+                let text = format!("unknown frame `{}`", entry.value);
+                problem(
+                    entry.line,
+                    text,
+                    "write class and type as ArduPilot does, such as `QUAD/X` or `HEXA/PLUS`",
+                )
+            })?;
+            Ok((entry.value.clone(), known))
+        })
+        .transpose()?;
+    let factors = (1..=motors)
+        .filter_map(|number| Some((number as u16, entry(&format!("motor{number}_factors"))?)))
+        .map(|(number, entry)| {
+            let parts: Vec<f64> = entry
+                .value
+                .split_whitespace()
+                .map_while(|part| part.parse().ok().filter(|part: &f64| part.is_finite()))
+                .collect();
+            match parts.as_slice() {
+                &[roll, pitch, yaw] => Ok((number, [roll, pitch, yaw])),
+                _ => {
+                    let text = format!("`{}` is `{}`", entry.key, entry.value);
+                    Err(problem(
+                        entry.line,
+                        text,
+                        "write three numbers: roll, pitch and yaw, such as `-1 1 1`",
+                    ))
+                }
+            }
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    if motors > 0 && factors.len() == motors {
+        return Ok(Declared::Factors {
+            frame: frame.map(|(name, _)| name),
+            factors,
+            source: "header motorN_factors".into(),
+        });
+    }
+    let number = |key: &str| entry(key)?.value.parse::<i64>().ok();
+    Ok(match (frame, number("frame_class")) {
+        (Some((name, (class, kind))), _) => Declared::Frame {
+            class,
+            kind,
+            source: format!("header frame `{name}`"),
+        },
+        (None, Some(class)) => {
+            let kind = number("frame_type");
+            let text = kind.map_or(String::new(), |kind| format!(", frame_type {kind}"));
+            Declared::Frame {
+                class,
+                kind,
+                source: format!("header frame_class {class}{text}"),
+            }
+        }
+        (None, None) => Declared::Nothing,
+    })
 }

@@ -7,6 +7,7 @@ use super::signals::SPECS;
 use super::untimed::{Kept, Untimed};
 use crate::ardupilot::{self, Mode};
 use crate::clock::{Clock, Placed};
+use crate::geometry::{self, Declared};
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
 use crate::place::vector_length;
@@ -318,6 +319,9 @@ impl<'o> Collector<'o> {
         flight.utc_at_zero_s = self.utc_at_zero_s;
         flight.boots_s = self.clock.boots_s().to_vec();
         flight.report = self.report;
+        let frame = flight.vehicle.frame.as_deref();
+        let declared = Declared::of_ardupilot(&self.parameters, frame);
+        flight.geometry = geometry::find(&flight, &declared);
         flight
     }
 }

@@ -2,7 +2,12 @@
 //! parameters those are.
 
 use super::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
-use crate::{Motor, Range, Vehicle, ardupilot, parameters::Parameters, px4};
+use crate::{
+    Geometry, Motor, Range, Vehicle, ardupilot,
+    geometry::{self, Declared},
+    parameters::Parameters,
+    px4,
+};
 
 /// Outputs of PX4's AUX bank that any board has.
 const AUX_OUTPUTS: usize = 8;
@@ -24,6 +29,8 @@ const AUX_OUTPUTS: usize = 8;
 pub struct Setup {
     /// The motors in order of their number.
     pub motors: Vec<Motor>,
+    /// How much each motor rolls, pitches and yaws the vehicle; `None` where that is not known.
+    pub geometry: Option<Geometry>,
     /// Range of the commands, 0 % to 100 %.
     pub range: Range,
     /// The part of the range that is used in flight, as fractions of it.
@@ -97,8 +104,10 @@ fn of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Setup {
         }
         _ => ardupilot::effective_range(parameters),
     };
+    let declared = Declared::of_ardupilot(parameters, vehicle.frame.as_deref());
     Setup {
         outputs: outputs.iter().map(|&output| usize::from(output)).collect(),
+        geometry: geometry::of(&motors, &declared),
         motors,
         range,
         effective,
@@ -130,6 +139,7 @@ fn of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Setup {
         assumed_range(1000.0, 2000.0, "us")
     });
     Setup {
+        geometry: geometry::of(&motors, &Declared::of_px4(parameters)),
         motors,
         outputs,
         range,
@@ -155,7 +165,14 @@ pub(super) fn missing(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) 
 }
 
 fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
-    let fixed = ["MOT_PWM_MIN", "MOT_PWM_MAX", "MOT_SPIN_MIN", "MOT_SPIN_MAX"];
+    let fixed = [
+        "MOT_PWM_MIN",
+        "MOT_PWM_MAX",
+        "MOT_SPIN_MIN",
+        "MOT_SPIN_MAX",
+        "FRAME_CLASS",
+        "FRAME_TYPE",
+    ];
     let mut names: Vec<String> = fixed.iter().map(|&name| name.to_owned()).collect();
     let functions = |outputs: std::ops::RangeInclusive<usize>| {
         outputs.map(|output| format!("SERVO{output}_FUNCTION"))
@@ -193,8 +210,13 @@ fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     };
     let (bank, index) = bank(*output);
     let bank = ["MAIN", "AUX"][usize::from(bank).min(1)];
-    ends.map(|end| format!("PWM_{bank}_{end}{}", index + 1))
-        .into()
+    let limits = ends.map(|end| format!("PWM_{bank}_{end}{}", index + 1));
+    let rotors = (0..motors.len()).flat_map(|rotor| {
+        let parts = ["PX", "PY", "PZ", "AX", "AY", "AZ", "KM"];
+        parts.map(|part| format!("CA_ROTOR{rotor}_{part}"))
+    });
+    let count = "CA_ROTOR_COUNT".to_owned();
+    limits.into_iter().chain([count]).chain(rotors).collect()
 }
 
 #[cfg(test)]
@@ -223,7 +245,8 @@ mod tests {
             ("PWM_MAIN_MIN4", 1100.0),
             ("PWM_MAIN_MAX4", 1900.0),
         ]);
-        assert_eq!(missing(&known, &vehicle(3), true), Vec::<String>::new());
+        let missing = missing(&known, &vehicle(3), true);
+        assert!(missing.iter().all(|name| name.starts_with("CA_ROTOR")));
         let setup = Setup::of(&known, &vehicle(3), true);
         assert_eq!(setup.outputs, [4, 1, 19]);
         assert_eq!(setup.last_port(), 1);
@@ -244,10 +267,17 @@ mod tests {
             .map(|(function, n)| (format!("PWM_AUX_FUNC{n}"), function))
             .collect();
         let known: Parameters = names.iter().map(|(name, f)| (name.as_str(), *f)).collect();
+        let asked_for = missing(&known, &vehicle(4), true);
         assert_eq!(
-            missing(&known, &vehicle(4), true),
-            ["PWM_AUX_MIN1", "PWM_AUX_MAX1"]
+            asked_for[..4],
+            [
+                "PWM_AUX_MIN1",
+                "PWM_AUX_MAX1",
+                "CA_ROTOR_COUNT",
+                "CA_ROTOR0_PX"
+            ]
         );
+        assert_eq!(asked_for.len(), 3 + 4 * 7);
     }
 
     #[test]

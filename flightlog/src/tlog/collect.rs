@@ -3,6 +3,7 @@
 use super::signals::{SPECS, Spec};
 use crate::ardupilot::{self, Mode};
 use crate::clock::Latest;
+use crate::geometry::{self, Declared};
 use crate::interval::both_hold;
 use crate::mav_type::{MavType, mav_type};
 use crate::mavlink::packet::Packet;
@@ -123,7 +124,8 @@ impl<'o> Collector<'o> {
         let mut systems = self.systems;
         let chosen = systems.iter().position(is_vehicle).unwrap_or(0);
         if chosen < systems.len() {
-            systems.swap_remove(chosen).1.finish(&mut flight);
+            let declared = systems.swap_remove(chosen).1.finish(&mut flight);
+            flight.geometry = geometry::find(&flight, &declared);
         }
         flight
     }
@@ -241,8 +243,13 @@ impl Heard {
         }
     }
 
-    fn finish(mut self, flight: &mut Flight) {
+    /// Fills in the flight; gives what is known of the motor layout.
+    fn finish(mut self, flight: &mut Flight) -> Declared {
         self.name_vehicle(flight);
+        let declared = match self.autopilot {
+            PX4 => Declared::of_px4(&self.parameters),
+            _ => Declared::of_ardupilot(&self.parameters, flight.vehicle.frame.as_deref()),
+        };
         let motors = match self.autopilot {
             PX4 => match px4_motors(&self.parameters) {
                 none if none.is_empty() => {
@@ -280,10 +287,10 @@ impl Heard {
             .map(|(t_s, number)| Event::new(t_s, mode(number)))
             .collect();
         let Some(span_s) = flight.time_span_s() else {
-            return;
+            return declared;
         };
         if self.armed.is_empty() {
-            return;
+            return declared;
         }
         let rule = "HEARTBEAT.base_mode has its armed bit";
         flight.armed = Some(Intervals::from_states(&self.armed, span_s, rule));
@@ -294,10 +301,11 @@ impl Heard {
                 "HEARTBEAT.system_status active or critical, and armed",
             ),
             // PX4 is active as soon as it is armed.
-            (true, true) => return,
+            (true, true) => return declared,
         };
         let in_air = both_hold(flying, &self.armed);
         flight.in_air = Some(Intervals::from_states(&in_air, span_s, rule));
+        declared
     }
 
     /// The vehicle by its texts and parameters, and by the type in its heartbeats.

@@ -6,6 +6,7 @@ use super::plan::{Role, parts};
 use super::signals::SPECS;
 use super::topics::{Topics, key};
 use crate::clock::Latest;
+use crate::geometry::{self, Declared};
 use crate::interval::both_hold;
 use crate::parameters::Parameters;
 use crate::place::Place;
@@ -281,6 +282,7 @@ impl<'o> Collector<'o> {
                 }
             });
         }
+        flight.geometry = geometry::find(&flight, &Declared::of_px4(&self.parameters));
         flight
     }
 
