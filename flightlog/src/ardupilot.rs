@@ -31,8 +31,11 @@ pub(crate) fn motors(
     name: impl Fn(u16) -> String,
 ) -> Vec<(Motor, u16)> {
     if !has_functions(parameters) {
-        let frame = vehicle.frame.as_deref().unwrap_or_default();
-        let source = format!("frame {frame} (the log has no SERVOn_FUNCTION)");
+        let known_by = match &vehicle.frame {
+            Some(frame) => format!("frame {frame}"),
+            None => "the first outputs, which move together".into(),
+        };
+        let source = format!("{known_by} (the log has no SERVOn_FUNCTION)");
         return match vehicle.motors.unwrap_or(0) {
             TRI => [1, 2, REAR_OF_TRI]
                 .map(|number| (motor(number, name(number), &source), number))
@@ -192,21 +195,65 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     Some(range(radio, source))
 }
 
-/// The part of the range that is used in flight: MOT_SPIN_MIN..MOT_SPIN_MAX, before
-/// firmware 3.4 THR_MIN / 1000 .. 1.
+/// The part of the range that is used in flight: MOT_SPIN_MIN to MOT_SPIN_MAX. Before firmware
+/// 3.4 it begins at THR_MIN per mille; firmware 3.3 goes up to the share MOT_THST_MAX of what
+/// is left, and 3.1 and 3.2 to MOT_TCRV_MAXPCT percent of all, if that curve is in use.
 pub(crate) fn effective_range(parameters: &Parameters) -> Range {
-    let range = |low, high, source: &str| Range {
+    let range = |low, high, source: String| Range {
         low,
         high,
         unit: "1",
-        source: source.into(),
+        source,
     };
     if let Some((low, high)) = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
-        return range(low, high, "MOT_SPIN_MIN/MAX");
+        return range(low, high, "MOT_SPIN_MIN/MAX".into());
     }
-    match parameters.get("THR_MIN").map(|value| value / 1000.0) {
-        Some(low) if (0.0..1.0).contains(&low) => range(low, 1.0, "THR_MIN / 1000 .. 1"),
-        _ => crate::flight::whole_range("the log has no MOT_SPIN_MIN/MAX and no THR_MIN"),
+    let low = parameters.get("THR_MIN").map(|value| value / 1000.0);
+    let Some(low) = low.filter(|low| (0.0..1.0).contains(low)) else {
+        return crate::flight::whole_range("the log has no MOT_SPIN_MIN/MAX and no THR_MIN");
+    };
+    let curve_is_used = parameters.get("MOT_TCRV_ENABLE").is_none_or(|on| on > 0.0);
+    let curve = parameters.get("MOT_TCRV_MAXPCT").filter(|_| curve_is_used);
+    let (high, source) = match (parameters.get("MOT_THST_MAX"), curve) {
+        (Some(share), _) => (low + share * (1.0 - low), "THR_MIN and MOT_THST_MAX"),
+        (None, Some(percent)) => (percent / 100.0, "THR_MIN and MOT_TCRV_MAXPCT"),
+        (None, None) => (1.0, "THR_MIN"),
+    };
+    match high > low && high <= 1.0 {
+        true => range(low, high, source.into()),
+        false => range(low, 1.0, format!("THR_MIN; {source} makes no sense")),
+    }
+}
+
+/// Share of the commands that may be above an upper limit that is in force, and how far above
+/// counts, as a fraction of the range: a failed sample is no proof.
+const ABOVE: (f64, f64) = (1e-4, 0.006);
+
+/// The effective range of a flight: a limit that the commands go beyond was not in force.
+pub(crate) fn range_in_force(effective: Range, flight: &Flight) -> Range {
+    if flight.range.is_none() || effective.high >= 1.0 {
+        return effective;
+    }
+    let (mut all, mut above) = (0_u64, 0_u64);
+    for (t_s, row) in flight.commands.rows() {
+        if flight.is_in_air(t_s) == Some(false) {
+            continue;
+        }
+        for command in row.iter().filter_map(|&raw| flight.command(raw)) {
+            all += 1;
+            above += u64::from(command > effective.high + ABOVE.1);
+        }
+    }
+    if above as f64 <= ABOVE.0 * all as f64 {
+        return effective;
+    }
+    Range {
+        high: 1.0,
+        source: format!(
+            "{}; the commands go beyond the upper limit",
+            effective.source
+        ),
+        ..effective
     }
 }
 
@@ -350,8 +397,21 @@ mod tests {
     fn effective_range_by_generation() {
         let new = parameters(&[("MOT_SPIN_MIN", 0.15), ("MOT_SPIN_MAX", 0.95)]);
         assert_eq!(effective_range(&new).high, 0.95);
-        let old = effective_range(&parameters(&[("THR_MIN", 130.0)]));
-        assert_eq!((old.low, old.high), (0.13, 1.0));
+        for (limit, high) in [
+            (("THR_MAX", 1000.0), 1.0),
+            (("MOT_TCRV_MAXPCT", 93.0), 0.93),
+            (("MOT_THST_MAX", 0.95), 0.13 + 0.95 * 0.87),
+            (("MOT_THST_MAX", 1.5), 1.0),
+        ] {
+            let old = effective_range(&parameters(&[("THR_MIN", 130.0), limit]));
+            assert_eq!((old.low, old.high), (0.13, high), "{}", old.source);
+        }
+        let unused = [
+            ("THR_MIN", 130.0),
+            ("MOT_TCRV_ENABLE", 0.0),
+            ("MOT_TCRV_MAXPCT", 93.0),
+        ];
+        assert_eq!(effective_range(&parameters(&unused)).high, 1.0);
         let none = effective_range(&parameters(&[]));
         assert_eq!((none.low, none.high), (0.0, 1.0));
     }

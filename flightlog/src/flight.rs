@@ -345,7 +345,8 @@ pub struct Flight {
     pub messages: Vec<Event>,
     /// When the motors were armed; `None` when the log does not tell.
     pub armed: Option<Intervals>,
-    /// When the vehicle was in the air; `None` when the log does not tell.
+    /// When the vehicle was in the air; `None` when the log does not tell. Land detectors
+    /// chatter: landings of less than a second are left out.
     pub in_air: Option<Intervals>,
     /// UTC at time 0 of the log's clock, in seconds since 1970; `None` when unknown.
     pub utc_at_zero_s: Option<f64>,

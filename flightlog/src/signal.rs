@@ -111,11 +111,6 @@ impl Series {
             })
     }
 
-    /// No signal of it was asked for.
-    pub(crate) fn is_without_signals(&self) -> bool {
-        self.labels.is_empty()
-    }
-
     /// Keeps the signals of which `keep` says so by their name.
     fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
         let labels = std::mem::take(&mut self.labels);

@@ -134,7 +134,10 @@ struct Layout {
     /// `pwm` or `motor`.
     stem: &'static str,
     in_air: Option<usize>,
-    signals: Vec<(usize, String)>,
+    /// Column and name of each signal, and whether it is kept.
+    signals: Vec<(usize, String, bool)>,
+    /// Columns that a row must have.
+    columns: usize,
 }
 
 impl Layout {
@@ -182,11 +185,14 @@ impl Layout {
                     && Some(*column) != in_air
                     && !motors.contains(column)
                     && !name.is_empty()
-                    && options.wants(name)
             })
-            .map(|(column, name)| (column, name.clone()))
+            .map(|(column, name)| (column, name.clone(), options.wants(name)))
             .collect();
         Ok(Self {
+            columns: names
+                .iter()
+                .rposition(|name| !name.is_empty())
+                .map_or(0, |last| last + 1),
             time,
             motors,
             stem,
@@ -231,7 +237,8 @@ struct Rows {
 
 impl Rows {
     fn new(layout: &Layout) -> Self {
-        let labels = layout.signals.iter().map(|(_, name)| Label {
+        let kept = layout.signals.iter().filter(|(.., keep)| *keep);
+        let labels = kept.map(|(_, name, _)| Label {
             name: name.clone(),
             unit: unit_of(name).into(),
             source: format!("column `{name}`"),
@@ -253,14 +260,14 @@ impl Rows {
             Ok(()) => report.messages += 1,
             Err(why) => {
                 report.bad(&format!("line {line}: {why}"));
-                self.last_was_short = record.len() < layout.columns();
+                self.last_was_short = record.len() < layout.columns;
             }
         }
     }
 
     fn try_add(&mut self, layout: &Layout, record: &ByteRecord) -> Result<(), String> {
-        if record.len() < layout.columns() {
-            return Err(format!("{} of {} columns", record.len(), layout.columns()));
+        if record.len() < layout.columns {
+            return Err(format!("{} of {} columns", record.len(), layout.columns));
         }
         let t_s = number(record, layout.time)?;
         if !t_s.is_finite() {
@@ -271,11 +278,11 @@ impl Rows {
         }
         let read = |column: &usize| number(record, *column);
         let commands: Vec<f64> = layout.motors.iter().map(read).collect::<Result<_, _>>()?;
-        let signals: Vec<f64> = layout
-            .signals
-            .iter()
-            .map(|(column, _)| read(column))
-            .collect::<Result<_, _>>()?;
+        let mut signals = Vec::new();
+        for (column, _, keep) in &layout.signals {
+            let value = read(column)?;
+            signals.extend(keep.then_some(value));
+        }
         if let Some(column) = layout.in_air {
             self.air_changes.push((t_s, read(&column)? > 0.5));
             self.air_changes.dedup_by_key(|&mut (_, state)| state);
@@ -298,20 +305,6 @@ impl Rows {
         };
         let before = !self.has_air;
         Intervals::from_changes(&self.air_changes, before, self.first_s, self.last_s, rule)
-    }
-}
-
-impl Layout {
-    /// Columns a row must have for nothing to be missing.
-    fn columns(&self) -> usize {
-        let signals = self.signals.iter().map(|(column, _)| *column);
-        let all = self
-            .motors
-            .iter()
-            .copied()
-            .chain(signals)
-            .chain(self.in_air);
-        all.fold(self.time, usize::max) + 1
     }
 }
 

@@ -12,7 +12,7 @@ use crate::outputs::Outputs;
 use crate::parameters::Parameters;
 use crate::place::vector_length;
 use crate::signal::{Label, preferred};
-use crate::{Event, Flight, Options, Report, Series, utc};
+use crate::{Event, Flight, Options, Report, Series, VehicleKind, utc};
 
 pub(super) struct Collector<'o> {
     options: &'o Options,
@@ -249,9 +249,6 @@ impl<'o> Collector<'o> {
                 if self.utc_at_zero_s.is_none() && format.name == "GPS" {
                     self.utc_at_zero_s = gps_utc_s(format, &cells).map(|utc_s| utc_s - t_s);
                 }
-                if parts.is_empty() {
-                    return;
-                }
                 let values = parts.iter().map(|part| match part {
                     Part::Field { column, scale } => {
                         number(*column).map_or(f64::NAN, |value| value * scale)
@@ -282,6 +279,13 @@ impl<'o> Collector<'o> {
         let said = self.texts.iter().map(|text| &text.what);
         let texts = self.greetings.iter().chain(said).map(String::as_str);
         flight.vehicle = ardupilot::vehicle(texts, &self.parameters);
+        let vehicle = &mut flight.vehicle;
+        if vehicle.motors.is_none() && vehicle.kind == VehicleKind::Multirotor {
+            vehicle.motors = match self.named_motors {
+                0 => self.outputs.like_motors(),
+                motors => Some(motors),
+            };
+        }
         let motors = match self.named_motors {
             0 => ardupilot::motors(&self.parameters, &flight.vehicle, |output| {
                 format!("{}{output}", self.label)
@@ -304,6 +308,7 @@ impl<'o> Collector<'o> {
             flight.armed = Some(armed);
             flight.in_air = in_air.or(flight.in_air);
         }
+        flight.effective = ardupilot::range_in_force(flight.effective.clone(), &flight);
         self.series
             .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.message == *name));
         let series = self.series.into_iter().map(|(_, series)| series);
@@ -319,8 +324,7 @@ impl<'o> Collector<'o> {
         flight.utc_at_zero_s = self.utc_at_zero_s;
         flight.boots_s = self.clock.boots_s().to_vec();
         flight.report = self.report;
-        let frame = flight.vehicle.frame.as_deref();
-        let declared = Declared::of_ardupilot(&self.parameters, frame);
+        let declared = Declared::of_ardupilot(&self.parameters, &flight.vehicle);
         flight.geometry = geometry::find(&flight, &declared);
         flight
     }

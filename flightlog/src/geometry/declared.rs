@@ -1,6 +1,7 @@
 //! What parameters, messages and headers say of the motor layout.
 
 use super::tables;
+use crate::Vehicle;
 use crate::parameters::Parameters;
 
 /// Most rotors that PX4 describes.
@@ -49,8 +50,10 @@ impl Declared {
     }
 
     /// By FRAME_CLASS and FRAME_TYPE (3.5 and later), or by the class in the message
-    /// `Frame: QUAD` and FRAME, which is the type in older firmware.
-    pub(crate) fn of_ardupilot(parameters: &Parameters, frame: Option<&str>) -> Self {
+    /// `Frame: QUAD` and FRAME, which is the type in older firmware. Without
+    /// that message the number of motors stands for the class, where only one fits.
+    pub(crate) fn of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Self {
+        let frame = vehicle.frame.as_deref();
         let number = |name: &str| parameters.get(name).map(|value| value as i64);
         let named = frame.and_then(|frame| Some((frame, tables::parse(frame)?)));
         // 0 stands for a class that was never set.
@@ -62,18 +65,32 @@ impl Declared {
                 source: format!("FRAME_CLASS = {class}, FRAME_TYPE = {kind}"),
             };
         }
+        let old = || number("FRAME").map(|kind| (kind, format!("FRAME = {kind}")));
         let Some((frame, (class, kind))) = named else {
+            if let (None, Some(motors), Some((kind, source))) = (class, vehicle.motors, old()) {
+                let class = match (motors, kind) {
+                    (4, _) => tables::QUAD,
+                    (6, tables::Y6B) => tables::Y6,
+                    (6, _) => tables::HEXA,
+                    _ => return Self::Nothing,
+                };
+                return Self::Frame {
+                    class,
+                    kind: Some(kind),
+                    source: format!("{motors} motors, {source}"),
+                };
+            }
             return class.map_or(Self::Nothing, |class| Self::Frame {
                 class,
                 kind: None,
                 source: format!("FRAME_CLASS = {class}"),
             });
         };
-        let told = |name| number(name).map(|kind| (kind, format!("`{frame}`, {name} = {kind}")));
+        let new = || number("FRAME_TYPE").map(|kind| (kind, format!("FRAME_TYPE = {kind}")));
         let (kind, source) = match kind {
             Some(kind) => (Some(kind), format!("frame `{frame}`")),
-            None => match told("FRAME_TYPE").or_else(|| told("FRAME")) {
-                Some((kind, source)) => (Some(kind), format!("frame {source}")),
+            None => match new().or_else(old) {
+                Some((kind, source)) => (Some(kind), format!("frame `{frame}`, {source}")),
                 None => (None, format!("frame `{frame}`")),
             },
         };

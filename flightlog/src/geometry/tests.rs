@@ -148,7 +148,12 @@ fn parameters_of_either_autopilot_tell_the_layout() {
     };
     let ardupilot = |pairs: &[(&str, f64)], frame: Option<&str>| {
         let parameters = pairs.iter().copied().collect();
-        let found = of(&Declared::of_ardupilot(&parameters, frame), 4).unwrap();
+        let vehicle = crate::Vehicle {
+            frame: frame.map(str::to_owned),
+            motors: Some(4),
+            ..crate::Vehicle::default()
+        };
+        let found = of(&Declared::of_ardupilot(&parameters, &vehicle), 4).unwrap();
         (found.frame.unwrap(), found.basis, found.source)
     };
     let declared =
@@ -164,6 +169,10 @@ fn parameters_of_either_autopilot_tell_the_layout() {
     assert_eq!(
         ardupilot(&[], Some("QUAD/H")),
         declared("QUAD/H", "frame `QUAD/H`")
+    );
+    assert_eq!(
+        ardupilot(&[("FRAME", 1.0)], None),
+        declared("QUAD/X", "4 motors, FRAME = 1")
     );
     for frame in [None, Some("QUAD"), Some("quadrotor")] {
         let (found, basis, _) = ardupilot(&[], frame);

@@ -104,7 +104,7 @@ fn of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Setup {
         }
         _ => ardupilot::effective_range(parameters),
     };
-    let declared = Declared::of_ardupilot(parameters, vehicle.frame.as_deref());
+    let declared = Declared::of_ardupilot(parameters, vehicle);
     Setup {
         outputs: outputs.iter().map(|&output| usize::from(output)).collect(),
         geometry: geometry::of(&motors, &declared),

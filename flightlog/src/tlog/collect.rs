@@ -70,14 +70,10 @@ impl<'o> Collector<'o> {
             EXTENDED_SYS_STATE,
             STATUSTEXT,
         ];
-        let asked_for = |spec: &&Spec| {
-            let mut signals = spec.signals.iter();
-            signals.any(|(_, name, _)| options.wants(name))
-        };
-        let asked_for = SPECS.iter().filter(asked_for).map(|spec| spec.id);
+        let signals = SPECS.iter().map(|spec| spec.id);
         Self {
             options,
-            wanted: always.into_iter().chain(asked_for).collect(),
+            wanted: always.into_iter().chain(signals).collect(),
             report: Report::default(),
             zero_us: None,
             latest: Latest::new(LONGEST_PAUSE_S),
@@ -238,8 +234,8 @@ impl Heard {
             .filter(|(_, name, _)| options.wants(name));
         let values = wanted.map(|(from, _, _)| from.value(payload).unwrap_or(f64::NAN));
         match self.series.get_mut(slot) {
-            Some((_, series)) if !series.is_without_signals() => series.push(t_s, values),
-            _ => false,
+            Some((_, series)) => series.push(t_s, values),
+            None => false,
         }
     }
 
@@ -248,7 +244,7 @@ impl Heard {
         self.name_vehicle(flight);
         let declared = match self.autopilot {
             PX4 => Declared::of_px4(&self.parameters),
-            _ => Declared::of_ardupilot(&self.parameters, flight.vehicle.frame.as_deref()),
+            _ => Declared::of_ardupilot(&self.parameters, &flight.vehicle),
         };
         let motors = match self.autopilot {
             PX4 => match px4_motors(&self.parameters) {
