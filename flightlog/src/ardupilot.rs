@@ -6,7 +6,7 @@ use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
 
 /// Whether the log has any SERVOn_FUNCTION: firmware before 3.5 has none.
-fn has_functions(parameters: &Parameters) -> bool {
+pub(crate) fn has_functions(parameters: &Parameters) -> bool {
     (1..=32).any(|output| parameters.get(&format!("SERVO{output}_FUNCTION")).is_some())
 }
 
@@ -229,9 +229,12 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
 /// counts, as a fraction of the range: a failed sample is no proof.
 const ABOVE: (f64, f64) = (1e-4, 0.006);
 
-/// The effective range of a flight: a limit that the commands go beyond was not in force.
-pub(crate) fn range_in_force(effective: Range, flight: &Flight) -> Range {
-    if flight.range.is_none() || effective.high >= 1.0 {
+/// The effective range of a flight. Before firmware 3.4 a limit may be set without being in
+/// force: then the commands go beyond it.
+pub(crate) fn range_in_force(parameters: &Parameters, flight: &Flight) -> Range {
+    let effective = effective_range(parameters);
+    let is_new = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX").is_some();
+    if is_new || flight.range.is_none() || effective.high >= 1.0 {
         return effective;
     }
     let (mut all, mut above) = (0_u64, 0_u64);

@@ -59,14 +59,6 @@ impl Intervals {
     }
 
     /// Length of all intervals together, in seconds.
-    ///
-    /// ```
-    /// # use flightlog::{Interval, Intervals};
-    /// let span = Interval { start_s: 10.0, end_s: 12.5, ends_with_log: false };
-    /// let intervals = Intervals { spans: vec![span], rule: "an example".into() };
-    /// assert_eq!(intervals.duration_s(), 2.5);
-    /// assert!(intervals.contains(10.0) && !intervals.contains(12.5));
-    /// ```
     pub fn duration_s(&self) -> f64 {
         self.spans.iter().map(Interval::duration_s).sum()
     }

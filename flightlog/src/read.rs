@@ -44,17 +44,6 @@ impl Options {
 ///
 /// When there is no such file, when it is empty, or when it is no flight log. A damaged
 /// log is no error: see [`Flight::report`].
-///
-/// # Example: the name does not matter
-/// ```
-/// # let path = std::env::temp_dir().join(format!("flightlog-{}.bin", std::process::id()));
-/// std::fs::write(&path, "t_s,motor1,motor2\n0,0.5,0.4\n")?;
-/// let flight = flightlog::open(&path, &flightlog::Options::default())?;
-/// # std::fs::remove_file(&path)?;
-/// assert_eq!((flight.format, flight.motors.len()), (flightlog::Format::Csv, 2));
-/// assert!(flightlog::open("no/such/file", &flightlog::Options::default()).is_err());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Flight, ReadError> {
     let path = path.as_ref();
     if path == Path::new("-") {

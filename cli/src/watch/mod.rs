@@ -159,7 +159,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     display.show(now_s, &mut out.events, &session, &estimator)?;
     let totals = Totals {
         skipped: stream.skipped(),
-        not_understood: session.not_understood(),
         unsent: port.unsent(),
     };
     display.end(now_s, worst, &totals)?;
@@ -173,7 +172,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// What the link cost.
 struct Totals {
     skipped: Skipped,
-    not_understood: u64,
     unsent: u64,
 }
 
@@ -184,19 +182,17 @@ impl Totals {
             "bad_checksums": self.skipped.checksums,
             "unknown_messages": self.skipped.unknown,
             "signed": self.skipped.signed,
-            "not_understood": self.not_understood,
             "unsent": self.unsent,
         })
     }
 
     fn words(&self) -> String {
         format!(
-            "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets left out, {} messages not understood, {} packets not sent",
+            "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets left out, {} packets not sent",
             self.skipped.bytes,
             self.skipped.checksums,
             self.skipped.unknown,
             self.skipped.signed,
-            self.not_understood,
             self.unsent
         )
     }

@@ -85,7 +85,6 @@ pub(crate) struct Session<'e> {
     others: Vec<u8>,
     heartbeat_s: Option<f64>,
     worst: Level,
-    not_understood: u64,
 }
 
 impl<'e> Session<'e> {
@@ -98,7 +97,6 @@ impl<'e> Session<'e> {
             others: Vec::new(),
             heartbeat_s: None,
             worst: Level::Good,
-            not_understood: 0,
         }
     }
 
@@ -118,13 +116,12 @@ impl<'e> Session<'e> {
             tracked.hear(now_s, out);
         }
         match tracked.telemetry.receive(packet) {
-            News::Nothing | News::Parameter => {}
-            News::NotUnderstood => self.not_understood += 1,
             News::Rebooted => {
                 let worst = tracked.start_anew(now_s, self.estimator, out);
                 self.worst = self.worst.max(worst);
             }
             News::Commands { t_s } => self.assess(now_s, t_s, out),
+            _ => {}
         }
         true
     }
@@ -294,11 +291,6 @@ impl<'e> Session<'e> {
     /// How things stand, for a screen.
     pub(crate) fn view(&self) -> Option<View<'_>> {
         self.tracked.as_ref().map(Tracked::view)
-    }
-
-    /// Messages whose fields hold what the dialect does not know.
-    pub(crate) fn not_understood(&self) -> u64 {
-        self.not_understood
     }
 }
 

@@ -298,7 +298,6 @@ impl<'o> Collector<'o> {
         let outputs: Vec<u16>;
         (flight.motors, outputs) = motors.into_iter().unzip();
         flight.range = ardupilot::pwm_range(&self.parameters);
-        flight.effective = ardupilot::effective_range(&self.parameters);
         flight.commands = self.outputs.commands(&outputs);
         let span_s = self.clock.first_s().zip(self.clock.now_s());
         (flight.armed, flight.in_air) = ardupilot::air_from_commands(&flight);
@@ -308,7 +307,7 @@ impl<'o> Collector<'o> {
             flight.armed = Some(armed);
             flight.in_air = in_air.or(flight.in_air);
         }
-        flight.effective = ardupilot::range_in_force(flight.effective.clone(), &flight);
+        flight.effective = ardupilot::range_in_force(&self.parameters, &flight);
         self.series
             .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.message == *name));
         let series = self.series.into_iter().map(|(_, series)| series);
