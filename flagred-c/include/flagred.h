@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The version of the data that `flagred export --c` writes. */
-#define FLAGRED_PLAN_FORMAT 1
+#define FLAGRED_PLAN_FORMAT 2
 
 /* ---- Following a flight ------------------------------------------------------------------------------------------- */
 
@@ -155,6 +155,13 @@ typedef struct flagred_curve {
     uint32_t kind, literal, first_point, end_point, first_hedge, end_hedge;
 } flagred_curve;
 
+typedef struct flagred_point {
+    double x, degree;
+} flagred_point;
+
+/* A hedge: NOT, very, somewhat, extremely, seldom, any, counted from 0. */
+typedef uint32_t flagred_hedge;
+
 typedef struct flagred_axis {
     uint32_t input, first_cut, end_cut, first_line;
 } flagred_axis;
@@ -173,7 +180,7 @@ typedef struct flagred_edge {
 
 typedef struct flagred_action {
     double weight;
-    uint32_t place, output, rule, sums;
+    uint32_t strength, output, rule, sums;
 } flagred_action;
 
 typedef struct flagred_program {
@@ -185,8 +192,8 @@ typedef struct flagred_step {
 } flagred_step;
 
 typedef struct flagred_output {
-    double low, high, otherwise;
-    uint32_t set, first, end, first_height, end_height;
+    double low, high, default_value;
+    uint32_t form, first, end, first_strength, end_strength;
 } flagred_output;
 
 typedef struct flagred_pair {
@@ -197,10 +204,10 @@ typedef struct flagred_moment {
     double area, moment;
 } flagred_moment;
 
-typedef struct flagred_consequence {
+typedef struct flagred_consequent {
     double constant;
     uint32_t first, end;
-} flagred_consequence;
+} flagred_consequent;
 
 typedef struct flagred_coefficient {
     double coefficient;
@@ -244,7 +251,7 @@ struct flagred_plan {
     uint32_t format;
     uint32_t and_operator, or_operator;
     uint32_t conjunctions, actions_a_cell, first_action, sums;
-    uint32_t degrees, alive, partial, stack, heights;
+    uint32_t degrees, alive, partial, stack, strengths;
     uint32_t output, signals;
     double coverage_below;
     flagred_settings settings;
@@ -253,8 +260,8 @@ struct flagred_plan {
     FLAGRED_ARRAY(uint32_t, starts);
     FLAGRED_ARRAY(flagred_line, lines);
     FLAGRED_ARRAY(flagred_curve, curves);
-    FLAGRED_ARRAY(double, points);              /* x, degree, x, degree ... */
-    FLAGRED_ARRAY(uint32_t, hedges);
+    FLAGRED_ARRAY(flagred_point, points);
+    FLAGRED_ARRAY(flagred_hedge, hedges);
     FLAGRED_ARRAY(flagred_axis, axes);
     FLAGRED_ARRAY(flagred_dimension, dimensions);
     FLAGRED_ARRAY(uint32_t, cells);
@@ -266,13 +273,13 @@ struct flagred_plan {
     FLAGRED_ARRAY(flagred_output, outputs);
     FLAGRED_ARRAY(flagred_pair, pairs);
     FLAGRED_ARRAY(flagred_moment, moments);
-    FLAGRED_ARRAY(flagred_consequence, consequences);
+    FLAGRED_ARRAY(flagred_consequent, consequents);
     FLAGRED_ARRAY(flagred_coefficient, coefficients);
     FLAGRED_ARRAY(uint32_t, order);
     FLAGRED_ARRAY(flagred_channel, channels);
     FLAGRED_ARRAY(flagred_source, sources);
-    FLAGRED_ARRAY(double, places);              /* of the knots that fill gaps, input by input; none where nothing can */
-    FLAGRED_ARRAY(uint32_t, first_places);      /* where those of each input begin, and where the last one's end */
+    FLAGRED_ARRAY(double, coordinates);         /* of the knots that fill gaps, input by input; empty without filling */
+    FLAGRED_ARRAY(uint32_t, first_coordinates); /* the index of each input's first coordinate, and the end of the last's */
     FLAGRED_ARRAY(double, values);
     FLAGRED_ARRAY(double, distances);
 };

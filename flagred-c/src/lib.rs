@@ -13,7 +13,10 @@ use core::ffi::{CStr, c_char};
 
 use flagred::{
     assessment::Sample,
-    board::{Memory, Monitor, Parts},
+    board::{
+        Memory, Monitor,
+        table::{Outcome, Partial, Strongest},
+    },
     channel::Seen,
     margin::Range,
     verdict::Motor,
@@ -150,16 +153,15 @@ unsafe fn start(
         *range = Range::new(*low, *high).ok_or(Status::BadLimits)?;
     }
     let sizes = plan.sizes();
-    let parts = Parts {
+    let memory = Memory {
         numbers: block.fill(sizes.numbers, 0.0)?,
-        partials: block.fill(sizes.partials, flagred::board::table::Partial::NONE)?,
-        strongest: block.fill(sizes.outputs, flagred::board::table::Strongest::NONE)?,
-        outcomes: block.fill(sizes.outputs, flagred::board::table::Outcome::UNDEFINED)?,
+        partials: block.fill(sizes.partials, Partial::NONE)?,
+        strongest: block.fill(sizes.outputs, Strongest::NONE)?,
+        outcomes: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
         seen: block.repeat(sizes.channels, |_| Ok(Seen::IDLE))?,
         risks: block.place(Window::IDLE)?,
         motors: block.fill(motors, Motor::UNKNOWN)?,
     };
-    let memory = Memory::of(plan, parts).ok_or(Status::MemorySize)?;
     let monitor = CMonitor {
         monitor: Monitor::new(plan, memory).map_err(|_| Status::DamagedPlan)?,
         limits: ranges,

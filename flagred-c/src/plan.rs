@@ -6,9 +6,9 @@ use flagred::{
     board::{
         self,
         table::{
-            Action, Axis, Coefficient, Conjunction, Conjunctions, Consequence, Curve, Dimension,
-            Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Program, Sizes,
-            Step, Table,
+            self, Action, Axis, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
+            Dimension, Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point,
+            Program, Sizes, Step, Table,
         },
     },
     channel::{self, Channel, Motors, Observed, Statistic},
@@ -19,8 +19,8 @@ use flagred::{
 
 use crate::{memory::Block, status::Status};
 
-/// The version of the data that is understood.
-const FORMAT: u32 = 1;
+/// The version of the data that this library reads.
+const FORMAT: u32 = 2;
 
 /// An array of C and its length.
 #[derive(Debug, Clone, Copy)]
@@ -101,50 +101,59 @@ struct CSettings {
     min_samples: u32,
 }
 
-/// `struct flagred_plan`.
-#[derive(Debug)]
-#[repr(C)]
-pub struct Plan {
-    format: u32,
-    and: u32,
-    or: u32,
-    conjunctions: u32,
-    actions_a_cell: u32,
-    first_action: u32,
-    sums: u32,
-    sizes: Sizes,
-    output: u32,
-    signals: u32,
-    coverage_below: f64,
-    settings: CSettings,
-    inputs: Array<Input>,
-    cuts: Array<f64>,
-    starts: Array<u32>,
-    lines: Array<Line>,
-    curves: Array<Curve>,
-    points: Array<f64>,
-    hedges: Array<u32>,
-    axes: Array<Axis>,
-    dimensions: Array<Dimension>,
-    cells: Array<u32>,
-    nodes: Array<Node>,
-    edges: Array<Edge>,
-    actions: Array<Action>,
-    programs: Array<Program>,
-    steps: Array<Step>,
-    outputs: Array<Output>,
-    pairs: Array<Pair>,
-    moments: Array<Moment>,
-    consequences: Array<Consequence>,
-    coefficients: Array<Coefficient>,
-    order: Array<u32>,
-    channels: Array<CChannel>,
-    sources: Array<CSource>,
-    places: Array<f64>,
-    first_places: Array<u32>,
-    values: Array<f64>,
-    distances: Array<f64>,
+macro_rules! define {
+    ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+        /// `struct flagred_plan`.
+        #[derive(Debug)]
+        #[repr(C)]
+        pub struct Plan {
+            format: u32,
+            and: u32,
+            or: u32,
+            conjunctions: u32,
+            actions_a_cell: u32,
+            first_action: u32,
+            sums: u32,
+            sizes: Sizes,
+            output: u32,
+            signals: u32,
+            coverage_below: f64,
+            settings: CSettings,
+            $($array: Array<define!(@item $item)>,)*
+            order: Array<u32>,
+            channels: Array<CChannel>,
+            sources: Array<CSource>,
+            coordinates: Array<f64>,
+            first_coordinates: Array<u32>,
+            values: Array<f64>,
+            distances: Array<f64>,
+        }
+
+        impl Plan {
+            /// # Safety
+            /// The arrays have the lengths they say, and do not change.
+            #[allow(unsafe_code, reason = "foreign memory")]
+            unsafe fn table<'a>(&self) -> Result<Table<'a>, Status> {
+                // SAFETY: the caller's promise, for all arrays.
+                unsafe {
+                    Ok(Table {
+                        and: conjunction(self.and)?,
+                        or: disjunction(self.or)?,
+                        conjunctions: self.conjunctions()?,
+                        sizes: self.sizes,
+                        $($array: define!(@read $item self.$array),)*
+                    })
+                }
+            }
+        }
+    };
+    // An enumeration, whose codes are verified before they become a reference. Of all other items every bit pattern is valid.
+    (@item Hedge) => { u32 };
+    (@item $item:ident) => { $item };
+    (@read Hedge $array:expr) => { hedges($array.read()?)? };
+    (@read $item:ident $array:expr) => { $array.read()? };
 }
+table::arrays!(define!);
 
 impl Plan {
     /// How many bytes a monitor needs.
@@ -194,50 +203,15 @@ impl Plan {
         }
         // SAFETY: the caller's promise, for all arrays of the plan.
         unsafe {
-            let (points, _) = self.points.read()?.as_chunks::<2>();
             let knots = FilledKnots {
-                places: self.places.read()?,
-                starts: self.first_places.read()?,
+                coordinates: self.coordinates.read()?,
+                starts: self.first_coordinates.read()?,
                 values: self.values.read()?,
                 distances: self.distances.read()?,
             };
             Ok(board::Plan {
                 name: "",
-                table: Table {
-                    and: conjunction(self.and)?,
-                    or: disjunction(self.or)?,
-                    conjunctions: match self.conjunctions {
-                        0 => Conjunctions::Uniform {
-                            actions_a_cell: self.actions_a_cell,
-                            first_action: self.first_action,
-                            sums: self.sums != 0,
-                        },
-                        1 => Conjunctions::Dense,
-                        2 => Conjunctions::Trie,
-                        _ => return Err(Status::DamagedPlan),
-                    },
-                    sizes: self.sizes,
-                    inputs: self.inputs.read()?,
-                    cuts: self.cuts.read()?,
-                    starts: self.starts.read()?,
-                    lines: self.lines.read()?,
-                    curves: self.curves.read()?,
-                    points,
-                    hedges: hedges(self.hedges.read()?)?,
-                    axes: self.axes.read()?,
-                    dimensions: self.dimensions.read()?,
-                    cells: self.cells.read()?,
-                    nodes: self.nodes.read()?,
-                    edges: self.edges.read()?,
-                    actions: self.actions.read()?,
-                    programs: self.programs.read()?,
-                    steps: self.steps.read()?,
-                    outputs: self.outputs.read()?,
-                    pairs: self.pairs.read()?,
-                    moments: self.moments.read()?,
-                    consequences: self.consequences.read()?,
-                    coefficients: self.coefficients.read()?,
-                },
+                table: self.table()?,
                 output: self.output,
                 order: self.order.read()?,
                 channels,
@@ -251,7 +225,22 @@ impl Plan {
     }
 }
 
-/// Hedges in place, where all are known.
+impl Plan {
+    fn conjunctions(&self) -> Result<Conjunctions, Status> {
+        Ok(match self.conjunctions {
+            0 => Conjunctions::Uniform {
+                actions_a_cell: self.actions_a_cell,
+                first_action: self.first_action,
+                sums: self.sums != 0,
+            },
+            1 => Conjunctions::Dense,
+            2 => Conjunctions::Trie,
+            _ => return Err(Status::DamagedPlan),
+        })
+    }
+}
+
+/// Hedges from their codes, where all codes are valid.
 #[allow(unsafe_code, reason = "foreign memory")]
 fn hedges(codes: &[u32]) -> Result<&[Hedge], Status> {
     if codes.iter().any(|code| *code as usize >= Hedge::ALL.len()) {

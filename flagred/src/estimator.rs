@@ -5,7 +5,7 @@ use alloc::{string::String, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     engine::{CompileError, EvaluateError, Outcome, Scratch},
-    table::Set,
+    table::ClosedForm,
 };
 
 use crate::{
@@ -284,7 +284,7 @@ impl Estimator {
     /// ```
     pub fn plan(&self) -> Result<Plan<'_>, NoClosedForm> {
         let table = self.engine.table();
-        let open = |output: &fuzzy::table::Output| output.set == Set::OPEN;
+        let open = |output: &fuzzy::table::Output| output.form == ClosedForm::NONE;
         if table.outputs.get(self.output).is_none_or(open) {
             return Err(NoClosedForm {
                 output: self.profile.output.clone(),

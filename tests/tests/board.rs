@@ -10,12 +10,9 @@ use std::{
 };
 
 use flagred::{
-    board::{self, Memory, Parts, Plan, table},
-    channel::Seen,
+    board::{self, OwnedMemory, Plan, table},
     estimator::Estimator,
     monitor::Monitor,
-    verdict::Motor,
-    window::Window,
 };
 use flagred_tests::{
     Folder, STEADY,
@@ -50,18 +47,7 @@ fn with_monitor<R>(
     motors: usize,
     run: impl FnOnce(&mut board::Monitor<'_>) -> R,
 ) -> R {
-    let sizes = plan.sizes();
-    let parts = Parts {
-        numbers: &mut vec![0.0; sizes.numbers],
-        partials: &mut vec![table::Partial::NONE; sizes.partials],
-        strongest: &mut vec![table::Strongest::NONE; sizes.outputs],
-        outcomes: &mut vec![table::Outcome::UNDEFINED; sizes.outputs],
-        seen: &mut vec![Seen::IDLE; sizes.channels],
-        risks: &mut Window::IDLE.clone(),
-        motors: &mut vec![Motor::UNKNOWN; motors],
-    };
-    let memory = Memory::of(plan, parts).unwrap();
-    run(&mut board::Monitor::new(plan, memory).unwrap())
+    run(&mut OwnedMemory::new(plan, motors).monitor(plan).unwrap())
 }
 
 /// What the monitor says of a flight, sample by sample, and at its end.
@@ -286,6 +272,29 @@ fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(
     let told = String::from_utf8_lossy(&compiled.stderr);
     assert!(compiled.status.success(), "{told}");
     Some((Command::new(binary), folder))
+}
+
+/// The C initialisers name their fields, so the compiler holds the structures equal.
+#[test]
+fn the_header_has_the_arrays_of_a_table() {
+    macro_rules! list {
+        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+            [$((stringify!($array), stringify!($item))),*]
+        };
+    }
+    let arrays = table::arrays!(list!).map(|(array, item)| match item {
+        "f64" => format!("FLAGRED_ARRAY(double, {array})"),
+        "u32" => format!("FLAGRED_ARRAY(uint32_t, {array})"),
+        item => format!("FLAGRED_ARRAY(flagred_{}, {array})", item.to_lowercase()),
+    });
+    let header = include_str!("../../flagred-c/include/flagred.h");
+    let listed: Vec<&str> = header
+        .lines()
+        .filter_map(|line| line.split(';').next()?.strip_prefix("    "))
+        .filter(|line| line.starts_with("FLAGRED_ARRAY("))
+        .take(arrays.len())
+        .collect();
+    assert_eq!(arrays[..], listed);
 }
 
 /// What a program writes of doubles.

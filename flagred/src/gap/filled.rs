@@ -3,9 +3,9 @@
 /// Knots with what is said there, read linearly along each input between them.
 #[derive(Debug, Clone, Copy)]
 pub struct FilledKnots<'a> {
-    /// The places along each input, rising: those of the first, then those of the second, and so on.
-    pub places: &'a [f64],
-    /// Where, in these, those of each input begin, and where the last one's end.
+    /// The coordinates of knots along each input, ascending: those of the first input, then of the second, and so on.
+    pub coordinates: &'a [f64],
+    /// The index in `coordinates` of each input's first, and the end of the last input's.
     pub starts: &'a [u32],
     /// The value at each knot, the last input running fastest.
     pub values: &'a [f64],
@@ -44,7 +44,7 @@ impl FilledKnots<'_> {
     /// ```
     /// use flagred::gap::FilledKnots;
     ///
-    /// let knots = FilledKnots { places: &[0.0, 0.5], starts: &[0, 2], values: &[90.0, 50.0], distances: &[1.0, 0.0] };
+    /// let knots = FilledKnots { coordinates: &[0.0, 0.5], starts: &[0, 2], values: &[90.0, 50.0], distances: &[1.0, 0.0] };
     /// let reading = knots.read(&[0.125]).ok_or("not a point")?;
     /// assert_eq!((reading.value, reading.distance), (80.0, 0.75));
     /// # Ok::<(), &str>(())
@@ -53,7 +53,7 @@ impl FilledKnots<'_> {
         let axes = self.starts.len().checked_sub(1)?;
         let axis = |axis: usize| {
             let (start, end) = (self.starts.get(axis)?, self.starts.get(axis + 1)?);
-            self.places.get(*start as usize..*end as usize)
+            self.coordinates.get(*start as usize..*end as usize)
         };
         Some(Reading {
             value: read(axes, &axis, self.values, point)?,
@@ -71,7 +71,7 @@ impl FilledKnots<'_> {
         let rises = |pair: &[u32]| pair.is_sorted();
         self.starts.len() == inputs + 1
             && self.starts.windows(2).all(rises)
-            && self.starts.last().map(|end| *end as usize) == Some(self.places.len())
+            && self.starts.last().map(|end| *end as usize) == Some(self.coordinates.len())
             && knots > 0
             && self.values.len() == knots
             && self.distances.len() == knots

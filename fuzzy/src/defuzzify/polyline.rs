@@ -1,14 +1,13 @@
-//! The aggregated set where every term is made of straight lines: cut into pieces on which it has a
-//! closed form, without sampling.
+//! The aggregated set of terms made of straight lines, cut into pieces that have a closed form.
 //!
-//! The output's range is cut at every corner of every term when the engine is made; on each interval
-//! every term is one line. Per evaluation each interval is cut where a line meets its own plateau
-//! (implication by minimum), and then where lines cross (maximum) or their sum reaches 1 (bounded sum).
+//! Compilation cuts the output's range at every corner of every term; on each interval every term is one line. An
+//! evaluation cuts each interval where a line meets its own plateau (implication by minimum), and then where lines cross
+//! (maximum) or their sum reaches 1 (bounded sum).
 
 use alloc::vec::Vec;
 
 use super::piece::Piece;
-use super::{Heights, Joint};
+use super::{Joint, Strengths};
 use crate::model::{Aggregation, Implication, Term};
 use crate::table::operators::smaller;
 
@@ -35,19 +34,19 @@ pub(super) struct Line {
     pub(super) right: f64,
 }
 
-/// A straight line over a stretch.
+/// A straight line over a stretch, by its degrees at the ends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Segment {
     left: f64,
     right: f64,
 }
 
-/// Room to work in, owned by the caller's scratch: never grows while evaluating.
+/// Scratch memory of the caller. An evaluation never grows it.
 #[derive(Debug)]
 pub(crate) struct Room {
     active: Vec<Activated>,
     pub(super) cuts: Vec<f64>,
-    /// The most cuts that may be made. Not the vector's capacity, which is up to the allocator.
+    /// The most cuts. The vector's capacity depends on the allocator.
     pub(super) most_cuts: usize,
     segments: Vec<Segment>,
 }
@@ -55,7 +54,7 @@ pub(crate) struct Room {
 /// A line under a firing strength.
 #[derive(Debug, Clone, Copy)]
 struct Activated {
-    height: f64,
+    strength: f64,
     left: f64,
     right: f64,
 }
@@ -73,7 +72,7 @@ impl Room {
     }
 }
 
-/// As much room, empty: the clone of a vector has no room for more than it holds.
+/// Has the same capacities, and is empty. A derived clone would have no spare capacity.
 impl Clone for Room {
     fn clone(&self) -> Self {
         Room::new(self.active.capacity(), self.most_cuts)
@@ -121,7 +120,7 @@ impl Polylines {
         Some(polylines)
     }
 
-    /// The intervals between cuts, each with the lines alive on it.
+    /// The intervals between cuts, each with the lines over 0 on it.
     pub(super) fn intervals(&self) -> impl Iterator<Item = (f64, f64, &[Line])> {
         self.intervals.iter().map(|interval| {
             let lines = self.lines.get(interval.first_line..interval.end_line);
@@ -129,16 +128,15 @@ impl Polylines {
         })
     }
 
-    /// Whether a term is 0 on the whole range.
+    /// Whether a term is 0 all over the range.
     pub(crate) fn is_empty(&self, term: usize) -> bool {
         self.lines.iter().all(|line| line.term != term)
     }
 
-    /// Calls `visit` for each piece of the aggregated set, from left to right; where no term is alive
-    /// there is none.
+    /// Calls `visit` for each piece of the aggregated set over 0, from left to right.
     pub(crate) fn pieces(
         &self,
-        heights: Heights<'_>,
+        strengths: Strengths<'_>,
         joint: Joint,
         room: &mut Room,
         visit: &mut dyn FnMut(&Piece<'_>),
@@ -148,20 +146,20 @@ impl Polylines {
             room.cuts.clear();
             room.cuts.push(0.0);
             for line in lines {
-                for &height in heights.of(line.term) {
-                    if height > 0.0 {
+                for &strength in strengths.of(line.term) {
+                    if strength > 0.0 {
                         room.active.push(Activated {
-                            height,
+                            strength,
                             left: line.left,
                             right: line.right,
                         });
                         if joint.implication == Implication::Minimum
-                            && (line.left > height) != (line.right > height)
-                            && line.left != height
-                            && line.right != height
+                            && (line.left > strength) != (line.right > strength)
+                            && line.left != strength
+                            && line.right != strength
                         {
                             room.cuts
-                                .push((height - line.left) / (line.right - line.left));
+                                .push((strength - line.left) / (line.right - line.left));
                         }
                     }
                 }
@@ -181,7 +179,7 @@ impl Polylines {
                     room.segments.push(active.on(start, end, joint.implication));
                 }
                 let at = |t: f64| match t {
-                    // The ends themselves, so that neighbouring pieces meet exactly.
+                    // Exact at the ends, so that neighbouring pieces meet.
                     0.0 => from,
                     1.0 => to,
                     _ => from + width * t,
@@ -197,7 +195,7 @@ impl Polylines {
 }
 
 impl Activated {
-    /// The activated line between two places in [0, 1] of its interval, with no plateau's end between them.
+    /// The activated line on a part of its interval, where `start` and `end` are in [0, 1] and no plateau ends between them.
     fn on(&self, start: f64, end: f64, implication: Implication) -> Segment {
         let at = |t: f64| {
             if t == 0.0 {
@@ -208,16 +206,16 @@ impl Activated {
                 self.left + (self.right - self.left) * t
             }
         };
-        if implication == Implication::Minimum && at(0.5 * (start + end)) >= self.height {
-            // The plateau itself: read off the line, a low plateau would lose digits at its end.
+        if implication == Implication::Minimum && at(0.5 * (start + end)) >= self.strength {
+            // Exactly the plateau: reading it off the line would lose digits.
             return Segment {
-                left: self.height,
-                right: self.height,
+                left: self.strength,
+                right: self.strength,
             };
         }
         Segment {
-            left: implication.of(self.height, at(start)),
-            right: implication.of(self.height, at(end)),
+            left: implication.of(self.strength, at(start)),
+            right: implication.of(self.strength, at(end)),
         }
     }
 }
@@ -299,7 +297,7 @@ fn straight(stretch: Stretch, start: f64, end: f64, left: f64, right: f64) -> Pi
     }
 }
 
-/// The maximum of lines: from the highest on the left, always on to the next steeper line that crosses.
+/// The maximum of lines. Starts at the highest line on the left, and at each crossing continues on the steeper line.
 fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut dyn FnMut(&Piece<'_>)) {
     let Some(mut top) = segments.iter().copied().reduce(|best, segment| {
         if (segment.left, segment.right) > (best.left, best.right) {
@@ -317,7 +315,7 @@ fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut dyn FnMut(
             if segment.right <= top.right {
                 continue;
             }
-            // Where two lines cross, from their distances at both ends.
+            // The crossing of two lines, from their distances at both ends.
             let (behind, ahead) = (top.left - segment.left, segment.right - top.right);
             let crossing = if behind > 0.0 {
                 behind / (behind + ahead)
@@ -348,7 +346,7 @@ fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut dyn FnMut(
     visit(&straight(stretch, t, 1.0, y, top.right));
 }
 
-/// The degrees of a polyline just inside the ends of an interval that holds no corner.
+/// The degrees of a polyline just inside the ends of an interval without corners.
 fn limits(corners: &[(f64, f64)], from: f64, to: f64) -> (f64, f64) {
     let mut before: Option<(f64, f64)> = None;
     for &corner in corners {

@@ -150,7 +150,7 @@ fn after(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::arrays::Arrays;
+    use crate::engine::arrays::OwnedTable;
     use crate::table;
     use alloc::{string::String, vec};
     use proptest::prelude::*;
@@ -234,10 +234,10 @@ mod tests {
             let mut all: Vec<Literal> =
                 shapes().into_iter().map(|shape| literal(shape, &[])).collect();
             all.push(literal(Shape::LeftShoulder { top: 0.2, foot: 0.6 }, &[Hedge::Very, Hedge::Not]));
-            let mut arrays = Arrays::default();
-            arrays.input(&Literals::new(0, all.clone(), 0.0, 1.0), 0.0, 1.0);
+            let mut owned = OwnedTable::default();
+            owned.input(&Literals::new(0, all.clone(), 0.0, 1.0), 0.0, 1.0);
             let mut degrees = vec![0.0; all.len()];
-            table::degrees(&arrays, &arrays.inputs[0], x, |literal, degree| degrees[literal as usize] = degree);
+            table::degrees(&owned, &owned.inputs[0], x, |literal, degree| degrees[literal as usize] = degree);
             for (literal, degree) in all.iter().zip(degrees) {
                 let plain = literal.term.membership(x);
                 let expected = literal.hedges.iter().fold(plain, |degree, hedge| hedge.of(degree));
