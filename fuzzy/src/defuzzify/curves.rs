@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 
 use super::piece::{Piece, root};
-use super::polyline::Room;
+use super::polyline::Workspace;
 use super::{Joint, Strengths};
 use crate::model::{Aggregation, Implication, Term};
 
@@ -34,7 +34,7 @@ impl Curves {
     }
 
     /// The most cuts of an evaluation.
-    pub(crate) fn room(&self) -> usize {
+    pub(crate) fn workspace(&self) -> usize {
         self.cuts.len() + self.terms.len() * self.terms.len()
     }
 
@@ -69,10 +69,10 @@ impl Curves {
         &self,
         strengths: Strengths<'_>,
         joint: Joint,
-        room: &mut Room,
+        workspace: &mut Workspace,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
-        let (cuts, most_cuts) = (&mut room.cuts, room.most_cuts);
+        let (cuts, most_cuts) = (&mut workspace.cuts, workspace.most_cuts);
         cuts.clear();
         let active = |term: usize| strengths.of(term).iter().any(|h| *h > 0.0);
         for &(x, term) in &self.cuts {

@@ -9,7 +9,7 @@ use curves::Curves;
 use maxima::{Highest, Maxima};
 pub(crate) use partition::Partition;
 use piece::{Integrals, Piece};
-use polyline::{Polylines, Room};
+use polyline::{Polylines, Workspace};
 use weighted::Consequents;
 
 mod curves;
@@ -164,7 +164,7 @@ impl Defuzzify {
     /// The area and moment of each term alone at a firing strength of 1.
     fn moments(&self, terms: usize) -> Vec<Moment> {
         let offsets: Vec<usize> = (0..=terms).collect();
-        let mut room = Room::new(terms, self.cuts());
+        let mut workspace = Workspace::new(terms, self.cuts());
         let mut moments = Vec::new();
         for term in 0..terms {
             let strengths: Vec<f64> = (0..terms).map(|i| f64::from(i == term)).collect();
@@ -173,7 +173,7 @@ impl Defuzzify {
                 offsets: &offsets,
             };
             let mut integrals = self.integrals();
-            self.pieces(strengths, &mut room, &mut |piece| integrals.add(piece));
+            self.pieces(strengths, &mut workspace, &mut |piece| integrals.add(piece));
             moments.push(Moment {
                 area: integrals.area,
                 moment: integrals.moment,
@@ -200,7 +200,7 @@ impl Defuzzify {
     /// The most cuts of an evaluation, besides those of its activations.
     pub(crate) fn cuts(&self) -> usize {
         match &self.method {
-            Method::Curves(curves) => curves.room(),
+            Method::Curves(curves) => curves.workspace(),
             _ => 0,
         }
     }
@@ -219,37 +219,37 @@ impl Defuzzify {
     /// The value of an output without a closed form; `None` where no rule fired. Not inlined, which keeps the code of closed
     /// forms small.
     #[inline(never)]
-    pub(crate) fn value(&self, strengths: Strengths<'_>, room: &mut Room) -> Option<f64> {
+    pub(crate) fn value(&self, strengths: Strengths<'_>, workspace: &mut Workspace) -> Option<f64> {
         let value = match &self.method {
             Method::Sampled(sampling, curves) => {
                 sampling.value(self.defuzzifier, (self.low, self.high), |x| {
                     curves.degree(strengths, self.joint, x)
                 })
             }
-            Method::Lines(_) | Method::Curves(_) => self.exact(strengths, room),
+            Method::Lines(_) | Method::Curves(_) => self.exact(strengths, workspace),
             Method::Partition(_) | Method::Moments(_) | Method::Weighted(_) => None,
         }?;
         Some(larger(self.low, smaller(self.high, value)))
     }
 
-    fn exact(&self, strengths: Strengths<'_>, room: &mut Room) -> Option<f64> {
+    fn exact(&self, strengths: Strengths<'_>, workspace: &mut Workspace) -> Option<f64> {
         match self.defuzzifier {
             Defuzzifier::SmallestOfMaxima
             | Defuzzifier::MeanOfMaxima
             | Defuzzifier::LargestOfMaxima => {
                 let mut highest = Highest::default();
-                self.pieces(strengths, room, &mut |piece| highest.see(piece));
+                self.pieces(strengths, workspace, &mut |piece| highest.see(piece));
                 let mut maxima = Maxima::of(highest);
-                self.pieces(strengths, room, &mut |piece| maxima.see(piece));
+                self.pieces(strengths, workspace, &mut |piece| maxima.see(piece));
                 maxima.value(self.defuzzifier).filter(|_| highest.0 > 0.0)
             }
             Defuzzifier::Bisector => {
                 let mut whole = self.integrals();
-                self.pieces(strengths, room, &mut |piece| whole.add(piece));
+                self.pieces(strengths, workspace, &mut |piece| whole.add(piece));
                 let half = 0.5 * whole.area;
                 let mut sum = 0.0;
                 let mut bisector = None;
-                self.pieces(strengths, room, &mut |piece| {
+                self.pieces(strengths, workspace, &mut |piece| {
                     if bisector.is_none() {
                         let area = piece.area();
                         if sum + area >= half && area > 0.0 {
@@ -262,7 +262,7 @@ impl Defuzzify {
             }
             _ => {
                 let mut integrals = self.integrals();
-                self.pieces(strengths, room, &mut |piece| integrals.add(piece));
+                self.pieces(strengths, workspace, &mut |piece| integrals.add(piece));
                 integrals.centroid()
             }
         }
@@ -277,10 +277,15 @@ impl Defuzzify {
         Integrals::about(self.middle())
     }
 
-    fn pieces(&self, strengths: Strengths<'_>, room: &mut Room, visit: &mut dyn FnMut(&Piece<'_>)) {
+    fn pieces(
+        &self,
+        strengths: Strengths<'_>,
+        workspace: &mut Workspace,
+        visit: &mut dyn FnMut(&Piece<'_>),
+    ) {
         match &self.method {
-            Method::Lines(lines) => lines.pieces(strengths, self.joint, room, visit),
-            Method::Curves(curves) => curves.pieces(strengths, self.joint, room, visit),
+            Method::Lines(lines) => lines.pieces(strengths, self.joint, workspace, visit),
+            Method::Curves(curves) => curves.pieces(strengths, self.joint, workspace, visit),
             Method::Partition(_)
             | Method::Sampled(..)
             | Method::Moments(_)

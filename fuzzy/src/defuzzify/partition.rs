@@ -139,7 +139,7 @@ impl Partition {
 mod tests {
     use super::*;
     use crate::defuzzify::piece::Integrals;
-    use crate::defuzzify::polyline::Room;
+    use crate::defuzzify::polyline::Workspace;
     use crate::defuzzify::{Joint, Strengths};
     use crate::model::{Aggregation, Implication, Shape, Variable};
     use crate::table::centroid;
@@ -219,7 +219,7 @@ mod tests {
                 aggregation: Aggregation::Maximum,
             };
             let strengths = Strengths { strengths, offsets: &offsets };
-            lines.pieces(strengths, joint, &mut Room::new(count, 0), &mut |piece| slow.add(piece));
+            lines.pieces(strengths, joint, &mut Workspace::new(count, 0), &mut |piece| slow.add(piece));
             match (fast, slow.centroid()) {
                 (Some(fast), Some(slow)) => {
                     prop_assert!((fast - slow).abs() <= 1e-12 * (variable.high - variable.low));

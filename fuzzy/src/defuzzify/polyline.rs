@@ -43,7 +43,7 @@ pub(crate) struct Segment {
 
 /// Scratch memory of the caller. An evaluation never grows it.
 #[derive(Debug)]
-pub(crate) struct Room {
+pub(crate) struct Workspace {
     active: Vec<Activated>,
     pub(super) cuts: Vec<f64>,
     /// The most cuts. The vector's capacity depends on the allocator.
@@ -59,11 +59,11 @@ struct Activated {
     right: f64,
 }
 
-impl Room {
-    /// Room for `activations` and `cuts` at once.
+impl Workspace {
+    /// Workspace for `activations` and `cuts` at once.
     pub(crate) fn new(activations: usize, cuts: usize) -> Self {
         let most_cuts = cuts.max(activations + 2);
-        Room {
+        Workspace {
             active: Vec::with_capacity(activations),
             cuts: Vec::with_capacity(most_cuts),
             most_cuts,
@@ -73,9 +73,9 @@ impl Room {
 }
 
 /// Has the same capacities, and is empty. A derived clone would have no spare capacity.
-impl Clone for Room {
+impl Clone for Workspace {
     fn clone(&self) -> Self {
-        Room::new(self.active.capacity(), self.most_cuts)
+        Workspace::new(self.active.capacity(), self.most_cuts)
     }
 }
 
@@ -138,17 +138,17 @@ impl Polylines {
         &self,
         strengths: Strengths<'_>,
         joint: Joint,
-        room: &mut Room,
+        workspace: &mut Workspace,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
         for (from, to, lines) in self.intervals() {
-            room.active.clear();
-            room.cuts.clear();
-            room.cuts.push(0.0);
+            workspace.active.clear();
+            workspace.cuts.clear();
+            workspace.cuts.push(0.0);
             for line in lines {
                 for &strength in strengths.of(line.term) {
                     if strength > 0.0 {
-                        room.active.push(Activated {
+                        workspace.active.push(Activated {
                             strength,
                             left: line.left,
                             right: line.right,
@@ -158,25 +158,28 @@ impl Polylines {
                             && line.left != strength
                             && line.right != strength
                         {
-                            room.cuts
+                            workspace
+                                .cuts
                                 .push((strength - line.left) / (line.right - line.left));
                         }
                     }
                 }
             }
-            if room.active.is_empty() {
+            if workspace.active.is_empty() {
                 continue;
             }
-            room.cuts.push(1.0);
-            room.cuts.sort_unstable_by(f64::total_cmp);
+            workspace.cuts.push(1.0);
+            workspace.cuts.sort_unstable_by(f64::total_cmp);
             let width = to - from;
-            for (&start, &end) in room.cuts.iter().zip(room.cuts.iter().skip(1)) {
+            for (&start, &end) in workspace.cuts.iter().zip(workspace.cuts.iter().skip(1)) {
                 if start >= end {
                     continue;
                 }
-                room.segments.clear();
-                for active in &room.active {
-                    room.segments.push(active.on(start, end, joint.implication));
+                workspace.segments.clear();
+                for active in &workspace.active {
+                    workspace
+                        .segments
+                        .push(active.on(start, end, joint.implication));
                 }
                 let at = |t: f64| match t {
                     // Exact at the ends, so that neighbouring pieces meet.
@@ -188,7 +191,7 @@ impl Polylines {
                     from: at(start),
                     to: at(end),
                 };
-                join(&room.segments, stretch, joint.aggregation, visit);
+                join(&workspace.segments, stretch, joint.aggregation, visit);
             }
         }
     }

@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
-use crate::defuzzify::polyline::Room;
+use crate::defuzzify::polyline::Workspace;
 use crate::defuzzify::{Defuzzify, Strengths};
 use crate::model::NoRuleFires;
 use crate::table::{self, Buffers, Partial, Strongest, Table};
@@ -88,7 +88,7 @@ struct CompiledOutput {
 pub struct Scratch {
     table: Buffers<Vec<f64>, Vec<Partial>, Vec<Strongest>>,
     /// For outputs that have no closed form.
-    room: Room,
+    workspace: Workspace,
 }
 
 impl Engine {
@@ -156,7 +156,7 @@ impl Engine {
         self.outputs.iter().map(|v| (&v.name, v.low, v.high))
     }
 
-    /// Room to evaluate in, for [`Engine::evaluate_with`]; one a thread.
+    /// Workspace to evaluate in, for [`Engine::evaluate_with`]; one a thread.
     ///
     /// # Example
     /// ```
@@ -183,7 +183,7 @@ impl Engine {
                 strengths: vec![0.0; strengths],
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
-            room: Room::new(strengths, strengths + cuts.max().unwrap_or(0)),
+            workspace: Workspace::new(strengths, strengths + cuts.max().unwrap_or(0)),
         }
     }
 
@@ -284,7 +284,7 @@ impl Engine {
     fn outcomes(&self, scratch: &mut Scratch, inputs: &[f64], outcomes: &mut [Outcome]) {
         let Scratch {
             table: buffers,
-            room,
+            workspace,
         } = scratch;
         table::evaluate(
             &self.arrays,
@@ -297,7 +297,7 @@ impl Engine {
                     strengths,
                     offsets: &output.offsets,
                 };
-                output.defuzzify.value(strengths, room)
+                output.defuzzify.value(strengths, workspace)
             },
         );
     }
