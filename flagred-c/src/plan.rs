@@ -1,4 +1,4 @@
-//! An exported plan, as C has it.
+//! The exported plan in C.
 
 use flagred::{
     accumulator::AccumulatorSettings,
@@ -31,10 +31,10 @@ pub(crate) struct Array<T> {
 }
 
 impl<T> Array<T> {
-    /// The array, in place.
+    /// The array as a slice.
     ///
     /// # Safety
-    /// It is null or as long as it says, and nothing changes it as long as the slice is used.
+    /// It is null or has `count` items, and does not change while the slice is used.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn read<'a>(&self) -> Result<&'a [T], Status> {
         if self.count == 0 {
@@ -156,28 +156,30 @@ macro_rules! define {
 table::arrays!(define!);
 
 impl Plan {
-    /// How many bytes a monitor needs.
+    /// The size of a monitor's memory.
     ///
     /// # Safety
-    /// The arrays are as long as they say.
+    /// The arrays have the lengths they say.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn bytes(&self, motors: usize) -> Result<usize, Status> {
         // SAFETY: the caller's promise.
         let plan = unsafe { self.whole(&[], &[]) }?;
-        let mut bytes = plan.bytes(motors);
-        // Channels and inputs are read into the memory; without it there are none yet.
-        let (channel, input) = (
-            size_of::<Channel>() + size_of::<channel::Seen>(),
-            size_of::<channel::Input>() + size_of::<f64>(),
-        );
-        bytes += self.channels.count * channel + self.sources.count * input;
-        Ok(bytes)
+        // Plus the channels and inputs, which are converted into the memory.
+        let channel = size_of::<Channel>() + size_of::<channel::Seen>();
+        let input = size_of::<channel::Input>() + size_of::<f64>();
+        let channels = self.channels.count.checked_mul(channel);
+        let inputs = self.sources.count.checked_mul(input);
+        let bytes = plan
+            .bytes(motors)
+            .checked_add(channels.ok_or(Status::DamagedPlan)?);
+        let bytes = bytes.and_then(|bytes| bytes.checked_add(inputs?));
+        bytes.ok_or(Status::MemorySize)
     }
 
-    /// The plan, with what C has in another form read into the block.
+    /// The plan, with its channels and inputs converted into the block.
     ///
     /// # Safety
-    /// The arrays are as long as they say, and stay as they are.
+    /// The arrays have the lengths they say, and do not change.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn read(&self, block: &mut Block) -> Result<board::Plan<'static>, Status> {
         // SAFETY: the caller's promise.
@@ -191,7 +193,7 @@ impl Plan {
     }
 
     /// # Safety
-    /// The arrays are as long as they say, and stay as they are.
+    /// The arrays have the lengths they say, and do not change.
     #[allow(unsafe_code, reason = "foreign memory")]
     unsafe fn whole<'a>(
         &self,
@@ -246,7 +248,7 @@ fn hedges(codes: &[u32]) -> Result<&[Hedge], Status> {
     if codes.iter().any(|code| *code as usize >= Hedge::ALL.len()) {
         return Err(Status::DamagedPlan);
     }
-    // SAFETY: a hedge is a `u32` below the number of hedges, which all of these are.
+    // SAFETY: a hedge is a `u32` below the number of hedges, and all codes are.
     Ok(unsafe { core::slice::from_raw_parts(codes.as_ptr().cast(), codes.len()) })
 }
 
@@ -307,7 +309,7 @@ impl CChannel {
 }
 
 impl CSource {
-    /// The limit of a share of time is its channel's.
+    /// A share of time has the limit of its channel.
     fn read(&self, channels: &[Channel]) -> Result<channel::Input, Status> {
         let channel = channels.get(self.channel as usize);
         let limit = match channel.and_then(|channel| channel.threshold) {

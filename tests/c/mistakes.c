@@ -1,4 +1,4 @@
-/* Everything that can be given wrongly is told, and nothing crashes. The line that fails is the exit code. */
+/* Invalid arguments return a status and do not crash. Prints the line of the first failure. */
 #include <stdio.h>
 
 #include PROFILE

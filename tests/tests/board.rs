@@ -1,5 +1,5 @@
-//! What flies on board says, bit for bit, what the monitor says: as a table that is lent, as exported Rust and as
-//! exported C, over grids of inputs and over every flight there is.
+//! On-board monitors have the bits of the monitor, with a lent plan, with exported Rust and with exported C, over grids of
+//! inputs and over every flight.
 
 use std::{
     collections::BTreeMap,
@@ -20,7 +20,7 @@ use flagred_tests::{
     flagred,
 };
 
-/// What `flagred export --rust` writes of each of the profiles.
+/// The output of `flagred export --rust` for each profile.
 mod exported {
     pub mod flagred {
         include!("../exported/flagred.rs");
@@ -41,7 +41,7 @@ fn exported() -> [(&'static str, &'static Plan<'static>); 3] {
     ]
 }
 
-/// Runs a board's monitor in memory of just the plan's sizes.
+/// Runs an on-board monitor.
 fn with_monitor<R>(
     plan: &Plan<'_>,
     motors: usize,
@@ -50,7 +50,7 @@ fn with_monitor<R>(
     run(&mut OwnedMemory::new(plan, motors).monitor(plan).unwrap())
 }
 
-/// What the monitor says of a flight, sample by sample, and at its end.
+/// The assessments of the monitor for each sample of a flight, and the findings at its end.
 fn by_the_monitor(estimator: &Estimator, flight: &[Moment]) -> Vec<String> {
     let signals = estimator.profile().signals();
     let mut monitor = Monitor::new(estimator, flight[0].motors.len(), &signals).unwrap();
@@ -73,7 +73,7 @@ fn on_board(plan: &Plan<'_>, flight: &[Moment]) -> Vec<String> {
     })
 }
 
-/// The first difference, if any: a whole flight is too long to print.
+/// Shows the first difference only: a whole flight is too long to print.
 fn assert_same(expected: &[String], found: &[String], what: &str) {
     assert_eq!(expected.len(), found.len(), "{what}");
     for (i, (expected, found)) in expected.iter().zip(found).enumerate() {
@@ -81,7 +81,7 @@ fn assert_same(expected: &[String], found: &[String], what: &str) {
     }
 }
 
-/// As many points as make a dense grid that is soon done.
+/// The points on each axis of a grid that is dense and takes little time.
 fn along(estimator: &Estimator) -> usize {
     match estimator.profile().inputs.len() {
         0..=2 => 203,
@@ -117,7 +117,7 @@ fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs()
     for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
         let estimator = estimator(profile);
         let lent = estimator.plan().unwrap();
-        // As text, in which what is not a number is equal to itself.
+        // As text, in which NaN equals NaN.
         let table = |plan: &Plan<'_>| format!("{:?}", plan.table);
         assert!(table(plan) == table(&lent), "{name}");
         let (mut known, mut filled) = (0, 0);
@@ -140,7 +140,7 @@ fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs()
         });
         eprintln!("{name}: {known} points, {filled} of them filled");
         assert!(known > 30_000, "{name}: {known}");
-        // The rules to fly with leave no gap.
+        // The rules of `flagred` have no gap.
         assert_eq!(filled > 0, name != "flagred", "{name}: {filled}");
     }
 }
@@ -208,7 +208,7 @@ fn what_has_no_closed_form_is_refused_with_what_has() {
     );
 }
 
-/// The library for C, built with nothing but `core`, and the folder to build programs in.
+/// The folder of the C library, built with `core` only.
 fn library() -> Option<&'static Path> {
     static LIBRARY: OnceLock<Option<PathBuf>> = OnceLock::new();
     let built = LIBRARY.get_or_init(|| {
@@ -239,7 +239,7 @@ fn library() -> Option<&'static Path> {
     built.as_deref()
 }
 
-/// Compiles a program of C with the library; gives it, and the folder it is in.
+/// Compiles a C program with the library, and returns it and its folder.
 fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(Command, Folder)> {
     let library = library()?;
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -297,7 +297,7 @@ fn the_header_has_the_arrays_of_a_table() {
     assert_eq!(arrays[..], listed);
 }
 
-/// What a program writes of doubles.
+/// The output of a program for doubles as its input.
 fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
     let mut child = program
         .stdin(Stdio::piped())
@@ -366,7 +366,7 @@ fn the_example_in_c_runs() {
     insta::assert_snapshot!(text);
 }
 
-/// Time in us and risk of every row that has one.
+/// The time in us and the risk of every row with a risk.
 fn risks(csv: &[u8]) -> BTreeMap<u64, f64> {
     let text = std::str::from_utf8(csv).unwrap();
     let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
@@ -406,7 +406,7 @@ fn a_log_flown_again_in_c_has_the_risk_of_assess() {
     }
 }
 
-/// Rule sets that use every array of a table: those of `tests/onboard`, each input the latest value of a signal.
+/// The rule sets of `tests/onboard`, which use every array of a table. Each input is the last value of a signal.
 fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
     let rule_sets = Path::new(env!("CARGO_MANIFEST_DIR")).join("onboard");
     let mut profiles = Vec::new();
@@ -482,7 +482,7 @@ fn every_compiled_table_is_whole() {
     }
 }
 
-/// The program of examples/09-on-board.md, as a reader would save it.
+/// The program of examples/09-on-board.md.
 #[test]
 fn the_page_in_c_runs() {
     let page = include_str!("../../examples/09-on-board.md");

@@ -1,6 +1,6 @@
-//! What of a filling has to be kept to answer where no rule applies: a grid of knots with their values.
+//! The grid of knots and values that fills gaps of the rules.
 
-/// Knots with what is said there, read linearly along each input between them.
+/// Knots with their values. Between knots, values are interpolated linearly along each input.
 #[derive(Debug, Clone, Copy)]
 pub struct FilledKnots<'a> {
     /// The coordinates of knots along each input, ascending: those of the first input, then of the second, and so on.
@@ -9,7 +9,7 @@ pub struct FilledKnots<'a> {
     pub starts: &'a [u32],
     /// The value at each knot, the last input running fastest.
     pub values: &'a [f64],
-    /// How far each knot is from the nearest that rules cover, in shares of the inputs' ranges.
+    /// The distance of each knot from the nearest covered knot, in shares of the inputs' ranges.
     pub distances: &'a [f64],
 }
 
