@@ -472,6 +472,41 @@ fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
 }
 
 #[test]
+fn a_damaged_table_is_refused_or_evaluates_in_c() {
+    macro_rules! list {
+        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+            [$(item_size(|table| table.$array)),*]
+        };
+    }
+    let sizes: [usize; _] = table::arrays!(list!);
+    let folder = Folder::new();
+    let of_every_kind = profiles_of_every_kind(&folder);
+    let of_every_kind = of_every_kind
+        .iter()
+        .map(|(name, _, file)| (&**name, &**file));
+    let shipped = exported().into_iter().zip(PROFILES);
+    let shipped = shipped.map(|((name, _), profile)| (name, profile));
+    for (name, profile) in of_every_kind.chain(shipped) {
+        let exported = Some((profile, name));
+        let Some((mut command, _folder)) = program("tests/c/damage.c", name, exported) else {
+            return;
+        };
+        let output = command.args(sizes.map(|size| size.to_string())).output();
+        let output = output.unwrap();
+        assert!(output.status.success(), "{name}: {output:?}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        let (accepted, tried) = text.trim().split_once(" of ").unwrap();
+        let [accepted, tried] = [accepted, tried].map(|count| count.parse::<u32>().unwrap());
+        assert!(accepted > 100 && tried > accepted + 100, "{name}: {text}");
+    }
+}
+
+/// The size of an item of an array of a table.
+fn item_size<T>(_: for<'a> fn(&table::Table<'a>) -> &'a [T]) -> usize {
+    size_of::<T>()
+}
+
+#[test]
 fn every_compiled_table_is_whole() {
     for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/conformance")).unwrap() {
         let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
