@@ -5,7 +5,7 @@ use alloc::{string::String, sync::Arc, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     engine::{CompileError, EvaluateError, Outcome, Scratch},
-    table::Set,
+    table::ClosedForm,
 };
 
 use crate::{
@@ -193,7 +193,7 @@ impl Estimator {
     /// The output has no closed form.
     pub fn plan(&self) -> Result<Plan<'_>, NoClosedForm> {
         let table = self.0.engine.table();
-        let open = |output: &fuzzy::table::Output| output.set == Set::OPEN;
+        let open = |output: &fuzzy::table::Output| output.form == ClosedForm::NONE;
         if table.outputs.get(self.0.output).is_none_or(open) {
             return Err(NoClosedForm {
                 output: self.0.profile.output.clone(),

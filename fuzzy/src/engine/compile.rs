@@ -9,18 +9,17 @@ use alloc::{
     vec::Vec,
 };
 
-use super::arrays::Arrays;
-use super::condition::Step;
+use super::arrays::OwnedTable;
 use super::lanes::Lanes;
 use super::literal::{Literal, Literals};
 use super::problem::{CompileError, Problem};
-use super::rules::{Draft, Rules};
+use super::rules::Draft;
 use super::{CompiledOutput, Engine, Input};
-use crate::defuzzify::weighted::Consequence;
+use crate::defuzzify::weighted::Consequents;
 use crate::defuzzify::{Defuzzify, Merging};
 use crate::model::{Model, NoRuleFires, Output, Shape, Term, Variable};
 use crate::rule::{Condition, Hedge, Proposition};
-use crate::table::Action;
+use crate::table::{Action, Op, Step};
 
 impl Engine {
     /// Compiles a model: names become indices, rules a table, output terms closed forms.
@@ -263,7 +262,7 @@ impl Compiler<'_> {
                 };
                 actions.push(Action {
                     weight: rule.weight,
-                    place: term as u32,
+                    strength: term as u32,
                     output: output as u32,
                     rule: index as u32,
                     sums: 0,
@@ -278,7 +277,7 @@ impl Compiler<'_> {
         let content = |draft: &Draft| {
             let actions = draft.actions.iter();
             actions
-                .map(|a| (a.output, a.place, a.weight.to_bits()))
+                .map(|a| (a.output, a.strength, a.weight.to_bits()))
                 .collect::<Vec<_>>()
         };
         drafts.sort_by_cached_key(|draft| {
@@ -289,13 +288,19 @@ impl Compiler<'_> {
 
     fn condition(&mut self, condition: &Condition, steps: &mut Vec<Step>) {
         match condition {
-            Condition::Is(proposition) => steps.push(Step::Push(self.literal(proposition))),
+            Condition::Is(proposition) => steps.push(Step {
+                op: Op::PUSH,
+                literal: self.literal(proposition),
+            }),
             Condition::Not(inner) => {
                 self.condition(inner, steps);
-                steps.push(Step::Not);
+                steps.push(Step {
+                    op: Op::NOT,
+                    literal: 0,
+                });
             }
-            Condition::And(all) => self.joined(all, steps, Step::AndLiteral, Step::And),
-            Condition::Or(any) => self.joined(any, steps, Step::OrLiteral, Step::Or),
+            Condition::And(all) => self.joined(all, steps, (Op::AND_LITERAL, Op::AND)),
+            Condition::Or(any) => self.joined(any, steps, (Op::OR_LITERAL, Op::OR)),
         }
     }
 
@@ -303,18 +308,23 @@ impl Compiler<'_> {
         &mut self,
         conditions: &[Condition],
         steps: &mut Vec<Step>,
-        with_literal: fn(u32) -> Step,
-        with_top: Step,
+        (with_literal, with_top): (Op, Op),
     ) {
         for (i, condition) in conditions.iter().enumerate() {
             match condition {
                 Condition::Is(proposition) if i > 0 => {
-                    steps.push(with_literal(self.literal(proposition)));
+                    steps.push(Step {
+                        op: with_literal,
+                        literal: self.literal(proposition),
+                    });
                 }
                 _ => {
                     self.condition(condition, steps);
                     if i > 0 {
-                        steps.push(with_top);
+                        steps.push(Step {
+                            op: with_top,
+                            literal: 0,
+                        });
                     }
                 }
             }
@@ -324,10 +334,10 @@ impl Compiler<'_> {
     fn engine(&mut self, mut drafts: Vec<Draft>) -> Engine {
         let model = self.model;
         let mut outputs = Vec::new();
-        let mut first_place = 0;
+        let mut first_strength = 0;
         for (index, output) in model.outputs.iter().enumerate() {
-            let compiled = self.output(index, output, first_place, &mut drafts);
-            first_place = compiled.heights.end;
+            let compiled = self.output(index, output, first_strength, &mut drafts);
+            first_strength = compiled.strengths.end;
             outputs.push(compiled);
         }
         let mut by_input = vec![Vec::new(); model.inputs.len()];
@@ -361,21 +371,20 @@ impl Compiler<'_> {
             });
         }
         let operators = model.operators;
-        let rules = Rules::new(&drafts, &literals, first_place);
         Engine {
             lanes: Lanes::new(operators.and, &inputs, &by_input, &drafts, &outputs),
-            arrays: Arrays::new(operators, &inputs, &literals, rules, &outputs),
+            arrays: OwnedTable::new(operators, &inputs, &literals, &drafts, &outputs),
             inputs,
             outputs,
         }
     }
 
-    /// Compiles an output and gives the drafts' actions on it their places.
+    /// Compiles an output and gives the drafts' actions on it the indices of their firing strengths.
     fn output(
         &mut self,
         index: usize,
         output: &Output,
-        first_place: usize,
+        first_strength: usize,
         drafts: &mut [Draft],
     ) -> CompiledOutput {
         let variable = &output.variable;
@@ -385,40 +394,40 @@ impl Compiler<'_> {
         let here = |action: &&Action| action.output as usize == index;
         let mut counts = vec![0; variable.terms.len()];
         for action in actions().filter(here) {
-            counts[action.place as usize] += 1;
+            counts[action.strength as usize] += 1;
         }
         let used: Vec<bool> = counts.iter().map(|count| *count > 0).collect();
         let defuzzify = self.defuzzify(output, &used);
         if merging != Merging::Apart {
             counts.fill(1);
         }
-        let mut places = vec![0];
+        let mut offsets = vec![0];
         for count in counts {
-            places.push(places.last().copied().unwrap_or(0) + count);
+            offsets.push(offsets.last().copied().unwrap_or(0) + count);
         }
         let mut next = match defuzzify.ranks() {
             Some((_, ranks)) => ranks.to_vec(),
-            None => places.clone(),
+            None => offsets.clone(),
         };
         for action in drafts.iter_mut().flat_map(|draft| &mut draft.actions) {
             if action.output as usize == index {
-                let term = action.place as usize;
-                action.place = (first_place + next[term]) as u32;
+                let term = action.strength as usize;
+                action.strength = (first_strength + next[term]) as u32;
                 action.sums = u32::from(merging == Merging::Sum);
                 if merging == Merging::Apart {
                     next[term] += 1;
                 }
             }
         }
-        let last = places.last().copied().unwrap_or(0);
+        let last = offsets.last().copied().unwrap_or(0);
         let count = defuzzify.ranks().map_or(last, |(count, _)| count);
         CompiledOutput {
             name: Arc::from(variable.name.as_str()),
             low: variable.low,
             high: variable.high,
             when_no_rule_fires: output.when_no_rule_fires,
-            heights: first_place..first_place + count,
-            places,
+            strengths: first_strength..first_strength + count,
+            offsets,
             defuzzify,
         }
     }
@@ -427,11 +436,11 @@ impl Compiler<'_> {
         let variable = &output.variable;
         let operators = self.model.operators;
         if output.defuzzifier.is_weighted() {
-            let mut z = Vec::new();
+            let mut consequents = Consequents::default();
             for term in &variable.terms {
                 let mut strangers = Vec::new();
                 let input = |name: &str| self.model.inputs.iter().position(|v| v.name == name);
-                let consequence = Consequence::new(&term.shape, input, |name| {
+                let is_consequent = consequents.push(&term.shape, input, |name| {
                     strangers.push(String::from(name))
                 });
                 for name in strangers {
@@ -441,13 +450,12 @@ impl Compiler<'_> {
                         name,
                     });
                 }
-                if consequence.is_none() {
+                if !is_consequent {
                     let why = "a weighted defuzzifier takes `constant`, `linear` and `singleton`";
                     self.misfit(variable, term, why);
                 }
-                z.extend(consequence);
             }
-            return Defuzzify::weighted(output, operators, z);
+            return Defuzzify::weighted(output, operators, consequents);
         }
         let defuzzify = Defuzzify::fuzzy(output, operators);
         for (term, used) in variable.terms.iter().zip(used) {
@@ -477,16 +485,15 @@ impl Compiler<'_> {
 
 /// The literals of a plain AND of different inputs, ascending; `None` of another condition.
 fn plain(steps: &[Step], inputs_of: &[usize]) -> Option<Vec<u32>> {
-    let (first, others) = steps.split_first()?;
-    let Step::Push(first) = first else {
-        return None;
-    };
-    let mut literals = Vec::from([*first]);
+    let (first, others) = steps
+        .split_first()
+        .filter(|(first, _)| first.op == Op::PUSH)?;
+    let mut literals = Vec::from([first.literal]);
     for step in others {
-        let Step::AndLiteral(literal) = step else {
+        if step.op != Op::AND_LITERAL {
             return None;
-        };
-        literals.push(*literal);
+        }
+        literals.push(step.literal);
     }
     literals.sort_unstable();
     let input = |literal: &u32| inputs_of.get(*literal as usize);

@@ -3,24 +3,22 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
-use crate::defuzzify::polyline::Room;
-use crate::defuzzify::{Defuzzify, Heights};
+use crate::defuzzify::polyline::Workspace;
+use crate::defuzzify::{Defuzzify, Strengths};
 use crate::model::NoRuleFires;
-use crate::table::{self, Partial, Rooms, Strongest, Table};
-use arrays::Arrays;
+use crate::table::{self, Buffers, Partial, Strongest, Table};
+use arrays::OwnedTable;
 use lanes::Lanes;
 
 mod arrays;
 mod batch;
 mod compile;
-mod condition;
 mod error;
 mod explain;
 mod lanes;
 mod literal;
 mod problem;
 mod rules;
-mod uniform;
 
 pub(crate) use crate::table::{FROM_TINY, TINY, operators};
 pub use crate::table::{Outcome, State};
@@ -46,7 +44,7 @@ pub struct Engine {
     inputs: Vec<Input>,
     outputs: Vec<CompiledOutput>,
     /// What is evaluated.
-    arrays: Arrays,
+    arrays: OwnedTable,
     /// The batch form of a common kind of model.
     lanes: Option<Lanes>,
 }
@@ -64,10 +62,10 @@ struct CompiledOutput {
     low: f64,
     high: f64,
     when_no_rule_fires: NoRuleFires,
-    /// Where the heights of this output stand.
-    heights: Range<usize>,
-    /// Where, in these, the heights of each term begin, and where the last one's end.
-    places: Vec<usize>,
+    /// The span of its firing strengths.
+    strengths: Range<usize>,
+    /// The offset in that span of each term's firing strengths, and the end of the last term's.
+    offsets: Vec<usize>,
     defuzzify: Defuzzify,
 }
 
@@ -88,9 +86,9 @@ struct CompiledOutput {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Scratch {
-    table: Rooms<Vec<f64>, Vec<Partial>, Vec<Strongest>>,
+    table: Buffers<Vec<f64>, Vec<Partial>, Vec<Strongest>>,
     /// For outputs that have no closed form.
-    room: Room,
+    workspace: Workspace,
 }
 
 impl Engine {
@@ -158,7 +156,7 @@ impl Engine {
         self.outputs.iter().map(|v| (&v.name, v.low, v.high))
     }
 
-    /// Room to evaluate in, for [`Engine::evaluate_with`]; one a thread.
+    /// Workspace to evaluate in, for [`Engine::evaluate_with`]; one a thread.
     ///
     /// # Example
     /// ```
@@ -172,25 +170,25 @@ impl Engine {
     /// ```
     pub fn scratch(&self) -> Scratch {
         let sizes = self.arrays.sizes;
-        let places = sizes.heights as usize;
+        let strengths = sizes.strengths as usize;
         let cuts = self.outputs.iter().map(|output| output.defuzzify.cuts());
         Scratch {
-            table: Rooms {
+            table: Buffers {
                 values: vec![0.0; self.inputs.len()],
                 degrees: vec![0.0; sizes.degrees as usize],
                 alive: vec![Partial::NONE; sizes.alive as usize],
                 partial: vec![Partial::NONE; sizes.partial as usize],
                 next: vec![Partial::NONE; sizes.partial as usize],
                 stack: vec![0.0; sizes.stack as usize],
-                heights: vec![0.0; places],
+                strengths: vec![0.0; strengths],
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
-            room: Room::new(places, places + cuts.max().unwrap_or(0)),
+            workspace: Workspace::new(strengths, strengths + cuts.max().unwrap_or(0)),
         }
     }
 
     /// The compiled arrays, to be evaluated without this engine or written out: see [`table`]. Outputs whose set is
-    /// [`Set::OPEN`](table::Set::OPEN) have no closed form, and only the engine knows their values.
+    /// [`ClosedForm::NONE`](table::ClosedForm::NONE) have no closed form, and only the engine knows their values.
     ///
     /// # Example: the tables of the paper's rules
     /// ```
@@ -284,19 +282,22 @@ impl Engine {
     /// Evaluates as many values as there are inputs into as many outcomes as there are outputs.
     #[inline(always)]
     fn outcomes(&self, scratch: &mut Scratch, inputs: &[f64], outcomes: &mut [Outcome]) {
-        let Scratch { table: rooms, room } = scratch;
+        let Scratch {
+            table: buffers,
+            workspace,
+        } = scratch;
         table::evaluate(
             &self.arrays,
-            rooms,
+            buffers,
             inputs,
             outcomes,
-            |index, heights, _| {
+            |index, strengths| {
                 let output = self.outputs.get(index)?;
-                let heights = Heights {
-                    heights,
-                    places: &output.places,
+                let strengths = Strengths {
+                    strengths,
+                    offsets: &output.offsets,
                 };
-                output.defuzzify.value(heights, room)
+                output.defuzzify.value(strengths, workspace)
             },
         );
     }

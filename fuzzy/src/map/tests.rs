@@ -74,7 +74,7 @@ fn cells_points_and_slices() {
 
     assert_eq!(
         grid.clone().fix("battery", 1.0).unwrap_err().to_string(),
-        "`battery` is no axis of the grid"
+        "the grid has no axis `battery`"
     );
     assert!(grid.fix("margin", f64::NAN).is_err());
     assert!(Grid::new(&engine, 1).is_err());
