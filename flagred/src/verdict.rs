@@ -63,6 +63,18 @@ pub enum Measure {
     Imbalance,
 }
 
+impl core::fmt::Display for Measure {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.pad(match self {
+            Measure::Risk => "risk",
+            Measure::ElevatedRisk => "elevated risk",
+            Measure::CommandNoise => "command noise",
+            Measure::Reserve => "reserve",
+            Measure::Imbalance => "imbalance",
+        })
+    }
+}
+
 /// A limit on each quantity; reaching either is enough.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

@@ -6,7 +6,7 @@ use anstyle::{AnsiColor, Style};
 use flagred::{
     flight::{Assessment, Peak, Summary, Verdict},
     margin::Side,
-    verdict::{Finding, Level, Measure},
+    verdict::{Finding, Level},
 };
 use flightlog::{Flight, Motor};
 
@@ -172,13 +172,9 @@ fn summary(summary: &Summary) -> String {
 
 /// A finding in words: when, what, against which threshold, and which motor.
 pub(crate) fn describe(finding: &Finding, motors: &[Motor]) -> String {
-    let what = match finding.measure {
-        Measure::Risk => "risk",
-        Measure::ElevatedRisk => "elevated risk",
-    };
     let mut text = format!(
-        "{:.1} to {:.1} s: {what} up to {:.0} % (threshold {:.0} %)",
-        finding.from_s, finding.to_s, finding.peak_pct, finding.threshold_pct
+        "{:.1} to {:.1} s: {} up to {:.0} % (threshold {:.0} %)",
+        finding.from_s, finding.to_s, finding.measure, finding.peak_pct, finding.threshold_pct
     );
     if let Some(weakest) = &finding.motor
         && let Some(motor) = motor_of(finding, motors)
@@ -218,6 +214,7 @@ fn style(verdict: &Verdict) -> Style {
 pub(crate) fn level_style(level: Level) -> Style {
     match level {
         Level::Good => AnsiColor::Green,
+        Level::Info => AnsiColor::Cyan,
         Level::Warn => AnsiColor::Yellow,
         Level::Fail => AnsiColor::Red,
     }

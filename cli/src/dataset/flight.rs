@@ -108,7 +108,7 @@ fn inputs(
             ..input.source.clone()
         })
         .collect();
-    let Ok(mut observer) = Observer::new(&sources, carried) else {
+    let Ok(mut observer) = Observer::new(&sources, log::craft(flight, carried)) else {
         return Vec::new();
     };
     let read = |observer: &Observer| {

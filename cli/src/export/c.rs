@@ -189,6 +189,9 @@ fn channel(channel: &Channel) -> String {
         Observed::LowSide => (2, 0),
         Observed::HighSide => (3, 0),
         Observed::Named(signal) => (4, signal as u32),
+        Observed::CommandLessYaw => (5, 0),
+        Observed::Effort(axis) => (6, axis as u32),
+        Observed::CommandNoise => (7, 0),
     };
     let motors = match channel.motors {
         Motors::Pooled => 0,
@@ -219,6 +222,8 @@ fn source(input: &Input) -> String {
         Statistic::Last => 5,
         Statistic::ShareBelow(_) => 6,
         Statistic::ShareAbove(_) => 7,
+        Statistic::StdLessNoise => 8,
+        Statistic::Noise => 9,
     };
     format!("{{{}, {statistic}}}", input.channel)
 }
@@ -250,8 +255,7 @@ fn settings(settings: &Settings) -> String {
         number(verdict.clear_after_s),
         number(verdict.quiet_after_take_off_s),
         number(verdict.quiet_before_landing_s),
-        number(verdict.idle.command_below),
-        number(verdict.idle.risk_at_most_pct),
+        number(verdict.idle_below),
         sampling.min_samples.to_string(),
     ];
     format!("{{{}}}", values.join(", "))

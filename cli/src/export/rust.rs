@@ -100,10 +100,12 @@ fn channel(channel: &Channel) -> String {
         observed,
         motors,
         threshold,
+        in_bins,
         window_s,
     } = channel;
     let observed = match observed {
         Observed::Named(signal) => format!("Named({signal})"),
+        Observed::Effort(axis) => format!("Effort({axis})"),
         observed => format!("{observed:?}"),
     };
     let threshold = match threshold {
@@ -113,7 +115,7 @@ fn channel(channel: &Channel) -> String {
     };
     format!(
         "channel::Channel {{ observed: channel::Observed::{observed}, motors: channel::Motors::{motors:?}, \
-         threshold: {threshold}, window_s: {window_s:?} }}"
+         threshold: {threshold}, in_bins: {in_bins}, window_s: {window_s:?} }}"
     )
 }
 

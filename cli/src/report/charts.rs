@@ -98,7 +98,7 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
 
 pub(crate) fn level_class(level: Level) -> &'static str {
     match level {
-        Level::Good => "good",
+        Level::Good | Level::Info => "good",
         Level::Warn => "warn",
         Level::Fail => "fail",
     }

@@ -6,7 +6,7 @@ use flagred::{
     estimator::Estimator,
     flight::Verdict,
     monitor::Update,
-    verdict::{Level, Measure},
+    verdict::Level,
 };
 use flightlog::{Vehicle, mavlink::Setup};
 use serde::Serialize;
@@ -96,10 +96,7 @@ pub(crate) fn describe(event: &Event) -> String {
             finding.level,
             finding.from_s,
             finding.to_s,
-            match finding.measure {
-                Measure::Risk => "risk",
-                Measure::ElevatedRisk => "elevated risk",
-            },
+            finding.measure,
             finding.peak_pct
         ),
         Event::Landed { verdict } => match verdict {

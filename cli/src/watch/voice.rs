@@ -50,7 +50,7 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     }
     MavMessage::STATUSTEXT(STATUSTEXT_DATA {
         severity: match level {
-            Level::Good => MavSeverity::MAV_SEVERITY_INFO,
+            Level::Good | Level::Info => MavSeverity::MAV_SEVERITY_INFO,
             Level::Warn => MavSeverity::MAV_SEVERITY_WARNING,
             Level::Fail => MavSeverity::MAV_SEVERITY_CRITICAL,
         },
@@ -75,6 +75,9 @@ pub(crate) fn say(
     let (name, value) = match measure {
         Measure::Risk => ("risk", update.risk.ok().map(|estimate| estimate.risk_pct)),
         Measure::ElevatedRisk => ("elevated", update.elevated_risk_pct),
+        Measure::Reserve => ("little reserve", finding.map(|finding| finding.peak_pct)),
+        Measure::Imbalance => ("imbalance", finding.map(|finding| finding.peak_pct)),
+        Measure::CommandNoise => ("noise", finding.map(|finding| finding.peak_pct)),
     };
     if let Some(value) = value {
         text += &format!(" {name} {value:.0} %");
