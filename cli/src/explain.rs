@@ -47,7 +47,7 @@ struct Json<'a> {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (model, engine) = rule_set::load(&arguments.model)?;
     let values = values(&model, &arguments.inputs)?;
-    let explanation = engine.explain(&model, &values).map_err(Failure::usage)?;
+    let explanation = engine.explain(&values).map_err(Failure::usage)?;
     let mut out = anstream::stdout().lock();
     if arguments.json {
         let json = Json {

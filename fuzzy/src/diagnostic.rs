@@ -1,6 +1,7 @@
 //! One type for every finding: what is wrong, where, and what to do about it.
 
 use alloc::{
+    format,
     string::{String, ToString},
     vec::Vec,
 };
@@ -375,6 +376,30 @@ fn edit_distance(a: &[char], b: &[char]) -> usize {
     last.last().copied().unwrap_or(0)
 }
 
+/// A finding: this name is taken already.
+pub(crate) fn duplicate(
+    kind: &str,
+    name: &str,
+    what: &str,
+    span: Range<usize>,
+    first: Range<usize>,
+) -> Diagnostic {
+    let (code, help) = match kind {
+        "variable" => (
+            "duplicate-variable",
+            "inputs and outputs have different names; rename one of them",
+        ),
+        "term" => (
+            "duplicate-term",
+            "the terms of a variable have different names; rename one of them",
+        ),
+        _ => ("duplicate-key", "keep one of them"),
+    };
+    Diagnostic::error(code, span, format!("{what} has the {kind} `{name}` twice"))
+        .related(first, "the first one")
+        .help(help)
+}
+
 /// ``did you mean `margin`?``, or else what there is: ``there are `margin` and `spread` ``.
 ///
 /// # Example
@@ -388,10 +413,10 @@ fn edit_distance(a: &[char], b: &[char]) -> usize {
 pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     match nearest(word, candidates.iter().copied()) {
-        Some(candidate) => Some(alloc::format!("did you mean `{candidate}`?")),
+        Some(candidate) => Some(format!("did you mean `{candidate}`?")),
         None if candidates.is_empty() => None,
-        None if candidates.len() == 1 => Some(alloc::format!("there is {}", listed(&candidates))),
-        None => Some(alloc::format!("there are {}", listed(&candidates))),
+        None if candidates.len() == 1 => Some(format!("there is {}", listed(&candidates))),
+        None => Some(format!("there are {}", listed(&candidates))),
     }
 }
 

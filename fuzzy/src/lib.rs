@@ -37,6 +37,8 @@ mod shape;
 pub mod table;
 #[cfg(feature = "alloc")]
 pub mod tree;
+#[cfg(feature = "alloc")]
+mod validate;
 #[cfg(feature = "yaml")]
 pub mod yaml;
 

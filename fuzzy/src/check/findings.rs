@@ -1,6 +1,7 @@
 //! A report in words.
 
 use alloc::{
+    collections::BTreeMap,
     format,
     string::{String, ToString},
     vec::Vec,
@@ -9,13 +10,13 @@ use core::ops::Range;
 
 use super::{
     AgainstTrend, Coordinate, Counterexample, Direction, Hole, Jump, Reach, Report, TermOf,
-    Uncovered, names::outside_range, shown,
+    Uncovered, shown, terms::outside,
 };
 use crate::{
-    diagnostic::{Diagnostic, Severity, listed},
+    diagnostic::{Diagnostic, listed},
     model::{
-        Model, NoRuleFires,
-        document::{Places, VariablePlaces},
+        Model, NoRuleFires, Variable,
+        document::{Spans, VariableSpans},
     },
     rule::{Condition, Consequent, Name, Rule},
 };
@@ -24,9 +25,10 @@ use crate::{
 const MOST_BOXES_TOLD: usize = 10;
 
 /// The report of a model, with the places at which its parts stand.
-pub(super) fn of(report: &Report, model: &Model, places: &Places) -> Vec<Diagnostic> {
-    let at = At { model, places };
+pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
+    let at = At { model, spans };
     let mut found = Vec::new();
+    duplicate_rules(model, &at, &mut found);
     for (i, one) in report.uncovered.iter().enumerate() {
         if i == MOST_BOXES_TOLD {
             found.push(at.more_uncovered(report));
@@ -82,37 +84,59 @@ pub(super) fn of(report: &Report, model: &Model, places: &Places) -> Vec<Diagnos
     found
 }
 
-/// Where things stand.
+/// Equal rules, whatever their weights.
+fn duplicate_rules(model: &Model, at: &At<'_>, findings: &mut Vec<Diagnostic>) {
+    let mut seen: BTreeMap<String, Range<usize>> = BTreeMap::new();
+    for (i, rule) in model.rules.iter().enumerate() {
+        let mut bare = rule.rule.clone();
+        bare.weight = 1.0;
+        let here = at.rule(i);
+        let text = format!("{bare}");
+        if let Some(first) = seen.get(&text) {
+            let message = format!("rule {} duplicates an earlier rule", i + 1);
+            findings.push(
+                Diagnostic::warning("duplicate-rule", here, message)
+                    .related(first.clone(), "the earlier rule")
+                    .help("remove one of them"),
+            );
+        } else {
+            seen.insert(text, here);
+        }
+    }
+}
+
+/// Where the parts of a model stand.
 struct At<'a> {
     model: &'a Model,
-    places: &'a Places,
+    spans: &'a Spans,
 }
 
 impl At<'_> {
     fn rule(&self, index: usize) -> Range<usize> {
-        self.places.rules.get(index).cloned().unwrap_or(0..0)
+        let rule = self.spans.rules.get(index);
+        rule.map_or(0..0, |rule| rule.whole.clone())
     }
 
-    fn variable(&self, name: &str) -> Option<(&VariablePlaces, &crate::model::Variable)> {
-        let inputs = self.model.inputs.iter().zip(&self.places.inputs);
+    fn variable(&self, name: &str) -> Option<(&VariableSpans, &Variable)> {
+        let inputs = self.model.inputs.iter().zip(&self.spans.inputs);
         let outputs = self.model.outputs.iter().map(|output| &output.variable);
-        let mut all = inputs.chain(outputs.zip(&self.places.outputs));
+        let mut all = inputs.chain(outputs.zip(&self.spans.outputs));
         all.find(|(variable, _)| variable.name == name)
-            .map(|(variable, places)| (places, variable))
+            .map(|(variable, spans)| (spans, variable))
     }
 
     fn name(&self, variable: &str) -> Range<usize> {
         self.variable(variable)
-            .map_or(0..0, |(places, _)| places.name.clone())
+            .map_or(0..0, |(spans, _)| spans.name.clone())
     }
 
     fn term(&self, one: &TermOf) -> Range<usize> {
-        let term = self.variable(&one.variable).and_then(|(places, variable)| {
+        let term = self.variable(&one.variable).and_then(|(spans, variable)| {
             let index = variable
                 .terms
                 .iter()
                 .position(|t| Some(&t.name) == one.term.as_ref())?;
-            places.terms.get(index).cloned()
+            Some(spans.terms.get(index)?.name.clone())
         });
         term.unwrap_or_else(|| self.name(&one.variable))
     }
@@ -133,7 +157,7 @@ impl At<'_> {
                 shown(libm::round(1000.0 * share) / 10.0)
             ),
         };
-        let place_of_rules = self.places.rules_key.clone();
+        let place_of_rules = self.spans.rules_key.clone();
         let mut finding = if one.silent {
             let message = format!("no rule for `{output}` fires {place}{share}");
             let chosen = self.model.outputs.iter().any(|o| {
@@ -211,7 +235,7 @@ impl At<'_> {
             "at least "
         };
         let message = format!("{least}{more} more regions have no rule; the largest are told");
-        Diagnostic::warning("uncovered", self.places.rules_key.clone(), message)
+        Diagnostic::warning("uncovered", self.spans.rules_key.clone(), message)
             .help("`--json` lists them")
     }
 
@@ -232,15 +256,22 @@ impl At<'_> {
             .inputs
             .iter()
             .find(|input| input.name == one.variable);
-        let outside = input.and_then(|input| {
-            let index = input.terms.iter().position(|t| t.name == term)?;
-            outside_range("input", input, index, here.clone(), Severity::Warning)
+        let outside = input.filter(|input| {
+            let is_outside = |i: &usize| input.terms.get(*i).is_some_and(|t| t.name == term);
+            outside(input).iter().any(is_outside)
         });
-        outside.unwrap_or_else(|| {
-            let message = format!("the term `{term}` of `{}` is never reached", one.variable);
-            Diagnostic::warning("unreachable-term", here, message)
-                .help("every rule that concludes it never fires")
-        })
+        if let Some(Variable {
+            name, low, high, ..
+        }) = outside
+        {
+            let message =
+                format!("term `{term}` of input `{name}` is 0 on the whole range [{low}, {high}]");
+            return Diagnostic::warning("term-outside-range", here, message)
+                .help("widen the range or move the term");
+        }
+        let message = format!("the term `{term}` of `{}` is never reached", one.variable);
+        Diagnostic::warning("unreachable-term", here, message)
+            .help("every rule that concludes it never fires")
     }
 
     fn hole(&self, one: &Hole) -> Diagnostic {

@@ -1,8 +1,8 @@
 //! What an author should know about a rule set: static analysis.
 //!
-//! [`names`] is what reading a file checks: whether the rules mean something at all. [`check`] asks what they amount to:
-//! which inputs no rule covers, which rules contradict each other or add nothing, which terms are never used or never
-//! reached, how far the outputs reach, where they jump, and where they go against what the author says of them.
+//! [`validate`] finds what keeps a model from being used: unknown names, wrong parameters. [`check`] analyses a model that
+//! can be used: inputs that no rule covers, rules that contradict each other or add nothing, terms that are never used or
+//! never reached, the values an output takes, its jumps, and where it contradicts a claim of the author.
 
 use alloc::{string::String, vec::Vec};
 
@@ -10,10 +10,10 @@ use serde::Serialize;
 
 use crate::{
     Engine,
-    diagnostic::{Diagnostic, Findings, Severity, suggest},
+    diagnostic::{Diagnostic, Findings, suggest},
     model::{
         Aggregation, Model,
-        document::{Document, Places},
+        document::{Document, Spans},
     },
 };
 
@@ -23,7 +23,6 @@ mod findings;
 mod jumps;
 mod logic;
 mod monotone;
-pub mod names;
 mod probe;
 mod reach;
 mod rules;
@@ -32,6 +31,7 @@ mod terms;
 mod tests;
 mod trend;
 
+pub use crate::validate::validate;
 pub use coverage::{Antecedent, Side, Uncovered};
 pub use jumps::Jump;
 pub use monotone::{Counterexample, Direction, Monotone};
@@ -147,7 +147,7 @@ pub struct Report {
 /// assert_eq!((hole.sides[0].low, hole.sides[0].high), (0.25, 0.75));
 /// assert_eq!(hole.missing[0][0].term, "medium");
 ///
-/// let findings = report.findings(&document.model, &document.places);
+/// let findings = report.findings(&document.model, &document.spans);
 /// assert!(findings.iter().any(|f| f.code == "uncovered"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -210,7 +210,7 @@ pub fn check(
 /// let document = fuzzy::yaml::parse(text)?;
 /// let (findings, report) = check::document(&document, text, &check::Options::default())?;
 /// assert!(report.is_none());
-/// assert!(findings.to_string().starts_with("6:8: error[no-rules]: the list of rules is empty"));
+/// assert!(findings.to_string().starts_with("6:8: error[no-rules]: the rule set has no rules"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn document(
@@ -218,23 +218,17 @@ pub fn document(
     text: &str,
     options: &Options,
 ) -> Result<(Findings, Option<Report>), alloc::boxed::Box<Diagnostic>> {
-    let mut findings = document.warnings.0.clone();
-    if document.model.rules.is_empty() {
-        for finding in findings.iter_mut().filter(|f| f.code == "no-rules") {
-            finding.severity = Severity::Error;
-        }
-        return Ok((Findings(findings), None));
+    let invalid = validate(&document.model, &document.spans);
+    if !invalid.is_empty() {
+        return Ok((Findings::locate(invalid, text), None));
     }
     let engine = match Engine::new(&document.model) {
         Ok(engine) => engine,
-        Err(error) => return Ok((error.findings(), None)),
+        Err(findings) => return Ok((findings, None)),
     };
     let report = check(&document.model, &engine, options)?;
-    findings.extend(report.findings(&document.model, &document.places));
-    let mut findings = Findings::locate(findings, text);
-    // What reading the file warns of is found by the analysis again.
-    findings.0.dedup();
-    Ok((findings, Some(report)))
+    let findings = report.findings(&document.model, &document.spans);
+    Ok((Findings::locate(findings, text), Some(report)))
 }
 
 /// The uncovered boxes of all outputs: those where no rule fires at all, then those where none reaches the coverage.
@@ -293,13 +287,13 @@ impl Report {
     /// let document = fuzzy::yaml::parse(text)?;
     /// let engine = Engine::new(&document.model)?;
     /// let report = check::check(&document.model, &engine, &check::Options::default())?;
-    /// let findings = report.findings(&document.model, &document.places);
+    /// let findings = report.findings(&document.model, &document.spans);
     /// assert!(findings.iter().any(|finding| finding.message == "no rule uses the term `low` of `heat`"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn findings(&self, model: &Model, places: &Places) -> Vec<Diagnostic> {
-        findings::of(self, model, places)
+    pub fn findings(&self, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
+        findings::of(self, model, spans)
     }
 }
 

@@ -11,7 +11,7 @@ fn report_of(text: &str, options: &Options) -> (Report, Vec<Diagnostic>) {
     let document = yaml::parse(text).unwrap_or_else(|f| panic!("{text}\n{f}"));
     let engine = Engine::new(&document.model).unwrap();
     let report = check(&document.model, &engine, options).unwrap();
-    let findings = report.findings(&document.model, &document.places);
+    let findings = report.findings(&document.model, &document.spans);
     (report, findings)
 }
 

@@ -22,7 +22,7 @@ use crate::rule::{Condition, Proposition};
 /// use fuzzy::engine::{Degree, ExplainedInput, FiredRule};
 ///
 /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-/// let explanation = fuzzy::Engine::new(&model)?.explain(&model, &[0.05, 0.9])?;
+/// let explanation = fuzzy::Engine::new(&model)?.explain(&[0.05, 0.9])?;
 /// let ExplainedInput { terms, .. } = &explanation.inputs[0];
 /// assert_eq!(terms[0], Degree { term: "very_low".into(), degree: 0.5 });
 /// let ExplainedInput { given, value, .. } = &explanation.inputs[1];
@@ -83,7 +83,7 @@ pub struct FiredRule {
 /// use fuzzy::engine::{ExplainedOutput, Share};
 ///
 /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-/// let explanation = fuzzy::Engine::new(&model)?.explain(&model, &[0.1, 0.15])?;
+/// let explanation = fuzzy::Engine::new(&model)?.explain(&[0.1, 0.15])?;
 /// let ExplainedOutput { coverage, rules, is_default, .. } = &explanation.outputs[0];
 /// assert!((coverage - 0.5).abs() < 1e-12 && !is_default);
 /// let terms: Vec<&str> = rules.iter().map(|Share { term, .. }| term.as_str()).collect();
@@ -129,11 +129,10 @@ const STEPS: usize = 200;
 impl Engine {
     /// Tells how the outputs come about: memberships, fired rules with strength and share, the aggregated set.
     ///
-    /// `model` is the one the engine was made from: the engine itself keeps no names of terms and no text.
-    /// It allocates and takes its time; use [`Engine::evaluate`] for values alone.
+    /// It allocates and is slow; use [`Engine::evaluate`] for values alone.
     ///
     /// # Errors
-    /// Not one finite value for each input, or another model.
+    /// Not one finite value for each input.
     ///
     /// # Example: which rules fired, how strongly?
     /// ```
@@ -141,19 +140,15 @@ impl Engine {
     ///
     /// let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
     /// let engine = Engine::new(&model)?;
-    /// let explanation = engine.explain(&model, &[0.007969, 0.226310])?;
+    /// let explanation = engine.explain(&[0.007969, 0.226310])?;
     /// let strongest = &explanation.rules[0];
     /// assert_eq!(strongest.text, "IF margin IS very_low AND spread IS high THEN risk IS very_high");
     /// assert!((strongest.strength - 0.92031).abs() < 1e-5);
     /// assert!((explanation.outputs[0].rules.iter().map(|r| r.share).sum::<f64>() - 1.0).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn explain(&self, model: &Model, inputs: &[f64]) -> Result<Explanation, EvaluateError> {
-        let names = model.inputs.iter().map(|input| input.name.as_str());
-        let outputs = model.outputs.iter().map(|o| o.variable.name.as_str());
-        if !names.eq(self.input_names()) || !outputs.eq(self.output_names()) {
-            return Err(EvaluateError::OtherModel);
-        }
+    pub fn explain(&self, inputs: &[f64]) -> Result<Explanation, EvaluateError> {
+        let model = self.model();
         if inputs.len() != self.inputs.len() {
             return Err(EvaluateError::WrongNumberOfInputs {
                 expected: self.inputs.len(),

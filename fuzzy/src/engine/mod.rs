@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use crate::defuzzify::polyline::Room;
 use crate::defuzzify::{Defuzzify, Heights};
-use crate::model::NoRuleFires;
+use crate::model::{Model, NoRuleFires};
 use crate::table::{self, Partial, Rooms, Strongest, Table};
 use arrays::Arrays;
 use lanes::Lanes;
@@ -18,7 +18,6 @@ mod error;
 mod explain;
 mod lanes;
 mod literal;
-mod problem;
 mod rules;
 mod uniform;
 
@@ -26,7 +25,6 @@ pub(crate) use crate::table::{FROM_TINY, TINY, operators};
 pub use crate::table::{Outcome, State};
 pub use error::EvaluateError;
 pub use explain::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share};
-pub use problem::{CompileError, Problem};
 
 /// A compiled model. It holds indices only, never changes, and can be shared between threads.
 ///
@@ -43,6 +41,8 @@ pub use problem::{CompileError, Problem};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Engine {
+    /// What it was compiled from.
+    model: Arc<Model>,
     inputs: Vec<Input>,
     outputs: Vec<CompiledOutput>,
     /// What is evaluated.
@@ -146,6 +146,12 @@ impl Engine {
     /// ```
     pub fn output_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.outputs.iter().map(|output| &*output.name)
+    }
+
+    /// The model it was compiled from.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
     }
 
     /// Name, lower and upper end of each input.

@@ -11,10 +11,10 @@ use alloc::{
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::{
-    check,
     diagnostic::{Diagnostic, Findings, Severity},
     model::Model,
     tree::{Node, Value},
+    validate::validate,
 };
 
 mod rules;
@@ -26,7 +26,7 @@ mod variables;
 mod words;
 mod write;
 
-pub use crate::model::document::{Document, Places, VariablePlaces};
+pub use crate::model::document::{Document, RuleSpans, Spans, TermSpans, VariableSpans};
 pub use schema::schema;
 
 /// The version of the format this library reads and writes.
@@ -46,17 +46,21 @@ pub const VERSION: u64 = 1;
 /// ```
 pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     let mut findings = Vec::new();
-    let mut places = Places::default();
-    let model = model(tree, &mut places, &mut findings);
+    let mut spans = Spans::default();
+    let model = model(tree, &mut spans, &mut findings);
     if let Some(model) = &model {
-        // A variable that could not be read is no unknown name.
-        findings.extend(check::names::check(model, &places));
+        let mut invalid = validate(model, &spans);
+        for finding in invalid.iter_mut().filter(|f| f.code == "no-rules") {
+            // A rule set without rules can be read: rules are learned into it.
+            finding.severity = Severity::Warning;
+        }
+        findings.extend(invalid);
     }
     let failed = findings.iter().any(|f| f.severity == Severity::Error);
     match model {
         Some(model) if !failed => Ok(Document {
             model,
-            places,
+            spans,
             warnings: Findings(findings),
         }),
         _ => Err(findings),
@@ -64,7 +68,7 @@ pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
 }
 
 /// The model as far as it can be read; what cannot is a finding, and stands in the model by its name alone.
-fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Option<Model> {
+fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Option<Model> {
     const KEYS: [&str; 7] = [
         "fuzzy",
         "name",
@@ -113,25 +117,28 @@ fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Op
             "write `inputs:` and a name, a range and terms for each",
             findings,
         )
-        .and_then(|node| variables::inputs(node, &mut places.inputs, findings));
+        .and_then(|node| variables::inputs(node, &mut spans.inputs, findings));
     let outputs = fields
         .require(
             "outputs",
             "write `outputs:` and a name, a range and terms for each",
             findings,
         )
-        .and_then(|node| variables::outputs(node, &mut places.outputs, findings));
+        .and_then(|node| variables::outputs(node, &mut spans.outputs, findings));
     let operators = match fields.get("operators") {
         Some(node) => words::operators(node, findings),
         None => Some(crate::model::Operators::default()),
     };
     let rules_help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`";
-    if let Some(entry) = fields.entry("rules") {
-        places.rules_key = entry.key_span.clone();
-    }
-    let rules = fields
-        .require("rules", rules_help, findings)
-        .and_then(|node| rules::read(node, &mut places.rules, findings));
+    let key = |key| {
+        fields
+            .entry(key)
+            .map_or(0..0, |entry| entry.key_span.clone())
+    };
+    (spans.outputs_key, spans.rules_key) = (key("outputs"), key("rules"));
+    let rules = fields.require("rules", rules_help, findings);
+    let rules = rules.and_then(|node| rules::read(node, spans, findings));
+    spans.rules_unread |= rules.is_none();
     Some(Model {
         name: name.unwrap_or_default(),
         description,

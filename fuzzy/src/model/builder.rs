@@ -4,6 +4,7 @@ use alloc::{boxed::Box, string::String, vec::Vec};
 
 use super::{
     Defuzzifier, Model, NoRuleFires, Operators, Output, Rule, Sampling, Shape, Term, Variable,
+    between_peaks, even_peaks,
 };
 use crate::rule::{self, Condition, Consequent, Proposition};
 
@@ -205,6 +206,39 @@ impl Variable {
     #[must_use]
     pub fn unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = Some(unit.into());
+        self
+    }
+
+    /// Adds terms evenly spaced over the range: triangles with shoulders at the ends, whose degrees sum to 1.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::model::Variable;
+    ///
+    /// let heat = Variable::new("heat", 0.0, 100.0).partition(["low", "medium", "high"]);
+    /// let at_25: Vec<f64> = heat.terms.iter().map(|term| term.membership(25.0)).collect();
+    /// assert_eq!(at_25, [0.5, 0.5, 0.0]);
+    /// ```
+    #[must_use]
+    pub fn partition<'a>(self, names: impl IntoIterator<Item = &'a str>) -> Self {
+        let names: Vec<&str> = names.into_iter().collect();
+        let peaks: Vec<f64> = even_peaks(self.low, self.high, names.len()).collect();
+        self.partition_at(names.into_iter().zip(peaks))
+    }
+
+    /// Adds terms with these peaks, from left to right: triangles with shoulders at the ends, whose degrees sum to 1.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::model::Variable;
+    ///
+    /// let heat = Variable::new("heat", 0.0, 100.0).partition_at([("low", 10.0), ("high", 30.0)]);
+    /// assert_eq!(heat.terms[1].membership(15.0), 0.25);
+    /// ```
+    #[must_use]
+    pub fn partition_at<'a>(mut self, peaks: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
+        let peaks: Vec<(&str, f64)> = peaks.into_iter().collect();
+        self.terms.extend(between_peaks(&peaks));
         self
     }
 

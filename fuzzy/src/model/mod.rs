@@ -6,10 +6,12 @@ use crate::rule;
 
 mod builder;
 pub(crate) mod document;
+mod partition;
 pub(crate) use crate::shape::{Form, Parts, Role};
 pub use crate::shape::{Shape, ShapeError};
 pub use crate::table::{Aggregation, Conjunction, Disjunction, Implication};
 pub use builder::ModelBuilder;
+pub(crate) use partition::{between_peaks, even_peaks};
 
 /// A rule set: inputs, outputs, operators and rules.
 ///

@@ -19,8 +19,8 @@ pub(crate) struct Form {
 /// What a parameter may be; all are finite numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// A place on the axis; the places of a shape stand from left to right.
-    Place,
+    /// A position on the axis, not left of the one before.
+    Ascending,
     /// Over 0: a width, a deviation.
     Positive,
     /// Any.
@@ -28,10 +28,12 @@ pub(crate) enum Role {
 }
 
 impl Form {
-    /// Whether the parameters may stand in a list. Only places may: programs differ in the order of all others,
+    /// Whether the parameters may stand in a list. Only positions may: programs differ in the order of all others,
     /// `gaussian: [1, 5]` means mean 1 to one and mean 5 to another.
     pub(crate) fn as_list(&self) -> bool {
-        self.parameters.iter().all(|(_, role)| *role == Role::Place)
+        self.parameters
+            .iter()
+            .all(|(_, role)| *role == Role::Ascending)
     }
 
     /// The names of the parameters.

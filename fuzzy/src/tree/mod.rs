@@ -11,7 +11,6 @@ use core::ops::Range;
 mod read;
 mod serde_impl;
 
-pub(crate) use read::duplicate;
 pub use read::{Entry, Fields};
 
 /// A value with its place in the text.
@@ -115,11 +114,11 @@ impl Scalar {
     /// let Value::Mapping(entries) = &tree.value else { return Err("no mapping".into()) };
     /// let Value::Scalar(scalar) = &entries[0].1.value else { return Err("no scalar".into()) };
     /// assert_eq!(scalar.text, "it's on");
-    /// assert_eq!(&text[scalar.place(5..7)], "on");
+    /// assert_eq!(&text[scalar.span(5..7)], "on");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn place(&self, part: Range<usize>) -> Range<usize> {
+    pub fn span(&self, part: Range<usize>) -> Range<usize> {
         match &self.places {
             Places::Row(start) => start + part.start..start + part.end,
             Places::Table(letters) => {

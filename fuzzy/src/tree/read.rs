@@ -8,7 +8,7 @@ use alloc::{
 use core::ops::Range;
 
 use super::{Node, Scalar, Value};
-use crate::diagnostic::{Diagnostic, suggest};
+use crate::diagnostic::{Diagnostic, duplicate, suggest};
 
 /// The fields of a mapping whose keys are known.
 ///
@@ -469,30 +469,6 @@ impl Node {
             .collect();
         plain(&number).map(|_| format!("write the number without its unit: `{number}`"))
     }
-}
-
-/// A finding: this name is taken already.
-pub(crate) fn duplicate(
-    kind: &str,
-    name: &str,
-    what: &str,
-    span: Range<usize>,
-    first: Range<usize>,
-) -> Diagnostic {
-    let (code, help) = match kind {
-        "variable" => (
-            "duplicate-variable",
-            "inputs and outputs have different names; rename one of them",
-        ),
-        "term" => (
-            "duplicate-term",
-            "the terms of a variable have different names; rename one of them",
-        ),
-        _ => ("duplicate-key", "keep one of them"),
-    };
-    Diagnostic::error(code, span, format!("{what} has the {kind} `{name}` twice"))
-        .related(first, "the first one")
-        .help(help)
 }
 
 impl Scalar {
