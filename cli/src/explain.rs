@@ -119,7 +119,7 @@ fn memberships(text: &mut String, terms: &[Degree]) {
         .map(|t| t.term.chars().count())
         .max()
         .unwrap_or(0);
-    for Degree { term, degree } in terms {
+    for Degree { term, degree, .. } in terms {
         let bar = "█".repeat((degree * BAR).round() as usize);
         let line = format!("  {term:width$} {degree:>8.5} {bar}");
         let _ = writeln!(text, "{}", line.trim_end());

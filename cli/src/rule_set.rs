@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use flagred::profile::Profile;
-use fuzzy::{Engine, Model, check::validate, diagnostic::Findings, format::Document};
+use fuzzy::{Engine, Findings, Model, format::Document, validate};
 
 use crate::{
     diagnostics::{read_text, refuse},

@@ -7,8 +7,6 @@ use alloc::{
 };
 use core::{fmt, ops::Range};
 
-use serde::Serialize;
-
 /// A finding in a text an author wrote.
 ///
 /// Messages are in lower case without a full stop, the author's own words in backticks; what to do
@@ -27,7 +25,9 @@ use serde::Serialize;
 /// );
 /// assert_eq!(finding.related[0].span, 0..3);
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
@@ -53,8 +53,9 @@ pub struct Diagnostic {
 ///
 /// assert!(Severity::Error > Severity::Warning && Severity::Warning > Severity::Note);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Severity {
     /// Worth knowing.
     Note,
@@ -77,7 +78,9 @@ pub enum Severity {
 /// assert_eq!((&text[span.clone()], message.as_str()), ("speed", "the first one"));
 /// # Ok::<(), fuzzy::diagnostic::Findings>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Related {
     /// The bytes of the text.
     pub span: Range<usize>,
@@ -86,7 +89,8 @@ pub struct Related {
 }
 
 /// A place in a text, for people: both count from 1, the column in characters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Position {
     /// The line.
     pub line: usize,
@@ -236,8 +240,9 @@ impl core::error::Error for Diagnostic {}
 /// assert!(codes.starts_with(&["missing-key", "missing-key"]) && codes.contains(&"unknown-key"), "{codes:?}");
 /// assert!(findings.has_errors());
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(transparent)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
 pub struct Findings(pub Vec<Diagnostic>);
 
 impl Findings {

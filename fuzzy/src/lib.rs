@@ -7,7 +7,7 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
-#[cfg(feature = "alloc")]
+#[cfg(feature = "check")]
 pub mod check;
 #[cfg(feature = "alloc")]
 mod defuzzify;
@@ -15,9 +15,11 @@ mod defuzzify;
 pub mod diagnostic;
 #[cfg(feature = "alloc")]
 pub mod engine;
+#[cfg(feature = "serde")]
+mod fields;
 #[cfg(feature = "alloc")]
 pub mod format;
-#[cfg(feature = "alloc")]
+#[cfg(feature = "learn")]
 pub mod learn;
 #[cfg(feature = "alloc")]
 pub mod map;
@@ -25,6 +27,8 @@ pub mod map;
 pub mod model;
 #[cfg(feature = "alloc")]
 pub mod rule;
+#[cfg(feature = "serde")]
+mod serial;
 mod shape;
 #[cfg_attr(
     not(feature = "alloc"),
@@ -43,9 +47,13 @@ mod validate;
 pub mod yaml;
 
 #[cfg(feature = "alloc")]
-pub use engine::Engine;
+pub use diagnostic::{Diagnostic, Findings};
+#[cfg(feature = "alloc")]
+pub use engine::{Engine, Outcome};
 #[cfg(feature = "alloc")]
 pub use model::Model;
+#[cfg(feature = "alloc")]
+pub use validate::validate;
 
 /// The example of COMPARE.md, run.
 #[cfg(all(doctest, feature = "yaml"))]

@@ -24,13 +24,13 @@ const MOST_SAMPLES: usize = 10_000_000;
 ///
 /// # Example
 /// ```
-/// use fuzzy::{Model, check, format::Spans, model::{Output, Variable}};
+/// use fuzzy::{Model, format::Spans, model::{Output, Variable}};
 ///
 /// let model = Model::builder("fan")
 ///     .output(Output::new(Variable::new("speed", 0.0, 9.0).partition(["slow", "fast"])))
 ///     .rule("IF heat IS high THEN speed IS fast".parse()?)
 ///     .build();
-/// let findings = check::validate(&model, &Spans::default());
+/// let findings = fuzzy::validate(&model, &Spans::default());
 /// assert_eq!(findings[0].message, "rule 1: there is no input `heat`");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -2,8 +2,6 @@
 
 use alloc::{string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::{
     axis,
     probe::{Coordinate, Line, MOST_ON_A_LINE, NOTABLE, Probe},
@@ -26,7 +24,9 @@ use super::{
 /// assert_eq!((*below, *above), (3.0, 6.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Jump {
     /// The output.
     pub output: String,

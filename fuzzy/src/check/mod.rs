@@ -1,12 +1,10 @@
 //! What an author should know about a rule set: static analysis.
 //!
-//! [`validate`] finds what keeps a model from being used: unknown names, wrong parameters. [`check`] analyses a model that
+//! [`validate`](crate::validate()) finds what keeps a model from being used: unknown names, wrong parameters. [`check`] analyses a model that
 //! can be used: inputs that no rule covers, rules that contradict each other or add nothing, terms that are never used or
 //! never reached, the values an output takes, its jumps, and where it contradicts a claim of the author.
 
 use alloc::{string::String, vec::Vec};
-
-use serde::Serialize;
 
 use crate::{
     Engine,
@@ -15,6 +13,7 @@ use crate::{
         Aggregation, Model,
         document::{Document, Spans},
     },
+    validate::validate,
 };
 
 mod axis;
@@ -31,7 +30,6 @@ mod terms;
 mod tests;
 mod trend;
 
-pub use crate::validate::validate;
 pub use coverage::{Antecedent, Side, Uncovered};
 pub use jumps::Jump;
 pub use monotone::{Counterexample, Direction, Monotone};
@@ -41,7 +39,7 @@ pub use rules::{Contradiction, Subsumed};
 pub use terms::{Hole, TermOf};
 pub use trend::AgainstTrend;
 
-/// What to hold a rule set against.
+/// How to analyse a rule set.
 ///
 /// # Example: what an author says of an output
 /// ```
@@ -49,11 +47,13 @@ pub use trend::AgainstTrend;
 ///
 /// let claim: Monotone = "heat:increasing:speed".parse()?;
 /// assert_eq!(claim.direction, Direction::Increasing);
-/// let options = Options { monotone: vec![claim], ..Options::default() };
+/// let mut options = Options::default();
+/// options.monotone.push(claim);
 /// assert_eq!(options.coverage, 0.5);
 /// # Ok::<(), String>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Options {
     /// The degree that some rule should reach everywhere; with terms that sum to 1 and the minimum as AND, one half
     /// means that the condition that dominates has a rule.
@@ -71,7 +71,7 @@ impl Default for Options {
     }
 }
 
-/// All that was found. Rules count from 0, as in the model.
+/// All that was found. Fields hold indices of rules in the model; serialised, rules count from 1.
 ///
 /// # Example: three rules, and most of what can be wrong with them
 /// ```
@@ -97,7 +97,9 @@ impl Default for Options {
 /// assert!(report.unused.contains(&TermOf { variable: "sun".into(), term: Some("down".into()) }));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Report {
     /// Boxes of the input space without a rule.
     pub uncovered: Vec<Uncovered>,
@@ -108,6 +110,10 @@ pub struct Report {
     /// Rules that add nothing to a wider one.
     pub subsumed: Vec<Subsumed>,
     /// Rules that fire nowhere.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_numbers")
+    )]
     pub never_firing: Vec<usize>,
     /// Variables and terms that stand in no rule.
     pub unused: Vec<TermOf>,

@@ -3,8 +3,6 @@
 use alloc::{string::String, vec::Vec};
 use core::str::FromStr;
 
-use serde::Serialize;
-
 use super::probe::{Coordinate, Line, NOTABLE, Probe};
 
 /// What an author says of an output: it never falls, or never rises, when an input rises.
@@ -18,7 +16,8 @@ use super::probe::{Coordinate, Line, NOTABLE, Probe};
 /// assert!("margin".parse::<Monotone>().is_err());
 /// # Ok::<(), String>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Monotone {
     /// The input.
     pub input: String,
@@ -29,8 +28,9 @@ pub struct Monotone {
 }
 
 /// What an output does when an input rises.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Direction {
     /// It never falls.
     Increasing,
@@ -79,7 +79,9 @@ impl FromStr for Monotone {
 /// assert!(at[0].value < *to && from_value > to_value);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Counterexample {
     /// What was said, with the output it was found in.
     pub claim: Monotone,

@@ -2,8 +2,6 @@
 
 use alloc::{string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::probe::{Coordinate, Probe};
 
 /// The values an output takes.
@@ -23,7 +21,9 @@ use super::probe::{Coordinate, Probe};
 /// assert_eq!(high_at[..], [Coordinate { input: "heat".into(), value: 100.0 }]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Reach {
     /// The output.
     pub output: String,

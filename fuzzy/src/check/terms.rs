@@ -2,13 +2,12 @@
 
 use alloc::{collections::BTreeSet, string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::axis;
 use crate::model::{Model, Shape, Term, Variable};
 
 /// A term of a variable.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TermOf {
     /// The input or output.
     pub variable: String,
@@ -31,7 +30,9 @@ pub struct TermOf {
 /// assert_eq!(report.holes, [Hole { input: "heat".into(), low: 40.0, high: 60.0 }]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Hole {
     /// The input.
     pub input: String,

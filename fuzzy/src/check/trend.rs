@@ -5,8 +5,6 @@
 
 use alloc::{collections::BTreeMap, string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::{axis, monotone::Direction};
 use crate::{
     model::{Model, Shape, Term, Variable},
@@ -34,7 +32,9 @@ use crate::{
 /// assert_eq!((*from_rule, *to_rule), (2, 3));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct AgainstTrend {
     /// The input.
     pub input: String,
@@ -45,10 +45,18 @@ pub struct AgainstTrend {
     /// The number of steps between neighbouring rules that follow the trend.
     pub following: usize,
     /// The rule at the lower term of the input.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub from_rule: usize,
     /// Its conclusion.
     pub from_term: String,
     /// The rule at the next term up.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub to_rule: usize,
     /// Its conclusion, on the other side.
     pub to_term: String,

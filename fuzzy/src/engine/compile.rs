@@ -20,7 +20,7 @@ impl Engine {
     /// Compiles a model: names become indices, rules a table, output terms closed forms.
     ///
     /// # Errors
-    /// All that [`check::validate`](crate::check::validate) finds in the model.
+    /// All that [`validate`](crate::validate()) finds in the model.
     ///
     /// # Example: all errors at once
     /// ```

@@ -1,6 +1,6 @@
 //! Why inputs could not be evaluated.
 
-use alloc::sync::Arc;
+use alloc::{string::String, sync::Arc};
 use core::fmt;
 
 /// Why inputs could not be evaluated.
@@ -31,7 +31,7 @@ pub enum EvaluateError {
     /// A name that is no input.
     UnknownInput {
         /// The name.
-        name: alloc::string::String,
+        name: String,
     },
     /// An input without a value.
     MissingInput {
@@ -42,6 +42,11 @@ pub enum EvaluateError {
     RepeatedInput {
         /// The input.
         name: Arc<str>,
+    },
+    /// A value that is no struct or map of numbers.
+    NoFields {
+        /// What was expected.
+        message: String,
     },
     /// An input is NaN or infinite, so there is nothing to explain.
     InputNotFinite,
@@ -73,6 +78,7 @@ impl fmt::Display for EvaluateError {
             EvaluateError::UnknownInput { name } => write!(f, "there is no input `{name}`"),
             EvaluateError::MissingInput { name } => write!(f, "input `{name}` has no value"),
             EvaluateError::RepeatedInput { name } => write!(f, "input `{name}` has two values"),
+            EvaluateError::NoFields { message } => f.write_str(message),
             EvaluateError::InputNotFinite => f.write_str("an input is not a finite number"),
             EvaluateError::NoRuleFired { output } => {
                 write!(f, "no rule fired for output `{output}`")

@@ -6,8 +6,6 @@ use alloc::{
     vec::Vec,
 };
 
-use serde::Serialize;
-
 use super::{
     Engine, EvaluateError, Outcome, State,
     operators::{larger, smaller},
@@ -31,7 +29,9 @@ use crate::rule::{Condition, Proposition};
 /// assert!(strengths.eq([(6, 0.5), (8, 0.5)]));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Explanation {
     /// The inputs, with the degree of each of their terms.
     pub inputs: Vec<ExplainedInput>,
@@ -42,7 +42,9 @@ pub struct Explanation {
 }
 
 /// An input, and what its value means.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct ExplainedInput {
     /// Its name.
     pub name: String,
@@ -55,7 +57,9 @@ pub struct ExplainedInput {
 }
 
 /// The degree of membership of a value in a term.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Degree {
     /// The term.
     pub term: String,
@@ -64,9 +68,15 @@ pub struct Degree {
 }
 
 /// A rule that fired.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct FiredRule {
     /// Its index in the model.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub rule: usize,
     /// The rule as it is written.
     pub text: String,
@@ -90,7 +100,9 @@ pub struct FiredRule {
 /// assert_eq!(terms, ["medium", "very_high"]); // at the same strength `medium` is the wider set
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct ExplainedOutput {
     /// Its name.
     pub name: String,
@@ -109,9 +121,15 @@ pub struct ExplainedOutput {
 }
 
 /// What a rule adds to an output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Share {
     /// The rule's index in the model.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub rule: usize,
     /// The term it concludes.
     pub term: String,

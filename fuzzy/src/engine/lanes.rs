@@ -162,9 +162,9 @@ impl Lanes {
             put,
         };
         // With the widest vectors of the processor at hand; the operations, and so the bits, are the same.
-        #[cfg(feature = "std")]
+        #[cfg(feature = "simd")]
         pulp::Arch::new().dispatch(blocks);
-        #[cfg(not(feature = "std"))]
+        #[cfg(not(feature = "simd"))]
         blocks.evaluate();
     }
 
@@ -303,7 +303,7 @@ impl<Put: FnMut(Outcome)> Blocks<'_, Put> {
     }
 }
 
-#[cfg(feature = "std")]
+#[cfg(feature = "simd")]
 impl<Put: FnMut(Outcome)> pulp::WithSimd for Blocks<'_, Put> {
     type Output = ();
 

@@ -18,6 +18,7 @@ mod error;
 mod explain;
 mod lanes;
 mod literal;
+mod named;
 mod rules;
 mod uniform;
 

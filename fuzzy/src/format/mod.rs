@@ -3,12 +3,7 @@
 //! This is the only interpretation of the format, whatever it is written in: `yaml::parse` brings a tree with places,
 //! serde one without. What the keys mean is told in `docs/rule-sets.md`.
 
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use alloc::{format, string::String, vec::Vec};
 
 use crate::{
     diagnostic::{Diagnostic, Findings, Severity},
@@ -18,6 +13,7 @@ use crate::{
 };
 
 mod rules;
+#[cfg(feature = "serde")]
 mod schema;
 mod shapes;
 #[cfg(test)]
@@ -27,6 +23,7 @@ mod words;
 mod write;
 
 pub use crate::model::document::{Document, RuleSpans, Spans, TermSpans, VariableSpans};
+#[cfg(feature = "serde")]
 pub use schema::schema;
 
 /// The version of the format this library reads and writes.
@@ -160,20 +157,6 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
 #[must_use]
 pub fn write(model: &Model) -> Node {
     write::model(model)
-}
-
-impl Serialize for Model {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        write(self).serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for Model {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let tree = Node::deserialize(deserializer)?;
-        let told = |findings| serde::de::Error::custom(Findings(findings).to_string());
-        Ok(read(&tree).map_err(told)?.model)
-    }
 }
 
 /// Text behind a key, where there is some.

@@ -117,29 +117,25 @@ pub struct Settings {
 /// let nothing = Learner::new(&Model::builder("empty").build(), Settings::default()).unwrap_err();
 /// assert_eq!(nothing, LearnError::Outputs { outputs: 0 });
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LearnError {
     /// The model has not exactly one output.
-    #[error("rules are learned for one output, but the model has {outputs}")]
     Outputs {
         /// How many it has.
         outputs: usize,
     },
     /// A variable without terms.
-    #[error("`{variable}` has no terms")]
     NoTerms {
         /// The variable.
         variable: String,
     },
     /// A setting names what is no input of the model, or not one that is learned over.
-    #[error("`{name}` is no input that rules are learned over")]
     NoInput {
         /// The name.
         name: String,
     },
     /// The given condition names a term that its input does not have.
-    #[error("`{variable}` has no term `{term}`")]
     NoTerm {
         /// The input.
         variable: String,
@@ -147,9 +143,33 @@ pub enum LearnError {
         term: String,
     },
     /// The given condition is more than propositions joined by AND.
-    #[error("the given condition is not made of `input IS term` joined by AND")]
     Given,
 }
+
+impl core::fmt::Display for LearnError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            LearnError::Outputs { outputs } => {
+                write!(
+                    f,
+                    "rules are learned for one output, but the model has {outputs}"
+                )
+            }
+            LearnError::NoTerms { variable } => write!(f, "`{variable}` has no terms"),
+            LearnError::NoInput { name } => {
+                write!(f, "`{name}` is no input that rules are learned over")
+            }
+            LearnError::NoTerm { variable, term } => {
+                write!(f, "`{variable}` has no term `{term}`")
+            }
+            LearnError::Given => {
+                f.write_str("the given condition is not made of `input IS term` joined by AND")
+            }
+        }
+    }
+}
+
+impl core::error::Error for LearnError {}
 
 /// Why a sample was not learned from.
 ///
@@ -169,11 +189,10 @@ pub enum LearnError {
 /// assert_eq!(refused.to_string(), "`speed` is 12, outside its range from 0 to 9");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Refusal {
     /// Not one value for each variable.
-    #[error("there are {got} values for {expected} variables")]
     WrongNumber {
         /// Inputs and output.
         expected: usize,
@@ -181,13 +200,11 @@ pub enum Refusal {
         got: usize,
     },
     /// A value that is NaN or infinite.
-    #[error("`{variable}` is not a finite number")]
     NotFinite {
         /// The variable.
         variable: String,
     },
     /// A value outside the range of its variable.
-    #[error("`{variable}` is {value}, outside its range from {low} to {high}")]
     OutOfRange {
         /// The variable.
         variable: String,
@@ -199,7 +216,6 @@ pub enum Refusal {
         high: f64,
     },
     /// A value that belongs to no term.
-    #[error("`{variable}` is {value}, which belongs to none of its terms")]
     NoTerm {
         /// The variable.
         variable: String,
@@ -207,9 +223,39 @@ pub enum Refusal {
         value: f64,
     },
     /// A weight that is not a finite number above 0.
-    #[error("the weight {weight} is not a finite number above 0")]
     Weight {
         /// The weight.
         weight: f64,
     },
 }
+
+impl core::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Refusal::WrongNumber { expected, got } => {
+                write!(f, "there are {got} values for {expected} variables")
+            }
+            Refusal::NotFinite { variable } => write!(f, "`{variable}` is not a finite number"),
+            Refusal::OutOfRange {
+                variable,
+                value,
+                low,
+                high,
+            } => write!(
+                f,
+                "`{variable}` is {value}, outside its range from {low} to {high}"
+            ),
+            Refusal::NoTerm { variable, value } => {
+                write!(
+                    f,
+                    "`{variable}` is {value}, which belongs to none of its terms"
+                )
+            }
+            Refusal::Weight { weight } => {
+                write!(f, "the weight {weight} is not a finite number above 0")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}

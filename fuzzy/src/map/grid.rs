@@ -94,29 +94,25 @@ pub struct Fixed {
 /// assert_eq!(fixed_twice, Err(GridError::NoAxis { name: "spread".into() }));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum GridError {
     /// An axis needs both ends of its input's range.
-    #[error("an axis needs at least 2 points, not {points}")]
     TooFewPoints {
         /// The number asked for.
         points: usize,
     },
     /// More cells than can be counted in 32 bits.
-    #[error("the grid has too many cells: at most {most} fit")]
     TooManyCells {
         /// The most that fit.
         most: usize,
     },
     /// A name that is no input, or no longer an axis.
-    #[error("`{name}` is no axis of the grid")]
     NoAxis {
         /// The name.
         name: String,
     },
     /// A fixed value that is not a finite number.
-    #[error("`{name}` cannot be fixed at {value}")]
     NotFinite {
         /// The input.
         name: String,
@@ -124,6 +120,25 @@ pub enum GridError {
         value: f64,
     },
 }
+
+impl core::fmt::Display for GridError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            GridError::TooFewPoints { points } => {
+                write!(f, "an axis needs at least 2 points, not {points}")
+            }
+            GridError::TooManyCells { most } => {
+                write!(f, "the grid has too many cells: at most {most} fit")
+            }
+            GridError::NoAxis { name } => write!(f, "`{name}` is no axis of the grid"),
+            GridError::NotFinite { name, value } => {
+                write!(f, "`{name}` cannot be fixed at {value}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for GridError {}
 
 /// Cells are counted in 32 bits wherever one is kept.
 const MOST_CELLS: usize = u32::MAX as usize;

@@ -51,23 +51,19 @@ pub struct DecisionTable {
 /// assert_eq!(DecisionTable::within(&engine, 0, 0.0), Err(TableError::Bound { bound: 0.0 }));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum TableError {
     /// The grid cannot be laid, or is too fine to be measured.
-    #[error(transparent)]
-    Grid(#[from] GridError),
+    Grid(GridError),
     /// The grid is not one over the engine, or there is no such output.
-    #[error(transparent)]
-    Evaluate(#[from] EvaluateError),
+    Evaluate(EvaluateError),
     /// An error bound that is not over 0.
-    #[error("the error bound {bound} is not over 0")]
     Bound {
         /// The bound.
         bound: f64,
     },
     /// The largest table that was tried is not good enough.
-    #[error("with {cells} cells the error is still {error}, over {bound}")]
     TooCoarse {
         /// The cells of the finest table tried.
         cells: usize,
@@ -76,6 +72,38 @@ pub enum TableError {
         /// The bound asked for.
         bound: f64,
     },
+}
+
+impl core::fmt::Display for TableError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            TableError::Grid(error) => error.fmt(f),
+            TableError::Evaluate(error) => error.fmt(f),
+            TableError::Bound { bound } => write!(f, "the error bound {bound} is not over 0"),
+            TableError::TooCoarse {
+                cells,
+                error,
+                bound,
+            } => write!(
+                f,
+                "with {cells} cells the error is still {error}, over {bound}"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for TableError {}
+
+impl From<GridError> for TableError {
+    fn from(error: GridError) -> Self {
+        TableError::Grid(error)
+    }
+}
+
+impl From<EvaluateError> for TableError {
+    fn from(error: EvaluateError) -> Self {
+        TableError::Evaluate(error)
+    }
 }
 
 /// Where the error is measured: this many places between two points on each axis.

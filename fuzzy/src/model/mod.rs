@@ -7,7 +7,9 @@ use crate::rule;
 mod builder;
 pub(crate) mod document;
 mod partition;
-pub(crate) use crate::shape::{Form, Parts, Role};
+#[cfg(feature = "serde")]
+pub(crate) use crate::shape::Role;
+pub(crate) use crate::shape::{Form, Parts};
 pub use crate::shape::{Shape, ShapeError};
 pub use crate::table::{Aggregation, Conjunction, Disjunction, Implication};
 pub use builder::ModelBuilder;

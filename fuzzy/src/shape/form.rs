@@ -11,6 +11,10 @@ pub(crate) struct Form {
     /// Its parameters, in the order of a list.
     pub(crate) parameters: &'static [(&'static str, Role)],
     /// What it is, for the schema.
+    #[cfg_attr(
+        not(feature = "serde"),
+        allow(dead_code, reason = "only the schema tells it")
+    )]
     pub(crate) about: &'static str,
     /// The shape of so many values.
     pub(crate) build: fn(&[f64]) -> Option<Shape>,

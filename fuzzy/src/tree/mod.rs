@@ -9,6 +9,7 @@ use alloc::{format, string::String, vec::Vec};
 use core::ops::Range;
 
 mod read;
+#[cfg(feature = "serde")]
 mod serde_impl;
 
 pub use read::{Entry, Fields};

@@ -6,7 +6,7 @@
 //! that a small file cannot ask for much memory.
 
 use alloc::{boxed::Box, collections::BTreeMap, string::String, vec::Vec};
-use core::ops::Range;
+use core::{ops::Range, str::FromStr};
 
 use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, ScanError, Span};
 
@@ -103,6 +103,15 @@ pub fn parse(text: &str) -> Result<Document, Findings> {
 #[must_use]
 pub fn to_string(model: &Model) -> String {
     to_text(&format::write(model))
+}
+
+impl FromStr for Model {
+    type Err = Findings;
+
+    /// The model that [`parse`] reads; its warnings are dropped.
+    fn from_str(text: &str) -> Result<Self, Findings> {
+        parse(text).map(|document| document.model)
+    }
 }
 
 /// A list or mapping that is not yet at its end.
