@@ -59,7 +59,7 @@ macro_rules! refuse {
         ) -> Result<Self::Ok, NoFields> {
             Err(NoFields(format!("expected {}", $what)))
         }
-        refuse!($what: serialize_bool(bool) serialize_bytes(&[u8]) serialize_unit()
+        refuse!($what: serialize_bool(bool) serialize_bytes(&[u8])
             serialize_unit_struct(&'static str));
         refuse!($what -> serialize_seq(Option<usize>) -> SerializeSeq
             serialize_tuple(usize) -> SerializeTuple
@@ -120,7 +120,7 @@ impl Serializer for Fields {
     }
 
     look_inside!();
-    refuse!("a struct or map of numbers": serialize_none());
+    refuse!("a struct or map of numbers": serialize_none() serialize_unit());
     refuse!(numbers "a struct or map of numbers");
     refuse!(text "a struct or map of numbers");
     refuse!("a struct or map of numbers" of values);
@@ -185,6 +185,10 @@ impl Serializer for Number {
         Ok(None)
     }
 
+    fn serialize_unit(self) -> Result<Self::Ok, NoFields> {
+        Ok(None)
+    }
+
     look_inside!();
     refuse!(text "a number");
     refuse!(fields "a number");
@@ -212,7 +216,7 @@ impl Serializer for Name {
     }
 
     look_inside!();
-    refuse!("a name": serialize_none());
+    refuse!("a name": serialize_none() serialize_unit());
     refuse!(numbers "a name");
     refuse!(fields "a name");
     refuse!("a name" of values);

@@ -426,3 +426,22 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+    /// What we write means the same to the YAML organisation's crate, and what it writes to us.
+    #[test]
+    fn generated_rule_sets_mean_the_same_to_another_reader(model in valid_model()) {
+        let ours = crate::yaml::to_string(&model);
+        let read = serde_yaml::from_str::<Model>(&ours);
+        prop_assert_eq!(read.as_ref().ok(), Some(&model), "{}\n{:?}", ours, read);
+        // They write text of line breaks alone as a block that our YAML library takes for empty.
+        let outputs = model.outputs.iter().map(|output| &output.variable);
+        let texts = model.inputs.iter().chain(outputs).flat_map(|v| [&v.unit, &v.description]);
+        let texts = texts.chain(model.rules.iter().map(|rule| &rule.note)).flatten();
+        prop_assume!(texts.chain([&model.name]).all(|text| !text.trim_matches('\n').is_empty()));
+        let theirs = serde_yaml::to_string(&model).unwrap();
+        let read = theirs.parse::<Model>();
+        prop_assert_eq!(read.as_ref(), Ok(&model), "{}", theirs);
+    }
+}
