@@ -1,4 +1,4 @@
-//! One type for every finding: what is wrong, where, and what to do about it.
+//! Findings: what is wrong, where, and what to do about it.
 
 use alloc::{
     format,
@@ -31,53 +31,34 @@ use core::{fmt, ops::Range};
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
-    /// A short name that never changes, for programs and for looking it up: `unknown-term`.
+    /// A stable identifier: `unknown-term`.
     pub code: &'static str,
     /// What is wrong.
     pub message: String,
-    /// The bytes of the text it is about; `0..0` for models that were made by code.
+    /// The bytes of the text it is about; `0..0` for models made in code.
     pub span: Range<usize>,
     /// Line and column of the start of the span, where the text is at hand.
     pub position: Option<Position>,
     /// What to do about it.
     pub help: Option<String>,
-    /// Other places that explain it.
+    /// Other spans that explain it.
     pub related: Vec<Related>,
 }
 
 /// How bad a finding is.
-///
-/// # Example
-/// ```
-/// use fuzzy::diagnostic::Severity;
-///
-/// assert!(Severity::Error > Severity::Warning && Severity::Warning > Severity::Note);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Severity {
-    /// Worth knowing.
+    /// Information.
     Note,
-    /// The model works, but hardly as its author means it.
+    /// The model works, but probably not as intended.
     Warning,
-    /// The text is no model.
+    /// The model cannot be used.
     Error,
 }
 
-/// Another place that explains a finding: where the first of two equal names stands.
-///
-/// # Example: a term defined twice
-/// ```
-/// use fuzzy::diagnostic::Related;
-///
-/// let text = "{speed: fast, speed: slow}";
-/// let mut findings = Vec::new();
-/// fuzzy::yaml::read(text)?.fields("the fan", &["speed"], &mut findings);
-/// let Related { span, message } = &findings[0].related[0];
-/// assert_eq!((&text[span.clone()], message.as_str()), ("speed", "the first one"));
-/// # Ok::<(), fuzzy::diagnostic::Findings>(())
-/// ```
+/// Another span that explains a finding, such as the first of two equal names.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -88,7 +69,7 @@ pub struct Related {
     pub message: String,
 }
 
-/// A place in a text, for people: both count from 1, the column in characters.
+/// Line and column in a text; both count from 1, the column in characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Position {
@@ -100,11 +81,6 @@ pub struct Position {
 
 impl Position {
     /// The position of a byte in a text; bytes behind its end count as its end.
-    ///
-    /// ```
-    /// use fuzzy::diagnostic::Position;
-    /// assert_eq!(Position::of("a: 1\nb: 2", 8), Position { line: 2, column: 4 });
-    /// ```
     #[must_use]
     pub fn of(text: &str, byte: usize) -> Self {
         let before = text.char_indices().take_while(|&(at, _)| at < byte);
@@ -126,14 +102,6 @@ impl Position {
 
 impl Diagnostic {
     /// An error.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::{Diagnostic, Severity};
-    ///
-    /// let finding = Diagnostic::error("not-a-number", 3..6, "`abc` is no number");
-    /// assert_eq!((finding.severity, finding.code, finding.span), (Severity::Error, "not-a-number", 3..6));
-    /// ```
     pub fn error(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Error,
@@ -147,14 +115,6 @@ impl Diagnostic {
     }
 
     /// A warning.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::Diagnostic;
-    ///
-    /// let finding = Diagnostic::warning("unused", 0..4, "`name` is used nowhere");
-    /// assert_eq!(finding.to_string(), "warning[unused]: `name` is used nowhere");
-    /// ```
     pub fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Warning,
@@ -163,14 +123,6 @@ impl Diagnostic {
     }
 
     /// A note.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::Diagnostic;
-    ///
-    /// let finding = Diagnostic::note("reach", 0..4, "`fan` stays below 90");
-    /// assert_eq!(finding.to_string(), "note[reach]: `fan` stays below 90");
-    /// ```
     pub fn note(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Note,
@@ -178,30 +130,14 @@ impl Diagnostic {
         }
     }
 
-    /// The same with what to do about it.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::Diagnostic;
-    ///
-    /// let finding = Diagnostic::error("not-a-number", 3..6, "`abc` is no number").help("write digits");
-    /// assert_eq!(finding.help.as_deref(), Some("write digits"));
-    /// ```
+    /// Adds what to do about it.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// The same with another place that explains it.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::Diagnostic;
-    ///
-    /// let finding = Diagnostic::error("duplicate-key", 9..13, "`name` is given twice").related(0..4, "the first one");
-    /// assert_eq!(finding.related[0].message, "the first one");
-    /// ```
+    /// Adds another span that explains it.
     #[must_use]
     pub fn related(mut self, span: Range<usize>, message: impl Into<String>) -> Self {
         let message = message.into();
@@ -210,7 +146,7 @@ impl Diagnostic {
     }
 }
 
-/// `3:12: error[unknown-term]: ...`, the help behind it on a line of its own.
+/// `3:12: error[unknown-term]: ...`, then the help on a line of its own.
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(Position { line, column }) = self.position {
@@ -231,7 +167,7 @@ impl fmt::Display for Diagnostic {
 
 impl core::error::Error for Diagnostic {}
 
-/// All findings of one text, in the order of their places: the error of everything that reads text.
+/// All findings of one text or model, in the order of their spans; the error type of reading and compiling.
 ///
 /// # Example: all mistakes of a text at once
 /// ```
@@ -246,18 +182,7 @@ impl core::error::Error for Diagnostic {}
 pub struct Findings(pub Vec<Diagnostic>);
 
 impl Findings {
-    /// Sorts findings by place and gives each its line and column in the text.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::{Diagnostic, Findings};
-    ///
-    /// let text = "first line\nsecond line";
-    /// let second = Diagnostic::note("here", 11..17, "the second");
-    /// let first = Diagnostic::note("here", 6..10, "the first");
-    /// let findings = Findings::locate(vec![second, first], text);
-    /// assert_eq!(findings.to_string(), "1:7: note[here]: the first\n2:1: note[here]: the second");
-    /// ```
+    /// Sorts findings by span and adds line and column.
     #[must_use]
     pub fn locate(mut findings: Vec<Diagnostic>, text: &str) -> Self {
         findings.sort_by_key(|finding| (finding.span.start, finding.span.end));
@@ -285,14 +210,6 @@ impl Findings {
     }
 
     /// Whether one of them is an error.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::{Diagnostic, Findings};
-    ///
-    /// let warning = Diagnostic::warning("unused", 0..4, "`name` is used nowhere");
-    /// assert!(!Findings(vec![warning]).has_errors());
-    /// ```
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|f| f.severity == Severity::Error)
@@ -318,12 +235,6 @@ impl core::error::Error for Findings {}
 /// Nearness is the number of letters to insert, delete, replace or swap (optimal string alignment), at most a third
 /// of the longer word's length; case does not count. Of equally near candidates the first one counts. Where none is near,
 /// one that begins with the word is what was meant: `min` is short for `minimum`.
-///
-/// ```
-/// use fuzzy::diagnostic::nearest;
-/// assert_eq!(nearest("mraginn", ["margin", "spread"]), Some("margin"));
-/// assert_eq!(nearest("wind", ["margin", "spread"]), None);
-/// ```
 pub fn nearest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
@@ -381,7 +292,7 @@ fn edit_distance(a: &[char], b: &[char]) -> usize {
     last.last().copied().unwrap_or(0)
 }
 
-/// A finding: this name is taken already.
+/// The finding for a repeated name.
 pub(crate) fn duplicate(
     kind: &str,
     name: &str,
@@ -405,16 +316,7 @@ pub(crate) fn duplicate(
         .help(help)
 }
 
-/// ``did you mean `margin`?``, or else what there is: ``there are `margin` and `spread` ``.
-///
-/// # Example
-/// ```
-/// use fuzzy::diagnostic::suggest;
-///
-/// let inputs = ["margin", "spread"];
-/// assert_eq!(suggest("marign", inputs).as_deref(), Some("did you mean `margin`?"));
-/// assert_eq!(suggest("battery", inputs).as_deref(), Some("there are `margin` and `spread`"));
-/// ```
+/// ``did you mean `heat`?``, or else the candidates: ``there are `heat` and `humidity` ``.
 pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     match nearest(word, candidates.iter().copied()) {
@@ -425,7 +327,6 @@ pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// ```a`, `b` and `c` ``, cut short where there are many.
 pub(crate) fn listed(words: &[&str]) -> String {
     const MOST: usize = 12;
     let mut list = String::new();

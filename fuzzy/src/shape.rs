@@ -367,17 +367,6 @@ impl Shape {
     /// Straight edges are divided out, `(x - foot) / (top - foot)`: exactly 0 at the foot, exactly 1 at the
     /// top, and near the foot exact to the last bit. `exp`, `pow` and `cos` are `libm`'s, so the same `x` has
     /// the same bits on every machine.
-    ///
-    /// # Example: a shoulder is 1 up to its top
-    /// ```
-    /// use fuzzy::model::Shape;
-    ///
-    /// let low = Shape::LeftShoulder { top: 0.1, foot: 0.3 };
-    /// assert_eq!(low.membership(0.0), 1.0);
-    /// assert_eq!(low.membership(0.1), 1.0);
-    /// assert!((low.membership(0.25) - 0.25).abs() < 1e-15);
-    /// assert_eq!(low.membership(f64::NAN), 0.0);
-    /// ```
     pub fn membership(&self, x: f64) -> f64 {
         match self {
             Shape::Piecewise { .. } if x.is_nan() => 0.0,
@@ -530,15 +519,6 @@ impl Shape {
 
     /// The corners of a shape made of straight lines, `(x, degree)` with x never falling and the first
     /// and last degree held beyond them; `None` for a curved shape.
-    ///
-    /// # Example: a triangle has three corners
-    /// ```
-    /// use fuzzy::model::Shape;
-    ///
-    /// let low = Shape::Triangle { left: 0.0, peak: 1.0, right: 3.0 };
-    /// assert_eq!(low.corners().unwrap(), [(0.0, 0.0), (1.0, 1.0), (3.0, 0.0)]);
-    /// assert!(Shape::Gaussian { mean: 0.0, sd: 1.0 }.corners().is_none());
-    /// ```
     pub fn corners(&self) -> Option<Vec<(f64, f64)>> {
         match self.outline() {
             Outline::Straight(corners) => Some(corners),

@@ -1,4 +1,4 @@
-//! A report in words.
+//! A report as located diagnostics.
 
 use alloc::{
     collections::BTreeMap,
@@ -21,10 +21,10 @@ use crate::{
     rule::{Condition, Consequent, Name, Rule},
 };
 
-/// More boxes than this are counted, not told one by one.
+/// More boxes than this are counted, not listed.
 const MOST_BOXES_TOLD: usize = 10;
 
-/// The report of a model, with the places at which its parts stand.
+/// The diagnostics of a report, with the spans of the model's parts.
 pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let at = At { model, spans };
     let mut found = Vec::new();
@@ -48,7 +48,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
         found.push(
             Diagnostic::warning("contradiction", at.rule(one.second), message)
                 .related(at.rule(one.first), "the other rule")
-                .help("keep one of them, or tell them apart by another input"),
+                .help("keep one of them, or distinguish them by another input"),
         );
     }
     for one in &report.subsumed {
@@ -57,7 +57,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
             Diagnostic::warning("subsumed-rule", at.rule(one.rule), message)
                 .related(
                     at.rule(one.by),
-                    "holds wherever the other does, and concludes the same",
+                    "this rule fires wherever the other does, with the same conclusion",
                 )
                 .help("remove the narrower rule, or change what it concludes"),
         );
@@ -66,7 +66,7 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
         let message = format!("rule {} never fires", rule + 1);
         found.push(
             Diagnostic::warning("never-fires", at.rule(rule), message)
-                .help("no value of the inputs meets all it asks for, or its weight is 0"),
+                .help("no inputs satisfy its condition, or its weight is 0"),
         );
     }
     found.extend(report.unused.iter().map(|one| at.unused(one)));
@@ -234,9 +234,10 @@ impl At<'_> {
         } else {
             "at least "
         };
-        let message = format!("{least}{more} more regions have no rule; the largest are told");
+        let message =
+            format!("{least}{more} more regions have no rule; only the largest are listed");
         Diagnostic::warning("uncovered", self.spans.rules_key.clone(), message)
-            .help("`--json` lists them")
+            .help("add the missing rules above first")
     }
 
     fn unused(&self, one: &TermOf) -> Diagnostic {
@@ -245,7 +246,7 @@ impl At<'_> {
             None => format!("no rule uses `{}`", one.variable),
         };
         Diagnostic::warning("unused", self.term(one), message)
-            .help("write a rule for it, or take it out")
+            .help("write a rule for it, or remove it")
     }
 
     fn unreachable(&self, one: &TermOf) -> Diagnostic {
@@ -271,7 +272,7 @@ impl At<'_> {
         }
         let message = format!("the term `{term}` of `{}` is never reached", one.variable);
         Diagnostic::warning("unreachable-term", here, message)
-            .help("every rule that concludes it never fires")
+            .help("no rule that concludes it ever fires")
     }
 
     fn hole(&self, one: &Hole) -> Diagnostic {
@@ -286,7 +287,7 @@ impl At<'_> {
             self.name(input),
             format!("`{input}` has no term {place}"),
         )
-        .help("let the terms beside it overlap, or add one between them")
+        .help("let the neighbouring terms overlap, or add a term between them")
     }
 
     /// Only where the output does not come near the ends of its range.
@@ -305,8 +306,8 @@ impl At<'_> {
             shown(low),
             shown(high)
         );
-        let help = "the centroid of a term lies inside the range; terms that reach beyond the range, or another \
-                    defuzzifier, reach its ends";
+        let help = "the centroid of a term lies inside the range; let the outer terms extend beyond the range, or use another \
+                    defuzzifier";
         Some(Diagnostic::note("narrow-reach", self.name(&one.output), message).help(help))
     }
 
@@ -326,7 +327,7 @@ impl At<'_> {
         );
         let steps = if one.following == 1 { "step" } else { "steps" };
         let trend = format!(
-            "in {} other {steps} between neighbouring rules more `{}` {rises} it; check whether this one is meant",
+            "in {} other {steps} between neighbouring rules, more `{}` {rises} it; check that this one is intended",
             one.following, one.input
         );
         Diagnostic::warning("against-trend", self.rule(one.to_rule), message)
@@ -365,7 +366,7 @@ impl At<'_> {
             shown(one.to)
         );
         Diagnostic::warning("not-monotone", self.name(output), message).help(format!(
-            "it was said that it never {does}; look at the rules that fire there with `flagred explain`"
+            "it is claimed that it never {does}; look at the rules that fire there"
         ))
     }
 
@@ -379,13 +380,13 @@ impl At<'_> {
             coordinates(&one.at)
         );
         Diagnostic::warning("jump", self.name(&one.output), message).help(
-            "a term with a vertical edge, or a place where one rule takes over from another, makes it jump; let terms overlap",
+            "a vertical edge of a term, or a switch from one rule to another, causes it; let terms overlap",
         )
     }
 }
 
 fn coordinates(at: &[Coordinate]) -> String {
-    /// Of very many inputs the first ones are told.
+    /// Of very many inputs the first ones are listed.
     const MOST: usize = 6;
     let all = at
         .iter()

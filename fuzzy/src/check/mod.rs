@@ -1,4 +1,4 @@
-//! What an author should know about a rule set: static analysis.
+//! Static analysis of rule sets.
 //!
 //! [`validate`](crate::validate()) finds what keeps a model from being used: unknown names, wrong parameters. [`check`] analyses a model that
 //! can be used: inputs that no rule covers, rules that contradict each other or add nothing, terms that are never used or
@@ -55,10 +55,10 @@ pub use trend::AgainstTrend;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// The degree that some rule should reach everywhere; with terms that sum to 1 and the minimum as AND, one half
-    /// means that the condition that dominates has a rule.
+    /// The firing strength that some rule should reach everywhere. With terms that sum to 1 and the minimum as AND, one
+    /// half means that the dominant combination of terms has a rule.
     pub coverage: f64,
-    /// What the author says of the outputs.
+    /// Claims of the author about the outputs.
     pub monotone: Vec<Monotone>,
 }
 
@@ -72,40 +72,15 @@ impl Default for Options {
 }
 
 /// All that was found. Fields hold indices of rules in the model; serialised, rules count from 1.
-///
-/// # Example: three rules, and most of what can be wrong with them
-/// ```
-/// use fuzzy::check::{self, Antecedent, Contradiction, Side, Subsumed, TermOf, Uncovered};
-///
-/// let text = "fuzzy: 1
-/// name: fan
-/// inputs: {heat: {range: [0, 100], partition: [low, high]}, sun: {range: [0, 1], partition: [down, up]}}
-/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// rules:
-///   - IF heat IS high THEN speed IS fast
-///   - IF heat IS high AND sun IS up THEN speed IS fast
-///   - IF heat IS high THEN speed IS slow";
-/// let model = fuzzy::yaml::parse(text)?.model;
-/// let report = check::check(&model, &fuzzy::Engine::new(&model)?, &check::Options::default())?;
-///
-/// assert_eq!(report.subsumed, [Subsumed { rule: 1, by: 0 }]);
-/// let Contradiction { first, second, .. } = &report.contradictions[0];
-/// assert_eq!((*first, *second), (0, 2));
-/// let Uncovered { sides, missing, .. } = &report.uncovered[1]; // the first one is where no rule fires at all
-/// assert_eq!(sides[..], [Side { input: "heat".into(), low: 0.0, high: 50.0 }]);
-/// assert_eq!(missing[0], [Antecedent { input: "heat".into(), term: "low".into() }]);
-/// assert!(report.unused.contains(&TermOf { variable: "sun".into(), term: Some("down".into()) }));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Report {
     /// Boxes of the input space without a rule.
     pub uncovered: Vec<Uncovered>,
-    /// Whether these are all boxes; in a large rule set the search for more is given up.
+    /// Whether the list is complete; in a large rule set the search stops early.
     pub uncovered_complete: bool,
-    /// Rules of one condition and different conclusions.
+    /// Rules with equal conditions and different conclusions.
     pub contradictions: Vec<Contradiction>,
     /// Rules that add nothing to a wider one.
     pub subsumed: Vec<Subsumed>,
@@ -115,7 +90,7 @@ pub struct Report {
         serde(serialize_with = "crate::serial::rule_numbers")
     )]
     pub never_firing: Vec<usize>,
-    /// Variables and terms that stand in no rule.
+    /// Variables and terms that no rule uses.
     pub unused: Vec<TermOf>,
     /// Terms that no value reaches.
     pub unreachable: Vec<TermOf>,
@@ -125,16 +100,16 @@ pub struct Report {
     pub reach: Vec<Reach>,
     /// Rules against the trend of their neighbours.
     pub against_trend: Vec<AgainstTrend>,
-    /// Places at which an output does not do what the author says.
+    /// Points at which an output contradicts a claim.
     pub counterexamples: Vec<Counterexample>,
-    /// Places at which an output jumps.
+    /// Points at which an output jumps.
     pub jumps: Vec<Jump>,
 }
 
-/// Analyses a model.
+/// Analyses the model of an engine.
 ///
 /// # Errors
-/// A claim of `options` about an input or output that the model does not have, without a place.
+/// A claim of `options` about an input or output that the model does not have.
 ///
 /// # Example: a rule is missing
 /// ```
@@ -148,7 +123,7 @@ pub struct Report {
 /// rules: [IF heat IS low THEN fan IS slow, IF heat IS high THEN fan IS fast]
 /// ")?;
 /// let engine = Engine::new(&document.model)?;
-/// let report = check::check(&document.model, &engine, &check::Options::default())?;
+/// let report = check::check(&engine, &check::Options::default())?;
 /// let hole = &report.uncovered[0];
 /// assert_eq!((hole.sides[0].low, hole.sides[0].high), (0.25, 0.75));
 /// assert_eq!(hole.missing[0][0].term, "medium");
@@ -157,11 +132,8 @@ pub struct Report {
 /// assert!(findings.iter().any(|f| f.code == "uncovered"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn check(
-    model: &Model,
-    engine: &Engine,
-    options: &Options,
-) -> Result<Report, alloc::boxed::Box<Diagnostic>> {
+pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed::Box<Diagnostic>> {
+    let model = engine.model();
     for claim in &options.monotone {
         known(model, claim)?;
     }
@@ -194,31 +166,12 @@ pub fn check(
     })
 }
 
-/// Checks a rule set that was read and is meant to be used: all findings with their places in the text, what reading it
-/// warned of included, and the analysis, where there can be one.
+/// Checks a rule set that was read: its errors, or else the analysis, as located findings.
 ///
-/// A rule set without rules is read with a warning, for learning fills it; here it is an error.
+/// A rule set without rules is read with a warning, because rules are learned into it; here it is an error.
 ///
 /// # Errors
 /// As [`check`].
-///
-/// # Example: a rule set that nobody has filled yet
-/// ```
-/// use fuzzy::check;
-///
-/// let text = "
-/// fuzzy: 1
-/// name: fan
-/// inputs: {heat: {range: [0, 1], partition: [low, high]}}
-/// outputs: {fan: {range: [0, 1], partition: [slow, fast]}}
-/// rules: []
-/// ";
-/// let document = fuzzy::yaml::parse(text)?;
-/// let (findings, report) = check::document(&document, text, &check::Options::default())?;
-/// assert!(report.is_none());
-/// assert!(findings.to_string().starts_with("6:8: error[no-rules]: the rule set has no rules"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn document(
     document: &Document,
     text: &str,
@@ -232,13 +185,13 @@ pub fn document(
         Ok(engine) => engine,
         Err(findings) => return Ok((findings, None)),
     };
-    let report = check(&document.model, &engine, options)?;
+    let report = check(&engine, options)?;
     let findings = report.findings(&document.model, &document.spans);
     Ok((Findings::locate(findings, text), Some(report)))
 }
 
 /// The uncovered boxes of all outputs: those where no rule fires at all, then those where none reaches the coverage.
-/// Outputs with the same boxes are told once.
+/// Outputs with the same boxes are listed once.
 fn all_uncovered(model: &Model, coverage: f64) -> (Vec<Uncovered>, bool) {
     let mut found: Vec<Uncovered> = Vec::new();
     let mut complete = true;
@@ -247,7 +200,7 @@ fn all_uncovered(model: &Model, coverage: f64) -> (Vec<Uncovered>, bool) {
             let boxes = coverage::uncovered(model, &output.variable.name, level);
             complete &= boxes.complete;
             let new = boxes.found.into_iter().filter(|one| {
-                // What is silent is uncovered too.
+                // A box in which no rule fires is uncovered too.
                 one.silent
                     || !found
                         .iter()
@@ -279,31 +232,14 @@ fn known(model: &Model, claim: &Monotone) -> Result<(), alloc::boxed::Box<Diagno
 }
 
 impl Report {
-    /// What was found, in words, the parts of the model at their places.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::{Engine, check};
-    ///
-    /// let text = "fuzzy: 1
-    /// name: fan
-    /// inputs: {heat: {range: [0, 100], partition: [low, high]}}
-    /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-    /// rules: [IF heat IS high THEN speed IS fast]";
-    /// let document = fuzzy::yaml::parse(text)?;
-    /// let engine = Engine::new(&document.model)?;
-    /// let report = check::check(&document.model, &engine, &check::Options::default())?;
-    /// let findings = report.findings(&document.model, &document.spans);
-    /// assert!(findings.iter().any(|finding| finding.message == "no rule uses the term `low` of `heat`"));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// Converts the report to located diagnostics.
     #[must_use]
     pub fn findings(&self, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         findings::of(self, model, spans)
     }
 }
 
-/// Numbers in messages: six digits, without noughts behind them.
+/// A number for a message: at most six digits.
 fn shown(x: f64) -> String {
     if x == 0.0 {
         return "0".into();

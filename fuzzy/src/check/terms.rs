@@ -16,20 +16,6 @@ pub struct TermOf {
 }
 
 /// A part of a variable's range in which every term is 0.
-///
-/// # Example: no word for what is neither cool nor hot
-/// ```
-/// # use fuzzy::{Engine, check::{Hole, Options, check}};
-/// let text = "fuzzy: 1
-/// name: fan
-/// inputs: {heat: {range: [0, 100], terms: {cool: {left_shoulder: [20, 40]}, hot: {right_shoulder: [60, 80]}}}}
-/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]";
-/// # let model = fuzzy::yaml::parse(text)?.model;
-/// # let report = check(&model, &Engine::new(&model)?, &Options::default())?;
-/// assert_eq!(report.holes, [Hole { input: "heat".into(), low: 40.0, high: 60.0 }]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]

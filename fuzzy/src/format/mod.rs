@@ -1,7 +1,7 @@
 //! The file format of rule sets, version 1: [`Model`] from a tree and back.
 //!
-//! This is the only interpretation of the format, whatever it is written in: `yaml::parse` brings a tree with places,
-//! serde one without. What the keys mean is told in `docs/rule-sets.md`.
+//! The format has this one reader, whatever a rule set is written in: `yaml::parse` gives it a tree with spans, serde a
+//! tree without. `docs/rule-sets.md` documents the keys.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -29,18 +29,11 @@ pub use schema::schema;
 /// The version of the format this library reads and writes.
 pub const VERSION: u64 = 1;
 
-/// Reads a model from a tree. The findings of all of it are told at once, but those that follow from another one are not.
+/// Reads a model from a tree. Reports all findings at once, except those that follow from another one.
 ///
 /// # Errors
 /// All findings, where one of them is an error. Without a text at hand they have no line and column.
-///
-/// # Example
-/// ```
-/// let tree = fuzzy::yaml::read("fuzzy: 2")?;
-/// let findings = fuzzy::format::read(&tree).unwrap_err();
-/// assert_eq!(findings[0].code, "unsupported-version");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+#[doc(hidden)]
 pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let mut spans = Spans::default();
@@ -64,7 +57,7 @@ pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     }
 }
 
-/// The model as far as it can be read; what cannot is a finding, and stands in the model by its name alone.
+/// The model as far as it can be read. A part that cannot be read is a finding, and in the model only its name.
 fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Option<Model> {
     const KEYS: [&str; 7] = [
         "fuzzy",
@@ -77,9 +70,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
         let finding = tree.unexpected("a mapping for the rule set");
-        findings.push(finding.help(
-            "a rule set begins with `fuzzy: 1`; `flagred new NAME` writes one to start from",
-        ));
+        findings.push(finding.help("a rule set begins with `fuzzy: 1`"));
         return None;
     }
     let mut unknown_keys = Vec::new();
@@ -147,13 +138,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
 }
 
 /// The model as a tree; reading it again gives the same model.
-///
-/// # Example
-/// ```
-/// let model = fuzzy::Model::builder("fan").build();
-/// let tree = fuzzy::format::write(&model);
-/// assert!(fuzzy::yaml::to_text(&tree).starts_with("fuzzy: 1\nname: fan\n"));
-/// ```
+#[doc(hidden)]
 #[must_use]
 pub fn write(model: &Model) -> Node {
     write::model(model)

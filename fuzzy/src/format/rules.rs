@@ -63,7 +63,7 @@ fn one(
         findings.push(finding.help("write `IF input IS term THEN output IS term`"));
         return None;
     };
-    // `- IF ... THEN risk IS high: why` reads as a mapping: the colon is the mistake, not the key.
+    // `- IF ... THEN speed IS fast: why` reads as a mapping: the colon is the mistake, not the key.
     if let [(key, _)] = pairs.as_slice()
         && let Value::Scalar(scalar) = &key.value
         && scalar
