@@ -36,6 +36,12 @@ const MOST_SAMPLES: usize = 10_000_000;
 /// ```
 #[must_use]
 pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
+    let inputs = model.inputs.iter().zip(&spans.inputs);
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    let unread = inputs
+        .chain(outputs.zip(&spans.outputs))
+        .filter(|(_, spans)| spans.terms_unread)
+        .map(|(variable, _)| variable.name.as_str());
     let mut validator = Validator {
         model,
         // Of two that share a name the first one counts.
@@ -51,6 +57,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             .rev()
             .map(|o| (o.variable.name.as_str(), &o.variable))
             .collect(),
+        unread: unread.collect(),
         findings: Vec::new(),
     };
     validator.names(spans);
@@ -105,6 +112,8 @@ struct Validator<'m> {
     model: &'m Model,
     inputs: BTreeMap<&'m str, &'m Variable>,
     outputs: BTreeMap<&'m str, &'m Variable>,
+    /// The inputs and outputs whose terms could not be read.
+    unread: Vec<&'m str>,
     findings: Vec<Diagnostic>,
 }
 
@@ -156,11 +165,6 @@ impl<'m> Validator<'m> {
     fn variable(&mut self, what: &str, variable: &Variable, spans: &VariableSpans) {
         if !spans.range_unread {
             self.range(what, variable, or(&spans.range, &spans.name));
-        }
-        if variable.terms.is_empty() && !spans.terms_unread {
-            let message = format!("{what} has no terms");
-            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
-            self.error("missing-key", &spans.name, message, help);
         }
         let no_spans = TermSpans::default();
         for (i, term) in variable.terms.iter().enumerate() {
@@ -225,6 +229,11 @@ impl<'m> Validator<'m> {
         let what = format!("output `{}`", variable.name);
         let first = self.findings.len();
         self.variable(&what, variable, spans);
+        if variable.terms.is_empty() && !spans.terms_unread {
+            let message = format!("{what} has no terms");
+            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
+            self.error("missing-key", &spans.name, message, help);
+        }
         if let Some(sampling) = output.samples {
             let here = or(&spans.samples, &spans.name);
             let samples = sampling.samples;
@@ -440,14 +449,16 @@ impl<'m> Validator<'m> {
     }
 
     fn known_term(&mut self, kind: &str, variable: &Variable, term: &Name) {
-        // A variable without terms has a finding of its own.
-        if variable.terms.is_empty() || variable.terms.iter().any(|t| t.name == term.text) {
+        // Terms that could not be read, and an output without any, are findings of their own.
+        let is_told = self.unread.contains(&variable.name.as_str())
+            || (kind == "output" && variable.terms.is_empty());
+        if is_told || variable.terms.iter().any(|t| t.name == term.text) {
             return;
         }
         let message = format!("{kind} `{}` has no term `{}`", variable.name, term.text);
         let mut finding = Diagnostic::error("unknown-term", term.span.clone(), message);
         let known = variable.terms.iter().map(|t| t.name.as_str());
-        finding.help = suggest(&term.text, known);
+        finding.help = suggest(&term.text, known).or_else(|| Some("add terms to it".into()));
         self.findings.push(finding);
     }
 }

@@ -129,6 +129,10 @@ fn is_set(shape: &Shape) -> bool {
 
 /// Where every term of an input is 0: no rule without NOT speaks of those values.
 pub(super) fn holes(input: &Variable) -> Vec<Hole> {
+    if input.terms.is_empty() {
+        // Only linear consequents read it.
+        return Vec::new();
+    }
     let covered = |x: f64| input.terms.iter().any(|term| term.membership(x) > 0.0);
     let places = axis::places(input);
     let mut found: Vec<Hole> = Vec::new();

@@ -27,14 +27,12 @@ impl Engine {
     /// use fuzzy::{Engine, Model, model::{Output, Variable}};
     ///
     /// let model = Model::builder("fan")
-    ///     .input(Variable::new("heat", 100.0, 0.0).partition(["low", "high"]))
+    ///     .input(Variable::new("heat", 0.0, 100.0).partition(["low", "high"]))
     ///     .output(Output::new(Variable::new("speed", 0.0, 9.0).partition(["slow", "fast"])))
     ///     .rule("IF heat IS hihg THEN speed IS fsat".parse()?)
     ///     .build();
     /// let findings = Engine::new(&model).unwrap_err();
     /// assert_eq!(findings.to_string(), "\
-    /// error[wrong-range]: the range of input `heat` starts at 100 and ends at 0
-    ///   help: write the least value first, then the greatest
     /// error[unknown-term]: rule 1: input `heat` has no term `hihg`
     ///   help: did you mean `high`?
     /// error[unknown-term]: rule 1: output `speed` has no term `fsat`

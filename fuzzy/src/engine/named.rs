@@ -84,7 +84,8 @@ impl Engine {
     /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
     /// rules: [IF heat IS low THEN speed IS slow, IF heat IS high OR humidity IS wet THEN speed IS fast]
     /// ".parse()?;
-    /// let outcomes = Engine::new(&model)?.evaluate_struct(&Weather { heat: 30.0, humidity: 80 })?;
+    /// let engine = Engine::new(&model)?;
+    /// let outcomes = engine.evaluate_struct(&Weather { heat: 30.0, humidity: 80 })?;
     /// assert_eq!(serde_json::to_value(&outcomes)?["speed"]["state"], "defined");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

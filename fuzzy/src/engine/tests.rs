@@ -162,8 +162,6 @@ fn every_problem_of_a_model_at_once() {
       help: the positions of a membership function ascend, its widths are greater than 0, its degrees lie in [0, 1]
     error[wrong-range]: the range of input `x` starts at 1 and ends at 1
       help: write the least value first, then the greatest
-    error[missing-key]: input `x` has no terms
-      help: write `partition: [low, medium, high]`, or `terms` with a membership function for each
     error[value-outside-range]: the value 101 lies outside the range of output `y`
       help: write a value from 0 to 100
     error[weight-outside-range]: rule 1: the weight NaN is outside [0, 1]

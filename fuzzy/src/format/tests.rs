@@ -218,10 +218,12 @@ fn with_condition(model: &mut Model, condition: Condition) {
     first_rule(model).condition = condition;
 }
 
+/// A code, and what makes a model deserve it.
+type Mistake = (&'static str, fn(&mut Model));
+
 /// Every way to break a model, and the code of what is wrong then.
-const MISTAKES: [(&str, fn(&mut Model)); 33] = [
+const MISTAKES: [Mistake; 32] = [
     ("missing-key", |m| m.outputs.clear()),
-    ("missing-key", |m| m.inputs[0].terms.clear()),
     ("missing-key", |m| m.outputs[0].variable.terms.clear()),
     ("empty-name", |m| m.inputs[0].name.clear()),
     ("empty-name", |m| m.inputs[0].terms[0].name.clear()),

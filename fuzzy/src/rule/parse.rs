@@ -43,7 +43,7 @@ pub const DEEPEST_NESTING: usize = 64;
 ///
 /// let mistake = fuzzy::rule::parse("IF heat IS high THNE speed IS fast").unwrap_err();
 /// assert_eq!(mistake.message, "expected `AND`, `OR` or `THEN` after the condition, found `THNE`");
-/// assert_eq!(mistake.span, 17..21);
+/// assert_eq!(mistake.span, 16..20);
 /// assert_eq!(mistake.help.as_deref(), Some("did you mean `THEN`?"));
 /// # Ok::<(), Box<fuzzy::diagnostic::Diagnostic>>(())
 /// ```
