@@ -264,13 +264,13 @@ fn partition(
     match peaks {
         Some(peaks) => {
             variable.terms = between_peaks(&names.zip(peaks).collect::<Vec<_>>());
-            spans.terms_unread = false;
         }
         None => {
             variable.terms = names.map(unread).collect();
             spans.terms.iter_mut().for_each(|term| term.unread = true);
         }
     }
+    spans.terms_unread = variable.terms.is_empty();
 }
 
 fn term_spans<'a>(names: impl Iterator<Item = &'a Range<usize>>) -> Vec<TermSpans> {
