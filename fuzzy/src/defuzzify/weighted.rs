@@ -13,14 +13,8 @@ pub(crate) struct Consequents {
 }
 
 impl Consequents {
-    /// Adds the consequent of a term and returns `true`, or returns `false` where its shape is no consequent. A singleton is
-    /// a constant. Calls `unknown` with the names of inputs that `input` does not find.
-    pub(crate) fn push(
-        &mut self,
-        shape: &Shape,
-        input: impl Fn(&str) -> Option<usize>,
-        mut unknown: impl FnMut(&str),
-    ) -> bool {
+    /// Adds the consequent of a term of a valid model, in which `input` finds every name. A singleton is a constant.
+    pub(crate) fn push(&mut self, shape: &Shape, input: impl Fn(&str) -> Option<usize>) {
         let first = self.coefficients.len();
         let constant = match shape {
             Shape::Constant { value: constant } | Shape::Singleton { at: constant } => constant,
@@ -29,25 +23,22 @@ impl Consequents {
                 constant,
             } => {
                 for (name, coefficient) in coefficients {
-                    match input(name) {
-                        Some(index) => self.coefficients.push(Coefficient {
+                    self.coefficients
+                        .extend(input(name).map(|index| Coefficient {
                             coefficient: *coefficient,
                             input: index as u32,
-                        }),
-                        None => unknown(name),
-                    }
+                        }));
                 }
                 // By input, so that the order in the text does not change a bit of the sum.
                 self.coefficients[first..].sort_by_key(|coefficient| coefficient.input);
                 constant
             }
-            _ => return false,
+            _ => return,
         };
         self.consequents.push(Consequent {
             constant: *constant,
             first: first as u32,
             end: self.coefficients.len() as u32,
         });
-        true
     }
 }

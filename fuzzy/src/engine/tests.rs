@@ -125,14 +125,14 @@ fn wrong_numbers_of_places() {
     let engine = Engine::new(&gap(NoRuleFires::Undefined)).unwrap();
     assert_eq!(
         engine.evaluate(&[1.0, 2.0]).unwrap_err().to_string(),
-        "2 values were given for 1 input(s)"
+        "the model has 1 inputs, but 2 values were given"
     );
     assert_eq!(
         engine
             .evaluate_with(&mut engine.scratch(), &[1.0], &mut [])
             .unwrap_err()
             .to_string(),
-        "there is room for 0 outcomes of 1 output(s)"
+        "the model has 1 outputs, but there is room for 0 outcomes"
     );
 }
 
@@ -154,16 +154,24 @@ fn every_problem_of_a_model_at_once() {
         .into(),
     );
     insta::assert_snapshot!(
-        Engine::new(&model).unwrap_err().to_string().replace("; ", "\n"),
+        Engine::new(&model).unwrap_err().to_string(),
         @"
-    `x` is defined twice in the inputs
-    term `low` of `x`: `sd` is -1, not over 0
-    the range of `x` is not from a finite number up to a larger one
-    the value of `y` where no rule fires is not in its range
-    rule 3 names `z`, which is no input
-    rule 3 names `middle`, which is no term of `x`
-    the weight of rule 1 is not in [0, 1]
-    rule 3 names `none`, which is no term of `y`
+    error[duplicate-variable]: the rule set has the variable `x` twice
+      help: inputs and outputs have different names; rename one of them
+    error[wrong-parameter]: term `low` of input `x`: `sd` is -1, but must be greater than 0
+      help: the positions of a membership function ascend, its widths are greater than 0, its degrees lie in [0, 1]
+    error[wrong-range]: the range of input `x` starts at 1 and ends at 1
+      help: write the least value first, then the greatest
+    error[value-outside-range]: the value 101 lies outside the range of output `y`
+      help: write a value from 0 to 100
+    error[weight-outside-range]: rule 1: the weight NaN is outside [0, 1]
+      help: a weight is a number from 0 to 1
+    error[unknown-variable]: rule 3: there is no input `z`
+      help: there is `x`
+    error[unknown-term]: rule 3: input `x` has no term `middle`
+      help: there are `low` and `high`
+    error[unknown-term]: rule 3: output `y` has no term `none`
+      help: there are `small` and `large`
     "
     );
 }

@@ -1,7 +1,7 @@
 //! The file format as a JSON Schema (draft 2020-12), for editors that complete and check while one types.
 //!
-//! It is made from the tables that read the format, so it cannot tell of a shape or an operator that is not there. What
-//! a schema cannot say (that parameters stand in order, that rules name what there is) `flagred check` tells.
+//! It is made from the tables that read the format, so it lists the membership functions and operators that exist. What a
+//! schema cannot express (parameters in order, names in rules) [`validate`](crate::validate()) checks.
 
 use alloc::{format, string::String, vec::Vec};
 

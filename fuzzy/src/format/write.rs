@@ -4,11 +4,13 @@ use alloc::vec::Vec;
 
 use super::{
     VERSION, rules, shapes,
-    variables::{between_peaks, even_peaks},
     words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, IMPLICATIONS, word_of},
 };
 use crate::{
-    model::{Model, NoRuleFires, Operators, Output, SamplingRule, Shape, Term, Variable},
+    model::{
+        Model, NoRuleFires, Operators, Output, SamplingRule, Shape, Term, Variable, between_peaks,
+        even_peaks,
+    },
     tree::Node,
 };
 
@@ -92,7 +94,7 @@ fn terms(variable: &Variable) -> (&'static str, Node) {
         && peaks
             .iter()
             .all(|p| (variable.low..=variable.high).contains(p))
-        && *terms == between_peaks(names().zip(peaks.iter().copied()));
+        && *terms == between_peaks(&names().zip(peaks.iter().copied()).collect::<Vec<_>>());
     if !is_partition {
         let terms = terms.iter().map(|term| {
             let (shape, parameters) = shapes::write(&term.shape);

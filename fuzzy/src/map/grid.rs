@@ -62,29 +62,25 @@ pub struct Fixed {
 }
 
 /// Why a grid cannot be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum GridError {
     /// An axis has fewer than 2 points.
-    #[error("an axis needs at least 2 points, not {points}")]
     TooFewPoints {
         /// The number of points.
         points: usize,
     },
     /// The grid has too many cells.
-    #[error("the grid has more than {most} cells")]
     TooManyCells {
         /// The most cells of a grid.
         most: usize,
     },
     /// No axis has this name: it is no input, or it is fixed.
-    #[error("the grid has no axis `{name}`")]
     NoAxis {
         /// The name.
         name: String,
     },
     /// A fixed value is not finite.
-    #[error("the value {value} of `{name}` is not finite")]
     NotFinite {
         /// The input.
         name: String,
@@ -92,6 +88,23 @@ pub enum GridError {
         value: f64,
     },
 }
+
+impl core::fmt::Display for GridError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            GridError::TooFewPoints { points } => {
+                write!(f, "an axis needs at least 2 points, not {points}")
+            }
+            GridError::TooManyCells { most } => write!(f, "the grid has more than {most} cells"),
+            GridError::NoAxis { name } => write!(f, "the grid has no axis `{name}`"),
+            GridError::NotFinite { name, value } => {
+                write!(f, "the value {value} of `{name}` is not finite")
+            }
+        }
+    }
+}
+
+impl core::error::Error for GridError {}
 
 /// The index of a cell fits 32 bits.
 const MOST_CELLS: usize = u32::MAX as usize;

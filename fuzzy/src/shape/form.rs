@@ -11,6 +11,10 @@ pub(crate) struct Form {
     /// Its parameters, in the order of a list.
     pub(crate) parameters: &'static [(&'static str, Role)],
     /// What it is, for the schema.
+    #[cfg_attr(
+        not(feature = "serde"),
+        allow(dead_code, reason = "only the schema tells it")
+    )]
     pub(crate) about: &'static str,
     /// The shape of so many values.
     pub(crate) build: fn(&[f64]) -> Option<Shape>,
@@ -19,8 +23,8 @@ pub(crate) struct Form {
 /// What a parameter may be; all are finite numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// A place on the axis; the places of a shape stand from left to right.
-    Place,
+    /// A position on the axis, not left of the one before.
+    Ascending,
     /// Over 0: a width, a deviation.
     Positive,
     /// Any.
@@ -28,10 +32,12 @@ pub(crate) enum Role {
 }
 
 impl Form {
-    /// Whether the parameters may stand in a list. Only places may: programs differ in the order of all others,
+    /// Whether the parameters may stand in a list. Only positions may: programs differ in the order of all others,
     /// `gaussian: [1, 5]` means mean 1 to one and mean 5 to another.
     pub(crate) fn as_list(&self) -> bool {
-        self.parameters.iter().all(|(_, role)| *role == Role::Place)
+        self.parameters
+            .iter()
+            .all(|(_, role)| *role == Role::Ascending)
     }
 
     /// The names of the parameters.

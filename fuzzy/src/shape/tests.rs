@@ -451,7 +451,7 @@ fn says_which_parameter() {
     let message = |shape: Shape| shape.validate().unwrap_err().to_string();
     assert_eq!(
         message(Shape::Gaussian { mean: 1.0, sd: 0.0 }),
-        "`sd` is 0, not over 0"
+        "`sd` is 0, but must be greater than 0"
     );
     assert_eq!(
         message(Shape::Bell {
@@ -465,13 +465,13 @@ fn says_which_parameter() {
         message(Shape::Piecewise {
             points: vec![(0.0, 0.5), (1.0, 1.5)]
         }),
-        "the degree 1.5 at 1 is not in [0, 1]"
+        "the degree 1.5 at 1 is outside [0, 1]"
     );
     assert_eq!(
         message(Shape::Piecewise {
             points: vec![(1.0, 0.5), (0.0, 0.5)]
         }),
-        "the point at 0 stands behind 1"
+        "the point at 0 follows the point at 1"
     );
     assert_eq!(
         message(Shape::Concave {

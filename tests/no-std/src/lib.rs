@@ -4,7 +4,8 @@
 //! workspace cargo turns on the features that other members want, so such a build proves nothing.
 #![no_std]
 
-use fuzzy::engine::{CompileError, EvaluateError, Outcome, Scratch};
+use fuzzy::diagnostic::Findings;
+use fuzzy::engine::{EvaluateError, Outcome, Scratch};
 use fuzzy::model::{Model, Output, Shape, Variable};
 use fuzzy::rule::{Condition, Rule};
 use fuzzy::{Engine, map::DecisionMap, map::Grid};
@@ -13,7 +14,7 @@ use fuzzy::{Engine, map::DecisionMap, map::Grid};
 ///
 /// # Errors
 /// Never: the model is whole.
-pub fn engine() -> Result<Engine, CompileError> {
+pub fn engine() -> Result<Engine, Findings> {
     Engine::new(
         &Model::builder("margin")
             .input(
