@@ -14,7 +14,7 @@ fn main() -> std::io::Result<()> {
         "flagred",
         "flightlog",
         "cli",
-        "flagred-c",
+        "bindings/c",
     ] {
         let folder = root.join(folder);
         println!("cargo::rerun-if-changed={}", folder.display());

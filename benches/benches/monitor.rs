@@ -4,7 +4,7 @@ use divan::{Bencher, black_box, counter::ItemsCount};
 use flagred::{
     board::OwnedMemory,
     estimator::Estimator,
-    monitor::{Monitor, Sample},
+    monitor::{Craft, Monitor, Sample},
     shipped,
 };
 
@@ -21,9 +21,10 @@ const SAMPLES: u32 = 1000;
 const PROFILES: [&str; 2] = ["flagred", "flagred-paper"];
 
 fn estimator(name: &str) -> Estimator {
-    let profile = shipped::profile(name).unwrap().unwrap();
-    let rules = shipped::rule_set(&profile.rules).unwrap().unwrap();
-    Estimator::new(&profile, &rules).unwrap()
+    match name {
+        "flagred-paper" => shipped::flagred_paper(),
+        _ => shipped::flagred(),
+    }
 }
 
 /// Motors that fight gusts.
@@ -54,7 +55,7 @@ fn run(bencher: Bencher<'_, '_>, mut push: impl FnMut(&Sample<'_>)) {
 #[divan::bench(args = PROFILES)]
 fn monitor(bencher: Bencher<'_, '_>, profile: &str) {
     let estimator = estimator(profile);
-    let mut monitor = Monitor::new(&estimator, MOTORS, &[]).unwrap();
+    let mut monitor = Monitor::new(&estimator, Craft::new(MOTORS)).unwrap();
     run(bencher, |sample| {
         black_box(monitor.push(sample));
     });

@@ -6,14 +6,14 @@ use std::{
 };
 
 use clap::ValueEnum;
-use flagred::verdict::Level;
+use flagred::{
+    flight::{Assessment, Verdict},
+    log,
+    verdict::Level,
+};
 
 use crate::{
-    assessment::{
-        document,
-        follow::{self, Assessed, Verdict},
-        words,
-    },
+    assessment::{document, words},
     failure::{Exit, Failure},
     output, profile,
     report::{self, Subject},
@@ -103,11 +103,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 continue;
             }
         };
-        let assessed = follow::follow(&flight, estimator, arguments.step);
+        let assessed = log::assess(&flight, estimator, Some(arguments.step));
         progress.clear();
         exit = exit.max(exit_of(&assessed, arguments.fail_on));
         if arguments.json {
-            documents.push(document::document(log, &flight, estimator, &assessed));
+            let document = document::document(log, &flight, estimator, &assessed);
+            documents.push(serde_json::to_value(document).map_err(std::io::Error::from)?);
         } else if arguments.csv {
             document::write_csv(
                 &mut out,
@@ -117,9 +118,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 &assessed,
             )?;
             head = false;
-            if let Verdict::NotAvailable { reason, help } = &assessed.verdict {
-                let failure = Failure::unreadable(format!("`{log}`: no answer: {reason}"));
-                failure.help_if(help.as_ref()).report();
+            if let Verdict::NotAvailable(reason) = &assessed.verdict {
+                let failure = Failure::unreadable(format!("`{log}`: no verdict: {reason}"));
+                failure.help_if(reason.help()).report();
             }
         } else {
             words::write(&mut out, log, &flight, &estimator.profile().name, &assessed)?;
@@ -223,10 +224,10 @@ fn write_json(out: &mut impl Write, document: &impl serde::Serialize) -> Result<
     Ok(())
 }
 
-/// No answer is no clean bill: whoever gates on the exit code must not take it for one.
-fn exit_of(assessed: &Assessed, fail_on: FailOn) -> Exit {
+/// An unknown risk is an exit code of its own, so that nobody takes it for GOOD.
+fn exit_of(assessed: &Assessment, fail_on: FailOn) -> Exit {
     match (&assessed.verdict, fail_on) {
-        (Verdict::NotAvailable { .. }, _) => Exit::Unreadable,
+        (Verdict::NotAvailable(_), _) => Exit::Unreadable,
         (Verdict::Known(Level::Fail), FailOn::Warn | FailOn::Fail) => Exit::Findings,
         (Verdict::Known(Level::Warn), FailOn::Warn) => Exit::Findings,
         _ => Exit::Clean,

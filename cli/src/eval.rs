@@ -52,9 +52,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .clone();
     let columns = columns(&engine, &header)?;
     let mut writer = csv::Writer::from_writer(BufWriter::new(io::stdout().lock()));
-    writer
-        .write_record(header.iter().chain(engine.output_names()))
-        .map_err(written)?;
+    writer.write_record(header.iter().chain(engine.output_names()))?;
 
     let threads = thread::available_parallelism().map_or(1, usize::from);
     let mut scratches: Vec<Scratch> = (0..threads).map(|_| engine.scratch()).collect();
@@ -77,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                     .iter()
                     .map(|o| o.value().map(digits).unwrap_or_default());
                 let fields = record.iter().map(String::from).chain(values);
-                writer.write_record(fields).map_err(written)?;
+                writer.write_record(fields)?;
             }
         }
         rows += block.len();
@@ -245,12 +243,4 @@ fn digits(value: f64) -> String {
 fn unreadable(error: &csv::Error) -> Failure {
     Failure::unreadable(format!("the points cannot be read: {error}"))
         .help("every row needs as many fields as the header")
-}
-
-/// The output could not be written; a closed pipe is no failure.
-fn written(error: csv::Error) -> Failure {
-    match error.into_kind() {
-        csv::ErrorKind::Io(error) => Failure::from(error),
-        other => Failure::unreadable(format!("the output cannot be written: {other:?}")),
-    }
 }

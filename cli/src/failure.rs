@@ -118,3 +118,13 @@ impl From<io::Error> for Failure {
         }
     }
 }
+
+/// Standard output could not be written as a table.
+impl From<csv::Error> for Failure {
+    fn from(error: csv::Error) -> Self {
+        match error.into_kind() {
+            csv::ErrorKind::Io(error) => Failure::from(error),
+            kind => Failure::unreadable(format!("the output cannot be written: {kind:?}")),
+        }
+    }
+}

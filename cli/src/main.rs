@@ -15,6 +15,7 @@ mod evaluate;
 mod explain;
 mod export;
 mod failure;
+mod flights;
 mod help;
 mod inspect;
 mod learn;
@@ -26,7 +27,6 @@ mod parallel;
 mod profile;
 mod report;
 mod rule_set;
-mod samples;
 mod table;
 mod watch;
 

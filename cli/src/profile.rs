@@ -60,7 +60,7 @@ pub(crate) fn read(name: &str) -> Result<(Profile, String, Option<PathBuf>), Fai
             (text, path.parent().map(Path::to_owned))
         }
     };
-    let profile = Profile::from_yaml(&text).map_err(|findings| {
+    let profile = text.parse::<Profile>().map_err(|findings| {
         if fuzzy::yaml::parse(&text).is_ok() {
             return Failure::unreadable(format!("`{name}` is a rule set, not a profile"))
                 .help(format!("write a profile that names it, with `rules: {}` and where each input comes from", file_name(path)));

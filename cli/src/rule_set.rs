@@ -31,7 +31,7 @@ pub(crate) fn load(path: &Path) -> Result<(Model, Engine), Failure> {
 /// What to say of a text that is no rule set because it is a profile: one thing, where its keys would be a page of
 /// mistakes.
 pub(crate) fn profile_instead(file: &str, text: &str) -> Option<Failure> {
-    let profile = Profile::from_yaml(text).ok()?;
+    let profile = text.parse::<Profile>().ok()?;
     let failure = Failure::unreadable(format!("`{file}` is a profile, not a rule set"));
     Some(failure.help(format!("its rule set is `{}`", profile.rules)))
 }

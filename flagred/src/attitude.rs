@@ -28,15 +28,6 @@ impl Attitude {
     /// `(roll_des - roll)^2 + (pitch_des - pitch)^2` in square degrees, each difference taken the short way
     /// round. (Eq. 1 of the paper prints a minus between the squares, which would let a roll error hide a
     /// pitch error: an erratum.)
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::attitude::Attitude;
-    ///
-    /// // Wanted 179, flown -179 degrees: 2 degrees apart, the short way round.
-    /// let rolled = Attitude { roll_des_deg: 179.0, roll_deg: -179.0, pitch_des_deg: 0.0, pitch_deg: 1.0 };
-    /// assert_eq!(rolled.squared_error_deg2(), 5.0);
-    /// ```
     pub fn squared_error_deg2(&self) -> f64 {
         let roll = short_way_deg(self.roll_des_deg - self.roll_deg);
         let pitch = short_way_deg(self.pitch_des_deg - self.pitch_deg);
@@ -71,17 +62,6 @@ pub struct AttitudeError {
 
 impl AttitudeError {
     /// Adds a sample; one with a value that is not finite is left out.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::attitude::{Attitude, AttitudeError};
-    ///
-    /// let mut error = AttitudeError::default();
-    /// let level = Attitude { roll_des_deg: 0.0, roll_deg: 0.0, pitch_des_deg: 0.0, pitch_deg: 0.0 };
-    /// error.push(&level);
-    /// error.push(&Attitude { roll_deg: f64::NAN, ..level }); // left out
-    /// assert_eq!(error.samples(), 1);
-    /// ```
     pub fn push(&mut self, attitude: &Attitude) {
         let square = attitude.squared_error_deg2();
         if square.is_finite() {
@@ -91,33 +71,11 @@ impl AttitudeError {
     }
 
     /// The number of samples counted.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::attitude::{Attitude, AttitudeError};
-    ///
-    /// let mut error = AttitudeError::default();
-    /// let level = Attitude { roll_des_deg: 0.0, roll_deg: 0.0, pitch_des_deg: 0.0, pitch_deg: 0.0 };
-    /// error.push(&level);
-    /// assert_eq!(error.samples(), 1);
-    /// ```
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
     /// `sqrt(mean(squared error))` in degrees; `None` without a sample.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::attitude::{Attitude, AttitudeError};
-    ///
-    /// let mut error = AttitudeError::default();
-    /// let level = Attitude { roll_des_deg: 0.0, roll_deg: 0.0, pitch_des_deg: 0.0, pitch_deg: 0.0 };
-    /// assert_eq!(error.rmse_deg(), None);
-    /// error.push(&level);
-    /// error.push(&Attitude { roll_deg: 2.0, ..level });
-    /// assert_eq!(error.rmse_deg(), Some(f64::sqrt(2.0)));
-    /// ```
     pub fn rmse_deg(&self) -> Option<f64> {
         (self.samples > 0).then(|| libm::sqrt(self.mean_square_deg2))
     }

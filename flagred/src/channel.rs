@@ -96,9 +96,7 @@ pub enum Observed {
 /// # Example: the share of time that motors of the shipped profile are at a limit
 /// ```
 /// # use flagred::{estimator::Estimator, shipped};
-/// # let profile = shipped::profile("flagred").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
+/// # let estimator = shipped::flagred();
 /// use flagred::channel::{Statistic, Threshold};
 ///
 /// let plan = estimator.plan()?;
@@ -120,9 +118,7 @@ pub enum Threshold {
 /// # Example: what the paper's second input observes
 /// ```
 /// # use flagred::{estimator::Estimator, shipped};
-/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
+/// # let estimator = shipped::flagred_paper();
 /// use flagred::channel::{Channel, Input, Motors, Observed, Statistic};
 ///
 /// let plan = estimator.plan()?;

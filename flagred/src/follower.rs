@@ -2,27 +2,13 @@
 
 use crate::{
     accumulator::{AccumulatorSettings, RunningSum},
-    assessment::{Assessment, Estimate, Sample, Sampling, Unknown},
     channel::{Channel, Input, Seen, push, value},
+    sample::{Estimate, Sample, Sampling, Unknown, Update},
     verdict::{Alert, Ended, Finding, Motor, Step, VerdictSettings},
     window::Window,
 };
 
 /// What a profile says about time: when inputs count as known, how risks add up, when levels change.
-///
-/// # Example: what of a profile goes on board beside its rules
-/// ```
-/// # use flagred::{estimator::Estimator, shipped};
-/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
-/// use flagred::follower::Settings;
-///
-/// let Settings { sampling, elevated_risk, verdict } = estimator.plan()?.settings;
-/// assert_eq!((sampling, elevated_risk), (profile.sampling, profile.elevated_risk));
-/// assert_eq!(verdict, profile.verdict);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// When an input counts as known.
@@ -78,7 +64,7 @@ impl Follower {
         room: &mut Room<'_>,
         sample: &Sample<'_>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
-    ) -> Assessment {
+    ) -> Update {
         let t_s = sample.t_s;
         let mut step = Step::default();
         let longest_gap_s = self.settings.sampling.longest_gap_s;
@@ -125,7 +111,8 @@ impl Follower {
         };
         self.last_known_s = Some(t_s);
         let elevated = self.sum.push(room.risks, (t_s, held_s), said.risk_pct);
-        if t_s - in_air_since_s >= self.settings.verdict.quiet_after_take_off_s {
+        let is_judged = t_s - in_air_since_s >= self.settings.verdict.quiet_after_take_off_s;
+        if is_judged {
             let judged = self.alert.push(t_s, said.risk_pct, elevated, room.motors);
             step = Step {
                 change: judged.change.or(step.change),
@@ -137,12 +124,13 @@ impl Follower {
                 },
             };
         }
-        Assessment {
+        Update {
             t_s,
             risk,
             elevated_risk_pct: Some(elevated),
             level: Some(self.alert.level()),
             change: step.change,
+            judged: is_judged,
             ended: step.ended,
         }
     }
@@ -178,15 +166,16 @@ impl Follower {
         }
     }
 
-    /// An assessment without a risk.
-    fn unknown(&self, t_s: f64, reason: Unknown, step: Step) -> Assessment {
+    /// What is known after a sample without a risk.
+    fn unknown(&self, t_s: f64, reason: Unknown, step: Step) -> Update {
         let judging = self.in_air_since_s.is_some() && self.last_known_s.is_some();
-        Assessment {
+        Update {
             t_s,
             risk: Err(reason),
             elevated_risk_pct: None,
             level: judging.then(|| self.alert.level()),
             change: step.change,
+            judged: false,
             ended: step.ended,
         }
     }

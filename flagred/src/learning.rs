@@ -23,20 +23,6 @@ pub struct Row {
 
 /// How far predictions are from what the rows say, in the unit of the output; rows count by their weight. Where no row was
 /// compared the errors are NaN.
-///
-/// # Example: one row cannot be predicted from no other
-/// ```
-/// # use flagred::{gap::GapSettings, learning::{Row, cross_validate}};
-/// # use fuzzy::learn::Settings;
-/// # let mut model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
-/// # model.rules.clear();
-/// use flagred::learning::Errors;
-///
-/// let only = Row { values: vec![0.1, 0.1, 50.0], weight: 1.0, group: None };
-/// let Errors { rows, rmse, .. } = cross_validate(&model, &Settings::default(), &GapSettings::default(), &[only])?;
-/// assert!(rows == 0 && rmse.is_nan(), "unknown, which is not 0");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Errors {
     /// The rows compared.
@@ -90,24 +76,6 @@ impl Tally {
 }
 
 /// Why learned rules could not be examined.
-///
-/// # Example: which row cannot be learned from
-/// ```
-/// # use flagred::{gap::GapSettings, learning::{Row, cross_validate}};
-/// # use fuzzy::learn::Settings;
-/// # let mut model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
-/// # model.rules.clear();
-/// use flagred::learning::ExamineError;
-///
-/// let rows: Vec<Row> = (0..4).map(|i| {
-///     let risk_pct = if i == 2 { 120.0 } else { 50.0 };
-///     Row { values: vec![0.1, 0.1, risk_pct], weight: 1.0, group: Some(i) }
-/// }).collect();
-/// let refused = cross_validate(&model, &Settings::default(), &GapSettings::default(), &rows).unwrap_err();
-/// assert!(matches!(refused, ExamineError::Refused { row: 2, .. }));
-/// assert_eq!(refused.to_string(), "row 2: `risk` is 120, outside its range from 0 to 100");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExamineError {
@@ -188,7 +156,7 @@ const MOST_GROUPS: usize = 50;
 /// use flagred::{gap::GapSettings, learning::{Row, cross_validate}};
 /// use fuzzy::learn::Settings;
 ///
-/// let mut model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// let mut model = flagred::shipped::flagred_paper_rules();
 /// model.rules.clear();
 /// // Risk falls with the margin; three vehicles, each predicted from the other two.
 /// let rows: Vec<Row> = (0..60).map(|i| {
@@ -268,23 +236,6 @@ fn fingerprint(values: &[f64]) -> u64 {
 }
 
 /// What each gap method makes of cells whose rule was taken away.
-///
-/// # Example: which method comes nearest to the rows where a rule is missing?
-/// ```
-/// # use flagred::learning::{Row, leave_one_rule_out};
-/// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
-/// # let rows: Vec<Row> = (0..20).map(|i| {
-/// #     let margin = f64::from(i) / 50.0;
-/// #     Row { values: vec![margin, 0.1, 100.0 - 200.0 * margin], weight: 1.0, group: None }
-/// # }).collect();
-/// use flagred::{gap::GapMethod, learning::{GapComparison, MethodErrors}};
-///
-/// let GapComparison { with_the_rule, methods, .. } = leave_one_rule_out(&model, &rows, &GapMethod::ALL, None)?;
-/// for (method, MethodErrors { by_row, .. }) in methods {
-///     assert!(by_row.rmse > with_the_rule.by_row.rmse, "{method:?} cannot know better than the rule that is gone");
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct GapComparison {
     /// The rules left out, one at a time: those with samples in the gap they leave.
@@ -318,7 +269,7 @@ pub struct MethodErrors {
 /// ```
 /// use flagred::{gap::GapMethod, learning::{Row, leave_one_rule_out}};
 ///
-/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// let model = flagred::shipped::flagred_paper_rules();
 /// let rows: Vec<Row> = (0..20).map(|i| {
 ///     let margin = f64::from(i) / 50.0;
 ///     Row { values: vec![margin, 0.1, 100.0 - 200.0 * margin], weight: 1.0, group: None }

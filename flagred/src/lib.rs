@@ -1,25 +1,51 @@
-//! FLAGRED: how close a multirotor is to losing control, told from its motor commands alone.
+//! Estimates from motor commands alone how close a multirotor is to losing control.
 //!
-//! Without the feature `std` there is only what flies on board, in `core` alone: [`board`] and what it stands on.
+//! - [`flight::Assessor`]: samples of a flight in, its verdict and findings out; `log::assess` (feature `flightlog`) does it
+//!   for a flight log.
+//! - [`monitor::Monitor`]: a sample in, the risk and the level of the moment out; [`board::Monitor`] is the same without an
+//!   allocator.
+//! - [`shipped`]: the profiles and rule sets that come with the crate; [`profile::Profile`] and [`estimator::Estimator`]
+//!   make others usable.
+//! - [`evaluation`], [`learning`]: how good a risk is, and rules from flights.
+//!
+//! ```
+//! use flagred::{flight::{Assessor, Verdict}, monitor::{Craft, Sample}, shipped, verdict::Level};
+//!
+//! let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None)?;
+//! for i in 0..1000 {
+//!     let motors = [0.45, 0.5, 0.55, 0.5]; // of the effective range: 0 and 1 are the limits
+//!     assessor.push(&Sample { t_s: f64::from(i) * 0.02, motors: &motors, in_air: true, signals: &[] });
+//! }
+//! assert_eq!(assessor.finish().verdict, Verdict::Known(Level::Good));
+//! # Ok::<(), flagred::monitor::MonitorError>(())
+//! ```
+//!
+//! Features: `std` (default); `flightlog` for flight logs; `serde` to serialise what comes out. Without `std` there is only
+//! [`board`] and what it uses, which needs `core` alone.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[cfg(feature = "std")]
 extern crate alloc;
 
 pub mod accumulator;
-pub mod assessment;
 #[cfg(feature = "std")]
 pub mod attitude;
 pub mod board;
+#[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.
 pub mod channel;
 #[cfg(feature = "std")]
 pub mod estimator;
 #[cfg(feature = "std")]
 pub mod evaluation;
+#[cfg(feature = "std")]
+pub mod flight;
+#[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.
 pub mod follower;
 pub mod gap;
 #[cfg(feature = "std")]
 pub mod learning;
+#[cfg(feature = "flightlog")]
+pub mod log;
 mod lookup;
 pub mod margin;
 mod moments;
@@ -27,9 +53,11 @@ mod moments;
 pub mod monitor;
 #[cfg(feature = "std")]
 pub mod profile;
+pub mod sample;
 #[cfg(feature = "std")]
 pub mod shipped;
 #[cfg(feature = "std")]
 pub mod source;
 pub mod verdict;
+#[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.
 pub mod window;

@@ -3,8 +3,8 @@
 use fuzzy::table::Outcome;
 
 use crate::{
-    assessment::Estimate,
     gap::{FilledKnots, is_gap},
+    sample::Estimate,
 };
 
 /// What an estimate needs to know beside the rules.

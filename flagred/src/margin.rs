@@ -139,10 +139,13 @@ pub fn margin(effective: f64) -> f64 {
 
 /// The limit that a motor is nearer to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Side {
     /// Nearly stopped: it cannot give less.
+    #[cfg_attr(feature = "serde", serde(rename = "lower"))]
     Low,
     /// Nearly at full power: it cannot give more.
+    #[cfg_attr(feature = "serde", serde(rename = "upper"))]
     High,
 }
 

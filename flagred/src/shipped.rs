@@ -1,26 +1,19 @@
 //! The rule sets and profiles that come with this crate, as text and ready to use.
 
 use alloc::vec::Vec;
+use core::fmt::Debug;
 
-use fuzzy::{Model, diagnostic::Findings};
+use fuzzy::Model;
 
-use crate::profile::Profile;
+use crate::{estimator::Estimator, profile::Profile};
 
 /// A rule set or profile that comes with this crate.
-///
-/// # Example: every shipped rule set loads
-/// ```
-/// for shipped in flagred::shipped::RULE_SETS {
-///     let model = fuzzy::yaml::parse(shipped.text)?.model;
-///     assert_eq!(model.name, shipped.name);
-/// }
-/// # Ok::<(), fuzzy::diagnostic::Findings>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Shipped {
     /// Its name.
     pub name: &'static str,
-    /// Its file, from the folder `rules` on.
+    /// Its path below the folder `rules`.
     pub file: &'static str,
     /// Its YAML.
     pub text: &'static str,
@@ -40,7 +33,7 @@ pub const RULE_SETS: [Shipped; 2] = [
     },
 ];
 
-/// The profiles; the first one is for flying.
+/// The profiles; the first is the default.
 pub const PROFILES: [Shipped; 2] = [
     Shipped {
         name: "flagred",
@@ -54,57 +47,72 @@ pub const PROFILES: [Shipped; 2] = [
     },
 ];
 
-/// The rule set of this name; `None` if there is none.
+/// The default profile with its rule set, compiled.
 ///
 /// # Example
 /// ```
-/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
-/// assert_eq!(model.rules.len(), 10);
-/// assert!(flagred::shipped::rule_set("mine").is_none());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// let estimator = flagred::shipped::flagred();
+/// assert_eq!(estimator.profile().name, "flagred");
 /// ```
-pub fn rule_set(name: &str) -> Option<Result<Model, Findings>> {
-    find(&RULE_SETS, name)
-        .map(|shipped| fuzzy::yaml::parse(shipped.text).map(|document| document.model))
+pub fn flagred() -> Estimator {
+    valid(Estimator::new(&profile(0), &flagred_rules()))
 }
 
-/// The profile of this name; `None` if there is none.
+/// The published profile with the published rule set, compiled.
+pub fn flagred_paper() -> Estimator {
+    valid(Estimator::new(&profile(1), &flagred_paper_rules()))
+}
+
+/// The rule set of [`flagred`].
+pub fn flagred_rules() -> Model {
+    rule_set(0)
+}
+
+/// The rule set of [`flagred_paper`].
 ///
+/// # Example
 /// ```
-/// let profile = flagred::shipped::profile("flagred").ok_or("not shipped")??;
-/// assert_eq!(profile.name, "flagred");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// assert_eq!(flagred::shipped::flagred_paper_rules().rules.len(), 10);
 /// ```
-pub fn profile(name: &str) -> Option<Result<Profile, Findings>> {
-    find(&PROFILES, name).map(|shipped| Profile::from_yaml(shipped.text))
+pub fn flagred_paper_rules() -> Model {
+    rule_set(1)
 }
 
 /// The names of the shipped profiles, for messages.
-///
-/// # Example
-/// ```
-/// assert_eq!(flagred::shipped::profile_names(), ["flagred", "flagred-paper"]);
-/// ```
 pub fn profile_names() -> Vec<&'static str> {
     PROFILES.iter().map(|shipped| shipped.name).collect()
 }
 
-fn find<'a>(all: &'a [Shipped], name: &str) -> Option<&'a Shipped> {
-    all.iter().find(|shipped| shipped.name == name)
+fn profile(index: usize) -> Profile {
+    valid(PROFILES[index].text.parse())
+}
+
+fn rule_set(index: usize) -> Model {
+    valid(fuzzy::yaml::parse(RULE_SETS[index].text)).model
+}
+
+/// What a shipped file gives. The text is part of the crate, and the tests below hold that it is valid.
+fn valid<T, E: Debug>(result: Result<T, E>) -> T {
+    result.unwrap_or_else(|error| unreachable!("a shipped file is not valid: {error:?}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimator::Estimator;
 
     #[test]
-    fn every_profile_goes_by_its_name_and_makes_an_estimator() {
-        for shipped in PROFILES {
-            let profile = profile(shipped.name).unwrap().unwrap();
-            assert_eq!(profile.name, shipped.name);
-            let rules = rule_set(&profile.rules).unwrap().unwrap();
-            Estimator::new(&profile, &rules).unwrap();
+    fn every_shipped_file_is_valid_and_goes_by_its_name() {
+        for (shipped, estimator) in PROFILES.iter().zip([flagred(), flagred_paper()]) {
+            assert_eq!(estimator.profile().name, shipped.name);
+        }
+        for (shipped, model) in RULE_SETS
+            .iter()
+            .zip([flagred_rules(), flagred_paper_rules()])
+        {
+            assert_eq!(model.name, shipped.name);
+        }
+        for (i, shipped) in PROFILES.iter().enumerate() {
+            assert_eq!(profile(i).rules, shipped.name);
         }
     }
 }

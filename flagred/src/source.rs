@@ -85,7 +85,7 @@ impl Signal {
 ///     signal: Signal::MotorMargin,
 ///     window_s: 5.0,
 /// };
-/// assert_eq!(Profile::from_yaml(text)?.inputs[0].source, lowest);
+/// assert_eq!(text.parse::<Profile>()?.inputs[0].source, lowest);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]

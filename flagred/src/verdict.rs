@@ -21,6 +21,8 @@ pub use watch::Motor;
 /// assert_eq!(worst, Some(Level::Fail));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "UPPERCASE"))]
 pub enum Level {
     /// Nothing to say.
     Good,
@@ -30,8 +32,20 @@ pub enum Level {
     Fail,
 }
 
+impl core::fmt::Display for Level {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.pad(match self {
+            Level::Good => "GOOD",
+            Level::Warn => "WARN",
+            Level::Fail => "FAIL",
+        })
+    }
+}
+
 /// The quantity that a threshold is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Measure {
     /// The risk of the moment.
     Risk,
@@ -41,6 +55,7 @@ pub enum Measure {
 
 /// A limit on each quantity; reaching either is enough.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Threshold {
     /// On the risk, in %.
     pub risk_pct: Option<f64>,
@@ -70,6 +85,7 @@ impl Threshold {
 /// assert_eq!((raise.risk_pct, after_s, until.risk_pct), (Some(67.0), 0.2, Some(25.0)));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LevelSettings {
     /// The level is raised when this is reached ...
     pub raise: Threshold,
@@ -91,6 +107,7 @@ pub struct LevelSettings {
 /// assert_eq!(settings.clear_after_s, 10.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct VerdictSettings {
     /// When to warn.
     pub warn: LevelSettings,
@@ -115,10 +132,11 @@ pub struct VerdictSettings {
 /// let text = "flagred: 1\nname: p\nrules: my.yaml\ninputs: {margin: {mean: motor_margin}}
 /// verdict: {idle: {command_below: 0.2, risk_at_most: 50}}";
 /// let idle = Idle { command_below: 0.2, risk_at_most_pct: 50.0 };
-/// assert_eq!(Profile::from_yaml(text)?.verdict.idle, idle);
+/// assert_eq!(text.parse::<Profile>()?.verdict.idle, idle);
 /// # Ok::<(), fuzzy::diagnostic::Findings>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Idle {
     /// The motors idle while their mean effective command is below this.
     pub command_below: f64,
@@ -159,11 +177,9 @@ impl Default for VerdictSettings {
 ///
 /// # Example: ten seconds of motors at their limits
 /// ```
-/// # use flagred::{assessment::Sample, estimator::Estimator, monitor::Monitor, shipped};
-/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
-/// # let mut monitor = Monitor::new(&estimator, 4, &[])?;
+/// # use flagred::{sample::Sample, estimator::Estimator, monitor::{Craft, Monitor}, shipped};
+/// # let estimator = shipped::flagred_paper();
+/// # let mut monitor = Monitor::new(&estimator, Craft::new(4))?;
 /// use flagred::{margin::Side, verdict::{Finding, Level, Measure, MotorFinding}};
 ///
 /// for i in 0..500 {
@@ -178,8 +194,10 @@ impl Default for VerdictSettings {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Finding {
     /// The level.
+    #[cfg_attr(feature = "serde", serde(rename = "severity"))]
     pub level: Level,
     /// Since when the level was reached, in seconds.
     pub from_s: f64,
@@ -192,6 +210,7 @@ pub struct Finding {
     /// The threshold of the level in %.
     pub threshold_pct: f64,
     /// The largest value of the measure in that time, in %.
+    #[cfg_attr(feature = "serde", serde(rename = "value_pct"))]
     pub peak_pct: f64,
     /// The motor with the least margin on average over that time; `None` where no motor is known.
     pub motor: Option<MotorFinding>,
@@ -199,15 +218,28 @@ pub struct Finding {
 
 /// The motor behind a finding.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MotorFinding {
     /// Which one, counted from 0 in the order of the samples.
+    #[cfg_attr(
+        feature = "serde",
+        serde(rename = "number", serialize_with = "from_one")
+    )]
     pub motor: usize,
     /// The limit it was nearest to.
     pub side: Side,
     /// Its mean margin.
+    #[cfg_attr(feature = "serde", serde(rename = "margin_mean"))]
     pub mean_margin: f64,
     /// Its least margin.
+    #[cfg_attr(feature = "serde", serde(rename = "margin_min"))]
     pub least_margin: f64,
+}
+
+/// An index as a number that counts from 1.
+#[cfg(feature = "serde")]
+fn from_one<S: serde::Serializer>(index: &usize, serializer: S) -> Result<S::Ok, S::Error> {
+    serde::Serialize::serialize(&(index + 1), serializer)
 }
 
 /// The findings that end at one time: of WARN, of FAIL.

@@ -19,7 +19,7 @@ static void try_plan(void) {
     }
     accepted++;
     double inputs[16];
-    flagred_assessment result;
+    flagred_update result;
     for (int i = 0; i < 9; i++) {
         for (size_t k = 0; k < 16; k++) {
             inputs[k] = plan.inputs[k < plan.inputs_count ? k : 0].low + (double)((i + k) % 9) * 0.125;

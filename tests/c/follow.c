@@ -17,7 +17,7 @@ static void bits(double value) {
     printf("%016llx", (unsigned long long)bits);
 }
 
-static void moment(const flagred_assessment *said) {
+static void moment(const flagred_update *said) {
     bits(said->risk_pct);
     printf(" ");
     bits(said->coverage);
@@ -64,7 +64,7 @@ int main(int count, char **arguments) {
     size_t inputs = PLAN.sources_count, signals = PLAN.signals;
     double values[64], kind;
     flagred_monitor *monitor;
-    flagred_assessment said;
+    flagred_update said;
     flagred_finding ended[2];
     size_t size = flagred_memory_size(&PLAN, motors);
     if (size == 0 || size > sizeof memory) {

@@ -20,7 +20,7 @@ static int32_t start(const flagred_plan *plan, flagred_monitor **monitor) {
 
 int main(void) {
     flagred_monitor *monitor = NULL;
-    flagred_assessment said;
+    flagred_update said;
     flagred_finding ended[2];
     const flagred_plan *plan = &PLAN;
     double commands[MOTORS] = {0.5, 0.5, 0.5, 0.5};

@@ -16,11 +16,11 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
     #[allow(unused_imports)]
     use ::flagred::{
         accumulator::AccumulatorSettings,
-        assessment::Sampling,
         board::{Plan, table::{*, Hedge::*}},
         channel,
         follower::Settings,
         gap::FilledKnots,
+        sample::Sampling,
         verdict::{Idle, LevelSettings, Threshold, VerdictSettings},
     };
     Plan {

@@ -1,11 +1,11 @@
-//! Profiles, flights, and assessments as text, to compare on-board monitors with.
+//! Profiles, flights, and updates as text, to compare on-board monitors with.
 
 use std::{fmt::Write, path::PathBuf};
 
 use flagred::{
-    assessment::{Assessment, Estimate, Sample},
     estimator::Estimator,
     profile::Profile,
+    sample::{Estimate, Sample, Update},
     verdict::{Ended, Finding},
 };
 use flightlog::{Flight, Options};
@@ -39,7 +39,7 @@ pub fn estimator(profile: &str) -> Estimator {
         _ => "profiles/flagred-battery.yaml",
     };
     let text = std::fs::read_to_string(folder.join(file)).unwrap();
-    let profile = Profile::from_yaml(&text).unwrap();
+    let profile = text.parse::<Profile>().unwrap();
     let name = profile.rules.rsplit('/').next().unwrap_or_default();
     let name = name.trim_end_matches(".yaml");
     let rules = std::fs::read_to_string(folder.join(format!("{name}.yaml"))).unwrap();
@@ -195,9 +195,9 @@ pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
     points
 }
 
-/// An assessment as text, bit for bit, in the format of `tests/c/follow.c`.
-pub fn told(said: &Assessment) -> String {
-    use flagred::assessment::Unknown;
+/// An update as text, bit for bit, in the format of `tests/c/follow.c`.
+pub fn told(said: &Update) -> String {
+    use flagred::sample::Unknown;
     let (unknown, input) = match said.risk {
         Ok(_) => (0, -1),
         Err(Unknown::OnGround) => (1, -1),

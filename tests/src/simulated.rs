@@ -15,7 +15,7 @@ use flagred::{
     attitude::Attitude,
     estimator::Estimator,
     evaluation::{ErrorRecord, Span},
-    monitor::{Monitor, Sample},
+    monitor::{Craft, Monitor, Sample},
     verdict::Level,
 };
 use flightlog::Flight;
@@ -182,7 +182,7 @@ impl Simulated {
             flight.effective.low + replay.wrong_by.0,
             flight.effective.high + replay.wrong_by.1,
         );
-        let mut monitor = Monitor::new(estimator, flight.motors.len(), &[]).unwrap();
+        let mut monitor = Monitor::new(estimator, Craft::new(flight.motors.len())).unwrap();
         let mut said = Said {
             steps: Vec::new(),
             risks: Vec::new(),

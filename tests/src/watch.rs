@@ -194,7 +194,7 @@ pub fn compare(said: &Said, assessed: &Value) -> (f64, f64) {
     let steps = assessed["steps"].as_array().unwrap();
     let mut watched = said
         .all("risk")
-        .filter_map(|event| Some((event["t_s"].as_f64()?, event["risk_pct"].as_f64()?)));
+        .filter_map(|event| Some((event["t_s"].as_f64()?, event["risk"].as_f64()?)));
     let (mut matched, mut known, mut largest) = (0, 0, 0.0_f64);
     let mut next = watched.next();
     for step in steps {

@@ -176,10 +176,7 @@ fn a_log_with_one_byte_in_a_hundred_overwritten_is_assessed_as_far_as_it_goes_or
         assert!(known > 300, "seed {seed}: {known} steps");
         let words = assess(&[&damaged]);
         let text = String::from_utf8(words.stdout).unwrap();
-        assert!(
-            text.contains("damaged log, read as far as it goes"),
-            "{text}"
-        );
+        assert!(text.contains("damaged log, read in part"), "{text}");
         assessed += 1;
     }
     assert!(assessed > 0);

@@ -12,7 +12,7 @@ use std::{
 use flagred::{
     board::{self, OwnedMemory, Plan, table},
     estimator::Estimator,
-    monitor::Monitor,
+    monitor::{Craft, Monitor},
 };
 use flagred_tests::{
     Folder, STEADY,
@@ -50,10 +50,14 @@ fn with_monitor<R>(
     run(&mut OwnedMemory::new(plan, motors).monitor(plan).unwrap())
 }
 
-/// The assessments of the monitor for each sample of a flight, and the findings at its end.
+/// The updates of the monitor for each sample of a flight, and the findings at its end.
 fn by_the_monitor(estimator: &Estimator, flight: &[Moment]) -> Vec<String> {
     let signals = estimator.profile().signals();
-    let mut monitor = Monitor::new(estimator, flight[0].motors.len(), &signals).unwrap();
+    let mut monitor = Monitor::new(
+        estimator,
+        Craft::new(flight[0].motors.len()).with_signals(&signals),
+    )
+    .unwrap();
     let said = flight
         .iter()
         .map(|moment| told(&monitor.push(&moment.sample())));
@@ -253,7 +257,7 @@ fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(
         "-Wpedantic",
         "-Werror",
     ]);
-    cc.arg("-I").arg(root.join("flagred-c/include"));
+    cc.arg("-I").arg(root.join("bindings/c/include"));
     if let Some((profile, plan)) = exported {
         let header = folder.at("profile.h");
         let status = flagred()
@@ -287,7 +291,7 @@ fn the_header_has_the_arrays_of_a_table() {
         "u32" => format!("FLAGRED_ARRAY(uint32_t, {array})"),
         item => format!("FLAGRED_ARRAY(flagred_{}, {array})", item.to_lowercase()),
     });
-    let header = include_str!("../../flagred-c/include/flagred.h");
+    let header = include_str!("../../bindings/c/include/flagred.h");
     let listed: Vec<&str> = header
         .lines()
         .filter_map(|line| line.split(';').next()?.strip_prefix("    "))
@@ -356,7 +360,7 @@ fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs
 fn the_example_in_c_runs() {
     let profile = ("flagred", "flagred");
     let Some((mut program, _folder)) =
-        program("flagred-c/examples/hover.c", "hover", Some(profile))
+        program("bindings/c/examples/hover.c", "hover", Some(profile))
     else {
         return;
     };
@@ -383,7 +387,7 @@ fn risks(csv: &[u8]) -> BTreeMap<u64, f64> {
 fn a_log_flown_again_in_c_has_the_risk_of_assess() {
     let profile = ("flagred", "flagred");
     let Some((mut program, folder)) =
-        program("flagred-c/examples/replay.c", "replay", Some(profile))
+        program("bindings/c/examples/replay.c", "replay", Some(profile))
     else {
         return;
     };
@@ -420,7 +424,7 @@ fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
             text += &format!("  {0}: {{last: signal_{0}}}\n", input.name);
         }
         text += "gap: {method: nearest}\n";
-        let profile = flagred::profile::Profile::from_yaml(&text).unwrap();
+        let profile = text.parse::<flagred::profile::Profile>().unwrap();
         let estimator = Estimator::new(&profile, &model).unwrap();
         folder.file(&format!("{name}.yaml"), rules);
         let file = folder.file(&format!("{name}-profile.yaml"), text);

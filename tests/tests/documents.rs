@@ -178,7 +178,9 @@ fn check_yaml(desk: &Desk, block: &Block) -> Result<(), String> {
         let document = fuzzy::yaml::parse(&block.text).map_err(|findings| findings.to_string())?;
         fuzzy::Engine::new(&document.model).map_err(|error| error.to_string())?;
     } else if starts("flagred: ") {
-        flagred::profile::Profile::from_yaml(&block.text)
+        block
+            .text
+            .parse::<flagred::profile::Profile>()
             .map_err(|findings| findings.to_string())?;
     }
     Ok(())

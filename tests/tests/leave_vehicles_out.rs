@@ -62,7 +62,7 @@ fn learn(blank: &Model, sets: &[&[Row]], without: &str) -> Model {
 }
 
 fn profile() -> Profile {
-    shipped::profile("flagred").unwrap().unwrap()
+    shipped::flagred().profile().clone()
 }
 
 /// The rows of the campaign in steady wind, a flight each.
@@ -126,7 +126,7 @@ fn rules_hold_on_vehicles_they_were_not_learned_from() {
     let Some(data) = shared_data() else { return };
     let blank = fs::read_to_string("../rules/to-learn/flagred.yaml").unwrap();
     let blank = fuzzy::yaml::parse(&blank).unwrap().model;
-    let all = shipped::rule_set("flagred").unwrap().unwrap();
+    let all = shipped::flagred_rules();
     let estimator = Estimator::new(&profile(), &all).unwrap();
     let flights = simulated::flights(&data);
     let whole = whole_flights(&data);

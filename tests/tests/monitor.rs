@@ -1,16 +1,9 @@
 //! The monitor over minutes of flight: a sample allocates nothing.
 
 use flagred::{
-    estimator::Estimator,
-    monitor::{Monitor, Sample},
+    monitor::{Craft, Monitor, Sample},
     shipped,
 };
-
-fn estimator(name: &str) -> Estimator {
-    let profile = shipped::profile(name).unwrap().unwrap();
-    let rules = shipped::rule_set(&profile.rules).unwrap().unwrap();
-    Estimator::new(&profile, &rules).unwrap()
-}
 
 /// Eight motors that fight gusts at 50 Hz, take off and land, lose their link and send garbage.
 fn sample(i: u32, motors: &mut [f64; 8]) -> (f64, bool) {
@@ -27,9 +20,9 @@ fn sample(i: u32, motors: &mut [f64; 8]) -> (f64, bool) {
 
 #[test]
 fn a_sample_allocates_nothing_whatever_happens() {
-    for name in ["flagred", "flagred-paper"] {
-        let estimator = estimator(name);
-        let mut monitor = Monitor::new(&estimator, 8, &[]).unwrap();
+    for estimator in [shipped::flagred(), shipped::flagred_paper()] {
+        let name = &estimator.profile().name;
+        let mut monitor = Monitor::new(&estimator, Craft::new(8)).unwrap();
         let mut motors = [0.0; 8];
         let (mut known, mut changes) = (0, 0);
         let counted = allocation_counter::measure(|| {

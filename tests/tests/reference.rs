@@ -6,7 +6,7 @@ use std::path::Path;
 use approx::assert_abs_diff_eq;
 use flagred::{
     estimator::Estimator,
-    monitor::{Monitor, Sample},
+    monitor::{Craft, Monitor, Sample},
     shipped,
     verdict::Level,
 };
@@ -30,14 +30,14 @@ fn inputs_risks_and_verdicts_are_those_of_an_independent_computation() {
 }
 
 fn compare(name: &str, log: &Path, start_s: f64) {
-    let mut profile = shipped::profile("flagred").unwrap().unwrap();
+    let mut profile = shipped::flagred().profile().clone();
     // The reference was computed before these were made slower.
     profile.elevated_risk.rise_pct_per_s = 2.0;
     profile.elevated_risk.fall_pct_per_s = 3.0;
-    let rules = shipped::rule_set("flagred").unwrap().unwrap();
+    let rules = shipped::flagred_rules();
     let estimator = Estimator::new(&profile, &rules).unwrap();
     let flight = flightlog::open(log, &flightlog::Options::default()).unwrap();
-    let mut monitor = Monitor::new(&estimator, flight.motors.len(), &[]).unwrap();
+    let mut monitor = Monitor::new(&estimator, Craft::new(flight.motors.len())).unwrap();
 
     let reference = std::fs::read_to_string(format!("data/reference/{name}.csv")).unwrap();
     let mut reference = reference.lines().skip(1).map(row).peekable();

@@ -250,7 +250,7 @@ fn no_answer_is_reported_as_none() {
     fs::write(&log, text).unwrap();
     let html = report(&[&log], &folder);
     assert!(html.contains("<span class=\"badge na\">NA</span>"));
-    assert!(html.contains("No answer: "));
+    assert!(html.contains("No verdict: "));
     let svg = folder.at("risk.svg");
     let output = assess(&[&log], &["--svg", &svg]);
     assert_eq!(output.status.code(), Some(3));

@@ -14,8 +14,8 @@ use flagred_tests::{
 };
 
 fn estimator() -> Estimator {
-    let profile = shipped::profile("flagred").unwrap().unwrap();
-    let rules = shipped::rule_set("flagred").unwrap().unwrap();
+    let profile = shipped::flagred().profile().clone();
+    let rules = shipped::flagred_rules();
     Estimator::new(&profile, &rules).unwrap()
 }
 

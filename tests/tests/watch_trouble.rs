@@ -54,7 +54,7 @@ fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
         .find(|event| event["t_s"].as_f64().unwrap() >= air.start_s + 69.9)
         .unwrap();
     assert!(
-        first["risk_pct"].is_null() && first["unknown"].is_string(),
+        first["risk"].is_null() && first["unknown"].is_string(),
         "{first}"
     );
     // The flight is over with the reboot.
@@ -140,7 +140,7 @@ fn garbage_and_wild_values_are_counted_and_raise_no_alarm() {
     assert_eq!(vehicle.heard.texts(), []);
     assert!(said.has_note("no MAVLink packets"));
     for event in said.all("risk") {
-        let risk = event["risk_pct"].as_f64();
+        let risk = event["risk"].as_f64();
         assert!(risk.is_none_or(|risk| risk.is_finite()));
     }
 }

@@ -1,6 +1,5 @@
-//! What becomes of a flight: followed sample by sample, and told in words, as a document, as a picture of characters.
+//! The assessment of a flight in words, as a document, and as a picture of characters.
 
 pub(crate) mod document;
-pub(crate) mod follow;
 mod picture;
 pub(crate) mod words;

@@ -4,15 +4,13 @@ use std::io::{self, Write};
 
 use anstyle::{AnsiColor, Style};
 use flagred::{
+    flight::{Assessment, Peak, Summary, Verdict},
     margin::Side,
     verdict::{Finding, Level, Measure},
 };
-use flightlog::Flight;
+use flightlog::{Flight, Motor};
 
-use super::{
-    follow::{Assessed, Summary, Verdict, word},
-    picture,
-};
+use super::picture;
 use crate::drawing::text::number;
 
 /// Columns of the picture of risk over time.
@@ -24,14 +22,14 @@ pub(crate) fn write(
     name: &str,
     flight: &Flight,
     profile: &str,
-    assessed: &Assessed,
+    assessed: &Assessment,
 ) -> io::Result<()> {
     let style = style(&assessed.verdict);
-    writeln!(out, "{style}{:<4}{style:#} {name}", assessed.verdict.word())?;
+    writeln!(out, "{style}{:<4}{style:#} {name}", assessed.verdict)?;
     writeln!(out, "     {}", vehicle(flight))?;
-    if let Verdict::NotAvailable { reason, help } = &assessed.verdict {
-        writeln!(out, "     no answer: {reason}")?;
-        if let Some(help) = help {
+    if let Verdict::NotAvailable(reason) = &assessed.verdict {
+        writeln!(out, "     no verdict: {reason}")?;
+        if let Some(help) = reason.help() {
             writeln!(out, "     help: {help}")?;
         }
     }
@@ -50,7 +48,7 @@ pub(crate) fn write(
         writeln!(
             out,
             "     in the air {:.1} s ({}), motors at {rate:.1} Hz; profile {profile}",
-            spans.duration_s(),
+            assessed.summary.in_air_s,
             when.join(", "),
         )?;
     }
@@ -63,8 +61,8 @@ pub(crate) fn write(
         writeln!(
             out,
             "{style}{:<4}{style:#} {}",
-            word(finding.level),
-            describe(finding, flight)
+            finding.level,
+            describe(finding, &flight.motors)
         )?;
     }
     if !assessed.findings.is_empty() {
@@ -94,26 +92,31 @@ pub(crate) fn vehicle(flight: &Flight) -> String {
     }
     if let Some(range) = &flight.range {
         parts.push(format!("{} to {} {}", range.low, range.high, range.unit));
-        parts.push(format!(
-            "flown between {} and {} of it",
-            number(flight.effective.low, 3),
-            number(flight.effective.high, 3)
-        ));
+        parts.push(effective_range(&flight.effective));
     }
     parts.join(", ")
 }
 
-/// A last message is rarely this long; most logs are cut off inside one when the power goes.
+/// The part of a range of commands that is used in flight.
+pub(crate) fn effective_range(effective: &flightlog::Range) -> String {
+    format!(
+        "effective range {} to {} %",
+        number(100.0 * effective.low, 1),
+        number(100.0 * effective.high, 1)
+    )
+}
+
+/// Most logs that are cut off inside a message, when the power goes, lose less than this.
 const ONE_MESSAGE_BYTES: u64 = 256;
 
-/// What is wrong with the log, and that it was read all the same.
+/// What is wrong with a log that could be read in part.
 pub(crate) fn damage(report: &flightlog::Report) -> String {
     if report.truncated && report.bad_messages == 0 && report.skipped_bytes <= ONE_MESSAGE_BYTES {
         let (last, are) = match report.skipped_bytes {
             1 => ("last byte".to_owned(), "is"),
             bytes => (format!("last {bytes} bytes"), "are"),
         };
-        return format!("the log ends inside a message: its {last} {are} left out");
+        return format!("the log ends inside a message: its {last} {are} ignored");
     }
     let mut parts = Vec::new();
     if report.bad_messages > 0 {
@@ -127,23 +130,20 @@ pub(crate) fn damage(report: &flightlog::Report) -> String {
         ));
     }
     if report.truncated {
-        parts.push("cut off at its end".to_owned());
+        parts.push("the end is missing".to_owned());
     }
     let reason = report
         .reason
         .as_ref()
         .map(|r| format!(" ({r})"))
         .unwrap_or_default();
-    format!(
-        "damaged log, read as far as it goes: {}{reason}",
-        parts.join(", ")
-    )
+    format!("damaged log, read in part: {}{reason}", parts.join(", "))
 }
 
 fn summary(summary: &Summary) -> String {
-    let at = |peak: Option<(f64, f64)>| {
-        peak.map_or("unknown".to_owned(), |(t_s, value)| {
-            format!("{value:.0} % at {t_s:.1} s")
+    let at = |peak: Option<Peak>| {
+        peak.map_or("unknown".to_owned(), |peak| {
+            format!("{:.0} % at {:.1} s", peak.value_pct, peak.t_s)
         })
     };
     let share = |part: f64| 100.0 * part / summary.in_air_s;
@@ -157,7 +157,7 @@ fn summary(summary: &Summary) -> String {
     );
     if summary.filled_s > 0.0 {
         text += &format!(
-            "; {:.0} % of the time filled in from beside the rules",
+            "; interpolated for {:.0} % of the time, where no rule applies",
             share(summary.filled_s)
         );
     }
@@ -171,7 +171,7 @@ fn summary(summary: &Summary) -> String {
 }
 
 /// A finding in words: when, what, against which threshold, and which motor.
-pub(crate) fn describe(finding: &Finding, flight: &Flight) -> String {
+pub(crate) fn describe(finding: &Finding, motors: &[Motor]) -> String {
     let what = match finding.measure {
         Measure::Risk => "risk",
         Measure::ElevatedRisk => "elevated risk",
@@ -181,10 +181,10 @@ pub(crate) fn describe(finding: &Finding, flight: &Flight) -> String {
         finding.from_s, finding.to_s, finding.peak_pct, finding.threshold_pct
     );
     if let Some(weakest) = &finding.motor
-        && let Some(motor) = flight.motors.get(weakest.motor)
+        && let Some(motor) = motor_of(finding, motors)
     {
         text += &format!(
-            "; motor {}, output {}, nearest to its {} limit: margin {:.2} on average, {:.2} at least",
+            "; motor {}, output {}, near its {} limit: margin {:.2} on average, {:.2} at least",
             motor.number,
             motor.output,
             side(weakest.side),
@@ -195,7 +195,12 @@ pub(crate) fn describe(finding: &Finding, flight: &Flight) -> String {
     text
 }
 
-/// The word for the limit a motor was nearest to.
+/// The motor that a finding names.
+pub(crate) fn motor_of<'a>(finding: &Finding, motors: &'a [Motor]) -> Option<&'a Motor> {
+    finding.motor.and_then(|weakest| motors.get(weakest.motor))
+}
+
+/// The limit a motor was nearest to.
 pub(crate) fn side(side: Side) -> &'static str {
     match side {
         Side::Low => "lower",
@@ -206,7 +211,7 @@ pub(crate) fn side(side: Side) -> &'static str {
 fn style(verdict: &Verdict) -> Style {
     match verdict {
         Verdict::Known(level) => level_style(*level),
-        Verdict::NotAvailable { .. } => Style::new().bold(),
+        Verdict::NotAvailable(_) => Style::new().bold(),
     }
 }
 

@@ -3,41 +3,42 @@
 use flagred::{
     attitude::{Attitude, AttitudeError, risk_pct},
     evaluation::{ErrorRecord, Span},
+    log,
     source::{Observer, Source},
 };
 use flightlog::Flight;
 
 use super::{Cut, Plan, Row, Rows};
-use crate::{failure::Failure, samples};
+use crate::{failure::Failure, flights::open_complete};
 
 /// How far apart the moments are from which [`Cut::Ahead`] looks ahead, in seconds.
 const STEP_S: f64 = 0.5;
 
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     let names = plan.profile.signals();
-    let flight = samples::open_complete(log, &names, "makes no rows")?;
-    let said = |key: &str| samples::header(&flight, key);
+    let flight = open_complete(log, &names, "makes no rows")?;
+    let said = |key: &str| log::header(&flight, key);
     if let Some((key, value)) = plan.skip.iter().find(|(k, v)| said(k) == Some(v)) {
         return Ok(Rows {
             rows: Vec::new(),
             notes: vec![format!("left out: {key} is {value}")],
         });
     }
-    let carried = samples::carried(&flight, &names);
+    let carried = log::carried(&flight, &names);
     if let Some(lacking) = names.iter().find(|name| !carried.contains(name)) {
         return Err(Failure::unreadable(format!(
             "`{log}` makes no rows: it does not carry the signal `{lacking}`"
         ))
         .help("`flagred inspect` lists the signals a log carries"));
     }
-    let errors: Vec<(f64, Attitude)> = samples::attitudes(&flight).collect();
+    let errors: Vec<(f64, Attitude)> = log::attitudes(&flight).collect();
     let record = ErrorRecord::new(errors.iter().copied());
     let mut made = Rows {
         rows: Vec::new(),
         notes: Vec::new(),
     };
     let mut refused = 0;
-    for Span { from_s, to_s } in samples::judged_times(&flight) {
+    for Span { from_s, to_s } in log::judged_spans(&flight, &plan.profile.verdict) {
         let moments = moments(plan.cut, from_s, to_s);
         let length_s = match plan.cut {
             Cut::Flights => Some(to_s - from_s),
@@ -119,7 +120,7 @@ fn inputs(
     let mut rows = Vec::with_capacity(moments.len());
     let mut last_s = None;
     let longest_gap_s = plan.profile.sampling.longest_gap_s;
-    samples::each(flight, carried, |sample| {
+    log::for_each_sample(flight, carried, |sample| {
         // The state at a moment is that after the newest sample up to it.
         while moments
             .get(rows.len())

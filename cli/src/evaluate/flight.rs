@@ -4,14 +4,15 @@ use std::path::Path;
 
 use flagred::{
     evaluation::{ErrorRecord, Judged, Span, judge},
+    log,
     monitor::Monitor,
     source::Observer,
-    verdict::Level,
+    verdict::{Level, VerdictSettings},
 };
 use flightlog::Flight;
 
 use super::estimators::Estimators;
-use crate::{failure::Failure, samples};
+use crate::{failure::Failure, flights::open_complete};
 
 /// How far apart steps are, in seconds.
 const STEP_S: f64 = 0.5;
@@ -51,11 +52,11 @@ pub(super) fn evaluate(
     estimators: &Estimators,
     horizon_s: f64,
 ) -> Result<Record, Failure> {
-    let flight = samples::open_complete(path, &estimators.signals(), "cannot be evaluated")?;
+    let flight = open_complete(path, &estimators.signals(), "cannot be evaluated")?;
     let file = path.display().to_string();
-    let header = |key| samples::header(&flight, key).map(str::to_owned);
-    let judged = samples::judged_times(&flight);
-    let errors = ErrorRecord::new(samples::attitudes(&flight));
+    let header = |key| log::header(&flight, key).map(str::to_owned);
+    let judged = log::judged_spans(&flight, &VerdictSettings::default());
+    let errors = ErrorRecord::new(log::attitudes(&flight));
     let times: Vec<(f64, bool)> = judged
         .iter()
         .flat_map(step_times)
@@ -98,9 +99,9 @@ struct Followed {
 }
 
 /// A profile on its way through a flight.
-struct Running<'a> {
+struct Running {
     /// `None` where the flight lacks a signal that the profile needs.
-    monitor: Option<Monitor<'a>>,
+    monitor: Option<Monitor>,
     risk_pct: f64,
     warnings: Vec<Span>,
     is_warning: bool,
@@ -112,12 +113,12 @@ fn follow(
     estimators: &Estimators,
     times: &[(f64, bool)],
 ) -> Result<Followed, Failure> {
-    let names = samples::carried(flight, &estimators.signals());
+    let names = log::carried(flight, &estimators.signals());
     let mut running: Vec<Running> = estimators
         .profiles
         .iter()
         .map(|profile| Running {
-            monitor: Monitor::new(&profile.estimator, flight.motors.len(), &names).ok(),
+            monitor: Monitor::new(&profile.estimator, log::craft(flight, &names)).ok(),
             risk_pct: f64::NAN,
             warnings: Vec::new(),
             is_warning: false,
@@ -129,7 +130,7 @@ fn follow(
 
     let mut steps = Vec::with_capacity(times.len());
     let mut last_s = None;
-    samples::each(flight, &names, |sample| {
+    log::for_each_sample(flight, &names, |sample| {
         while let Some((_, is_critical)) = times
             .get(steps.len())
             .filter(|(t_s, _)| *t_s < sample.t_s - ROUNDING_S)
@@ -147,9 +148,9 @@ fn follow(
             let Some(monitor) = &mut running.monitor else {
                 continue;
             };
-            let assessment = monitor.push(sample);
-            running.risk_pct = assessment.risk.map_or(f64::NAN, |risk| risk.risk_pct);
-            let warns = assessment.level > Some(Level::Good);
+            let update = monitor.push(sample);
+            running.risk_pct = update.risk.map_or(f64::NAN, |risk| risk.risk_pct);
+            let warns = update.level > Some(Level::Good);
             Span::follow(
                 &mut running.warnings,
                 &mut running.is_warning,
@@ -169,7 +170,7 @@ fn follow(
 
 fn step(
     is_critical: bool,
-    running: &[Running<'_>],
+    running: &[Running],
     baselines: &[Option<&flagred::evaluation::Baseline>],
     observer: &Observer,
 ) -> Step {

@@ -3,6 +3,7 @@
 use flagred::{
     attitude::Attitude,
     estimator::Estimator,
+    flight::{Assessment, Step},
     verdict::{Level, Threshold},
 };
 use flightlog::{Flight, Signal};
@@ -12,10 +13,7 @@ use super::{
     curve::{Stretch, path},
     panel::{Line, Mark, Panel, Size, Timeline},
 };
-use crate::{
-    assessment::follow::{Assessed, Step, word},
-    drawing::text::number,
-};
+use crate::drawing::text::number;
 
 /// Signals beside those of the profile that a report draws.
 pub(crate) const SIGNALS: [&str; 6] = [
@@ -44,7 +42,7 @@ fn stretch(flight: &Flight) -> Stretch {
 }
 
 /// What stands behind and over all curves of a flight.
-pub(crate) fn timeline(flight: &Flight, assessed: &Assessed) -> Timeline {
+pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
     let stretch = stretch(flight);
     let ends = flight.modes.iter().skip(1).map(|next| next.t_s());
     let ends = ends.chain([f64::INFINITY]);
@@ -127,7 +125,11 @@ fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
 }
 
 /// Risk and elevated risk; `None` where no moment of the flight could be assessed.
-pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch) -> Option<Panel> {
+pub(crate) fn risk(
+    assessed: &Assessment,
+    estimator: &Estimator,
+    stretch: Stretch,
+) -> Option<Panel> {
     let gap_s = gap_s(estimator, None);
     let draw =
         |value: &dyn Fn(&Step) -> Option<f64>| of_steps(&assessed.steps, stretch, gap_s, 1, value);
@@ -140,7 +142,7 @@ pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch)
         threshold.risk_pct.map(|risk_pct| Mark {
             value: risk_pct,
             class: level_class(level),
-            name: format!("{} from {} %", word(level), number(risk_pct, 1)),
+            name: format!("{} from {} %", level, number(risk_pct, 1)),
         })
     };
     let marks = [
@@ -174,7 +176,7 @@ pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch)
 /// How far the nearest motor is from its lower and from its upper limit, and the mean margin.
 pub(crate) fn margins(
     flight: &Flight,
-    assessed: &Assessed,
+    assessed: &Assessment,
     estimator: &Estimator,
     stretch: Stretch,
 ) -> Option<Panel> {
@@ -249,7 +251,7 @@ pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -
 
 /// What the rules saw: each of their inputs.
 pub(crate) fn inputs(
-    assessed: &Assessed,
+    assessed: &Assessment,
     estimator: &Estimator,
     model: &Model,
     stretch: Stretch,

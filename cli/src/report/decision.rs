@@ -2,15 +2,12 @@
 
 use std::fmt::Write as _;
 
-use flagred::estimator::Estimator;
+use flagred::{estimator::Estimator, flight::Step};
 use fuzzy::Model;
 
-use crate::{
-    assessment::follow::Step,
-    drawing::{
-        palette,
-        text::{Escaped, number},
-    },
+use crate::drawing::{
+    palette,
+    text::{Escaped, number},
 };
 
 /// Cells along each side of the map.
@@ -184,7 +181,7 @@ enum Cell {
 }
 
 impl Cell {
-    fn of(estimate: Option<flagred::estimator::Estimate>) -> Self {
+    fn of(estimate: Option<flagred::monitor::Estimate>) -> Self {
         estimate.map_or(Cell::Unknown, |estimate| Cell::Risk {
             twentieth: ((estimate.risk_pct / 5.0) as u32).min(19),
             filled: estimate.filled_from.is_some(),
@@ -277,7 +274,7 @@ mod tests {
 
     #[test]
     fn a_map_shows_where_its_terms_differ_and_where_the_flight_was() {
-        let model = flagred::shipped::rule_set("flagred").unwrap().unwrap();
+        let model = flagred::shipped::flagred_rules();
         assert_eq!(focus(&model, "unsteady_now", 0, &[]), (0.0, 0.05));
         let far = Step {
             inputs: vec![0.2],

@@ -9,13 +9,11 @@ use super::{
     panel::{Panel, Timeline},
 };
 use crate::{
-    assessment::{
-        follow::{Assessed, Verdict, word},
-        words,
-    },
+    assessment::words,
     drawing::text::{Escaped, number},
     profile::Loaded,
 };
+use flagred::flight::{Assessment, Peak, Verdict};
 use flightlog::Flight;
 
 const CHART_CSS: &str = include_str!("chart.css");
@@ -26,7 +24,7 @@ const PAGE_JS: &str = include_str!("page.js");
 pub(crate) struct Subject {
     pub(crate) name: String,
     pub(crate) flight: Flight,
-    pub(crate) assessed: Assessed,
+    pub(crate) assessed: Assessment,
 }
 
 impl Subject {
@@ -36,10 +34,8 @@ impl Subject {
         file.and_then(|file| file.to_str()).unwrap_or(&self.name)
     }
 
-    /// As the log tells it; else what was followed of it.
     fn in_air_s(&self) -> f64 {
-        let told = self.flight.in_air.as_ref();
-        told.map_or(self.assessed.summary.in_air_s, |air| air.duration_s())
+        self.assessed.summary.in_air_s
     }
 }
 
@@ -105,7 +101,7 @@ pub(crate) fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
     let mut flights = String::new();
     for (i, subject) in subjects.iter().enumerate() {
         let summary = &subject.assessed.summary;
-        let peak = |peak: Option<(f64, f64)>| percent(peak.map(|(_, value)| value));
+        let peak = |peak: Option<Peak>| percent(peak.map(|peak| peak.value_pct));
         let _ = write!(
             rows,
             r##"<tr><td>{}</td><td class="name"><a href="#flight{i}">{}</a></td><td class="n">{} s</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td></tr>"##,
@@ -152,7 +148,7 @@ pub(crate) fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
         r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 960 380" width="960" height="380"><style>{CHART_CSS}{style}</style><rect width="960" height="380" fill="var(--paper)"/><text class="verdict {}" x="48" y="30">{}</text><text class="title" x="108" y="30">{}</text>{}</svg>
 "#,
         verdict_class(verdict),
-        verdict.word(),
+        verdict,
         Escaped(subject.title()),
         panel.svg(&timeline, [48.0, 70.0, 896.0, 276.0]),
     ))
@@ -177,13 +173,13 @@ fn page(title: &str, body: &str) -> String {
 fn verdict_class(verdict: &Verdict) -> &'static str {
     match verdict {
         Verdict::Known(level) => charts::level_class(*level),
-        Verdict::NotAvailable { .. } => "na",
+        Verdict::NotAvailable(_) => "na",
     }
 }
 
 fn badge(verdict: &Verdict) -> String {
     let class = verdict_class(verdict);
-    format!(r#"<span class="badge {class}">{}</span>"#, verdict.word())
+    format!(r#"<span class="badge {class}">{}</span>"#, verdict)
 }
 
 fn percent(value: Option<f64>) -> String {
@@ -207,9 +203,10 @@ fn head(subject: &Subject) -> String {
 fn findings(subject: &Subject) -> String {
     let assessed = &subject.assessed;
     let mut items = String::new();
-    if let Verdict::NotAvailable { reason, help } = &assessed.verdict {
-        let _ = write!(items, r#"<li class="na">No answer: {}"#, Escaped(reason));
-        if let Some(help) = help {
+    if let Verdict::NotAvailable(reason) = &assessed.verdict {
+        let text = reason.to_string();
+        let _ = write!(items, r#"<li class="na">No verdict: {}"#, Escaped(&text));
+        if let Some(help) = reason.help() {
             let _ = write!(items, "<br><span class=\"soft\">{}</span>", Escaped(help));
         }
         items += "</li>";
@@ -219,8 +216,8 @@ fn findings(subject: &Subject) -> String {
             items,
             r#"<li class="{}"><b>{}</b> {}</li>"#,
             charts::level_class(finding.level),
-            word(finding.level),
-            Escaped(&words::describe(finding, &subject.flight)),
+            finding.level,
+            Escaped(&words::describe(finding, &subject.flight.motors)),
         );
     }
     if items.is_empty() {
@@ -231,9 +228,9 @@ fn findings(subject: &Subject) -> String {
 
 fn figures(subject: &Subject) -> String {
     let summary = &subject.assessed.summary;
-    let at = |peak: Option<(f64, f64)>| {
-        peak.map_or("unknown".into(), |(t_s, value)| {
-            format!("{value:.0} % at {t_s:.1} s")
+    let at = |peak: Option<Peak>| {
+        peak.map_or("unknown".into(), |peak| {
+            format!("{:.0} % at {:.1} s", peak.value_pct, peak.t_s)
         })
     };
     let share =
@@ -259,7 +256,7 @@ fn figures(subject: &Subject) -> String {
 }
 
 /// The rules that said most at some time, those that did so longest first; all of them stand in the rule set below.
-fn rules(model: &Model, assessed: &Assessed) -> String {
+fn rules(model: &Model, assessed: &Assessment) -> String {
     let known = assessed.steps.iter().filter_map(|step| step.estimate);
     let total = known.clone().count();
     if total == 0 {

@@ -1,16 +1,21 @@
 //! What happens, line by line: words for people and pipes, JSON for programs.
 
+use std::io;
+
 use flagred::{
     estimator::Estimator,
-    margin::Side,
-    monitor::Assessment,
-    verdict::{Finding, Measure},
+    flight::Verdict,
+    monitor::Update,
+    verdict::{Level, Measure},
 };
 use flightlog::{Vehicle, mavlink::Setup};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
 
 use super::session::{Event, Session, Silent, View};
-use crate::assessment::follow::{Verdict, word};
+use crate::assessment::{
+    document::{FindingDocument, MotorDocument, Range},
+    words::effective_range,
+};
 
 /// Seconds of the vehicle's clock between two lines of risk in words.
 const STEP_S: f64 = 1.0;
@@ -29,20 +34,20 @@ impl Words {
         session: &Session<'_>,
         estimator: &Estimator,
     ) -> Option<String> {
-        let Event::Risk { assessment } = event else {
+        let Event::Risk { update } = event else {
             return Some(words(at_s, &describe(event)));
         };
         let Some(view) = session.view().filter(|view| view.is_in_air) else {
             self.next_s = None;
             return None;
         };
-        let t_s = assessment.t_s;
+        let t_s = update.t_s;
         let waits = |next_s: f64| (next_s - 2.0 * STEP_S..next_s).contains(&t_s);
         if self.next_s.is_some_and(waits) {
             return None;
         }
         self.next_s = Some(t_s + STEP_S);
-        Some(words(at_s, &risk(assessment, &view, estimator)))
+        Some(words(at_s, &risk(update, &view, estimator)))
     }
 }
 
@@ -81,23 +86,26 @@ pub(crate) fn describe(event: &Event) -> String {
         ),
         Event::Rebooted => "the vehicle started anew: what was before is forgotten".to_owned(),
         Event::TookOff { .. } => "took off".to_owned(),
-        Event::Risk { assessment } => assessment.risk.map_or_else(
+        Event::Risk { update } => update.risk.map_or_else(
             |_| String::new(),
             |estimate| format!("risk {:.0} %", estimate.risk_pct),
         ),
         Event::Level { text, .. } => text.clone(),
         Event::Ended { finding } => format!(
             "{} from {:.1} to {:.1} s of the vehicle's clock: {} up to {:.0} %",
-            word(finding.level),
+            finding.level,
             finding.from_s,
             finding.to_s,
-            measure(finding).replace('_', " "),
+            match finding.measure {
+                Measure::Risk => "risk",
+                Measure::ElevatedRisk => "elevated risk",
+            },
             finding.peak_pct
         ),
         Event::Landed { verdict } => match verdict {
-            Verdict::Known(level) => format!("{}: the flight is over", word(*level)),
-            Verdict::NotAvailable { reason, .. } => {
-                format!("NA: the flight is over; no answer: {reason}")
+            Verdict::Known(level) => format!("{level}: the flight is over"),
+            Verdict::NotAvailable(reason) => {
+                format!("NA: the flight is over; no verdict: {reason}")
             }
         },
     }
@@ -116,15 +124,14 @@ pub(crate) fn name(vehicle: &Vehicle) -> String {
 fn ready(setup: &Setup) -> String {
     let outputs: Vec<&str> = setup.motors.iter().map(|m| m.output.as_str()).collect();
     let mut text = format!(
-        "{} motors ({}), {} to {} {} ({}), flown between {} and {} of it ({})",
+        "{} motors ({}), {} to {} {} ({}), {} ({})",
         setup.motors.len(),
         outputs.join(", "),
         setup.range.low,
         setup.range.high,
         setup.range.unit,
         setup.range.source,
-        setup.effective.low,
-        setup.effective.high,
+        effective_range(&setup.effective),
         setup.effective.source,
     );
     if !setup.assumed.is_empty() {
@@ -137,17 +144,19 @@ fn ready(setup: &Setup) -> String {
 }
 
 /// The risk of a moment and what it comes from, in words.
-fn risk(assessment: &Assessment, view: &View<'_>, estimator: &Estimator) -> String {
+fn risk(update: &Update, view: &View<'_>, estimator: &Estimator) -> String {
     let number = |value: Option<f64>| value.map_or("unknown".to_owned(), |v| format!("{v:.2}"));
     let tail = format!(
         "margin {}, spread {}",
         number(view.margin),
         number(view.spread)
     );
-    match (assessment.risk, assessment.elevated_risk_pct) {
+    match (update.risk, update.elevated_risk_pct) {
         (Ok(estimate), Some(elevated_pct)) => format!(
             "{:<4} risk {:.0} %, elevated {elevated_pct:.0} %, {tail}",
-            assessment.level.map_or("", word),
+            update
+                .level
+                .map_or(String::new(), |level| level.to_string()),
             estimate.risk_pct,
         ),
         (Err(unknown), _) => format!("risk unknown: {}", unknown.explain(estimator.profile())),
@@ -155,117 +164,159 @@ fn risk(assessment: &Assessment, view: &View<'_>, estimator: &Estimator) -> Stri
     }
 }
 
-fn measure(finding: &Finding) -> &'static str {
-    match finding.measure {
-        Measure::Risk => "risk",
-        Measure::ElevatedRisk => "elevated_risk",
-    }
+/// What an event adds to its kind and time; names are those of docs/json.md.
+#[derive(Serialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+pub(crate) enum EventLine<'a> {
+    Started {
+        schema: &'static str,
+        endpoint: &'a str,
+        profile: &'a str,
+    },
+    Found(About<'a>),
+    AnotherVehicle {
+        system: u8,
+    },
+    NotAMultirotor(About<'a>),
+    Ready {
+        motors: Vec<MotorDocument<'a>>,
+        range: Range<'a>,
+        effective_range: Range<'a>,
+        assumed: &'a [String],
+    },
+    Note {
+        text: &'a str,
+    },
+    Lost {
+        what: Silent,
+    },
+    Back {
+        what: Silent,
+        after_s: f64,
+    },
+    Rebooted,
+    TookOff {
+        t_s: f64,
+    },
+    Risk(Risk<'a>),
+    Level {
+        t_s: f64,
+        level: Level,
+        text: &'a str,
+    },
+    Finding(FindingDocument<'a>),
+    Landed(&'a Verdict),
+    Ended {
+        /// `None` without a flight that has a verdict.
+        worst: Option<Level>,
+        skipped_bytes: u64,
+        bad_checksums: u64,
+        unknown_messages: u64,
+        signed: u64,
+        unsent: u64,
+        dropped_lines: u64,
+    },
 }
 
-/// An event as one object; `None` for samples on the ground, which there is nothing to say about.
+#[derive(Serialize)]
+pub(crate) struct About<'a> {
+    system: u8,
+    kind: String,
+    frame: Option<&'a str>,
+    firmware: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+pub(crate) struct Risk<'a> {
+    #[serde(flatten)]
+    update: &'a Update,
+    margin: Option<f64>,
+    spread: Option<f64>,
+    /// Effective commands.
+    motors: &'a [f64],
+    /// Why the risk is unknown.
+    unknown: Option<String>,
+}
+
+/// A line with the receiver's time.
+#[derive(Serialize)]
+struct At<'a> {
+    at_s: f64,
+    #[serde(flatten)]
+    line: EventLine<'a>,
+}
+
+/// An event as one object; `None` for samples on the ground, which have no risk.
 pub(crate) fn json(
     at_s: f64,
     event: &Event,
     session: &Session<'_>,
     estimator: &Estimator,
-) -> Option<Value> {
-    let about = |system: u8, vehicle: &Vehicle| {
-        json!({
-            "system": system,
-            "kind": vehicle.kind.to_string(),
-            "frame": vehicle.frame,
-            "firmware": vehicle.firmware,
-        })
-    };
-    let silent = |what: &Silent| match what {
-        Silent::Link => "link",
-        Silent::Motors => "motor_commands",
-    };
-    let (kind, fields) = match event {
-        Event::Found { system, vehicle } => ("found", about(*system, vehicle)),
-        Event::Another { system } => ("another_vehicle", json!({ "system": system })),
-        Event::NotAMultirotor { system, vehicle } => ("not_a_multirotor", about(*system, vehicle)),
-        Event::Ready { setup } => ("ready", setup_json(setup)),
-        Event::Note { text } => ("note", json!({ "text": text })),
-        Event::Lost { what } => ("lost", json!({ "what": silent(what) })),
-        Event::Back { what, after_s } => {
-            ("back", json!({ "what": silent(what), "after_s": after_s }))
+) -> io::Result<Option<String>> {
+    let view = session.view();
+    let line = match event {
+        Event::Found { system, vehicle } => EventLine::Found(About::new(*system, vehicle)),
+        Event::Another { system } => EventLine::AnotherVehicle { system: *system },
+        Event::NotAMultirotor { system, vehicle } => {
+            EventLine::NotAMultirotor(About::new(*system, vehicle))
         }
-        Event::Rebooted => ("rebooted", json!({})),
-        Event::TookOff { t_s } => ("took_off", json!({ "t_s": t_s })),
-        Event::Risk { assessment } => {
-            let view = session.view().filter(|view| view.is_in_air)?;
-            ("risk", risk_json(assessment, &view, estimator))
+        Event::Ready { setup } => EventLine::Ready {
+            motors: setup.motors.iter().map(MotorDocument::from).collect(),
+            range: Range::from(&setup.range),
+            effective_range: Range::from(&setup.effective),
+            assumed: &setup.assumed,
+        },
+        Event::Note { text } => EventLine::Note { text },
+        Event::Lost { what } => EventLine::Lost { what: *what },
+        Event::Back { what, after_s } => EventLine::Back {
+            what: *what,
+            after_s: *after_s,
+        },
+        Event::Rebooted => EventLine::Rebooted,
+        Event::TookOff { t_s } => EventLine::TookOff { t_s: *t_s },
+        Event::Risk { update } => {
+            let Some(view) = view.filter(|view| view.is_in_air) else {
+                return Ok(None);
+            };
+            let why = update.risk.err();
+            EventLine::Risk(Risk {
+                update,
+                margin: view.margin,
+                spread: view.spread,
+                motors: view.motors,
+                unknown: why.map(|unknown| unknown.explain(estimator.profile())),
+            })
         }
-        Event::Level { t_s, level, text } => (
-            "level",
-            json!({ "t_s": t_s, "level": word(*level), "text": text }),
-        ),
-        Event::Ended { finding } => (
-            "finding",
-            json!({
-                "severity": word(finding.level),
-                "from_s": finding.from_s,
-                "to_s": finding.to_s,
-                "raised_s": finding.raised_s,
-                "measure": measure(finding),
-                "value_pct": finding.peak_pct,
-                "threshold_pct": finding.threshold_pct,
-                "motor": finding.motor.map(|motor| json!({
-                    "index": motor.motor,
-                    "side": match motor.side { Side::Low => "lower", Side::High => "upper" },
-                    "margin_mean": motor.mean_margin,
-                    "margin_min": motor.least_margin,
-                })),
-            }),
-        ),
-        Event::Landed { verdict } => (
-            "landed",
-            json!({
-                "verdict": verdict.word(),
-                "reason": match verdict {
-                    Verdict::Known(_) => None,
-                    Verdict::NotAvailable { reason, .. } => Some(reason),
-                },
-            }),
-        ),
+        Event::Level { t_s, level, text } => EventLine::Level {
+            t_s: *t_s,
+            level: *level,
+            text,
+        },
+        Event::Ended { finding } => {
+            let motors = view.and_then(|view| view.setup).map(|setup| &*setup.motors);
+            EventLine::Finding(FindingDocument::new(finding, motors.unwrap_or(&[])))
+        }
+        Event::Landed { verdict } => EventLine::Landed(verdict),
     };
-    Some(line(kind, at_s, fields))
+    json_line(at_s, line).map(Some)
 }
 
-/// An object with its kind and the receiver's time before its other fields.
-pub(crate) fn line(kind: &str, at_s: f64, fields: Value) -> Value {
-    let mut object = Map::new();
-    object.insert("event".to_owned(), json!(kind));
-    object.insert("at_s".to_owned(), json!((at_s * 1e3).round() / 1e3));
-    if let Value::Object(fields) = fields {
-        object.extend(fields);
+/// A line as one object.
+pub(crate) fn json_line(at_s: f64, line: EventLine<'_>) -> io::Result<String> {
+    let text = serde_json::to_string(&At {
+        at_s: (at_s * 1e3).round() / 1e3,
+        line,
+    })?;
+    Ok(text + "\n")
+}
+
+impl<'a> About<'a> {
+    fn new(system: u8, vehicle: &'a Vehicle) -> Self {
+        About {
+            system,
+            kind: vehicle.kind.to_string(),
+            frame: vehicle.frame.as_deref(),
+            firmware: vehicle.firmware.as_deref(),
+        }
     }
-    Value::Object(object)
-}
-
-fn setup_json(setup: &Setup) -> Value {
-    let range = |range: &flightlog::Range| json!({"low": range.low, "high": range.high, "unit": range.unit, "source": range.source});
-    json!({
-        "motors": setup.motors.iter().map(|motor| {
-            json!({"number": motor.number, "output": motor.output, "source": motor.source})
-        }).collect::<Vec<_>>(),
-        "range": range(&setup.range),
-        "effective_range": range(&setup.effective),
-        "assumed": setup.assumed,
-    })
-}
-
-fn risk_json(assessment: &Assessment, view: &View<'_>, estimator: &Estimator) -> Value {
-    let unknown = assessment.risk.err();
-    json!({
-        "t_s": assessment.t_s,
-        "risk_pct": assessment.risk.ok().map(|estimate| estimate.risk_pct),
-        "elevated_risk_pct": assessment.elevated_risk_pct,
-        "level": assessment.level.map(word),
-        "margin": view.margin,
-        "spread": view.spread,
-        "motors": view.motors,
-        "unknown": unknown.map(|unknown| unknown.explain(estimator.profile())),
-    })
 }

@@ -21,13 +21,13 @@ use std::{
 
 use flagred::{estimator::Estimator, verdict::Level};
 use flightlog::mavlink::{Skipped, Stream};
-use serde_json::{Value, json};
 
 use crate::{
     failure::{Exit, Failure},
     profile,
 };
 use endpoint::Endpoint;
+use lines::EventLine;
 use port::{Port, Received};
 use printer::Printer;
 use screen::Screen;
@@ -159,11 +159,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     display.show(now_s, &mut out.events, &session, &estimator)?;
     let totals = Totals {
         skipped: stream.skipped(),
-        not_understood: session.not_understood(),
         unsent: port.unsent(),
     };
     display.end(now_s, worst, &totals)?;
-    Ok(if worst > Level::Good {
+    Ok(if worst > Some(Level::Good) {
         Exit::Findings
     } else {
         Exit::Clean
@@ -173,30 +172,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// What the link cost.
 struct Totals {
     skipped: Skipped,
-    not_understood: u64,
     unsent: u64,
 }
 
 impl Totals {
-    fn json(&self) -> Value {
-        json!({
-            "skipped_bytes": self.skipped.bytes,
-            "bad_checksums": self.skipped.checksums,
-            "unknown_messages": self.skipped.unknown,
-            "signed": self.skipped.signed,
-            "not_understood": self.not_understood,
-            "unsent": self.unsent,
-        })
-    }
-
     fn words(&self) -> String {
         format!(
-            "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets left out, {} messages not understood, {} packets not sent",
+            "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets ignored, {} packets not sent",
             self.skipped.bytes,
             self.skipped.checksums,
             self.skipped.unknown,
             self.skipped.signed,
-            self.not_understood,
             self.unsent
         )
     }
@@ -222,8 +208,12 @@ impl Display {
         let is_screen = !jsonl && io::stdout().is_terminal();
         let mut printer = Printer::new(if is_screen { FRAMES } else { LINES });
         let face = if jsonl {
-            let fields = json!({ "schema": SCHEMA, "endpoint": title, "profile": profile });
-            printer.print(json_line(&lines::line("started", 0.0, fields)))?;
+            let started = EventLine::Started {
+                schema: SCHEMA,
+                endpoint: title,
+                profile,
+            };
+            printer.print(lines::json_line(0.0, started)?)?;
             Face::Json
         } else if is_screen {
             let title = format!("{title}, profile {profile}");
@@ -251,9 +241,7 @@ impl Display {
     ) -> Result<(), Failure> {
         for event in events.drain(..) {
             let line = match &mut self.face {
-                Face::Json => {
-                    lines::json(at_s, &event, session, estimator).map(|line| json_line(&line))
-                }
+                Face::Json => lines::json(at_s, &event, session, estimator)?,
                 Face::Words(words) => words.line(at_s, &event, session, estimator),
                 Face::Screen(screen) => {
                     screen.add(at_s, &event);
@@ -306,15 +294,23 @@ impl Display {
         Ok(())
     }
 
-    fn end(mut self, at_s: f64, worst: Level, totals: &Totals) -> Result<(), Failure> {
-        let worst = crate::assessment::follow::word(worst);
+    fn end(mut self, at_s: f64, worst: Option<Level>, totals: &Totals) -> Result<(), Failure> {
         let last = if let Face::Json = self.face {
-            let mut fields = totals.json();
-            fields["dropped_lines"] = json!(self.printer.dropped());
-            fields["worst"] = json!(worst);
-            json_line(&lines::line("ended", at_s, fields))
+            let ended = EventLine::Ended {
+                worst,
+                skipped_bytes: totals.skipped.bytes,
+                bad_checksums: totals.skipped.checksums,
+                unknown_messages: totals.skipped.unknown,
+                signed: totals.skipped.signed,
+                unsent: totals.unsent,
+                dropped_lines: self.printer.dropped(),
+            };
+            lines::json_line(at_s, ended)?
         } else {
-            lines::words(at_s, &format!("{worst} at worst; {}", totals.words()))
+            let worst = worst.map_or("no flight with a verdict".to_owned(), |level| {
+                format!("{level} at worst")
+            });
+            lines::words(at_s, &format!("{worst}; {}", totals.words()))
         };
         self.leave();
         self.printer.print(last)
@@ -337,8 +333,4 @@ impl Drop for Display {
     fn drop(&mut self) {
         self.leave();
     }
-}
-
-fn json_line(line: &Value) -> String {
-    format!("{line}\n")
 }

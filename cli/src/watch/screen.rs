@@ -8,7 +8,7 @@ use super::{
     lines,
     session::{Event, View},
 };
-use crate::assessment::{follow::word, words::level_style};
+use crate::assessment::words::level_style;
 
 /// The other screen of the terminal, without a cursor; and back.
 pub(crate) const ENTER: &str = "\x1b[?1049h\x1b[?25l";
@@ -156,7 +156,7 @@ fn standing(view: &View<'_>, estimator: &Estimator) -> String {
             );
             let level = level.unwrap_or(Level::Good);
             let style = level_style(level);
-            text += &format!("level     {style}{}{style:#}\n", word(level));
+            text += &format!("level     {style}{level}{style:#}\n");
         }
         None => {
             let why = match view.latest.and_then(|now| now.risk.err()) {

@@ -5,7 +5,8 @@
 
 use flagred::{
     estimator::Estimator,
-    monitor::{Assessment, Sample, Unknown},
+    flight::Verdict,
+    monitor::{Sample, Unknown, Update},
     verdict::{Finding, Level},
 };
 use flightlog::{
@@ -16,9 +17,8 @@ use flightlog::{
 mod tracked;
 
 use super::voice;
-use crate::assessment::follow::Verdict;
 pub(crate) use tracked::View;
-use tracked::{Flight, Tracked, tell, worst};
+use tracked::{Tracked, tell};
 
 /// Seconds between two heartbeats, and between two risks sent.
 const HEARTBEAT_S: f64 = 1.0;
@@ -48,7 +48,7 @@ pub(crate) enum Event {
     /// A flight began.
     TookOff { t_s: f64 },
     /// A sample was assessed.
-    Risk { assessment: Assessment },
+    Risk { update: Update },
     /// The level changed in flight.
     Level {
         t_s: f64,
@@ -62,9 +62,11 @@ pub(crate) enum Event {
 }
 
 /// What fell silent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum Silent {
     Link,
+    #[serde(rename = "motor_commands")]
     Motors,
 }
 
@@ -81,11 +83,11 @@ pub(crate) struct Session<'e> {
     estimator: &'e Estimator,
     /// `None` listens only.
     sender: Option<Sender>,
-    tracked: Option<Tracked<'e>>,
+    tracked: Option<Tracked>,
     others: Vec<u8>,
     heartbeat_s: Option<f64>,
-    worst: Level,
-    not_understood: u64,
+    /// The worst level of the flights with a verdict.
+    worst: Option<Level>,
 }
 
 impl<'e> Session<'e> {
@@ -97,8 +99,7 @@ impl<'e> Session<'e> {
             tracked: None,
             others: Vec::new(),
             heartbeat_s: None,
-            worst: Level::Good,
-            not_understood: 0,
+            worst: None,
         }
     }
 
@@ -118,13 +119,12 @@ impl<'e> Session<'e> {
             tracked.hear(now_s, out);
         }
         match tracked.telemetry.receive(packet) {
-            News::Nothing | News::Parameter => {}
-            News::NotUnderstood => self.not_understood += 1,
             News::Rebooted => {
-                let worst = tracked.start_anew(now_s, self.estimator, out);
+                let worst = tracked.start_anew(now_s, out);
                 self.worst = self.worst.max(worst);
             }
             News::Commands { t_s } => self.assess(now_s, t_s, out),
+            _ => {}
         }
         true
     }
@@ -141,10 +141,10 @@ impl<'e> Session<'e> {
         tracked.listen(now_s, out);
     }
 
-    /// Ends the watch: the flight that is still on, if any. Gives the worst level of all flights.
-    pub(crate) fn finish(&mut self, out: &mut Out) -> Level {
+    /// Ends the watch and the flight that is still on. Gives the worst level of the flights with a verdict.
+    pub(crate) fn finish(&mut self, out: &mut Out) -> Option<Level> {
         if let Some(tracked) = &mut self.tracked {
-            self.worst = self.worst.max(tracked.end_flight(self.estimator, out));
+            self.worst = self.worst.max(tracked.end_flight(out));
         }
         self.worst
     }
@@ -228,44 +228,27 @@ impl<'e> Session<'e> {
         tracked
             .telemetry
             .effective_commands(&watch.setup, &mut watch.motors);
-        let assessment = watch.monitor.push(&Sample {
+        let update = watch.assessor.push(&Sample {
             t_s,
             motors: &watch.motors,
             in_air,
             signals: &[],
         });
-        if assessment.risk == Err(Unknown::OutOfOrder) {
+        if update.risk == Err(Unknown::OutOfOrder) {
             return;
         }
-        watch.latest = Some(assessment);
-        tell(assessment.ended, out);
-        if !in_air {
-            if let Some(flight) = watch.flight.take() {
-                let worst = flight.end(assessment.ended, self.estimator, out);
-                self.worst = self.worst.max(worst);
-            }
-        } else {
-            let flight = watch.flight.get_or_insert_with(|| {
-                out.events.push(Event::TookOff { t_s });
-                Flight {
-                    since_s: t_s,
-                    ..Flight::default()
-                }
-            });
-            flight.worst = flight.worst.max(worst(assessment.ended));
-            let quiet_s = self.estimator.profile().verdict.quiet_after_take_off_s;
-            flight
-                .tally
-                .add(&assessment, t_s >= flight.since_s + quiet_s, &watch.motors);
+        watch.latest = Some(update);
+        tell(update.ended, out);
+        if in_air && !watch.is_flying {
+            watch.is_flying = true;
+            out.events.push(Event::TookOff { t_s });
+        } else if !in_air {
+            self.worst = self.worst.max(watch.end_flight(out));
         }
-        out.events.push(Event::Risk { assessment });
-        if let Some(level) = assessment.change.filter(|_| in_air) {
-            let text = voice::say(
-                level,
-                &assessment,
-                watch.monitor.open_finding(),
-                &watch.setup,
-            );
+        out.events.push(Event::Risk { update });
+        if let Some(level) = update.change.filter(|_| in_air) {
+            let finding = watch.assessor.monitor().open_finding();
+            let text = voice::say(level, &update, finding, &watch.setup);
             if let Some(sender) = &mut self.sender {
                 let message = voice::status(level, &text);
                 out.packets.push(sender.packet(version, system, &message));
@@ -277,8 +260,8 @@ impl<'e> Session<'e> {
             .is_none_or(|sent_s| now_s - sent_s >= RISK_S);
         if let Some(sender) = &mut self.sender
             && due
-            && let Ok(estimate) = assessment.risk
-            && let Some(elevated_pct) = assessment.elevated_risk_pct
+            && let Ok(estimate) = update.risk
+            && let Some(elevated_pct) = update.elevated_risk_pct
         {
             watch.risk_sent_s = Some(now_s);
             for (name, value) in [
@@ -294,11 +277,6 @@ impl<'e> Session<'e> {
     /// How things stand, for a screen.
     pub(crate) fn view(&self) -> Option<View<'_>> {
         self.tracked.as_ref().map(Tracked::view)
-    }
-
-    /// Messages whose fields hold what the dialect does not know.
-    pub(crate) fn not_understood(&self) -> u64 {
-        self.not_understood
     }
 }
 

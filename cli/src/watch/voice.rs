@@ -2,7 +2,7 @@
 
 use flagred::{
     margin::Side,
-    monitor::Assessment,
+    monitor::Update,
     verdict::{Finding, Level, Measure},
 };
 use flightlog::mavlink::{
@@ -12,8 +12,6 @@ use flightlog::mavlink::{
         NAMED_VALUE_FLOAT_DATA, STATUSTEXT_DATA,
     },
 };
-
-use crate::assessment::follow::word;
 
 /// The names of the values that are sent.
 pub(crate) const RISK: &str = "FR_RISK";
@@ -62,24 +60,21 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
 }
 
 /// A change of level in at most 50 characters: `FLAGRED: WARN risk 78 %, motor 3 upper limit`. A level that ends
-/// because nothing is known any more is no good news.
+/// because the risk became unknown is not GOOD.
 pub(crate) fn say(
     level: Level,
-    assessment: &Assessment,
+    update: &Update,
     finding: Option<Finding>,
     setup: &Setup,
 ) -> String {
-    if level == Level::Good && assessment.risk.is_err() {
+    if level == Level::Good && update.risk.is_err() {
         return "FLAGRED: risk unknown".to_owned();
     }
-    let mut text = format!("FLAGRED: {}", word(level));
+    let mut text = format!("FLAGRED: {level}");
     let measure = finding.map_or(Measure::Risk, |finding| finding.measure);
     let (name, value) = match measure {
-        Measure::Risk => (
-            "risk",
-            assessment.risk.ok().map(|estimate| estimate.risk_pct),
-        ),
-        Measure::ElevatedRisk => ("elevated", assessment.elevated_risk_pct),
+        Measure::Risk => ("risk", update.risk.ok().map(|estimate| estimate.risk_pct)),
+        Measure::ElevatedRisk => ("elevated", update.elevated_risk_pct),
     };
     if let Some(value) = value {
         text += &format!(" {name} {value:.0} %");

@@ -8,11 +8,9 @@
 //! # Example: a flight with a plan made on a computer
 //!
 //! ```
-//! use flagred::{assessment::Sample, board::OwnedMemory, estimator::Estimator, shipped};
+//! use flagred::{board::OwnedMemory, sample::Sample, shipped};
 //!
-//! let profile = shipped::profile("flagred").ok_or("not shipped")??;
-//! let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-//! let estimator = Estimator::new(&profile, &rules)?;
+//! let estimator = shipped::flagred();
 //! let plan = estimator.plan()?;
 //!
 //! let mut memory = OwnedMemory::new(&plan, 4);
@@ -20,8 +18,8 @@
 //! let mut risk_pct = None;
 //! for i in 0..2000 {
 //!     let t_s = f64::from(i) * 0.02;
-//!     let assessment = monitor.push(&Sample { t_s, motors: &[0.4, 0.5, 0.5, 0.4], in_air: true, signals: &[] });
-//!     risk_pct = assessment.risk.ok().map(|estimate| estimate.risk_pct);
+//!     let update = monitor.push(&Sample { t_s, motors: &[0.4, 0.5, 0.5, 0.4], in_air: true, signals: &[] });
+//!     risk_pct = update.risk.ok().map(|estimate| estimate.risk_pct);
 //! }
 //! assert!(risk_pct < Some(25.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -30,11 +28,11 @@
 use fuzzy::table::{Damaged, Outcome, Scratch, Table};
 
 use crate::{
-    assessment::{Assessment, Estimate, Sample},
     channel::{Channel, Input, Observed, Seen},
     follower::{Follower, Room, Settings},
     gap::FilledKnots,
     lookup::Lookup,
+    sample::{Estimate, Sample, Update},
     verdict::{Ended, Finding, Motor},
     window::Window,
 };
@@ -231,7 +229,7 @@ impl<'a> Monitor<'a> {
     }
 
     /// Takes the next sample of the flight.
-    pub fn push(&mut self, sample: &Sample<'_>) -> Assessment {
+    pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let plan = self.plan;
         let mut room = Room {
             risks: self.risks,

@@ -80,17 +80,14 @@ impl Plan<'_> {
 ///
 /// # Example: `Storage<4>` of the exported profile `flagred-paper`
 /// ```
-/// # use flagred::{estimator::Estimator, shipped};
-/// # let profile = shipped::profile("flagred-paper").ok_or("not shipped")??;
-/// # let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-/// # let estimator = Estimator::new(&profile, &rules)?;
-/// use flagred::{assessment::{Sample, Unknown}, board::Storage};
+/// use flagred::{board::Storage, sample::{Sample, Unknown}, shipped};
 ///
+/// let estimator = shipped::flagred_paper();
 /// let plan = estimator.plan()?; // on board, the exported `PLAN`
 /// let mut storage: Storage<14, 12, 1, 2, 4> = Storage::new();
 /// let mut monitor = storage.monitor(&plan)?;
-/// let assessment = monitor.push(&Sample { t_s: 0.0, motors: &[0.0; 4], in_air: false, signals: &[] });
-/// assert_eq!(assessment.risk, Err(Unknown::OnGround));
+/// let update = monitor.push(&Sample { t_s: 0.0, motors: &[0.0; 4], in_air: false, signals: &[] });
+/// assert_eq!(update.risk, Err(Unknown::OnGround));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]

@@ -36,29 +36,11 @@ pub struct Answer {
 
 impl Answer {
     /// Whether a warning that began before the episode was on at its start.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::{Span, judge};
-    ///
-    /// let span = |from_s, to_s| Span { from_s, to_s };
-    /// let judged = judge(&[span(26.0, 40.0)], &[span(30.0, 33.0)], &[span(0.0, 60.0)], None);
-    /// assert!(judged.answers[0].is_announced());
-    /// ```
     pub fn is_announced(&self) -> bool {
         self.lead_s().is_some_and(|lead_s| lead_s > 0.0)
     }
 
     /// How long before the episode the warning began, in seconds; below 0 where it came after its start.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::{Span, judge};
-    ///
-    /// let span = |from_s, to_s| Span { from_s, to_s };
-    /// let judged = judge(&[span(26.0, 40.0)], &[span(30.0, 33.0)], &[span(0.0, 60.0)], None);
-    /// assert_eq!(judged.answers[0].lead_s(), Some(4.0));
-    /// ```
     pub fn lead_s(&self) -> Option<f64> {
         self.warned_s.map(|warned_s| self.episode.from_s - warned_s)
     }

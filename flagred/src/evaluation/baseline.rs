@@ -30,14 +30,6 @@ const WINDOW_S: f64 = 5.0;
 
 impl Baseline {
     /// All of them.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::Baseline;
-    ///
-    /// let names = Baseline::all().map(|baseline| baseline.name);
-    /// assert_eq!(names, ["margin_mean", "lowest_motor", "spread", "saturated_share", "ekf_wind", "true_wind"]);
-    /// ```
     pub fn all() -> [Baseline; 6] {
         let of_motors = |name, description, statistic, motors, signal, rises| Baseline {
             name,
@@ -104,14 +96,6 @@ impl Baseline {
     }
 
     /// The score of a value: the higher, the more critical.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::Baseline;
-    ///
-    /// let [margin_mean, ..] = Baseline::all();
-    /// assert_eq!(margin_mean.score(0.2), -0.2); // a falling margin is a rising score
-    /// ```
     pub fn score(&self, value: f64) -> f64 {
         if self.rises { value } else { -value }
     }

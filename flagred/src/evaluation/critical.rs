@@ -47,18 +47,6 @@ pub struct ErrorRecord {
 
 impl ErrorRecord {
     /// Takes in the attitudes of a flight with their times in seconds, in order; one that is not finite is unknown.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::{attitude::Attitude, evaluation::ErrorRecord};
-    /// # let attitudes = (0..500).map(|i| {
-    /// #     let t_s = f64::from(i) * 0.04;
-    /// #     let roll_deg = if (10.0..13.0).contains(&t_s) { 20.0 } else { 0.0 };
-    /// #     (t_s, Attitude { roll_des_deg: 0.0, roll_deg, pitch_des_deg: 0.0, pitch_deg: 0.0 })
-    /// # });
-    /// let record = ErrorRecord::new(attitudes); // 20 s, from 10 to 13 s off by 20 degrees
-    /// assert_eq!(record.episodes().len(), 1);
-    /// ```
     pub fn new(attitudes: impl IntoIterator<Item = (f64, Attitude)>) -> ErrorRecord {
         let mut record = ErrorRecord::default();
         let mut second = Window::new(ERROR_WINDOW_S);
@@ -105,19 +93,6 @@ impl ErrorRecord {
     }
 
     /// The largest error after `t_s` and within `horizon_s`, in degrees; `None` where nothing is known of it then.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::{attitude::Attitude, evaluation::ErrorRecord};
-    /// # let attitudes = (0..500).map(|i| {
-    /// #     let t_s = f64::from(i) * 0.04;
-    /// #     let roll_deg = if (10.0..13.0).contains(&t_s) { 20.0 } else { 0.0 };
-    /// #     (t_s, Attitude { roll_des_deg: 0.0, roll_deg, pitch_des_deg: 0.0, pitch_deg: 0.0 })
-    /// # });
-    /// let record = ErrorRecord::new(attitudes); // 20 s, from 10 to 13 s off by 20 degrees
-    /// assert_eq!(record.largest_within(2.0, 5.0), Some(0.0));
-    /// assert!(record.largest_within(8.0, 5.0).is_some_and(|error_deg| error_deg > 19.0));
-    /// ```
     pub fn largest_within(&self, t_s: f64, horizon_s: f64) -> Option<f64> {
         let after = |t_s: f64| {
             self.errors
@@ -131,38 +106,12 @@ impl ErrorRecord {
     }
 
     /// Whether the error becomes critical after `t_s` and within `horizon_s`; `None` where nothing is known of it then.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::{attitude::Attitude, evaluation::ErrorRecord};
-    /// # let attitudes = (0..500).map(|i| {
-    /// #     let t_s = f64::from(i) * 0.04;
-    /// #     let roll_deg = if (10.0..13.0).contains(&t_s) { 20.0 } else { 0.0 };
-    /// #     (t_s, Attitude { roll_des_deg: 0.0, roll_deg, pitch_des_deg: 0.0, pitch_deg: 0.0 })
-    /// # });
-    /// let record = ErrorRecord::new(attitudes); // 20 s, from 10 to 13 s off by 20 degrees
-    /// assert_eq!(record.critical_within(2.0, 5.0), Some(false));
-    /// assert_eq!(record.critical_within(8.0, 5.0), Some(true));
-    /// assert_eq!(record.critical_within(60.0, 5.0), None);
-    /// ```
     pub fn critical_within(&self, t_s: f64, horizon_s: f64) -> Option<bool> {
         let largest_deg = self.largest_within(t_s, horizon_s)?;
         Some(largest_deg > CRITICAL_ERROR_DEG)
     }
 
     /// The times over the limit, each for a second at least.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::{attitude::Attitude, evaluation::ErrorRecord};
-    /// # let attitudes = (0..500).map(|i| {
-    /// #     let t_s = f64::from(i) * 0.04;
-    /// #     let roll_deg = if (10.0..13.0).contains(&t_s) { 20.0 } else { 0.0 };
-    /// #     (t_s, Attitude { roll_des_deg: 0.0, roll_deg, pitch_des_deg: 0.0, pitch_deg: 0.0 })
-    /// # });
-    /// let record = ErrorRecord::new(attitudes); // 20 s, from 10 to 13 s off by 20 degrees
-    /// assert!(record.episodes().iter().all(|episode| episode.length_s() >= 1.0));
-    /// ```
     pub fn episodes(&self) -> &[Span] {
         &self.episodes
     }

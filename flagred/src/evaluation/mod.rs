@@ -26,6 +26,7 @@ pub use ranking::{Areas, Band, Interval, Intervals, Prediction, Ranking, RocPoin
 /// assert!(gust.contains(30.0) && gust.contains(33.5) && !gust.contains(34.0));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Span {
     /// Where it begins.
     pub from_s: f64,
@@ -35,27 +36,11 @@ pub struct Span {
 
 impl Span {
     /// Its length in seconds.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::Span;
-    ///
-    /// let gust = Span { from_s: 30.0, to_s: 33.5 };
-    /// assert_eq!(gust.length_s(), 3.5);
-    /// ```
     pub fn length_s(&self) -> f64 {
         self.to_s - self.from_s
     }
 
     /// Whether it holds a time.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::Span;
-    ///
-    /// let gust = Span { from_s: 30.0, to_s: 33.5 };
-    /// assert!(gust.contains(31.0) && !gust.contains(29.0));
-    /// ```
     pub fn contains(&self, t_s: f64) -> bool {
         (self.from_s..=self.to_s).contains(&t_s)
     }
@@ -63,17 +48,6 @@ impl Span {
     /// Takes in whether something is the case at `t_s`: the last of `spans` grows, ends, or is followed by a new one.
     ///
     /// `open` remembers whether it is still the case.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::Span;
-    ///
-    /// let (mut spans, mut open) = (Vec::new(), false);
-    /// for (t_s, is_so) in [(0.0, false), (1.0, true), (2.0, true), (3.0, false), (4.0, true)] {
-    ///     Span::follow(&mut spans, &mut open, t_s, is_so);
-    /// }
-    /// assert_eq!(spans, [Span { from_s: 1.0, to_s: 2.0 }, Span { from_s: 4.0, to_s: 4.0 }]);
-    /// ```
     pub fn follow(spans: &mut Vec<Span>, open: &mut bool, t_s: f64, is_so: bool) {
         match spans.last_mut().filter(|_| *open && is_so) {
             Some(span) => span.to_s = t_s,
@@ -84,5 +58,27 @@ impl Span {
             None => {}
         }
         *open = is_so;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_the_case_for_a_while_is_a_span() {
+        let (mut spans, mut open) = (Vec::new(), false);
+        for (t_s, is_so) in [
+            (0.0, false),
+            (1.0, true),
+            (2.0, true),
+            (3.0, false),
+            (4.0, true),
+        ] {
+            Span::follow(&mut spans, &mut open, t_s, is_so);
+        }
+        let span = |from_s, to_s| Span { from_s, to_s };
+        assert_eq!(spans, [span(1.0, 2.0), span(4.0, 4.0)]);
+        assert!(spans[0].contains(1.0) && spans[0].contains(2.0) && !spans[0].contains(2.1));
     }
 }

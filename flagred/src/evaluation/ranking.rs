@@ -116,15 +116,6 @@ pub struct RocPoint {
 
 impl Ranking {
     /// Ranks predictions; one whose score is not finite is left out.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::{Prediction, Ranking};
-    ///
-    /// let told = [(0.9, true), (f64::NAN, false), (0.1, false)];
-    /// let ranking = Ranking::new(told.map(|(score, critical)| Prediction { score, critical, group: 0 }));
-    /// assert_eq!(ranking.len(), 2); // one has no score
-    /// ```
     pub fn new(predictions: impl IntoIterator<Item = Prediction>) -> Ranking {
         let mut kept: Vec<Prediction> = predictions
             .into_iter()
@@ -151,55 +142,21 @@ impl Ranking {
     }
 
     /// The number of predictions.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::evaluation::{Prediction, Ranking};
-    /// # let told = [(0.9, true), (0.8, false), (0.7, true), (0.1, false)];
-    /// let ranking = Ranking::new(told.map(|(score, critical)| Prediction { score, critical, group: 0 }));
-    /// assert_eq!(ranking.len(), 4);
-    /// ```
     pub fn len(&self) -> usize {
         self.places.len()
     }
 
     /// Whether there is none.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::Ranking;
-    ///
-    /// assert!(Ranking::new([]).is_empty());
-    /// ```
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
 
     /// The number of critical ones.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::evaluation::{Prediction, Ranking};
-    /// # let told = [(0.9, true), (0.8, false), (0.7, true), (0.1, false)];
-    /// let ranking = Ranking::new(told.map(|(score, critical)| Prediction { score, critical, group: 0 }));
-    /// assert_eq!(ranking.critical(), 2);
-    /// ```
     pub fn critical(&self) -> usize {
         self.places.iter().filter(|place| place.critical).count()
     }
 
     /// The areas under the curves; `None` where all predictions are critical, or none is.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::evaluation::{Prediction, Ranking};
-    /// # let told = [(0.9, true), (0.8, false), (0.7, true), (0.1, false)];
-    /// let ranking = Ranking::new(told.map(|(score, critical)| Prediction { score, critical, group: 0 }));
-    /// let areas = ranking.areas().ok_or("needs both kinds")?;
-    /// assert_eq!(areas.roc, 0.75); // three of four pairs are in order
-    /// assert!((areas.precision_recall - 5.0 / 6.0).abs() < 1e-12);
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn areas(&self) -> Option<Areas> {
         self.weighted_areas(&vec![1; self.groups])
     }
@@ -208,21 +165,6 @@ impl Ranking {
     ///
     /// The same seed gives the same intervals. `None` as for [`Ranking::areas`]; resamples without critical predictions,
     /// or without others, are left out.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::evaluation::{Prediction, Ranking};
-    ///
-    /// let ranking = Ranking::new((0..200).map(|i| Prediction {
-    ///     score: f64::from(i),
-    ///     critical: i * 37 % 100 < i / 2,
-    ///     group: i / 10, // ten steps of each flight
-    /// }));
-    /// let areas = ranking.areas().ok_or("needs both kinds")?;
-    /// let sure = ranking.bootstrap(200, 1).ok_or("needs both kinds")?;
-    /// assert!(sure.roc.low < areas.roc && areas.roc < sure.roc.high);
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn bootstrap(&self, resamples: usize, seed: u64) -> Option<Intervals> {
         let mut random = Random::new(seed);
         let mut weights = vec![0_u32; self.groups];
@@ -273,16 +215,6 @@ impl Ranking {
     }
 
     /// The receiver operating characteristic from (0, 0) to (1, 1), in steps of about `1 / steps` along it.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::evaluation::{Prediction, Ranking};
-    /// # let told = [(0.9, true), (0.8, false), (0.7, true), (0.1, false)];
-    /// let ranking = Ranking::new(told.map(|(score, critical)| Prediction { score, critical, group: 0 }));
-    /// let curve = ranking.roc(100);
-    /// let ends = [&curve[0], &curve[curve.len() - 1]].map(|p| (p.false_positive_rate, p.true_positive_rate));
-    /// assert_eq!(ends, [(0.0, 0.0), (1.0, 1.0)]);
-    /// ```
     pub fn roc(&self, steps: u32) -> Vec<RocPoint> {
         let critical = self.critical();
         let others = self.len() - critical;

@@ -14,20 +14,6 @@ pub struct FilledKnots<'a> {
 }
 
 /// A value read where no rule applies.
-///
-/// # Example: the farther from what rules cover, the less to be relied on
-/// ```
-/// # use flagred::gap::{Filling, GapSettings};
-/// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
-/// # let engine = fuzzy::Engine::new(&model)?;
-/// # let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
-/// use flagred::gap::Reading;
-///
-/// let Reading { value, distance } = filling.read(&[0.0, 0.0]).ok_or("nothing is covered")?;
-/// assert!(value > 75.0);
-/// assert!((distance - 0.1).abs() < 1e-9); // rules begin at a spread of 0.05, a tenth of its range
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
     /// The value.
@@ -39,16 +25,6 @@ pub struct Reading {
 impl FilledKnots<'_> {
     /// What is said at a place with a coordinate for each input; beyond the outermost knots, as there. `None` where the
     /// point has another number of coordinates, or one is not a number.
-    ///
-    /// # Example: between two knots
-    /// ```
-    /// use flagred::gap::FilledKnots;
-    ///
-    /// let knots = FilledKnots { coordinates: &[0.0, 0.5], starts: &[0, 2], values: &[90.0, 50.0], distances: &[1.0, 0.0] };
-    /// let reading = knots.read(&[0.125]).ok_or("not a point")?;
-    /// assert_eq!((reading.value, reading.distance), (80.0, 0.75));
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
         let axes = self.starts.len().checked_sub(1)?;
         let axis = |axis: usize| {

@@ -32,30 +32,6 @@ impl Filling {
     /// # Errors
     ///
     /// There is no such output.
-    ///
-    /// # Example: a gap in the middle of a line
-    ///
-    /// ```
-    /// use flagred::gap::{Filling, GapMethod, GapSettings};
-    /// use fuzzy::Engine;
-    ///
-    /// let model = fuzzy::yaml::parse("
-    /// fuzzy: 1
-    /// name: two ends
-    /// inputs: {x: {range: [0, 1], partition: {low: 0, middle: 0.5, high: 1}}}
-    /// outputs: {y: {range: [0, 100], partition: [small, medium, large]}}
-    /// rules: [IF x IS low THEN y IS small, IF x IS high THEN y IS large]
-    /// ")?.model;
-    /// let engine = Engine::new(&model)?;
-    /// let settings = GapSettings { method: GapMethod::Harmonic, coverage_below: None };
-    /// let filling = Filling::new(&engine, &model, 0, &settings)?;
-    ///
-    /// assert!(filling.is_gap(engine.evaluate(&[0.5])?[0].coverage));
-    /// let middle = filling.read(&[0.5]).ok_or("nothing is covered")?;
-    /// assert!((middle.value - 50.0).abs() < 1e-6);
-    /// assert_eq!(middle.distance, 0.25); // a rule applies up to half way between two peaks
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn new(
         engine: &Engine,
         model: &Model,
@@ -116,16 +92,6 @@ impl Filling {
     }
 
     /// Whether a place of this coverage is a gap.
-    ///
-    /// # Example: the paper's rules are sure of a place from one half on
-    /// ```
-    /// # use flagred::gap::{Filling, GapSettings};
-    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
-    /// # let engine = fuzzy::Engine::new(&model)?;
-    /// let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
-    /// assert!(filling.is_gap(0.49) && !filling.is_gap(0.5));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn is_gap(&self, coverage: f64) -> bool {
         is_gap(coverage, self.coverage_below)
     }
@@ -134,18 +100,6 @@ impl Filling {
     /// `None` where the rules cover nothing to fill from, there are more inputs than can be filled over (over 15 of two
     /// terms each), the point has another number of coordinates, or one is not a
     /// number.
-    ///
-    /// # Example: beyond the outermost peak nothing changes, and what is unknown stays unknown
-    /// ```
-    /// # use flagred::gap::{Filling, GapSettings};
-    /// # let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
-    /// # let engine = fuzzy::Engine::new(&model)?;
-    /// let filling = Filling::new(&engine, &model, 0, &GapSettings::default())?;
-    /// let value = |point: [f64; 2]| filling.read(&point).map(|reading| reading.value);
-    /// assert_eq!(value([0.3, 0.0]), value([0.45, 0.0]));
-    /// assert_eq!(value([f64::NAN, 0.0]), None);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn read(&self, point: &[f64]) -> Option<Reading> {
         self.lend()?.read(point)
     }

@@ -138,7 +138,7 @@ fn count(axes: &[Vec<f64>]) -> usize {
 /// # Example: where the paper's spread is low, medium and high
 ///
 /// ```
-/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// let model = flagred::shipped::flagred_paper_rules();
 /// assert_eq!(flagred::gap::peaks(&model.inputs[1]), [0.0, 0.1, 0.2, 0.5]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -162,7 +162,7 @@ pub fn peaks(variable: &Variable) -> Vec<f64> {
 /// # Example: a shoulder
 ///
 /// ```
-/// let model = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
+/// let model = flagred::shipped::flagred_paper_rules();
 /// assert_eq!(flagred::gap::changing(&model.inputs[0]), (0.0, 0.3)); // from 0.3 to 0.5 the margin is high
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

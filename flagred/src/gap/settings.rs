@@ -47,11 +47,6 @@ impl GapMethod {
     ];
 
     /// Its name, as profiles have it.
-    ///
-    /// # Example
-    /// ```
-    /// assert_eq!(flagred::gap::GapMethod::INVERSE_DISTANCE.name(), "inverse_distance");
-    /// ```
     pub fn name(self) -> &'static str {
         match self {
             GapMethod::Nearest => "nearest",
@@ -85,15 +80,6 @@ impl GapSettings {
     /// 0.5 at least, where two neighbours meet. With the minimum as AND it then fires at 0.5 or more, with the product
     /// of n inputs at `0.5^n`: less means that the dominating antecedent has no rule. With other terms and other
     /// conjunctions only what no rule covers at all is a gap.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::gap::GapSettings;
-    ///
-    /// let paper = flagred::shipped::rule_set("flagred-paper").ok_or("not shipped")??;
-    /// assert_eq!(GapSettings::default().coverage_below(&paper), 0.5);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn coverage_below(&self, model: &Model) -> f64 {
         let least = || match model.operators.and {
             Conjunction::Minimum => 0.5,

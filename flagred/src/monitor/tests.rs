@@ -84,7 +84,7 @@ fn profile() -> Profile {
 }
 
 /// Flies (seconds, both motors' command, in the air) at a rate.
-fn fly(monitor: &mut Monitor, rate_hz: f64, phases: &[(f64, f64, bool)]) -> Vec<Assessment> {
+fn fly(monitor: &mut Monitor, rate_hz: f64, phases: &[(f64, f64, bool)]) -> Vec<Update> {
     let mut assessments = Vec::new();
     let mut i = 0.0;
     for (seconds, e, in_air) in phases {
@@ -101,7 +101,7 @@ fn fly(monitor: &mut Monitor, rate_hz: f64, phases: &[(f64, f64, bool)]) -> Vec<
     assessments
 }
 
-fn risk_at(assessments: &[Assessment], t_s: f64) -> Result<f64, Unknown> {
+fn risk_at(assessments: &[Update], t_s: f64) -> Result<f64, Unknown> {
     let at = assessments.iter().rfind(|a| a.t_s <= t_s + 1e-9).unwrap();
     at.risk.map(|estimate| estimate.risk_pct)
 }
@@ -109,7 +109,7 @@ fn risk_at(assessments: &[Assessment], t_s: f64) -> Result<f64, Unknown> {
 #[test]
 fn risk_follows_the_motors_within_the_window_and_is_unknown_on_the_ground() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
-    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let flight = fly(
         &mut monitor,
         25.0,
@@ -150,7 +150,7 @@ fn risk_follows_the_motors_within_the_window_and_is_unknown_on_the_ground() {
 #[test]
 fn the_first_seconds_in_the_air_raise_nothing() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
-    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let flight = fly(&mut monitor, 25.0, &[(1.0, 0.0, false), (4.0, 1.0, true)]);
     let last = flight.last().unwrap();
     assert!(last.risk.unwrap().risk_pct > 80.0);
@@ -160,7 +160,7 @@ fn the_first_seconds_in_the_air_raise_nothing() {
 #[test]
 fn a_gap_is_filled_and_says_so() {
     let estimator = Estimator::new(&profile(), &rules(true)).unwrap();
-    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let flight = fly(&mut monitor, 25.0, &[(5.0, 0.5, true), (5.0, 1.0, true)]);
     let covered = flight[100].risk.unwrap();
     assert_eq!((covered.filled_from, covered.coverage), (None, 1.0));
@@ -176,7 +176,7 @@ fn no_rule_and_nothing_to_fill_from_is_unknown() {
     let mut model = rules(true);
     model.rules.clear();
     let estimator = Estimator::new(&profile(), &model).unwrap();
-    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let flight = fly(&mut monitor, 25.0, &[(3.0, 0.5, true)]);
     assert_eq!(risk_at(&flight, 3.0), Err(Unknown::NoRule));
 }
@@ -186,7 +186,7 @@ fn an_author_who_calls_it_an_error_that_no_rule_fires_still_gets_the_gap_filled(
     let mut model = rules(true);
     model.outputs[0].when_no_rule_fires = NoRuleFires::Error;
     let estimator = Estimator::new(&profile(), &model).unwrap();
-    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let flight = fly(&mut monitor, 25.0, &[(3.0, 1.0, true)]);
     assert!(flight.last().unwrap().risk.unwrap().filled_from.is_some());
 }
@@ -194,7 +194,7 @@ fn an_author_who_calls_it_an_error_that_no_rule_fires_still_gets_the_gap_filled(
 #[test]
 fn too_few_samples_are_unknown_and_say_what_helps() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
-    let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+    let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let flight = fly(&mut monitor, 1.0, &[(30.0, 0.5, true)]);
     let unknown = flight.last().unwrap().risk.unwrap_err();
     assert_eq!(
@@ -214,7 +214,7 @@ fn too_few_samples_are_unknown_and_say_what_helps() {
 fn after_a_lost_link_or_a_restart_nothing_old_is_carried_on() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
     for jump_s in [60.0, -15.0] {
-        let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+        let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
         fly(&mut monitor, 25.0, &[(20.0, 1.0, true)]);
         let open = monitor.clone().finish();
         assert!(open.iter().all(Option::is_some));
@@ -234,7 +234,7 @@ fn after_a_lost_link_or_a_restart_nothing_old_is_carried_on() {
 #[test]
 fn repeated_late_and_damaged_samples_change_nothing() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
-    let mut clean = Monitor::new(&estimator, 2, &[]).unwrap();
+    let mut clean = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let mut dirty = clean.clone();
     for i in 0..500 {
         let t_s = f64::from(i) * 0.04;
@@ -259,7 +259,7 @@ fn repeated_late_and_damaged_samples_change_nothing() {
 fn a_motor_that_is_no_number_between_0_and_1_is_unknown() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
     for garbage in [f64::NAN, f64::INFINITY, 65535.0, -0.1] {
-        let mut monitor = Monitor::new(&estimator, 2, &[]).unwrap();
+        let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
         let mut last = None;
         for i in 0..100 {
             last = Some(monitor.push(&Sample {
@@ -287,14 +287,20 @@ fn what_a_flight_lacks_is_told_when_the_monitor_is_made() {
     profile.inputs[0].source.signal = Signal::named("battery_v");
     let estimator = Estimator::new(&profile, &rules(false)).unwrap();
     assert_eq!(
-        Monitor::new(&estimator, 4, &["wind_m_s"]).unwrap_err(),
+        Monitor::new(&estimator, Craft::new(4).with_signals(&["wind_m_s"])).unwrap_err(),
         MonitorError::NoSignal {
             signal: "battery_v".into()
         }
     );
     assert_eq!(
-        Monitor::new(&estimator, 0, &["battery_v"]).unwrap_err(),
+        Monitor::new(&estimator, Craft::new(0).with_signals(&["battery_v"])).unwrap_err(),
         MonitorError::NoMotors
     );
-    assert!(Monitor::new(&estimator, 4, &["wind_m_s", "battery_v"]).is_ok());
+    assert!(
+        Monitor::new(
+            &estimator,
+            Craft::new(4).with_signals(&["wind_m_s", "battery_v"])
+        )
+        .is_ok()
+    );
 }

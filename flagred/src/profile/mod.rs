@@ -9,7 +9,7 @@ use crate::{
 
 mod read;
 
-pub use crate::assessment::Sampling;
+pub use crate::sample::Sampling;
 
 /// Everything between a flight and its verdict but the rules themselves.
 ///
@@ -18,7 +18,7 @@ pub use crate::assessment::Sampling;
 /// ```
 /// use flagred::profile::Profile;
 ///
-/// let profile = Profile::from_yaml("
+/// let profile: Profile = "
 /// flagred: 1
 /// name: with-battery
 /// rules: my-rules.yaml
@@ -28,11 +28,11 @@ pub use crate::assessment::Sampling;
 ///   spread: {std: motor_command}
 ///   lowest: {mean: {min: motor_margin}, window_s: 10}
 ///   battery: {last: battery_remaining_pct}
-/// ")?;
+/// ".parse()?;
 /// assert_eq!(profile.inputs.len(), 4);
 /// assert_eq!(profile.signals(), ["battery_remaining_pct"]);
 ///
-/// let mistake = Profile::from_yaml("flagred: 1\nname: x\nrules: y\ninputs: {m: {meen: motor_margin}}");
+/// let mistake = "flagred: 1\nname: x\nrules: y\ninputs: {m: {meen: motor_margin}}".parse::<Profile>();
 /// assert!(mistake.unwrap_err().to_string().contains("did you mean `mean`?"));
 /// # Ok::<(), fuzzy::diagnostic::Findings>(())
 /// ```
@@ -69,7 +69,7 @@ pub struct Profile {
 ///
 /// let text = "flagred: 1\nname: windy\nrules: my.yaml\ninputs: {wind: {last: wind_m_s}}";
 /// let source = Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 2.0 };
-/// assert_eq!(Profile::from_yaml(text)?.inputs, [ProfileInput { name: "wind".into(), source }]);
+/// assert_eq!(text.parse::<Profile>()?.inputs, [ProfileInput { name: "wind".into(), source }]);
 /// # Ok::<(), fuzzy::diagnostic::Findings>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -83,16 +83,6 @@ pub struct ProfileInput {
 impl Profile {
     /// The names of the signals beside the motors that it needs, each once.
     ///
-    /// # Example
-    /// ```
-    /// # use flagred::profile::Profile;
-    /// # let profile = Profile::from_yaml("flagred: 1
-    /// # name: windy
-    /// # rules: my.yaml
-    /// # inputs: {margin: {mean: motor_margin, window_s: 5}, wind: {last: wind_m_s}, gust: {max: wind_m_s, window_s: 20}}")?;
-    /// assert_eq!(profile.signals(), ["wind_m_s"]);
-    /// # Ok::<(), fuzzy::diagnostic::Findings>(())
-    /// ```
     pub fn signals(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for input in &self.inputs {

@@ -1,6 +1,7 @@
-//! A profile from YAML. Whatever is wrong in it is told at once, each finding with its place.
+//! Reads a profile from YAML and reports all its errors at once, each with its location.
 
 use alloc::{format, string::String, vec::Vec};
+use core::str::FromStr;
 
 use fuzzy::{
     diagnostic::{Diagnostic, Findings},
@@ -47,21 +48,11 @@ const MOTORS: [(&str, Motors); 4] = [
 
 type Found = Vec<Diagnostic>;
 
-impl Profile {
-    /// Reads a profile.
-    ///
-    /// # Errors
-    ///
-    /// Everything that is wrong in the text, each with its place and what to do about it.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::profile::Profile;
-    ///
-    /// let mistakes = Profile::from_yaml("flagred: 1\nname: x\nrules: my.yaml\ninputs: {m: {mean: motor_margin, window: 5}}");
-    /// assert!(mistakes.is_err_and(|findings| findings.to_string().contains("did you mean `window_s`?")));
-    /// ```
-    pub fn from_yaml(text: &str) -> Result<Profile, Findings> {
+impl FromStr for Profile {
+    type Err = Findings;
+
+    /// Reads a profile from YAML; on failure gives all errors of the text, each with its location and help.
+    fn from_str(text: &str) -> Result<Profile, Findings> {
         let tree = yaml::read(text)?;
         let mut found = Vec::new();
         match read(&tree, &mut found) {

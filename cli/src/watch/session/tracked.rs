@@ -2,7 +2,8 @@
 
 use flagred::{
     estimator::Estimator,
-    monitor::{Assessment, Monitor},
+    flight::{Assessor, Verdict},
+    monitor::{Craft, Update},
     verdict::{Ended, Level},
 };
 use flightlog::{
@@ -11,7 +12,6 @@ use flightlog::{
 };
 
 use super::{Event, Out, Silent};
-use crate::assessment::follow::Tally;
 
 /// A link, or the motor commands on it, that are silent for this long are lost.
 const SILENT_S: f64 = 2.0;
@@ -19,37 +19,29 @@ const SILENT_S: f64 = 2.0;
 const LISTEN_S: f64 = 10.0;
 
 /// A vehicle that is followed.
-pub(super) struct Tracked<'e> {
+pub(super) struct Tracked {
     pub(super) telemetry: Telemetry,
     pub(super) requests: Requests,
     pub(super) found_s: f64,
     pub(super) heard_s: f64,
     pub(super) link_lost: bool,
     pub(super) set_up_tried: bool,
-    pub(super) watch: Option<Watch<'e>>,
+    pub(super) watch: Option<Watch>,
     pub(super) received: u64,
     pub(super) missed: u64,
     pub(super) sequence: Option<u8>,
 }
 
 /// A vehicle whose motors are known.
-pub(super) struct Watch<'e> {
+pub(super) struct Watch {
     pub(super) setup: Setup,
-    pub(super) monitor: Monitor<'e>,
+    pub(super) assessor: Assessor,
     pub(super) motors: Vec<f64>,
     pub(super) commands_s: f64,
     pub(super) commands_lost: bool,
     pub(super) risk_sent_s: Option<f64>,
-    pub(super) flight: Option<Flight>,
-    pub(super) latest: Option<Assessment>,
-}
-
-/// The flight that is on.
-#[derive(Default)]
-pub(super) struct Flight {
-    pub(super) tally: Tally,
-    pub(super) worst: Option<Level>,
-    pub(super) since_s: f64,
+    pub(super) is_flying: bool,
+    pub(super) latest: Option<Update>,
 }
 
 /// How things stand; what is lost is not shown as if it were known.
@@ -67,12 +59,12 @@ pub(crate) struct View<'a> {
     pub(crate) motors: &'a [f64],
     pub(crate) margin: Option<f64>,
     pub(crate) spread: Option<f64>,
-    pub(crate) latest: Option<Assessment>,
+    pub(crate) latest: Option<Update>,
 }
 
-impl<'e> Tracked<'e> {
+impl Tracked {
     /// Starts to follow the vehicle that a heartbeat told of.
-    pub(super) fn new(telemetry: Telemetry, now_s: f64) -> Tracked<'e> {
+    pub(super) fn new(telemetry: Telemetry, now_s: f64) -> Tracked {
         Tracked {
             telemetry,
             requests: Requests::new(),
@@ -101,8 +93,8 @@ impl<'e> Tracked<'e> {
             lost_share: self.missed as f64 / (self.missed + self.received).max(1) as f64,
             setup: watch.map(|watch| &watch.setup),
             motors: fresh.map_or(&[], |watch| &watch.motors),
-            margin: fresh.and_then(|watch| watch.monitor.margin()),
-            spread: fresh.and_then(|watch| watch.monitor.spread()),
+            margin: fresh.and_then(|watch| watch.assessor.monitor().margin()),
+            spread: fresh.and_then(|watch| watch.assessor.monitor().spread()),
             latest: fresh.and_then(|watch| watch.latest),
         }
     }
@@ -148,14 +140,14 @@ impl<'e> Tracked<'e> {
     }
 
     /// Makes a monitor as soon as the motors are known, and a new one where they become known better.
-    /// Gives the worst level of the flight that ended with the old one.
+    /// Gives the level of the flight that ended with the old one.
     pub(super) fn set_up(
         &mut self,
         now_s: f64,
         asks: bool,
-        estimator: &'e Estimator,
+        estimator: &Estimator,
         out: &mut Out,
-    ) -> Level {
+    ) -> Option<Level> {
         let done = if asks {
             self.requests.parameters_done()
         } else {
@@ -163,7 +155,7 @@ impl<'e> Tracked<'e> {
         };
         // Parameters that came late are not waited for, but looked at.
         if !done || !self.telemetry.take_parameters_changed() && self.set_up_tried {
-            return Level::Good;
+            return None;
         }
         self.set_up_tried = true;
         let setup = self.telemetry.setup();
@@ -172,30 +164,30 @@ impl<'e> Tracked<'e> {
             .as_ref()
             .is_some_and(|watch| watch.setup == setup)
         {
-            return Level::Good;
+            return None;
         }
-        match Monitor::new(estimator, setup.motors.len(), &[]) {
-            Ok(monitor) => {
-                let worst = self.end_flight(estimator, out);
+        match Assessor::new(estimator, Craft::new(setup.motors.len()), None) {
+            Ok(assessor) => {
+                let level = self.end_flight(out);
                 out.events.push(Event::Ready {
                     setup: setup.clone(),
                 });
                 self.watch = Some(Watch {
                     motors: vec![f64::NAN; setup.motors.len()],
                     setup,
-                    monitor,
+                    assessor,
                     commands_s: now_s,
                     commands_lost: false,
                     risk_sent_s: None,
-                    flight: None,
+                    is_flying: false,
                     latest: None,
                 });
-                worst
+                level
             }
             Err(error) => {
-                let text = format!("no risk can be told: {error}");
+                let text = format!("the risk cannot be assessed: {error}");
                 out.events.push(Event::Note { text });
-                Level::Good
+                None
             }
         }
     }
@@ -217,36 +209,36 @@ impl<'e> Tracked<'e> {
         }
     }
 
-    /// The vehicle did, so nothing that was known of it holds; gives the worst level of its flight.
-    pub(super) fn start_anew(&mut self, now_s: f64, estimator: &Estimator, out: &mut Out) -> Level {
-        let worst = self.end_flight(estimator, out);
+    /// Resets what is known of the vehicle after it rebooted; gives the level of the flight that ended with it.
+    pub(super) fn start_anew(&mut self, now_s: f64, out: &mut Out) -> Option<Level> {
+        let level = self.end_flight(out);
         out.events.push(Event::Rebooted);
         self.watch = None;
         self.set_up_tried = false;
         self.requests = Requests::new();
         self.found_s = now_s;
-        worst
+        level
     }
 
-    pub(super) fn end_flight(&mut self, estimator: &Estimator, out: &mut Out) -> Level {
-        let Some(watch) = &mut self.watch else {
-            return Level::Good;
-        };
-        let ended = watch.monitor.finish();
-        tell(ended, out);
-        match watch.flight.take() {
-            Some(flight) => flight.end(ended, estimator, out),
-            None => Level::Good,
-        }
+    pub(super) fn end_flight(&mut self, out: &mut Out) -> Option<Level> {
+        self.watch.as_mut().and_then(|watch| watch.end_flight(out))
     }
 }
 
-impl Flight {
-    pub(super) fn end(self, ended: Ended, estimator: &Estimator, out: &mut Out) -> Level {
-        let worst = self.worst.max(worst(ended)).unwrap_or(Level::Good);
-        let verdict = self.tally.verdict(worst, estimator.profile(), None);
+impl Watch {
+    /// Ends the flight that is on, if any; gives the level of its verdict.
+    pub(super) fn end_flight(&mut self, out: &mut Out) -> Option<Level> {
+        if !std::mem::take(&mut self.is_flying) {
+            return None;
+        }
+        tell(self.assessor.end_findings(), out);
+        let verdict = self.assessor.finish().verdict;
+        let level = match verdict {
+            Verdict::Known(level) => Some(level),
+            Verdict::NotAvailable(_) => None,
+        };
         out.events.push(Event::Landed { verdict });
-        worst
+        level
     }
 }
 
@@ -254,12 +246,4 @@ pub(super) fn tell(ended: Ended, out: &mut Out) {
     let findings = ended.into_iter().flatten();
     out.events
         .extend(findings.map(|finding| Event::Ended { finding }));
-}
-
-pub(super) fn worst(ended: Ended) -> Option<Level> {
-    ended
-        .into_iter()
-        .flatten()
-        .map(|finding| finding.level)
-        .max()
 }

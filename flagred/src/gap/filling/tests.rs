@@ -74,7 +74,7 @@ rules: [IF x0 IS low THEN y IS low]
 /// program (numpy), from the same definitions.
 #[test]
 fn the_papers_corner_is_as_computed_elsewhere() {
-    let model = crate::shipped::rule_set("flagred-paper").unwrap().unwrap();
+    let model = crate::shipped::flagred_paper_rules();
     let engine = Engine::new(&model).unwrap();
     for (method, expected) in [
         (GapMethod::Nearest, [90.30, 79.57, 63.46, 50.0]),

@@ -5,7 +5,7 @@ const START: &str =
 
 #[test]
 fn what_a_profile_leaves_out_has_defaults() {
-    let profile = Profile::from_yaml(START).unwrap();
+    let profile = START.parse::<Profile>().unwrap();
     assert_eq!(profile.output, "risk");
     assert_eq!(profile.inputs[0].source.window_s, WINDOW_S);
     assert_eq!(profile.sampling, Sampling::default());
@@ -16,8 +16,7 @@ fn what_a_profile_leaves_out_has_defaults() {
 
 #[test]
 fn every_setting_is_read() {
-    let profile = Profile::from_yaml(
-        "
+    let profile = "
 flagred: 1
 name: all
 description: everything set
@@ -42,8 +41,8 @@ verdict:
   quiet_after_take_off_s: 3
   quiet_before_landing_s: 4
   idle: {command_below: 0.2, risk_at_most: 30}
-",
-    )
+"
+    .parse::<Profile>()
     .unwrap();
     assert_eq!(profile.description.as_deref(), Some("everything set"));
     assert_eq!(
@@ -145,7 +144,7 @@ gap: {method: neerest, coverage_below: -1}
 elevated_risk: {high: 20, low: 80, rise_per_s: fast}
 verdict: {warn: {risk: 50, until: {risk: 60}}, fail: {risk: 150}, clear_after_s: .nan}
 ";
-    let findings = Profile::from_yaml(text).unwrap_err();
+    let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);
 }
 
@@ -161,7 +160,7 @@ fn what_is_no_profile_says_so() {
         ),
         ("flagred: 1\nname: [", "no YAML"),
     ] {
-        let message = Profile::from_yaml(text).unwrap_err().to_string();
+        let message = text.parse::<Profile>().unwrap_err().to_string();
         assert!(message.contains(expected), "{text:?}: {message}");
     }
 }

@@ -3,7 +3,7 @@
  *   flagred convert flight.BIN -o flight.csv
  *   flagred export --c --output profile.h
  *   cargo build -p flagred-c --no-default-features --profile onboard
- *   cc -DPROFILE='"profile.h"' -I flagred-c/include -I . flagred-c/examples/replay.c target/onboard/libflagred.a -o replay
+ *   cc -DPROFILE='"profile.h"' -I bindings/c/include -I . bindings/c/examples/replay.c target/onboard/libflagred.a -o replay
  *   ./replay < flight.csv */
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@ int main(void) {
                    &sample.in_air) != 6) {
             continue; /* a comment or the header */
         }
-        flagred_assessment said;
+        flagred_update said;
         if (flagred_push(monitor, &sample, &said) != FLAGRED_OK) {
             return 1;
         }

@@ -3,29 +3,29 @@
 //! It converts between pointers and references: the only `unsafe` code of the workspace.
 #![cfg_attr(not(feature = "std"), no_std)]
 
-mod assessment;
 mod memory;
 mod plan;
 mod status;
+mod update;
 
 use core::ffi::{CStr, c_char};
 
 use flagred::{
-    assessment::Sample,
     board::{
         Memory, Monitor,
         table::{Outcome, Partial, Strongest},
     },
     channel::Seen,
     margin::Range,
+    sample::Sample,
     verdict::Motor,
     window::Window,
 };
 
-use assessment::{Assessment, Finding, findings};
 use memory::Block;
 use plan::{Array, Plan};
 use status::Status;
+use update::{Finding, Update, findings};
 
 /// `struct flagred_limits`.
 #[derive(Debug, Clone, Copy)]
@@ -169,21 +169,21 @@ unsafe fn start(
     block.place(monitor).map(core::ptr::from_mut)
 }
 
-/// Takes the next sample and writes the assessment.
+/// Takes the next sample and writes the update.
 ///
 /// # Safety
 /// `monitor` is null or from [`flagred_start`]; `sample` is null or points to a sample whose arrays have the lengths it says;
-/// `assessment` is null or writable.
+/// `update` is null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_push(
     monitor: *mut CMonitor,
     sample: *const CSample,
-    assessment: *mut Assessment,
+    update: *mut Update,
 ) -> i32 {
     // SAFETY: the caller's promises.
     let (monitor, sample) = unsafe { (monitor.as_mut(), sample.as_ref()) };
-    let (Some(monitor), Some(sample), false) = (monitor, sample, assessment.is_null()) else {
+    let (Some(monitor), Some(sample), false) = (monitor, sample, update.is_null()) else {
         return Status::NullPointer as i32;
     };
     // SAFETY: the caller's promise on the sample's arrays, which are used in this call only.
@@ -206,7 +206,7 @@ pub unsafe extern "C" fn flagred_push(
         signals,
     });
     // SAFETY: not null, and writable by the caller's promise.
-    unsafe { assessment.write(Assessment::of(&result)) };
+    unsafe { update.write(Update::of(&result)) };
     Status::Ok as i32
 }
 
@@ -250,14 +250,14 @@ pub unsafe extern "C" fn flagred_finish(monitor: *mut CMonitor, ended: *mut [Fin
 /// The risk at values of the profile's inputs, independent of the flight.
 ///
 /// # Safety
-/// `monitor` is null or from [`flagred_start`]; `inputs` is null or has `count` items; `assessment` is null or writable.
+/// `monitor` is null or from [`flagred_start`]; `inputs` is null or has `count` items; `update` is null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_evaluate(
     monitor: *mut CMonitor,
     inputs: *const f64,
     count: usize,
-    assessment: *mut Assessment,
+    update: *mut Update,
 ) -> i32 {
     let inputs = Array {
         items: inputs,
@@ -265,12 +265,12 @@ pub unsafe extern "C" fn flagred_evaluate(
     };
     // SAFETY: the caller's promises.
     let (monitor, inputs) = unsafe { (monitor.as_mut(), inputs.read()) };
-    let (Some(monitor), Ok(inputs), false) = (monitor, inputs, assessment.is_null()) else {
+    let (Some(monitor), Ok(inputs), false) = (monitor, inputs, update.is_null()) else {
         return Status::NullPointer as i32;
     };
     let estimate = monitor.monitor.at(inputs);
     // SAFETY: not null, and writable by the caller's promise.
-    unsafe { assessment.write(Assessment::of_estimate(estimate)) };
+    unsafe { update.write(Update::of_estimate(estimate)) };
     Status::Ok as i32
 }
 

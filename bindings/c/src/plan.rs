@@ -2,7 +2,6 @@
 
 use flagred::{
     accumulator::AccumulatorSettings,
-    assessment::Sampling,
     board::{
         self,
         table::{
@@ -14,6 +13,7 @@ use flagred::{
     channel::{self, Channel, Motors, Observed, Statistic},
     follower::Settings,
     gap::FilledKnots,
+    sample::Sampling,
     verdict::{Idle, LevelSettings, Threshold, VerdictSettings},
 };
 

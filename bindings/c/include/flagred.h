@@ -8,7 +8,7 @@
  *     static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
  *     flagred_monitor *monitor;
  *     flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor);
- *     flagred_push(monitor, &sample, &assessment);             // for every sample of the motors
+ *     flagred_push(monitor, &sample, &update);             // for every sample of the motors
  *
  * Functions do not block or lock, and write only to their arguments. Only one thread at a time may use a monitor.
  * An unknown value is NAN, with a reason.
@@ -89,8 +89,8 @@ typedef struct flagred_finding {
     int32_t at_high_limit;      /* 0: nearer to the lower limit; 1: to the upper limit */
 } flagred_finding;
 
-/* The assessment after a sample. */
-typedef struct flagred_assessment {
+/* What is known after a sample. */
+typedef struct flagred_update {
     double t_s;
     double risk_pct;            /* NAN where unknown */
     double elevated_risk_pct;   /* NAN where unknown */
@@ -103,7 +103,7 @@ typedef struct flagred_assessment {
     int32_t change;             /* flagred_level: the new level, where this sample changed it */
     int32_t unknown;            /* flagred_unknown */
     int32_t unknown_input;      /* the index of the unknown input of the profile; else -1 */
-} flagred_assessment;
+} flagred_update;
 
 typedef struct flagred_plan flagred_plan;
 typedef struct flagred_monitor flagred_monitor;
@@ -124,8 +124,8 @@ size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
                       flagred_monitor **monitor);
 
-/* Takes the next sample and writes the assessment. */
-int32_t flagred_push(flagred_monitor *monitor, const flagred_sample *sample, flagred_assessment *assessment);
+/* Takes the next sample and writes the update. */
+int32_t flagred_push(flagred_monitor *monitor, const flagred_sample *sample, flagred_update *update);
 
 /* The open finding of the current level; its level is FLAGRED_LEVEL_NONE while the level is good. */
 int32_t flagred_open_finding(const flagred_monitor *monitor, flagred_finding *finding);
@@ -135,7 +135,7 @@ int32_t flagred_finish(flagred_monitor *monitor, flagred_finding ended[2]);
 
 /* The risk at values of the profile's inputs, in its order, independent of the flight. Writes risk_pct, coverage,
  * filled_from, dominant_rule and clamped. */
-int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t count, flagred_assessment *assessment);
+int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t count, flagred_update *update);
 
 /* ---- Exported data: written by `flagred export --c`, not by hand --------------------------------------------------- */
 

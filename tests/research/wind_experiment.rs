@@ -1,13 +1,12 @@
 //! A flight in wind: the risk from its motors beside the autopilot's own wind estimate and, where the log of a simulator
 //! has it, the true wind.
 //!
-//! `cargo run -p flagred-examples --bin wind_experiment -- FLIGHT.BIN wind.svg`
+//! `cargo run -p flagred-tests --example wind_experiment -- FLIGHT.BIN wind.svg`
 
 use std::{error::Error, fmt::Write as _, fs};
 
 use flagred::{
-    estimator::Estimator,
-    monitor::{Monitor, Sample},
+    monitor::{Craft, Monitor, Sample},
     shipped,
 };
 use flightlog::Flight;
@@ -28,10 +27,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Seconds and risk in %, where it is known.
 fn risks(flight: &Flight) -> Result<Vec<(f64, f64)>, Box<dyn Error>> {
-    let profile = shipped::profile("flagred").ok_or("not shipped")??;
-    let rules = shipped::rule_set(&profile.rules).ok_or("not shipped")??;
-    let estimator = Estimator::new(&profile, &rules)?;
-    let mut monitor = Monitor::new(&estimator, flight.motors.len(), &[])?;
+    let estimator = shipped::flagred();
+    let mut monitor = Monitor::new(&estimator, Craft::new(flight.motors.len()))?;
     let mut risks = Vec::new();
     for (t_s, row) in flight.commands.rows() {
         let effective = |raw: &f64| flight.effective_command(*raw).unwrap_or(f64::NAN);

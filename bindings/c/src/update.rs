@@ -1,8 +1,8 @@
-//! Assessments and findings in C.
+//! Updates and findings in C.
 
 use flagred::{
-    assessment::{self, Estimate, Unknown},
     margin::Side,
+    sample::{self, Estimate, Unknown},
     verdict::{self, Ended, Level, Measure},
 };
 
@@ -23,10 +23,10 @@ pub struct Finding {
     at_high_limit: i32,
 }
 
-/// `struct flagred_assessment`.
+/// `struct flagred_update`.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
-pub struct Assessment {
+pub struct Update {
     t_s: f64,
     risk_pct: f64,
     elevated_risk_pct: f64,
@@ -81,9 +81,9 @@ pub(crate) fn findings(ended: Ended) -> [Finding; 2] {
     ended.map(Finding::of)
 }
 
-impl Assessment {
-    pub(crate) fn of(assessment: &assessment::Assessment) -> Assessment {
-        let (unknown, unknown_input) = match assessment.risk {
+impl Update {
+    pub(crate) fn of(update: &sample::Update) -> Update {
+        let (unknown, unknown_input) = match update.risk {
             Ok(_) => (0, -1),
             Err(Unknown::OnGround) => (1, -1),
             Err(Unknown::OutOfOrder) => (2, -1),
@@ -92,22 +92,22 @@ impl Assessment {
             Err(Unknown::NoValue { input }) => (5, index(input)),
             Err(Unknown::NoRule) => (6, -1),
         };
-        Assessment {
-            t_s: assessment.t_s,
-            elevated_risk_pct: assessment.elevated_risk_pct.unwrap_or(f64::NAN),
-            ended: findings(assessment.ended),
-            level: level(assessment.level),
-            change: level(assessment.change),
+        Update {
+            t_s: update.t_s,
+            elevated_risk_pct: update.elevated_risk_pct.unwrap_or(f64::NAN),
+            ended: findings(update.ended),
+            level: level(update.level),
+            change: level(update.change),
             unknown,
             unknown_input,
-            ..Assessment::of_estimate(assessment.risk.ok())
+            ..Update::of_estimate(update.risk.ok())
         }
     }
 
     /// The fields of an estimate, independent of the flight.
-    pub(crate) fn of_estimate(estimate: Option<Estimate>) -> Assessment {
+    pub(crate) fn of_estimate(estimate: Option<Estimate>) -> Update {
         let known = |value: fn(&Estimate) -> f64| estimate.as_ref().map_or(f64::NAN, value);
-        Assessment {
+        Update {
             t_s: f64::NAN,
             risk_pct: known(|estimate| estimate.risk_pct),
             elevated_risk_pct: f64::NAN,

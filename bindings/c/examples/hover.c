@@ -2,7 +2,7 @@
  *
  *   flagred export --c --output profile.h
  *   cargo build -p flagred-c --no-default-features --profile onboard
- *   cc -DPROFILE='"profile.h"' -I flagred-c/include flagred-c/examples/hover.c target/onboard/libflagred.a -o hover */
+ *   cc -DPROFILE='"profile.h"' -I bindings/c/include bindings/c/examples/hover.c target/onboard/libflagred.a -o hover */
 #include <stdio.h>
 
 #include PROFILE
@@ -37,7 +37,7 @@ int main(void) {
     }
     for (int step = 0; step < 2500; step++) {
         double commands[4];
-        flagred_assessment said;
+        flagred_update said;
         commands_at(step, commands);
         flagred_sample sample = {.t_s = step * STEP_S, .commands = commands, .motors = 4, .in_air = 1};
         status = flagred_push(monitor, &sample, &said);

@@ -1,0 +1,472 @@
+//! The assessment of a whole flight: its verdict, findings, steps and summary.
+
+use alloc::{collections::VecDeque, string::String, vec::Vec};
+use core::fmt;
+
+use crate::{
+    estimator::Estimator,
+    evaluation::Span,
+    margin::margin,
+    monitor::{Craft, Estimate, Monitor, MonitorError, Sample, Unknown, Update},
+    profile::Profile,
+    verdict::{Ended, Finding, Level, VerdictSettings},
+};
+
+#[cfg(feature = "serde")]
+mod serialize;
+#[cfg(feature = "serde")]
+pub use serialize::Steps;
+
+/// The least share of the time in the air in which the risk must be known for a verdict of GOOD.
+const KNOWN_SHARE: f64 = 0.5;
+
+/// A motor with a smaller margin counts as saturated.
+const SATURATED_MARGIN: f64 = 0.005;
+
+/// What is said about a flight.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Assessment {
+    /// How risky the flight was.
+    pub verdict: Verdict,
+    /// The gravest first, those of equal level in order of time.
+    pub findings: Vec<Finding>,
+    /// The flight in a few numbers.
+    pub summary: Summary,
+    /// The names of the inputs of the rule set, in the order of [`Step::inputs`].
+    pub inputs: Vec<String>,
+    /// The risk over time.
+    pub steps: Vec<Step>,
+}
+
+/// How risky a flight was.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Verdict {
+    /// The level of its gravest finding; GOOD without any.
+    Known(Level),
+    /// There is no answer (NA), and why.
+    NotAvailable(Reason),
+}
+
+impl fmt::Display for Verdict {
+    /// `GOOD`, `WARN`, `FAIL` or `NA`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Verdict::Known(level) => level.fmt(f),
+            Verdict::NotAvailable(_) => f.pad("NA"),
+        }
+    }
+}
+
+/// Why a flight has no verdict.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The log lacks something that an assessment needs.
+    #[cfg(feature = "flightlog")]
+    #[error("{0}")]
+    Log(flightlog::Gap),
+    /// The profile cannot be used on this flight.
+    #[error("{0}")]
+    Monitor(#[from] MonitorError),
+    /// The risk was unknown for most of the time in the air.
+    #[error("{explanation}")]
+    RiskUnknown {
+        /// What made it unknown for longest.
+        unknown: Unknown,
+        /// The same in words.
+        explanation: String,
+        /// What helps, where something does.
+        help: Option<&'static str>,
+    },
+    /// There was hardly a motor command in the air.
+    #[error("hardly any motor command was known in the air")]
+    NoCommands,
+}
+
+impl Reason {
+    /// What the pilot can do to get a verdict of the next flight.
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            #[cfg(feature = "flightlog")]
+            Reason::Log(gap) => gap.help(),
+            Reason::Monitor(MonitorError::NoSignal { .. }) => {
+                Some("`flagred inspect` lists the signals that a log carries")
+            }
+            Reason::RiskUnknown { help, .. } => *help,
+            Reason::Monitor(_) | Reason::NoCommands => None,
+        }
+    }
+}
+
+/// A flight in a few numbers. The risks are those of judged time ([`Update::judged`]).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Summary {
+    /// The time in the air: the sum of all flights of a log, in seconds.
+    pub in_air_s: f64,
+    /// The time in the air with a known risk, in seconds.
+    pub assessed_s: f64,
+    /// The time in the air with a risk interpolated where no rule applies, in seconds.
+    pub filled_s: f64,
+    /// The mean risk in %.
+    pub risk_mean_pct: Option<f64>,
+    /// The highest risk.
+    pub risk_max: Option<Peak>,
+    /// The highest elevated risk.
+    pub elevated_risk_max: Option<Peak>,
+    /// The share of motor commands in the air within 0.5 % of a limit, in [0, 1].
+    pub saturated_share: Option<f64>,
+}
+
+/// The largest value of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Peak {
+    /// When it was first reached, in seconds.
+    pub t_s: f64,
+    /// The value in %.
+    pub value_pct: f64,
+}
+
+impl Peak {
+    fn keep_larger(kept: &mut Option<Peak>, t_s: f64, value_pct: f64) {
+        if kept.is_none_or(|kept| value_pct > kept.value_pct) {
+            *kept = Some(Peak { t_s, value_pct });
+        }
+    }
+}
+
+/// What was known at one time of a flight.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Step {
+    /// The time in seconds.
+    pub t_s: f64,
+    /// The risk and what it rests on; `None` where it is unknown.
+    pub estimate: Option<Estimate>,
+    /// The elevated risk in %.
+    pub elevated_risk_pct: Option<f64>,
+    /// The mean margin over all motors and the profile's window.
+    pub margin: Option<f64>,
+    /// The standard deviation of the commands over all motors and the profile's window.
+    pub spread: Option<f64>,
+    /// Whether it counts for findings and summary.
+    pub judged: bool,
+    /// The inputs of the rule set, in the order of the profile; NaN is unknown.
+    pub inputs: Vec<f64>,
+}
+
+/// The judged part of a time in the air: without the first seconds after take-off and the last before landing.
+///
+/// `None` where nothing is left. A flight that ends with its log in the air has no landing.
+pub fn judged_span(air: Span, ends_with_log: bool, settings: &VerdictSettings) -> Option<Span> {
+    let before_landing_s = match ends_with_log {
+        true => 0.0,
+        false => settings.quiet_before_landing_s,
+    };
+    let judged = Span {
+        from_s: air.from_s + settings.quiet_after_take_off_s,
+        to_s: air.to_s - before_landing_s,
+    };
+    (judged.length_s() > 0.0).then_some(judged)
+}
+
+/// Assesses flights sample by sample.
+///
+/// # Example: a motor at its limit
+/// ```
+/// use flagred::{flight::Assessor, monitor::{Craft, Sample}, shipped};
+///
+/// let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), Some(0.5))?;
+/// for i in 0..1500 {
+///     let t_s = f64::from(i) * 0.02;
+///     let motors = if t_s < 20.0 { [0.5; 4] } else { [1.0, 0.2, 0.9, 0.1] };
+///     assessor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
+/// }
+/// let assessment = assessor.finish();
+/// assert_eq!(assessment.verdict.to_string(), "FAIL");
+/// assert!(assessment.findings[0].from_s > 20.0 && assessment.findings[0].from_s < 25.0);
+/// assert_eq!(assessment.steps.len(), 60);
+/// # Ok::<(), flagred::monitor::MonitorError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Assessor {
+    monitor: Monitor,
+    /// `None` keeps no steps.
+    step_s: Option<f64>,
+    known_in_air_s: Option<f64>,
+    flight: Flight,
+}
+
+/// What adds up over a flight.
+#[derive(Debug, Clone)]
+struct Flight {
+    findings: Vec<Finding>,
+    steps: Vec<Step>,
+    next_step_s: f64,
+    last: Option<Last>,
+    summary: Summary,
+    judged_s: f64,
+    risk_times_s: f64,
+    motor_samples: u64,
+    saturated: u64,
+    /// For how long the risk was unknown, by reason.
+    unknown: Vec<(Unknown, f64)>,
+    /// Judged risks that a landing would still take back, in order of time.
+    pending: VecDeque<Pending>,
+}
+
+/// The sample before.
+#[derive(Debug, Clone, Copy)]
+struct Last {
+    t_s: f64,
+    in_air: bool,
+}
+
+/// A judged risk.
+#[derive(Debug, Clone, Copy)]
+struct Pending {
+    t_s: f64,
+    held_s: f64,
+    risk_pct: f64,
+    elevated_risk_pct: Option<f64>,
+}
+
+impl Assessor {
+    /// An assessor of a craft's flights that keeps a step every `step_s` seconds, or none.
+    ///
+    /// # Errors
+    ///
+    /// As [`Monitor::new`].
+    pub fn new(
+        estimator: &Estimator,
+        craft: Craft<'_>,
+        step_s: Option<f64>,
+    ) -> Result<Assessor, MonitorError> {
+        Ok(Assessor {
+            monitor: Monitor::new(estimator, craft)?,
+            step_s,
+            known_in_air_s: None,
+            flight: Flight::new(),
+        })
+    }
+
+    /// The monitor that the samples go through.
+    pub fn monitor(&self) -> &Monitor {
+        &self.monitor
+    }
+
+    /// Takes a sample in, in the air or on the ground.
+    pub fn push(&mut self, sample: &Sample<'_>) -> Update {
+        let update = self.monitor.push(sample);
+        if update.risk != Err(Unknown::OutOfOrder) {
+            let profile = self.monitor.estimator().profile();
+            self.flight.add(&update, sample, profile);
+            if sample.in_air {
+                self.keep_step(&update);
+            }
+        }
+        update
+    }
+
+    /// Sets the time in the air of this flight, in seconds, where it is known from elsewhere. Otherwise it is counted over
+    /// the samples, which says too little where some are missing at either end.
+    pub fn set_in_air_s(&mut self, in_air_s: f64) {
+        self.known_in_air_s = Some(in_air_s);
+    }
+
+    /// Ends the findings that are still open, and gives them.
+    pub fn end_findings(&mut self) -> Ended {
+        let ended = self.monitor.finish();
+        self.flight.findings.extend(ended.into_iter().flatten());
+        ended
+    }
+
+    /// Ends the flight and gives its assessment. Samples that follow are those of a new flight.
+    pub fn finish(&mut self) -> Assessment {
+        self.end_findings();
+        let mut flight = core::mem::replace(&mut self.flight, Flight::new());
+        flight.settle(f64::INFINITY);
+        let known_in_air_s = self.known_in_air_s.take();
+        flight.assessment(known_in_air_s, self.monitor.estimator().profile())
+    }
+
+    fn keep_step(&mut self, update: &Update) {
+        let (Some(step_s), flight) = (self.step_s, &mut self.flight) else {
+            return;
+        };
+        if update.t_s < flight.next_step_s {
+            return;
+        }
+        // On a grid of `step_s`; every sample where samples are rarer.
+        flight.next_step_s = match flight.next_step_s + step_s {
+            next_s if next_s > update.t_s => next_s,
+            _ => update.t_s + step_s,
+        };
+        flight.steps.push(Step {
+            t_s: update.t_s,
+            estimate: update.risk.ok(),
+            elevated_risk_pct: update.elevated_risk_pct,
+            margin: self.monitor.margin(),
+            spread: self.monitor.spread(),
+            judged: update.judged,
+            inputs: self.monitor.inputs().to_vec(),
+        });
+    }
+}
+
+impl Flight {
+    fn new() -> Flight {
+        Flight {
+            findings: Vec::new(),
+            steps: Vec::new(),
+            next_step_s: f64::NEG_INFINITY,
+            last: None,
+            summary: Summary::default(),
+            judged_s: 0.0,
+            risk_times_s: 0.0,
+            motor_samples: 0,
+            saturated: 0,
+            unknown: Vec::new(),
+            pending: VecDeque::new(),
+        }
+    }
+
+    fn add(&mut self, update: &Update, sample: &Sample<'_>, profile: &Profile) {
+        let t_s = sample.t_s;
+        let last = self.last.replace(Last {
+            t_s,
+            in_air: sample.in_air,
+        });
+        self.findings.extend(update.ended.into_iter().flatten());
+        let flown_s = last.filter(|last| last.in_air).map_or(0.0, |last| {
+            let held_s = (t_s - last.t_s).max(0.0);
+            // It may have landed at any time of a gap.
+            match sample.in_air || held_s <= profile.sampling.longest_gap_s {
+                true => held_s,
+                false => 0.0,
+            }
+        });
+        self.summary.in_air_s += flown_s;
+        let quiet_s = profile.verdict.quiet_before_landing_s;
+        if !sample.in_air {
+            if last.is_some_and(|last| last.in_air) {
+                self.take_back(t_s - quiet_s);
+            }
+            return;
+        }
+        for e in sample.motors.iter().filter(|e| e.is_finite()) {
+            self.motor_samples += 1;
+            self.saturated += u64::from(margin(*e) < SATURATED_MARGIN);
+        }
+        match update.risk {
+            Ok(estimate) => {
+                self.summary.assessed_s += flown_s;
+                if estimate.filled_from.is_some() {
+                    self.summary.filled_s += flown_s;
+                }
+                if update.judged {
+                    self.pending.push_back(Pending {
+                        t_s,
+                        held_s: flown_s,
+                        risk_pct: estimate.risk_pct,
+                        elevated_risk_pct: update.elevated_risk_pct,
+                    });
+                }
+            }
+            Err(reason) => {
+                let same = |known: &Unknown| {
+                    core::mem::discriminant(known) == core::mem::discriminant(&reason)
+                };
+                match self.unknown.iter_mut().find(|(known, _)| same(known)) {
+                    Some((_, total_s)) => *total_s += flown_s,
+                    None => self.unknown.push((reason, flown_s)),
+                }
+            }
+        }
+        self.settle(t_s - quiet_s);
+    }
+
+    /// Counts the judged risks up to a time: no landing takes them back any more.
+    fn settle(&mut self, until_s: f64) {
+        while let Some(risk) = self.pending.front().filter(|risk| risk.t_s <= until_s) {
+            self.judged_s += risk.held_s;
+            self.risk_times_s += risk.risk_pct * risk.held_s;
+            Peak::keep_larger(&mut self.summary.risk_max, risk.t_s, risk.risk_pct);
+            if let Some(elevated_pct) = risk.elevated_risk_pct {
+                Peak::keep_larger(&mut self.summary.elevated_risk_max, risk.t_s, elevated_pct);
+            }
+            self.pending.pop_front();
+        }
+    }
+
+    /// A landing: what came after `from_s` is not judged.
+    fn take_back(&mut self, from_s: f64) {
+        self.settle(from_s);
+        self.pending.clear();
+        for step in self.steps.iter_mut().rev() {
+            if step.t_s <= from_s {
+                break;
+            }
+            step.judged = false;
+        }
+    }
+
+    fn assessment(mut self, known_in_air_s: Option<f64>, profile: &Profile) -> Assessment {
+        let by_gravity =
+            |a: &Finding, b: &Finding| b.level.cmp(&a.level).then(a.from_s.total_cmp(&b.from_s));
+        self.findings.sort_by(by_gravity);
+        let share = |part: f64, whole: f64| (whole > 0.0).then(|| part / whole);
+        let summary = Summary {
+            in_air_s: known_in_air_s.unwrap_or(self.summary.in_air_s),
+            risk_mean_pct: share(self.risk_times_s, self.judged_s),
+            saturated_share: share(self.saturated as f64, self.motor_samples as f64),
+            ..self.summary
+        };
+        Assessment {
+            verdict: self.verdict(&summary, profile),
+            findings: self.findings,
+            summary,
+            inputs: profile.inputs.iter().map(|i| i.name.clone()).collect(),
+            steps: self.steps,
+        }
+    }
+
+    /// Without findings the flight is good only where enough of it is known.
+    fn verdict(&self, summary: &Summary, profile: &Profile) -> Verdict {
+        let knows_enough =
+            summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;
+        match self.findings.first() {
+            Some(gravest) => Verdict::Known(gravest.level),
+            None if knows_enough => Verdict::Known(Level::Good),
+            None => {
+                let longest = self.unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+                Verdict::NotAvailable(match longest {
+                    Some((unknown, _)) => Reason::RiskUnknown {
+                        unknown: *unknown,
+                        explanation: unknown.explain(profile),
+                        help: None,
+                    },
+                    None => Reason::NoCommands,
+                })
+            }
+        }
+    }
+}
+
+impl Assessment {
+    /// The assessment of a flight that cannot be assessed.
+    pub fn not_available(reason: impl Into<Reason>) -> Assessment {
+        Assessment {
+            verdict: Verdict::NotAvailable(reason.into()),
+            findings: Vec::new(),
+            summary: Summary::default(),
+            inputs: Vec::new(),
+            steps: Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

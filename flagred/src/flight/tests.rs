@@ -1,0 +1,131 @@
+use super::*;
+use crate::shipped;
+
+/// Flies at 50 Hz: for each phase its seconds, whether in the air, and the motors.
+fn fly(phases: &[(f64, bool, [f64; 4])]) -> Assessment {
+    let estimator = shipped::flagred_paper();
+    let mut assessor = Assessor::new(&estimator, Craft::new(4), Some(0.1)).unwrap();
+    let mut i = 0;
+    for (seconds, in_air, motors) in phases {
+        for _ in 0..(seconds * 50.0) as usize {
+            assessor.push(&Sample {
+                t_s: f64::from(i) * 0.02,
+                motors,
+                in_air: *in_air,
+                signals: &[],
+            });
+            i += 1;
+        }
+    }
+    assessor.finish()
+}
+
+const HOVER: [f64; 4] = [0.5; 4];
+const LIMIT: [f64; 4] = [0.0, 1.0, 0.0, 1.0];
+
+#[test]
+fn time_on_the_ground_is_not_in_the_air() {
+    let flown = fly(&[
+        (10.0, true, HOVER),
+        (400.0, false, [0.0; 4]),
+        (10.0, true, HOVER),
+        (1.0, false, [0.0; 4]),
+    ]);
+    assert!((flown.summary.in_air_s - 20.0).abs() < 0.1);
+    assert_eq!(flown.verdict, Verdict::Known(Level::Good));
+}
+
+#[test]
+fn risk_just_after_take_off_and_just_before_landing_is_not_judged() {
+    let flown = fly(&[
+        (2.0, true, LIMIT),
+        (20.0, true, HOVER),
+        (0.9, true, LIMIT),
+        (1.0, false, [0.0; 4]),
+    ]);
+    let peak = flown.summary.risk_max.unwrap();
+    assert!(peak.value_pct < 30.0, "{peak:?}");
+    let last = flown.steps.last().unwrap();
+    assert!(!last.judged && last.estimate.unwrap().risk_pct > peak.value_pct);
+    assert!(!flown.steps[0].judged && flown.steps[100].judged);
+    // The same end without a landing is judged.
+    let cut = fly(&[(20.0, true, HOVER), (3.0, true, LIMIT)]);
+    assert!(cut.summary.risk_max.unwrap().value_pct > 60.0);
+    assert_eq!(cut.verdict, Verdict::Known(Level::Fail));
+    assert!(
+        cut.findings
+            .is_sorted_by(|a, b| (b.level, a.from_s) <= (a.level, b.from_s))
+    );
+}
+
+#[test]
+fn a_flight_of_unknown_motors_has_no_verdict() {
+    let flown = fly(&[(20.0, true, [f64::NAN; 4])]);
+    let Verdict::NotAvailable(reason) = flown.verdict else {
+        panic!("{:?}", flown.verdict)
+    };
+    assert_eq!(
+        reason.to_string(),
+        "the signal of input `margin` has no known value"
+    );
+    let never = fly(&[(20.0, false, HOVER)]);
+    assert_eq!(never.verdict, Verdict::NotAvailable(Reason::NoCommands));
+}
+
+#[test]
+fn a_known_time_in_the_air_decides_what_is_enough() {
+    let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
+    for i in 0..1000 {
+        let t_s = f64::from(i) * 0.02;
+        assessor.push(&Sample {
+            t_s,
+            motors: &HOVER,
+            in_air: true,
+            signals: &[],
+        });
+    }
+    assessor.set_in_air_s(100.0);
+    let flown = assessor.finish();
+    assert!(matches!(
+        flown.verdict,
+        Verdict::NotAvailable(Reason::RiskUnknown { .. })
+    ));
+    assert_eq!(flown.summary.in_air_s, 100.0);
+    assert!(flown.steps.is_empty());
+}
+
+#[test]
+fn a_second_flight_begins_anew() {
+    let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), None).unwrap();
+    let mut fly = |from_s: f64, motors: [f64; 4]| {
+        for i in 0..1000 {
+            let t_s = from_s + f64::from(i) * 0.02;
+            assessor.push(&Sample {
+                t_s,
+                motors: &motors,
+                in_air: true,
+                signals: &[],
+            });
+        }
+        assessor.finish()
+    };
+    assert_eq!(fly(0.0, LIMIT).verdict, Verdict::Known(Level::Fail));
+    assert_eq!(fly(30.0, HOVER).verdict, Verdict::Known(Level::Good));
+}
+
+#[test]
+fn judged_time_leaves_out_take_off_and_landing() {
+    let settings = VerdictSettings::default();
+    let air = Span {
+        from_s: 10.0,
+        to_s: 30.0,
+    };
+    let judged = judged_span(air, false, &settings).unwrap();
+    assert_eq!((judged.from_s, judged.to_s), (15.0, 29.0));
+    assert_eq!(judged_span(air, true, &settings).unwrap().to_s, 30.0);
+    let hop = Span {
+        from_s: 10.0,
+        to_s: 12.0,
+    };
+    assert_eq!(judged_span(hop, false, &settings), None);
+}

@@ -1,0 +1,143 @@
+//! A flight log as samples: the one place where `flightlog` and FLAGRED meet.
+
+use alloc::{vec, vec::Vec};
+
+use flightlog::{Flight, Gap};
+
+use crate::{
+    attitude::Attitude,
+    estimator::Estimator,
+    evaluation::Span,
+    flight::{Assessment, Assessor, Reason, Verdict, judged_span},
+    monitor::{Craft, Sample, Unknown},
+    verdict::VerdictSettings,
+};
+
+/// The signals that an attitude error is made of.
+pub const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
+
+/// Assesses a flight. Every motor sample counts; a step is kept every `step_s` seconds, or none.
+///
+/// # Example: from a log to a verdict
+/// ```
+/// # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/flights/steady.BIN");
+/// let flight = flightlog::open(path, &flightlog::Options::default())?;
+/// let assessment = flagred::log::assess(&flight, &flagred::shipped::flagred(), None);
+/// assert_eq!(assessment.verdict.to_string(), "GOOD");
+/// for finding in &assessment.findings {
+///     println!("{} from {:.1} to {:.1} s", finding.level, finding.from_s, finding.to_s);
+/// }
+/// # Ok::<(), flightlog::ReadError>(())
+/// ```
+pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> Assessment {
+    let gaps = flight.gaps();
+    let is_needed = |gap: &&Gap| !matches!(gap, Gap::NoAttitude | Gap::TooSlow { .. });
+    if let Some(gap) = gaps.iter().find(is_needed) {
+        return Assessment::not_available(Reason::Log(gap.clone()));
+    }
+    let signals = carried(flight, &estimator.profile().signals());
+    let mut assessor = match Assessor::new(estimator, craft(flight, &signals), step_s) {
+        Ok(assessor) => assessor,
+        Err(error) => return Assessment::not_available(error),
+    };
+    for_each_sample(flight, &signals, |sample| {
+        assessor.push(sample);
+    });
+    if let Some(in_air) = &flight.in_air {
+        assessor.set_in_air_s(in_air.duration_s());
+    }
+    let mut assessment = assessor.finish();
+    let slow = gaps.iter().find(|gap| matches!(gap, Gap::TooSlow { .. }));
+    if let Verdict::NotAvailable(Reason::RiskUnknown {
+        unknown: Unknown::TooFewSamples { .. },
+        help,
+        ..
+    }) = &mut assessment.verdict
+    {
+        *help = slow.and_then(Gap::help);
+    }
+    assessment
+}
+
+/// The craft that flew, with samples that carry the named signals.
+pub fn craft<'a>(flight: &Flight, signals: &'a [&'a str]) -> Craft<'a> {
+    Craft::new(flight.motors.len()).with_signals(signals)
+}
+
+/// Those of the named signals that the flight carries.
+pub fn carried<'a>(flight: &Flight, names: &[&'a str]) -> Vec<&'a str> {
+    let names = names.iter().copied();
+    names.filter(|name| flight.signal(name).is_some()).collect()
+}
+
+/// Calls `take` with every motor sample of a flight in turn, with the latest value of each named signal.
+pub fn for_each_sample(flight: &Flight, signals: &[&str], mut take: impl FnMut(&Sample<'_>)) {
+    let mut holds: Vec<_> = signals
+        .iter()
+        .map(|name| flight.signal(name).map(|signal| signal.hold()))
+        .collect();
+    let mut motors = vec![f64::NAN; flight.motors.len()];
+    let mut signals = vec![f64::NAN; holds.len()];
+    for (t_s, row) in flight.commands.rows() {
+        for (effective, &raw) in motors.iter_mut().zip(row) {
+            *effective = flight.effective_command(raw).unwrap_or(f64::NAN);
+        }
+        for (value, hold) in signals.iter_mut().zip(&mut holds) {
+            let held = hold.as_mut().and_then(|hold| hold.at(t_s));
+            *value = held.unwrap_or(f64::NAN);
+        }
+        take(&Sample {
+            t_s,
+            motors: &motors,
+            in_air: flight.is_in_air(t_s) == Some(true),
+            signals: &signals,
+        });
+    }
+}
+
+/// The attitude over time, at the rate of `roll_deg`.
+pub fn attitudes(flight: &Flight) -> impl Iterator<Item = (f64, Attitude)> + '_ {
+    let mut holds = ATTITUDE.map(|name| flight.signal(name).map(|signal| signal.hold()));
+    let times = flight.signal("roll_deg").map_or(&[][..], |roll| roll.t_s);
+    times.iter().map(move |&t_s| {
+        let [roll_des_deg, roll_deg, pitch_des_deg, pitch_deg] = holds.each_mut().map(|hold| {
+            let held = hold.as_mut().and_then(|hold| hold.at(t_s));
+            held.unwrap_or(f64::NAN)
+        });
+        let attitude = Attitude {
+            roll_des_deg,
+            roll_deg,
+            pitch_des_deg,
+            pitch_deg,
+        };
+        (t_s, attitude)
+    })
+}
+
+/// What the header of a flight CSV says under a key, such as `kind` or `vehicle`.
+pub fn header<'a>(flight: &'a Flight, key: &str) -> Option<&'a str> {
+    let found = flight.header.iter().find(|(k, _)| k == key);
+    found.map(|(_, value)| value.as_str())
+}
+
+/// The judged time of a flight: from `judged_from_s` to `judged_to_s` of the header, else [`judged_span`] of each time in
+/// the air.
+pub fn judged_spans(flight: &Flight, settings: &VerdictSettings) -> Vec<Span> {
+    let number = |key| header(flight, key).and_then(|text| text.parse::<f64>().ok());
+    if let (Some(from_s), Some(to_s)) = (number("judged_from_s"), number("judged_to_s")) {
+        let span = Span { from_s, to_s };
+        return Some(span)
+            .filter(|span| span.length_s() > 0.0)
+            .into_iter()
+            .collect();
+    }
+    let air = flight.in_air.iter().flat_map(|air| &air.spans);
+    air.filter_map(|span| {
+        let air = Span {
+            from_s: span.start_s,
+            to_s: span.end_s,
+        };
+        judged_span(air, span.ends_with_log, settings)
+    })
+    .collect()
+}

@@ -1,0 +1,130 @@
+//! What goes into a monitor with every sample, and what comes out.
+
+use crate::verdict::{Ended, Level};
+
+/// A sample of a flight.
+#[derive(Debug, Clone, Copy)]
+pub struct Sample<'a> {
+    /// Its time in seconds; times must not decrease.
+    pub t_s: f64,
+    /// The effective command of each motor in [0, 1]; any other value, such as NaN, is unknown.
+    pub motors: &'a [f64],
+    /// Whether the vehicle is in the air.
+    pub in_air: bool,
+    /// The values of the signals that the monitor was given the names of, in that order; NaN is unknown.
+    pub signals: &'a [f64],
+}
+
+/// What a monitor knows after a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Update {
+    /// The time of the sample in seconds.
+    pub t_s: f64,
+    /// The risk, or why it is unknown.
+    pub risk: Result<Estimate, Unknown>,
+    /// The elevated risk in %; `None` where the risk is unknown.
+    pub elevated_risk_pct: Option<f64>,
+    /// The level; `None` on the ground and where the risk has been unknown for long.
+    pub level: Option<Level>,
+    /// The new level where this sample changed it.
+    pub change: Option<Level>,
+    /// Whether the risk counts for levels, findings and the summary of a flight: in the first seconds after take-off it
+    /// does not. A landing takes back the last seconds before it.
+    pub judged: bool,
+    /// The findings that ended with this sample.
+    pub ended: Ended,
+}
+
+/// The risk where all inputs are known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The risk in %, from 0 to 100.
+    pub risk_pct: f64,
+    /// The largest firing strength of a rule, in [0, 1].
+    pub coverage: f64,
+    /// The distance to the nearest inputs that rules cover, in shares of the inputs' ranges, where the risk is
+    /// interpolated from there; `None` where rules gave it.
+    pub filled_from: Option<f64>,
+    /// The rule with the largest firing strength, as its index in the model, from 0.
+    pub dominant_rule: Option<usize>,
+    /// Whether an input was outside its range and was moved to the end of the range.
+    pub clamped: bool,
+}
+
+/// Why a risk is unknown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unknown {
+    /// The vehicle is on the ground.
+    OnGround,
+    /// The time stamp is not after the previous one; the sample was ignored.
+    OutOfOrder,
+    /// The window of an input does not cover enough time yet.
+    WarmingUp {
+        /// The input, in the order of the profile.
+        input: usize,
+    },
+    /// The window of an input holds too few samples.
+    TooFewSamples {
+        /// The input, in the order of the profile.
+        input: usize,
+        /// How many it holds.
+        samples: u32,
+    },
+    /// The signal of an input has no known value.
+    NoValue {
+        /// The input, in the order of the profile.
+        input: usize,
+    },
+    /// No rule applies, and there is nothing to interpolate from.
+    NoRule,
+}
+
+/// When an input counts as known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampling {
+    /// The fewest samples a window must hold.
+    pub min_samples: u32,
+    /// How much time a window must cover before it counts, in seconds, or its whole length where that is less.
+    pub warm_up_s: f64,
+    /// After a longer time without a sample, in seconds, the state is reset.
+    pub longest_gap_s: f64,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Sampling {
+            min_samples: 5,
+            warm_up_s: 1.0,
+            longest_gap_s: 2.0,
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Update {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeMap;
+        let mut fields = serializer.serialize_map(None)?;
+        fields.serialize_entry("t_s", &self.t_s)?;
+        serialize_risk(&mut fields, self.risk.ok(), self.elevated_risk_pct)?;
+        fields.serialize_entry("level", &self.level)?;
+        fields.serialize_entry("judged", &self.judged)?;
+        fields.end()
+    }
+}
+
+/// A risk and what it rests on; `null` where it is unknown.
+#[cfg(feature = "serde")]
+pub(crate) fn serialize_risk<M: serde::ser::SerializeMap>(
+    fields: &mut M,
+    estimate: Option<Estimate>,
+    elevated_risk_pct: Option<f64>,
+) -> Result<(), M::Error> {
+    let is_filled = |e: Estimate| e.filled_from.is_some();
+    let dominant = estimate.and_then(|e| e.dominant_rule);
+    fields.serialize_entry("risk", &estimate.map(|e| e.risk_pct))?;
+    fields.serialize_entry("elevated_risk", &elevated_risk_pct)?;
+    fields.serialize_entry("coverage", &estimate.map(|e| e.coverage))?;
+    fields.serialize_entry("filled", &estimate.map(is_filled))?;
+    fields.serialize_entry("dominant_rule", &dominant.map(|rule| rule + 1))
+}
