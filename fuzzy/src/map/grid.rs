@@ -121,7 +121,7 @@ impl Axis {
 
     /// The index of the point below `x`, and the share in [0, 1] of the way from there to the next point. `x` is clamped to
     /// the axis.
-    pub fn locate(&self, x: f64) -> (usize, f64) {
+    fn locate(&self, x: f64) -> (usize, f64) {
         let last = self.points.saturating_sub(2);
         let steps = (x - self.low) / (self.high - self.low) * (self.points - 1) as f64;
         if steps > 0.0 {

@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 
 use crate::Engine;
-use crate::engine::{EvaluateError, Outcome, Scratch, State};
+use crate::engine::{EvaluateError, Outcome, Scratch};
 
 mod grid;
 mod picture;
@@ -231,14 +231,5 @@ impl DecisionMap {
     /// The N-linear interpolation between cells; `None` where one of those cells has no value.
     pub fn interpolate(&self, point: &[f64]) -> Option<f64> {
         self.grid.interpolate(|cell| self.value(cell), point)
-    }
-
-    /// The state that an evaluation at the cell has.
-    pub fn state(&self, cell: usize) -> State {
-        match (self.value(cell), self.dominant(cell)) {
-            (Some(value), Some(_)) => State::Defined(value),
-            (Some(value), None) => State::Default(value),
-            (None, _) => State::NoRuleFired,
-        }
     }
 }
