@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::model::Shape;
+use crate::model::MembershipFunction;
 
 /// `z = constant + sum(coefficient input)`.
 #[derive(Debug, Clone)]
@@ -16,15 +16,14 @@ impl Consequence {
     /// The consequent of a term; `None` of a shape that is no consequent. A singleton is a constant.
     /// Names of inputs that `input` does not know are given to `unknown`.
     pub(crate) fn new(
-        shape: &Shape,
+        shape: &MembershipFunction,
         input: impl Fn(&str) -> Option<usize>,
         mut unknown: impl FnMut(&str),
     ) -> Option<Self> {
         let (constant, coefficients) = match shape {
-            Shape::Constant { value: constant } | Shape::Singleton { at: constant } => {
-                (*constant, Vec::new())
-            }
-            Shape::Linear {
+            MembershipFunction::Constant { value: constant }
+            | MembershipFunction::Singleton { at: constant } => (*constant, Vec::new()),
+            MembershipFunction::Linear {
                 coefficients,
                 constant,
             } => {

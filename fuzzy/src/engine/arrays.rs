@@ -6,7 +6,7 @@ use super::literal::{Literal, Literals};
 use super::rules::{Conjunctions, Rules};
 use super::{CompiledOutput, Input};
 use crate::defuzzify::Closed;
-use crate::model::{Conjunction, Disjunction, NoRuleFires, Operators, Shape};
+use crate::model::{Conjunction, Disjunction, MembershipFunction, NoRuleFires, Operators};
 use crate::rule::Hedge;
 use crate::table::{
     self, Action, Axis, Coefficient, Consequence, Curve, Dimension, Edge, Line, Moment, Node, Op,
@@ -105,7 +105,7 @@ impl Arrays {
     fn curve(&mut self, index: u32, literal: &Literal) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
         let (kind, parameters) = literal.term.shape.kind();
-        if let Shape::Piecewise { points } = &literal.term.shape {
+        if let MembershipFunction::Piecewise { points } = &literal.term.shape {
             self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
         }
         self.hedges.extend(&literal.hedges);

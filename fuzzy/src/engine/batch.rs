@@ -23,12 +23,12 @@ impl Engine {
     ///
     /// # Example: two rows
     /// ```
-    /// # use fuzzy::model::{Model, Output, Shape, Variable};
+    /// # use fuzzy::model::{Model, Output, MembershipFunction, Variable};
     /// # use fuzzy::rule::{Condition, Rule};
     /// # let model = Model::builder("m")
-    /// #     .input(Variable::new("x", 0.0, 1.0).term("low", Shape::Triangle { left: 0.0, peak: 0.0, right: 0.5 }))
+    /// #     .input(Variable::new("x", 0.0, 1.0).term("low", MembershipFunction::Triangle { left: 0.0, peak: 0.0, right: 0.5 }))
     /// #     .input(Variable::new("y", 0.0, 1.0))
-    /// #     .output(Output::new(Variable::new("z", 0.0, 1.0).term("small", Shape::Rectangle { left: 0.0, right: 0.5 })))
+    /// #     .output(Output::new(Variable::new("z", 0.0, 1.0).term("small", MembershipFunction::Rectangle { left: 0.0, right: 0.5 })))
     /// #     .rule(Rule::new(Condition::is("x", "low"), "z", "small")).build();
     /// use fuzzy::Engine;
     ///

@@ -11,7 +11,7 @@
 use alloc::{boxed::Box, collections::BTreeMap, string::ToString, vec, vec::Vec};
 
 use crate::{
-    model::{Model, Shape, Variable},
+    model::{MembershipFunction, Model, Variable},
     rule::{Condition, Name},
 };
 
@@ -403,7 +403,7 @@ fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
 }
 
 /// Where a term stands on its variable: the middle of the part in which it is highest.
-fn peak(variable: &Variable, shape: &Shape) -> f64 {
+fn peak(variable: &Variable, shape: &MembershipFunction) -> f64 {
     // Shapes are many and few have a closed form; terms are told apart by far more than a thousandth of the range.
     const STEPS: u32 = 2000;
     let at =

@@ -10,9 +10,9 @@ use crate::Engine;
 ///
 /// # Example: a slice of a model of three inputs
 /// ```
-/// # use fuzzy::model::{Model, Output, Shape, Variable};
+/// # use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// # use fuzzy::rule::{Condition, Rule};
-/// # let term = |name, low, high| Variable::new(name, low, high).term("any", Shape::Rectangle { left: low, right: high });
+/// # let term = |name, low, high| Variable::new(name, low, high).term("any", MembershipFunction::Rectangle { left: low, right: high });
 /// # let model = Model::builder("m").input(term("margin", 0.0, 0.5)).input(term("spread", 0.0, 0.5)).input(term("battery", 0.0, 1.0))
 /// #     .output(Output::new(term("risk", 0.0, 100.0))).rule(Rule::new(Condition::is("margin", "any"), "risk", "any")).build();
 /// use fuzzy::{Engine, map::Grid};

@@ -19,11 +19,11 @@ pub use table::{DecisionTable, TableError};
 ///
 /// # Example: the part of a map that rules cover
 /// ```
-/// # use fuzzy::model::{Model, Output, Shape, Variable};
+/// # use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// # use fuzzy::rule::{Condition, Rule};
 /// # let model = Model::builder("m")
-/// #     .input(Variable::new("x", 0.0, 1.0).term("low", Shape::Triangle { left: 0.0, peak: 0.0, right: 0.5 }))
-/// #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("small", Shape::Rectangle { left: 0.0, right: 0.5 })))
+/// #     .input(Variable::new("x", 0.0, 1.0).term("low", MembershipFunction::Triangle { left: 0.0, peak: 0.0, right: 0.5 }))
+/// #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("small", MembershipFunction::Rectangle { left: 0.0, right: 0.5 })))
 /// #     .rule(Rule::new(Condition::is("x", "low"), "y", "small")).build();
 /// use fuzzy::{Engine, map::{DecisionMap, Grid}};
 ///

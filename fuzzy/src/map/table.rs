@@ -13,13 +13,13 @@ use crate::engine::EvaluateError;
 ///
 /// # Example: a table that is at most 0.5 % of risk away from its engine
 /// ```
-/// # use fuzzy::model::{Model, Output, Shape, Variable};
+/// # use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// # use fuzzy::rule::{Condition, Rule};
 /// # let model = Model::builder("m")
 /// #     .input(Variable::new("x", 0.0, 1.0)
-/// #         .term("low", Shape::LeftShoulder { top: 0.0, foot: 1.0 }).term("high", Shape::RightShoulder { foot: 0.0, top: 1.0 }))
+/// #         .term("low", MembershipFunction::LeftShoulder { top: 0.0, foot: 1.0 }).term("high", MembershipFunction::RightShoulder { foot: 0.0, top: 1.0 }))
 /// #     .output(Output::new(Variable::new("risk", 0.0, 100.0)
-/// #         .term("low", Shape::LeftShoulder { top: 0.0, foot: 100.0 }).term("high", Shape::RightShoulder { foot: 0.0, top: 100.0 })))
+/// #         .term("low", MembershipFunction::LeftShoulder { top: 0.0, foot: 100.0 }).term("high", MembershipFunction::RightShoulder { foot: 0.0, top: 100.0 })))
 /// #     .rule(Rule::new(Condition::is("x", "low"), "risk", "low"))
 /// #     .rule(Rule::new(Condition::is("x", "high"), "risk", "high")).build();
 /// use fuzzy::{Engine, map::DecisionTable};

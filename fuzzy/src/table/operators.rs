@@ -4,14 +4,14 @@
 ///
 /// # Example: two degrees of one half
 /// ```
-/// # use fuzzy::{Engine, model::{Conjunction, Model, Operators, Output, Shape, Variable}, rule};
+/// # use fuzzy::{Engine, model::{Conjunction, Model, Operators, Output, MembershipFunction, Variable}, rule};
 /// # let rule = rule::parse("IF a IS high AND b IS high THEN y IS any_value")?;
 /// let half_and_half = |and| -> Result<f64, Box<dyn std::error::Error>> {
-///     # let rising = Shape::RightShoulder { foot: 0.0, top: 1.0 };
+///     # let rising = MembershipFunction::RightShoulder { foot: 0.0, top: 1.0 };
 ///     # let model = Model::builder("and").operators(Operators { and, ..Operators::default() })
 ///     #     .input(Variable::new("a", 0.0, 1.0).term("high", rising.clone()))
 ///     #     .input(Variable::new("b", 0.0, 1.0).term("high", rising))
-///     #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("any_value", Shape::Rectangle { left: 0.0, right: 1.0 })))
+///     #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("any_value", MembershipFunction::Rectangle { left: 0.0, right: 1.0 })))
 ///     #     .rule(rule.clone()).build();
 ///     Ok(Engine::new(&model)?.evaluate(&[0.5, 0.5])?[0].coverage)
 /// };
@@ -43,14 +43,14 @@ pub enum Conjunction {
 ///
 /// # Example: two degrees of one half
 /// ```
-/// # use fuzzy::{Engine, model::{Disjunction, Model, Operators, Output, Shape, Variable}, rule};
+/// # use fuzzy::{Engine, model::{Disjunction, Model, Operators, Output, MembershipFunction, Variable}, rule};
 /// # let rule = rule::parse("IF a IS high OR b IS high THEN y IS any_value")?;
 /// let half_or_half = |or| -> Result<f64, Box<dyn std::error::Error>> {
-///     # let rising = Shape::RightShoulder { foot: 0.0, top: 1.0 };
+///     # let rising = MembershipFunction::RightShoulder { foot: 0.0, top: 1.0 };
 ///     # let model = Model::builder("or").operators(Operators { or, ..Operators::default() })
 ///     #     .input(Variable::new("a", 0.0, 1.0).term("high", rising.clone()))
 ///     #     .input(Variable::new("b", 0.0, 1.0).term("high", rising))
-///     #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("any_value", Shape::Rectangle { left: 0.0, right: 1.0 })))
+///     #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("any_value", MembershipFunction::Rectangle { left: 0.0, right: 1.0 })))
 ///     #     .rule(rule.clone()).build();
 ///     Ok(Engine::new(&model)?.evaluate(&[0.5, 0.5])?[0].coverage)
 /// };
@@ -82,12 +82,12 @@ pub enum Disjunction {
 ///
 /// # Example: a triangle from 0 over 0 to 9, cut at one half or scaled by it
 /// ```
-/// # use fuzzy::{Engine, model::{Implication, Model, Operators, Output, Shape, Variable}, rule};
+/// # use fuzzy::{Engine, model::{Implication, Model, Operators, Output, MembershipFunction, Variable}, rule};
 /// # let rule = rule::parse("IF heat IS high THEN speed IS slow WITH 0.5")?;
 /// let centroid = |implication| -> Result<f64, Box<dyn std::error::Error>> {
 ///     # let model = Model::builder("fan").operators(Operators { implication, ..Operators::default() })
-///     #     .input(Variable::new("heat", 0.0, 1.0).term("high", Shape::RightShoulder { foot: 0.0, top: 1.0 }))
-///     #     .output(Output::new(Variable::new("speed", 0.0, 9.0).term("slow", Shape::LeftShoulder { top: 0.0, foot: 9.0 })))
+///     #     .input(Variable::new("heat", 0.0, 1.0).term("high", MembershipFunction::RightShoulder { foot: 0.0, top: 1.0 }))
+///     #     .output(Output::new(Variable::new("speed", 0.0, 9.0).term("slow", MembershipFunction::LeftShoulder { top: 0.0, foot: 9.0 })))
 ///     #     .rule(rule.clone()).build();
 ///     let outcome = Engine::new(&model)?.evaluate(&[1.0])?[0];
 ///     Ok(outcome.value().ok_or("no rule fired")?)
@@ -109,13 +109,13 @@ pub enum Implication {
 ///
 /// # Example: two rules of one conclusion count once, or twice
 /// ```
-/// # use fuzzy::{Engine, model::{Aggregation, Model, Operators, Output, Shape, Variable}, rule};
+/// # use fuzzy::{Engine, model::{Aggregation, Model, Operators, Output, MembershipFunction, Variable}, rule};
 /// let rules = ["IF x IS any THEN y IS low WITH 0.5", "IF NOT x IS NOT any THEN y IS low WITH 0.5", "IF x IS any THEN y IS high WITH 0.5"];
 /// let centroid = |aggregation| -> Result<f64, Box<dyn std::error::Error>> {
 ///     # let mut model = Model::builder("both").operators(Operators { aggregation, ..Operators::default() })
 ///     #     .input(Variable::new("x", 0.0, 1.0))
 ///     #     .output(Output::new(Variable::new("y", 0.0, 9.0)
-///     #         .term("low", Shape::Rectangle { left: 0.0, right: 3.0 }).term("high", Shape::Rectangle { left: 6.0, right: 9.0 })));
+///     #         .term("low", MembershipFunction::Rectangle { left: 0.0, right: 3.0 }).term("high", MembershipFunction::Rectangle { left: 6.0, right: 9.0 })));
 ///     # for rule in rules { model = model.rule(rule::parse(rule)?); }
 ///     let outcome = Engine::new(&model.build())?.evaluate(&[1.0])?[0];
 ///     Ok(outcome.value().ok_or("no rule fired")?)
@@ -141,11 +141,11 @@ pub enum Aggregation {
 ///
 /// # Example: a degree of one quarter
 /// ```
-/// # use fuzzy::{Engine, model::{Model, Output, Shape, Variable}, rule::{Condition, Hedge, Rule}};
+/// # use fuzzy::{Engine, model::{Model, Output, MembershipFunction, Variable}, rule::{Condition, Hedge, Rule}};
 /// let quarter = |hedges: &[Hedge]| -> Result<f64, Box<dyn std::error::Error>> {
 ///     # let model = Model::builder("hedged")
-///     #     .input(Variable::new("x", 0.0, 1.0).term("high", Shape::RightShoulder { foot: 0.0, top: 1.0 }))
-///     #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("any_value", Shape::Rectangle { left: 0.0, right: 1.0 })))
+///     #     .input(Variable::new("x", 0.0, 1.0).term("high", MembershipFunction::RightShoulder { foot: 0.0, top: 1.0 }))
+///     #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("any_value", MembershipFunction::Rectangle { left: 0.0, right: 1.0 })))
 ///     #     .rule(Rule::new(Condition::is_hedged("x", hedges, "high"), "y", "any_value")).build();
 ///     Ok(Engine::new(&model)?.evaluate(&[0.25])?[0].coverage)
 /// };
