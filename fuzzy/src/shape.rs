@@ -1,6 +1,6 @@
 //! The shapes of membership functions. What a shape is stands in this file alone: its formula, which has a number and is
 //! all that a table in firmware knows of it; and, where there is an allocator, in three places that the compiler asks for,
-//! its variant in [`Shape`], its line in the table of spellings, and its outline.
+//! its variant in [`MembershipFunction`], its line in the table of spellings, and its outline.
 //!
 //! Formulas that several shapes share are in `straight` and `smooth`.
 
@@ -27,9 +27,9 @@ use smooth::{flank, gaussian_flank, sigmoid_flanks};
 use smooth::{gaussian, s_shape, sigmoid, z_shape};
 use straight::{along, falling, indicator, into_unit, rising, trapezoid};
 #[cfg(feature = "alloc")]
-pub use validate::ShapeError;
+pub use validate::MembershipError;
 
-/// The formula of a membership function. What it takes as its parameters is in the order of the fields of the `Shape` of
+/// The formula of a membership function. What it takes as its parameters is in the order of the fields of the `MembershipFunction` of
 /// that name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(transparent)]
@@ -114,15 +114,15 @@ fn concave(x: f64, inflection: f64, end: f64) -> f64 {
 ///
 /// # Example: a part of a range that people call warm
 /// ```
-/// use fuzzy::model::Shape;
+/// use fuzzy::model::MembershipFunction;
 ///
-/// let warm = Shape::Trapezoid { left: 15.0, left_top: 20.0, right_top: 25.0, right: 30.0 };
+/// let warm = MembershipFunction::Trapezoid { left: 15.0, left_top: 20.0, right_top: 25.0, right: 30.0 };
 /// assert_eq!(warm.membership(22.0), 1.0);
 /// assert_eq!(warm.membership(16.0), 0.2);
 /// ```
 #[cfg(feature = "alloc")]
 #[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
+pub enum MembershipFunction {
     /// 0 at `left`, 1 at `peak`, 0 at `right`, straight between; `left = peak` is a closed shoulder.
     /// MATLAB's `trimf`.
     Triangle {
@@ -354,7 +354,7 @@ form::forms! {
 }
 
 #[cfg(feature = "alloc")]
-impl Shape {
+impl MembershipFunction {
     /// The degree of membership of `x`, always in [0, 1] and never NaN.
     ///
     /// The formula of each shape stands at its variant. Everywhere:
@@ -369,8 +369,8 @@ impl Shape {
     /// the same bits on every machine.
     pub fn membership(&self, x: f64) -> f64 {
         match self {
-            Shape::Piecewise { .. } if x.is_nan() => 0.0,
-            Shape::Piecewise { points } => into_unit(along(points.iter().copied(), x)),
+            MembershipFunction::Piecewise { .. } if x.is_nan() => 0.0,
+            MembershipFunction::Piecewise { points } => into_unit(along(points.iter().copied(), x)),
             _ => {
                 let (kind, parameters) = self.kind();
                 kind.membership(&parameters, &[], x)
@@ -390,11 +390,11 @@ enum Outline {
 }
 
 #[cfg(feature = "alloc")]
-impl Shape {
+impl MembershipFunction {
     /// Why parameters that are right one by one still make no shape.
     fn misfit(&self) -> Option<String> {
         match *self {
-            Shape::Concave { inflection, end } if inflection == end => {
+            MembershipFunction::Concave { inflection, end } if inflection == end => {
                 Some(format!("`inflection` and `end` are both {end}"))
             }
             _ => None,
@@ -404,10 +404,10 @@ impl Shape {
     fn outline(&self) -> Outline {
         use Outline::{Smooth, Straight};
         match *self {
-            Shape::Triangle { left, peak, right } => {
+            MembershipFunction::Triangle { left, peak, right } => {
                 Straight(vec![(left, 0.0), (peak, 1.0), (right, 0.0)])
             }
-            Shape::Trapezoid {
+            MembershipFunction::Trapezoid {
                 left,
                 left_top,
                 right_top,
@@ -418,17 +418,21 @@ impl Shape {
                 (right_top, 1.0),
                 (right, 0.0),
             ]),
-            Shape::LeftShoulder { top, foot } => Straight(vec![(top, 1.0), (foot, 0.0)]),
-            Shape::RightShoulder { foot, top } => Straight(vec![(foot, 0.0), (top, 1.0)]),
-            Shape::Rectangle { left, right } => {
+            MembershipFunction::LeftShoulder { top, foot } => {
+                Straight(vec![(top, 1.0), (foot, 0.0)])
+            }
+            MembershipFunction::RightShoulder { foot, top } => {
+                Straight(vec![(foot, 0.0), (top, 1.0)])
+            }
+            MembershipFunction::Rectangle { left, right } => {
                 Straight(vec![(left, 0.0), (left, 1.0), (right, 1.0), (right, 0.0)])
             }
-            Shape::Singleton { at } => Straight(vec![(at, 0.0), (at, 1.0), (at, 0.0)]),
-            Shape::Piecewise { ref points } => Straight(points.clone()),
-            Shape::Gaussian { mean, sd } => {
+            MembershipFunction::Singleton { at } => Straight(vec![(at, 0.0), (at, 1.0), (at, 0.0)]),
+            MembershipFunction::Piecewise { ref points } => Straight(points.clone()),
+            MembershipFunction::Gaussian { mean, sd } => {
                 Smooth([gaussian_flank(mean, -sd), gaussian_flank(mean, sd)].concat())
             }
-            Shape::Gaussian2 {
+            MembershipFunction::Gaussian2 {
                 left_mean,
                 left_sd,
                 right_mean,
@@ -440,7 +444,7 @@ impl Shape {
                 ]
                 .concat(),
             ),
-            Shape::Bell {
+            MembershipFunction::Bell {
                 center,
                 width,
                 slope,
@@ -458,14 +462,16 @@ impl Shape {
                     .concat(),
                 )
             }
-            Shape::Sigmoid { inflection, slope } => Smooth(sigmoid_flanks(inflection, slope)),
-            Shape::SigmoidDifference {
+            MembershipFunction::Sigmoid { inflection, slope } => {
+                Smooth(sigmoid_flanks(inflection, slope))
+            }
+            MembershipFunction::SigmoidDifference {
                 left_inflection,
                 left_slope,
                 right_inflection,
                 right_slope,
             }
-            | Shape::SigmoidProduct {
+            | MembershipFunction::SigmoidProduct {
                 left_inflection,
                 left_slope,
                 right_inflection,
@@ -483,10 +489,9 @@ impl Shape {
                     .concat(),
                 )
             }
-            Shape::SShape { foot: a, top: b } | Shape::ZShape { top: a, foot: b } => {
-                Smooth(vec![a, 0.5 * (a + b), b])
-            }
-            Shape::PiShape {
+            MembershipFunction::SShape { foot: a, top: b }
+            | MembershipFunction::ZShape { top: a, foot: b } => Smooth(vec![a, 0.5 * (a + b), b]),
+            MembershipFunction::PiShape {
                 left,
                 left_top,
                 right_top,
@@ -499,21 +504,21 @@ impl Shape {
                 0.5 * (right_top + right),
                 right,
             ]),
-            Shape::Cosine { center, width } => {
+            MembershipFunction::Cosine { center, width } => {
                 Smooth(vec![center - 0.5 * width, center, center + 0.5 * width])
             }
-            Shape::Spike { center, width } => {
+            MembershipFunction::Spike { center, width } => {
                 let reach = |level: f64| -0.1 * log(level);
                 Smooth([flank(center, -width, reach), flank(center, width, reach)].concat())
             }
-            Shape::Concave { inflection, end } => Smooth(vec![
+            MembershipFunction::Concave { inflection, end } => Smooth(vec![
                 inflection,
                 end,
                 end - 5.0 * (end - inflection),
                 end - 25.0 * (end - inflection),
             ]),
-            Shape::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
-            Shape::Linear { .. } => Smooth(vec![]),
+            MembershipFunction::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
+            MembershipFunction::Linear { .. } => Smooth(vec![]),
         }
     }
 

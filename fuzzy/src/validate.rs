@@ -10,7 +10,7 @@ use crate::{
     defuzzify::Defuzzify,
     diagnostic::{Diagnostic, duplicate, suggest},
     model::{
-        Model, NoRuleFires, Output, Rule, Shape, Variable,
+        MembershipFunction, Model, NoRuleFires, Output, Rule, Variable,
         document::{RuleSpans, Spans, TermSpans, VariableSpans},
     },
     rule::{Condition, DEEPEST_NESTING, Hedge, Name, Proposition},
@@ -212,7 +212,7 @@ impl<'m> Validator<'m> {
 
     fn no_linear_terms(&mut self, input: &Variable, spans: &VariableSpans) {
         for (i, term) in input.terms.iter().enumerate() {
-            if let Shape::Linear { .. } = term.shape {
+            if let MembershipFunction::Linear { .. } = term.shape {
                 let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());
                 let message = format!(
                     "term `{}` of input `{}` is a linear function",
@@ -273,18 +273,18 @@ impl<'m> Validator<'m> {
             let what = format!("term `{}` of {what}", term.name);
             match &term.shape {
                 _ if spans.unread => {}
-                Shape::Linear { coefficients, .. } => {
+                MembershipFunction::Linear { coefficients, .. } => {
                     if !weighted {
                         let message = format!("{what} is a linear function");
                         self.error("wrong-term", here, message, WEIGHTED);
                     }
                     self.coefficients(&what, coefficients, spans);
                 }
-                Shape::Singleton { .. } if !weighted => {
+                MembershipFunction::Singleton { .. } if !weighted => {
                     let message = format!("{what} is a singleton, which has no area");
                     self.error("wrong-term", here, message, WEIGHTED);
                 }
-                Shape::Constant { .. } | Shape::Singleton { .. } => {}
+                MembershipFunction::Constant { .. } | MembershipFunction::Singleton { .. } => {}
                 _ if weighted => {
                     let message =
                         format!("{what} is a fuzzy set, but the output is a weighted one");

@@ -3,7 +3,7 @@
 use alloc::{collections::BTreeSet, string::String, vec::Vec};
 
 use super::axis;
-use crate::model::{Model, Shape, Term, Variable};
+use crate::model::{MembershipFunction, Model, Term, Variable};
 
 /// A term of a variable.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -119,10 +119,10 @@ pub(super) fn outside(variable: &Variable) -> Vec<usize> {
         .collect()
 }
 
-fn is_set(shape: &Shape) -> bool {
+fn is_set(shape: &MembershipFunction) -> bool {
     match shape {
-        Shape::Linear { .. } | Shape::Constant { .. } => false,
-        Shape::Piecewise { points } => !points.is_empty(),
+        MembershipFunction::Linear { .. } | MembershipFunction::Constant { .. } => false,
+        MembershipFunction::Piecewise { points } => !points.is_empty(),
         _ => true,
     }
 }

@@ -7,7 +7,7 @@ use alloc::{collections::BTreeMap, string::String, vec::Vec};
 
 use super::{axis, monotone::Direction};
 use crate::{
-    model::{Model, Shape, Term, Variable},
+    model::{MembershipFunction, Model, Term, Variable},
     rule::{Condition, Proposition},
 };
 
@@ -196,8 +196,8 @@ fn ranks(variable: &Variable) -> Vec<usize> {
 /// The middle of the values at which a term is highest; of a constant, its value.
 fn middle(term: &Term, variable: &Variable) -> Option<f64> {
     match term.shape {
-        Shape::Constant { value } => return Some(value),
-        Shape::Linear { .. } => return None,
+        MembershipFunction::Constant { value } => return Some(value),
+        MembershipFunction::Linear { .. } => return None,
         _ => {}
     }
     let places = axis::places(variable);

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::model::Shape;
+use crate::model::MembershipFunction;
 use crate::table::{Coefficient, Consequent};
 
 /// The consequents of the terms of an output, with spans in their own coefficients.
@@ -14,11 +14,16 @@ pub(crate) struct Consequents {
 
 impl Consequents {
     /// Adds the consequent of a term of a valid model, in which `input` finds every name. A singleton is a constant.
-    pub(crate) fn push(&mut self, shape: &Shape, input: impl Fn(&str) -> Option<usize>) {
+    pub(crate) fn push(
+        &mut self,
+        shape: &MembershipFunction,
+        input: impl Fn(&str) -> Option<usize>,
+    ) {
         let first = self.coefficients.len();
         let constant = match shape {
-            Shape::Constant { value: constant } | Shape::Singleton { at: constant } => constant,
-            Shape::Linear {
+            MembershipFunction::Constant { value: constant }
+            | MembershipFunction::Singleton { at: constant } => constant,
+            MembershipFunction::Linear {
                 coefficients,
                 constant,
             } => {

@@ -10,7 +10,7 @@ use super::{CompiledOutput, Engine, Input};
 use crate::defuzzify::weighted::Consequents;
 use crate::defuzzify::{Defuzzify, Merging};
 use crate::diagnostic::Findings;
-use crate::model::{Model, Output, Shape, Term, document::Spans};
+use crate::model::{MembershipFunction, Model, Output, Term, document::Spans};
 use crate::rule::{Condition, Hedge, Proposition};
 use crate::table::{Action, Op, Step};
 use crate::validate::validate;
@@ -200,7 +200,7 @@ impl Compiler<'_> {
         for (input, term, hedges) in self.literals.keys() {
             let always = || Term {
                 name: String::new(),
-                shape: Shape::Constant { value: 1.0 },
+                shape: MembershipFunction::Constant { value: 1.0 },
                 height: 1.0,
             };
             by_input[*input].push(Literal {

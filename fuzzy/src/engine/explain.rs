@@ -10,7 +10,7 @@ use super::{
     Engine, EvaluateError, Outcome, State,
     operators::{larger, smaller},
 };
-use crate::model::{Aggregation, Model, Operators, Output, Shape, Term, Variable};
+use crate::model::{Aggregation, MembershipFunction, Model, Operators, Output, Term, Variable};
 use crate::rule::{Condition, Proposition};
 
 /// Why an evaluation gives its values.
@@ -306,7 +306,7 @@ fn explain_output(
     let sets = variable
         .terms
         .iter()
-        .all(|term| !matches!(term.shape, Shape::Linear { .. }));
+        .all(|term| !matches!(term.shape, MembershipFunction::Linear { .. }));
     ExplainedOutput {
         name: variable.name.clone(),
         value,

@@ -3,19 +3,19 @@
 use alloc::string::ToString;
 
 use super::*;
-use crate::model::{Model, NoRuleFires, Output, Shape, Variable};
+use crate::model::{MembershipFunction, Model, NoRuleFires, Output, Variable};
 use crate::rule::{Condition, Rule};
 
 /// `x` in [0, 10] says `y` in [0, 100]: a gap without a rule from 4 to 6.
 fn gap(when_no_rule_fires: NoRuleFires) -> Model {
-    let shoulder = |top, foot| Shape::LeftShoulder { top, foot };
+    let shoulder = |top, foot| MembershipFunction::LeftShoulder { top, foot };
     Model::builder("gap")
         .input(
             Variable::new("x", 0.0, 10.0)
                 .term("low", shoulder(1.0, 4.0))
                 .term(
                     "high",
-                    Shape::RightShoulder {
+                    MembershipFunction::RightShoulder {
                         foot: 6.0,
                         top: 9.0,
                     },
@@ -26,14 +26,14 @@ fn gap(when_no_rule_fires: NoRuleFires) -> Model {
                 Variable::new("y", 0.0, 100.0)
                     .term(
                         "small",
-                        Shape::Rectangle {
+                        MembershipFunction::Rectangle {
                             left: 0.0,
                             right: 20.0,
                         },
                     )
                     .term(
                         "large",
-                        Shape::Rectangle {
+                        MembershipFunction::Rectangle {
                             left: 80.0,
                             right: 100.0,
                         },
@@ -140,7 +140,7 @@ fn wrong_numbers_of_places() {
 fn every_problem_of_a_model_at_once() {
     let mut model = gap(NoRuleFires::Value(101.0));
     model.inputs.push(Variable::new("x", 1.0, 1.0));
-    model.inputs[0].terms[0].shape = Shape::Gaussian {
+    model.inputs[0].terms[0].shape = MembershipFunction::Gaussian {
         mean: 0.0,
         sd: -1.0,
     };
@@ -193,18 +193,18 @@ fn same_bits(one: &Outcome, other: &Outcome) -> bool {
 
 /// Rules of all kinds of terms that the batch computes for several rows at once.
 fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
-    let triangle = |left, peak, right| Shape::Triangle { left, peak, right };
+    let triangle = |left, peak, right| MembershipFunction::Triangle { left, peak, right };
     let risk = Variable::new("z", -1.0, 3.0)
         .term(
             "large",
-            Shape::RightShoulder {
+            MembershipFunction::RightShoulder {
                 foot: 1.0,
                 top: 2.0,
             },
         )
         .term(
             "small",
-            Shape::LeftShoulder {
+            MembershipFunction::LeftShoulder {
                 top: 0.0,
                 foot: 1.0,
             },
@@ -217,7 +217,7 @@ fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
                 .term("falls", triangle(0.0, 0.0, 0.5))
                 .term(
                     "plateau",
-                    Shape::Trapezoid {
+                    MembershipFunction::Trapezoid {
                         left: 0.1,
                         left_top: 0.3,
                         right_top: 0.4,
@@ -226,7 +226,7 @@ fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
                 )
                 .term(
                     "rises",
-                    Shape::RightShoulder {
+                    MembershipFunction::RightShoulder {
                         foot: 0.3,
                         top: 0.7,
                     },
@@ -236,7 +236,7 @@ fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
             Variable::new("y", 0.0, 1.0)
                 .term(
                     "low",
-                    Shape::LeftShoulder {
+                    MembershipFunction::LeftShoulder {
                         top: 0.2,
                         foot: 0.6,
                     },
@@ -303,7 +303,7 @@ mod laws {
             for term in &mut output.terms {
                 let corners = term.shape.corners().unwrap();
                 let points = corners.into_iter().map(|(x, y)| (scale * x, y)).collect();
-                term.shape = Shape::Piecewise { points };
+                term.shape = MembershipFunction::Piecewise { points };
             }
             let outcome = Engine::new(&scaled).unwrap().evaluate(&[x, y]).unwrap()[0];
             match (outcome.value(), expected.value()) {
@@ -326,7 +326,7 @@ mod laws {
                 for term in &mut variable.terms {
                     let corners = term.shape.corners().unwrap();
                     let points = corners.into_iter().rev().map(|(x, y)| (-x, y)).collect();
-                    term.shape = Shape::Piecewise { points };
+                    term.shape = MembershipFunction::Piecewise { points };
                 }
             }
             let value = Engine::new(&model).unwrap().evaluate(&[x, y]).unwrap()[0].value();
@@ -341,9 +341,9 @@ mod laws {
         #[test]
         fn monotone_models_are_monotone(a in 0.0..=10.0f64, b in 0.0..=10.0f64) {
             let three = |name| Variable::new(name, 0.0, 10.0)
-                .term("low", Shape::LeftShoulder { top: 0.0, foot: 5.0 })
-                .term("middle", Shape::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
-                .term("high", Shape::RightShoulder { foot: 5.0, top: 10.0 });
+                .term("low", MembershipFunction::LeftShoulder { top: 0.0, foot: 5.0 })
+                .term("middle", MembershipFunction::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
+                .term("high", MembershipFunction::RightShoulder { foot: 5.0, top: 10.0 });
             let mut model = Model::builder("follows")
                 .input(three("x"))
                 .output(Output::new(three("y")))

@@ -8,7 +8,7 @@ use alloc::{
 
 use crate::{
     diagnostic::{Diagnostic, suggest},
-    model::{Form, Parts, Shape, document::TermSpans},
+    model::{Form, MembershipFunction, Parts, document::TermSpans},
     tree::{Fields, Node, Value},
 };
 
@@ -19,7 +19,7 @@ pub(super) fn read(
     fields: &Fields<'_>,
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
-) -> Option<Shape> {
+) -> Option<MembershipFunction> {
     let mut shapes = fields
         .entries()
         .iter()
@@ -43,10 +43,13 @@ pub(super) fn read(
     match shape.key {
         "piecewise" => points(term, shape.value, spans, findings),
         "linear" => linear(shape.value, spans, findings),
-        name => match Shape::FORMS.iter().find(|form| form.name == name) {
+        name => match MembershipFunction::FORMS
+            .iter()
+            .find(|form| form.name == name)
+        {
             Some(form) => by_form(form, shape.value, spans, findings),
             None => {
-                let known = Shape::FORMS.iter().map(|form| form.name);
+                let known = MembershipFunction::FORMS.iter().map(|form| form.name);
                 let message = format!("there is no membership function `{name}`");
                 let mut finding =
                     Diagnostic::error("unknown-shape", shape.key_span.clone(), message);
@@ -63,7 +66,7 @@ fn by_form(
     node: &Node,
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
-) -> Option<Shape> {
+) -> Option<MembershipFunction> {
     let name = form.name;
     let names = form.names();
     let mut values = Vec::new();
@@ -139,7 +142,7 @@ fn points(
     node: &Node,
     spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
-) -> Option<Shape> {
+) -> Option<MembershipFunction> {
     let items = node.items(&format!("the points of {term}"), findings)?;
     let mut points = Vec::with_capacity(items.len());
     for item in items {
@@ -157,10 +160,14 @@ fn points(
             ),
         }
     }
-    (points.len() == items.len()).then_some(Shape::Piecewise { points })
+    (points.len() == items.len()).then_some(MembershipFunction::Piecewise { points })
 }
 
-fn linear(node: &Node, spans: &mut TermSpans, findings: &mut Vec<Diagnostic>) -> Option<Shape> {
+fn linear(
+    node: &Node,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<MembershipFunction> {
     let entries = node.entries("the linear term", "key", findings)?;
     let mut coefficients = Vec::new();
     let mut constant = 0.0;
@@ -174,14 +181,14 @@ fn linear(node: &Node, spans: &mut TermSpans, findings: &mut Vec<Diagnostic>) ->
             spans.parameters.push(entry.key_span.clone());
         }
     }
-    Some(Shape::Linear {
+    Some(MembershipFunction::Linear {
         coefficients,
         constant,
     })
 }
 
 /// The shape as the key and the value of a term's mapping.
-pub(super) fn write(shape: &Shape) -> (&'static str, Node) {
+pub(super) fn write(shape: &MembershipFunction) -> (&'static str, Node) {
     let numbers = |values: &[f64]| Node::list(values.iter().copied().map(Node::number).collect());
     match shape.parts() {
         Parts::Fixed(form, values) => {

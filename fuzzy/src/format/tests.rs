@@ -7,8 +7,8 @@ use crate::{
     Engine,
     engine::State,
     model::{
-        Beaten, Defuzzifier, NoRuleFires, Operators, Output, Rule, Sampling, SamplingRule, Shape,
-        Term, Variable,
+        Beaten, Defuzzifier, MembershipFunction, NoRuleFires, Operators, Output, Rule, Sampling,
+        SamplingRule, Term, Variable,
     },
     rule::{self, Condition, DEEPEST_NESTING, Hedge},
 };
@@ -29,31 +29,39 @@ fn width() -> impl Strategy<Value = f64> {
     prop_oneof![Just(1.0), 1e-6..1e6f64]
 }
 
-fn any_set() -> impl Strategy<Value = Shape> {
+fn any_set() -> impl Strategy<Value = MembershipFunction> {
     let piecewise = (vec(position(), 1..5), vec(0.0..=1.0f64, 5)).prop_map(|(mut xs, degrees)| {
         xs.sort_by(f64::total_cmp);
         let points = xs.into_iter().zip(degrees).collect();
-        Shape::Piecewise { points }
+        MembershipFunction::Piecewise { points }
     });
     prop_oneof![
-        ascending().prop_map(|[left, peak, right]| Shape::Triangle { left, peak, right }),
-        ascending().prop_map(|[left, left_top, right_top, right]| Shape::Trapezoid {
+        ascending().prop_map(|[left, peak, right]| MembershipFunction::Triangle {
             left,
-            left_top,
-            right_top,
+            peak,
             right
         }),
-        ascending().prop_map(|[top, foot]| Shape::LeftShoulder { top, foot }),
-        ascending().prop_map(|[foot, top]| Shape::RightShoulder { foot, top }),
-        (position(), width()).prop_map(|(mean, sd)| Shape::Gaussian { mean, sd }),
-        (position(), width(), width()).prop_map(|(center, width, slope)| Shape::Bell {
-            center,
-            width,
-            slope
+        ascending().prop_map(
+            |[left, left_top, right_top, right]| MembershipFunction::Trapezoid {
+                left,
+                left_top,
+                right_top,
+                right
+            }
+        ),
+        ascending().prop_map(|[top, foot]| MembershipFunction::LeftShoulder { top, foot }),
+        ascending().prop_map(|[foot, top]| MembershipFunction::RightShoulder { foot, top }),
+        (position(), width()).prop_map(|(mean, sd)| MembershipFunction::Gaussian { mean, sd }),
+        (position(), width(), width()).prop_map(|(center, width, slope)| {
+            MembershipFunction::Bell {
+                center,
+                width,
+                slope,
+            }
         }),
         (position(), position())
-            .prop_map(|(inflection, slope)| Shape::Sigmoid { inflection, slope }),
-        position().prop_map(|at| Shape::Singleton { at }),
+            .prop_map(|(inflection, slope)| MembershipFunction::Sigmoid { inflection, slope }),
+        position().prop_map(|at| MembershipFunction::Singleton { at }),
         piecewise,
     ]
 }
@@ -79,7 +87,7 @@ fn any_variable() -> impl Strategy<Value = Variable> {
             let high = if low < high { high } else { low + 1.0 };
             let mut variable = Variable::new("x", low, high);
             let names: Vec<String> = (0..shapes.len()).map(|i| format!("t {i}")).collect();
-            let sets: Option<Vec<Shape>> = shapes.iter().cloned().collect();
+            let sets: Option<Vec<MembershipFunction>> = shapes.iter().cloned().collect();
             match sets {
                 Some(sets) => {
                     let terms = names.into_iter().zip(sets).map(|(name, shape)| Term {
@@ -146,9 +154,9 @@ fn any_model() -> impl Strategy<Value = Model> {
                         let constant = i as f64;
                         let coefficients = Vec::from([(inputs[0].name.clone(), 0.5)]);
                         term.shape = match i % 3 {
-                            0 => Shape::Constant { value: constant },
-                            1 => Shape::Singleton { at: constant },
-                            _ => Shape::Linear {
+                            0 => MembershipFunction::Constant { value: constant },
+                            1 => MembershipFunction::Singleton { at: constant },
+                            _ => MembershipFunction::Linear {
                                 coefficients,
                                 constant,
                             },
@@ -245,17 +253,17 @@ const MISTAKES: [Mistake; 32] = [
         m.inputs[0].terms[0].height = f64::NAN
     }),
     ("wrong-parameter", |m| {
-        m.inputs[0].terms[0].shape = Shape::Triangle {
+        m.inputs[0].terms[0].shape = MembershipFunction::Triangle {
             left: 0.0,
             peak: 2.0,
             right: 1.0,
         };
     }),
     ("wrong-parameter", |m| {
-        m.inputs[0].terms[0].shape = Shape::Gaussian { mean: 0.0, sd: 0.0 };
+        m.inputs[0].terms[0].shape = MembershipFunction::Gaussian { mean: 0.0, sd: 0.0 };
     }),
     ("wrong-parameter", |m| {
-        m.inputs[0].terms[0].shape = Shape::Piecewise { points: Vec::new() }
+        m.inputs[0].terms[0].shape = MembershipFunction::Piecewise { points: Vec::new() }
     }),
     ("wrong-parameter", |m| {
         let samples = Sampling {
@@ -285,25 +293,25 @@ const MISTAKES: [Mistake; 32] = [
     }),
     ("wrong-term", |m| {
         let coefficients = Vec::new();
-        m.inputs[0].terms[0].shape = Shape::Linear {
+        m.inputs[0].terms[0].shape = MembershipFunction::Linear {
             coefficients,
             constant: 1.0,
         };
     }),
     ("wrong-term", |m| {
         m.outputs[0].defuzzifier = Defuzzifier::Centroid;
-        m.outputs[0].variable.terms[0].shape = Shape::Singleton {
+        m.outputs[0].variable.terms[0].shape = MembershipFunction::Singleton {
             at: m.outputs[0].variable.low,
         };
     }),
     ("wrong-term", |m| {
         m.outputs[0].defuzzifier = Defuzzifier::WeightedSum;
-        m.outputs[0].variable.terms[0].shape = Shape::Gaussian { mean: 0.0, sd: 1.0 };
+        m.outputs[0].variable.terms[0].shape = MembershipFunction::Gaussian { mean: 0.0, sd: 1.0 };
     }),
     ("unknown-variable", |m| {
         m.outputs[0].defuzzifier = Defuzzifier::WeightedSum;
         let coefficients = Vec::from([("nothing".into(), 1.0)]);
-        m.outputs[0].variable.terms[0].shape = Shape::Linear {
+        m.outputs[0].variable.terms[0].shape = MembershipFunction::Linear {
             coefficients,
             constant: 1.0,
         };
@@ -311,7 +319,7 @@ const MISTAKES: [Mistake; 32] = [
     ("term-outside-range", |m| {
         m.outputs[0].defuzzifier = Defuzzifier::Bisector;
         for term in &mut m.outputs[0].variable.terms {
-            term.shape = Shape::Rectangle {
+            term.shape = MembershipFunction::Rectangle {
                 left: 2e9,
                 right: 3e9,
             };

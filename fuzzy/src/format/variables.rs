@@ -11,8 +11,8 @@ use super::{TermSpans, VariableSpans, optional_text, shapes, words::DEFUZZIFIERS
 use crate::{
     diagnostic::{Diagnostic, duplicate},
     model::{
-        Defuzzifier, NoRuleFires, Output, Sampling, SamplingRule, Shape, Term, Variable,
-        between_peaks, even_peaks,
+        Defuzzifier, MembershipFunction, NoRuleFires, Output, Sampling, SamplingRule, Term,
+        Variable, between_peaks, even_peaks,
     },
     tree::{Entry, Fields, Node, Value},
 };
@@ -322,7 +322,7 @@ fn rising(
 fn unread(name: &str) -> Term {
     Term {
         name: String::from(name),
-        shape: Shape::Constant { value: 1.0 },
+        shape: MembershipFunction::Constant { value: 1.0 },
         height: 1.0,
     }
 }

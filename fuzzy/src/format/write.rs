@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{
     model::{
-        Model, NoRuleFires, Operators, Output, SamplingRule, Shape, Term, Variable, between_peaks,
-        even_peaks,
+        MembershipFunction, Model, NoRuleFires, Operators, Output, SamplingRule, Term, Variable,
+        between_peaks, even_peaks,
     },
     tree::Node,
 };
@@ -118,8 +118,9 @@ fn terms(variable: &Variable) -> (&'static str, Node) {
 /// Where each term of a partition would have its peak.
 fn peaks(terms: &[Term]) -> Vec<f64> {
     let peak = |term: &Term| match term.shape {
-        Shape::Triangle { peak, .. } => Some(peak),
-        Shape::LeftShoulder { top, .. } | Shape::RightShoulder { top, .. } => Some(top),
+        MembershipFunction::Triangle { peak, .. } => Some(peak),
+        MembershipFunction::LeftShoulder { top, .. }
+        | MembershipFunction::RightShoulder { top, .. } => Some(top),
         _ => None,
     };
     let peaks: Option<Vec<f64>> = terms.iter().map(peak).collect();

@@ -10,10 +10,10 @@ use crate::Engine;
 ///
 /// # Example: a slice of a model with three inputs
 /// ```
-/// use fuzzy::model::{Model, Output, Shape, Variable};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// use fuzzy::{Engine, map::Grid, rule};
 ///
-/// let variable = |name, high| Variable::new(name, 0.0, high).term("high", Shape::RightShoulder { foot: 0.0, top: high });
+/// let variable = |name, high| Variable::new(name, 0.0, high).term("high", MembershipFunction::RightShoulder { foot: 0.0, top: high });
 /// let model = Model::builder("tip")
 ///     .input(variable("food", 10.0))
 ///     .input(variable("service", 10.0))

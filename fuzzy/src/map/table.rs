@@ -13,11 +13,11 @@ use crate::engine::EvaluateError;
 ///
 /// # Example: a table within 0.5 % of the engine's power
 /// ```
-/// use fuzzy::model::{Model, Output, Shape, Variable};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// use fuzzy::{Engine, map::DecisionTable, rule};
 ///
-/// let falling = |low, high| Shape::LeftShoulder { top: low, foot: high };
-/// let rising = |low, high| Shape::RightShoulder { foot: low, top: high };
+/// let falling = |low, high| MembershipFunction::LeftShoulder { top: low, foot: high };
+/// let rising = |low, high| MembershipFunction::RightShoulder { foot: low, top: high };
 /// let model = Model::builder("heater")
 ///     .input(Variable::new("room", 0.0, 20.0).term("cold", falling(0.0, 20.0)).term("warm", rising(0.0, 20.0)))
 ///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("low", falling(0.0, 100.0)).term("high", rising(0.0, 100.0))))

@@ -3,8 +3,8 @@
 use alloc::{boxed::Box, string::String, vec::Vec};
 
 use super::{
-    Defuzzifier, Model, NoRuleFires, Operators, Output, Rule, Sampling, Shape, Term, Variable,
-    between_peaks, even_peaks,
+    Defuzzifier, MembershipFunction, Model, NoRuleFires, Operators, Output, Rule, Sampling, Term,
+    Variable, between_peaks, even_peaks,
 };
 use crate::rule::{self, Condition, Consequent, Proposition};
 
@@ -13,21 +13,21 @@ impl Model {
     ///
     /// # Example: a tip from the service alone
     /// ```
-    /// use fuzzy::model::{Model, Output, Shape, Variable};
+    /// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
     /// use fuzzy::rule::{Condition, Rule};
     /// use fuzzy::Engine;
     ///
     /// let model = Model::builder("tip")
     ///     .input(
     ///         Variable::new("service", 0.0, 10.0)
-    ///             .term("poor", Shape::LeftShoulder { top: 2.0, foot: 8.0 })
-    ///             .term("good", Shape::RightShoulder { foot: 2.0, top: 8.0 }),
+    ///             .term("poor", MembershipFunction::LeftShoulder { top: 2.0, foot: 8.0 })
+    ///             .term("good", MembershipFunction::RightShoulder { foot: 2.0, top: 8.0 }),
     ///     )
     ///     .output(Output::new(
     ///         Variable::new("tip", 0.0, 20.0)
     ///             .unit("%")
-    ///             .term("small", Shape::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
-    ///             .term("large", Shape::Triangle { left: 10.0, peak: 15.0, right: 20.0 }),
+    ///             .term("small", MembershipFunction::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
+    ///             .term("large", MembershipFunction::Triangle { left: 10.0, peak: 15.0, right: 20.0 }),
     ///     ))
     ///     .rule(Rule::new(Condition::is("service", "poor"), "tip", "small"))
     ///     .rule(Rule::new(Condition::is("service", "good"), "tip", "large"))
@@ -167,7 +167,7 @@ impl Variable {
 
     /// Adds a term of height 1.
     #[must_use]
-    pub fn term(mut self, name: impl Into<String>, shape: Shape) -> Self {
+    pub fn term(mut self, name: impl Into<String>, shape: MembershipFunction) -> Self {
         self.terms.push(Term {
             name: name.into(),
             shape,

@@ -10,7 +10,7 @@ mod partition;
 #[cfg(feature = "serde")]
 pub(crate) use crate::shape::Role;
 pub(crate) use crate::shape::{Form, Parts};
-pub use crate::shape::{Shape, ShapeError};
+pub use crate::shape::{MembershipError, MembershipFunction};
 pub use crate::table::{Aggregation, Conjunction, Disjunction, Implication};
 pub use builder::ModelBuilder;
 pub(crate) use partition::{between_peaks, even_peaks};
@@ -49,12 +49,12 @@ pub struct Model {
 ///
 /// # Example: terms side by side
 /// ```
-/// use fuzzy::model::{Shape, Variable};
+/// use fuzzy::model::{MembershipFunction, Variable};
 ///
 /// let heat = Variable::new("heat", 0.0, 100.0)
 ///     .unit("°C")
-///     .term("low", Shape::LeftShoulder { top: 20.0, foot: 30.0 })
-///     .term("high", Shape::RightShoulder { foot: 20.0, top: 30.0 });
+///     .term("low", MembershipFunction::LeftShoulder { top: 20.0, foot: 30.0 })
+///     .term("high", MembershipFunction::RightShoulder { foot: 20.0, top: 30.0 });
 /// let at_22: Vec<f64> = heat.terms.iter().map(|term| term.membership(22.0)).collect();
 /// assert_eq!(at_22, [0.8, 0.2]);
 /// ```
@@ -80,7 +80,7 @@ pub struct Term {
     /// Its name in rules.
     pub name: String,
     /// The membership function.
-    pub shape: Shape,
+    pub shape: MembershipFunction,
     /// The height of the membership function, in (0, 1]; 1 where the author wrote none.
     pub height: f64,
 }

@@ -2,7 +2,7 @@
 
 use alloc::{string::String, vec::Vec};
 
-use super::{Shape, Term};
+use super::{MembershipFunction, Term};
 
 /// Triangles between the peaks of their neighbours, shoulders at the ends: the degrees sum to 1 everywhere.
 pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
@@ -10,14 +10,14 @@ pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
     let term = |(i, &(name, at)): (usize, &(&str, f64))| {
         let left = i.checked_sub(1).and_then(peak);
         let shape = match (left, peak(i + 1)) {
-            (Some(left), Some(right)) => Shape::Triangle {
+            (Some(left), Some(right)) => MembershipFunction::Triangle {
                 left,
                 peak: at,
                 right,
             },
-            (None, Some(foot)) => Shape::LeftShoulder { top: at, foot },
-            (Some(foot), None) => Shape::RightShoulder { foot, top: at },
-            (None, None) => Shape::Constant { value: 1.0 },
+            (None, Some(foot)) => MembershipFunction::LeftShoulder { top: at, foot },
+            (Some(foot), None) => MembershipFunction::RightShoulder { foot, top: at },
+            (None, None) => MembershipFunction::Constant { value: 1.0 },
         };
         Term {
             name: String::from(name),

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::Shape;
+use super::MembershipFunction;
 
 /// A shape as rule sets spell it.
 pub(crate) struct Form {
@@ -17,7 +17,7 @@ pub(crate) struct Form {
     )]
     pub(crate) about: &'static str,
     /// The shape of so many values.
-    pub(crate) build: fn(&[f64]) -> Option<Shape>,
+    pub(crate) build: fn(&[f64]) -> Option<MembershipFunction>,
 }
 
 /// What a parameter may be; all are finite numbers.
@@ -68,19 +68,19 @@ pub(super) fn padded(parameters: &[f64]) -> [f64; 4] {
 /// Makes the table of forms, and takes shapes apart by it, so that a shape without a line does not compile.
 macro_rules! forms {
     ($($shape:ident $name:literal $formula:ident [$($parameter:ident: $role:ident),+] $about:literal;)+) => {
-        impl Shape {
+        impl MembershipFunction {
             /// The forms of all shapes with a fixed number of parameters.
             pub(crate) const FORMS: &[Form] = &[$(form::forms!(@form $shape $name [$($parameter: $role),+] $about)),+];
 
             /// The form and the values, or what a shape without a fixed number of parameters has.
             pub(crate) fn parts(&self) -> Parts<'_> {
                 match *self {
-                    $(Shape::$shape { $($parameter),+ } => Parts::Fixed(
+                    $(MembershipFunction::$shape { $($parameter),+ } => Parts::Fixed(
                         const { &form::forms!(@form $shape $name [$($parameter: $role),+] $about) },
                         vec![$($parameter),+],
                     ),)+
-                    Shape::Piecewise { ref points } => Parts::Points(points),
-                    Shape::Linear { ref coefficients, constant } => Parts::Linear(coefficients, constant),
+                    MembershipFunction::Piecewise { ref points } => Parts::Points(points),
+                    MembershipFunction::Linear { ref coefficients, constant } => Parts::Linear(coefficients, constant),
                 }
             }
 
@@ -88,9 +88,9 @@ macro_rules! forms {
             /// function: 0 everywhere.
             pub(crate) fn kind(&self) -> (Kind, [f64; 4]) {
                 match *self {
-                    $(Shape::$shape { $($parameter),+ } => (Kind::$formula, form::padded(&[$($parameter),+])),)+
-                    Shape::Piecewise { .. } => (Kind::PIECEWISE, [0.0; 4]),
-                    Shape::Linear { .. } => (Kind::CONSTANT, [0.0; 4]),
+                    $(MembershipFunction::$shape { $($parameter),+ } => (Kind::$formula, form::padded(&[$($parameter),+])),)+
+                    MembershipFunction::Piecewise { .. } => (Kind::PIECEWISE, [0.0; 4]),
+                    MembershipFunction::Linear { .. } => (Kind::CONSTANT, [0.0; 4]),
                 }
             }
         }
@@ -101,7 +101,7 @@ macro_rules! forms {
             parameters: &[$((stringify!($parameter), Role::$role)),+],
             about: $about,
             build: |values| match *values {
-                [$($parameter),+] => Some(Shape::$shape { $($parameter),+ }),
+                [$($parameter),+] => Some(MembershipFunction::$shape { $($parameter),+ }),
                 _ => None,
             },
         }

@@ -2,32 +2,32 @@
 
 use alloc::{format, string::String};
 
-use super::{Parts, Role, Shape};
+use super::{MembershipFunction, Parts, Role};
 
 /// Why parameters make no membership function.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ShapeError {
+pub struct MembershipError {
     message: String,
     /// The index of the parameter, point or coefficient to blame.
     pub(crate) parameter: Option<usize>,
 }
 
-impl core::fmt::Display for ShapeError {
+impl core::fmt::Display for MembershipError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(&self.message)
     }
 }
 
-impl core::error::Error for ShapeError {}
+impl core::error::Error for MembershipError {}
 
-fn wrong(parameter: usize, message: String) -> Result<(), ShapeError> {
-    Err(ShapeError {
+fn wrong(parameter: usize, message: String) -> Result<(), MembershipError> {
+    Err(MembershipError {
         message,
         parameter: Some(parameter),
     })
 }
 
-impl Shape {
+impl MembershipFunction {
     /// Whether the parameters make a membership function: finite, in order, widths over 0.
     ///
     /// # Errors
@@ -35,12 +35,12 @@ impl Shape {
     ///
     /// # Example: the corners of a triangle stand in order
     /// ```
-    /// use fuzzy::model::Shape;
+    /// use fuzzy::model::MembershipFunction;
     ///
-    /// let shape = Shape::Triangle { left: 0.0, peak: 2.0, right: 1.0 };
+    /// let shape = MembershipFunction::Triangle { left: 0.0, peak: 2.0, right: 1.0 };
     /// assert_eq!(shape.validate().unwrap_err().to_string(), "`peak` (2) is greater than `right` (1)");
     /// ```
-    pub fn validate(&self) -> Result<(), ShapeError> {
+    pub fn validate(&self) -> Result<(), MembershipError> {
         match self.parts() {
             Parts::Fixed(form, values) => {
                 let mut before: Option<(&str, f64)> = None;
@@ -76,7 +76,7 @@ impl Shape {
     }
 }
 
-fn finite(i: usize, name: &str, value: f64) -> Result<(), ShapeError> {
+fn finite(i: usize, name: &str, value: f64) -> Result<(), MembershipError> {
     // Twice the value must be finite too: distances between parameters must not overflow.
     if (2.0 * value).is_finite() {
         Ok(())
@@ -87,9 +87,9 @@ fn finite(i: usize, name: &str, value: f64) -> Result<(), ShapeError> {
     }
 }
 
-fn piecewise(points: &[(f64, f64)]) -> Result<(), ShapeError> {
+fn piecewise(points: &[(f64, f64)]) -> Result<(), MembershipError> {
     if points.is_empty() {
-        return Err(ShapeError {
+        return Err(MembershipError {
             message: "there are no points".into(),
             parameter: None,
         });

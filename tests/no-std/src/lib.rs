@@ -6,7 +6,7 @@
 
 use fuzzy::diagnostic::Findings;
 use fuzzy::engine::{EvaluateError, Outcome, Scratch};
-use fuzzy::model::{Model, Output, Shape, Variable};
+use fuzzy::model::{MembershipFunction, Model, Output, Variable};
 use fuzzy::rule::{Condition, Rule};
 use fuzzy::{Engine, map::DecisionMap, map::Grid};
 
@@ -19,10 +19,10 @@ pub fn engine() -> Result<Engine, Findings> {
         &Model::builder("margin")
             .input(
                 Variable::new("margin", 0.0, 0.5)
-                    .term("low", Shape::Gaussian { mean: 0.0, sd: 0.1 })
+                    .term("low", MembershipFunction::Gaussian { mean: 0.0, sd: 0.1 })
                     .term(
                         "high",
-                        Shape::RightShoulder {
+                        MembershipFunction::RightShoulder {
                             foot: 0.1,
                             top: 0.3,
                         },
@@ -32,14 +32,14 @@ pub fn engine() -> Result<Engine, Findings> {
                 Variable::new("risk", 0.0, 100.0)
                     .term(
                         "low",
-                        Shape::LeftShoulder {
+                        MembershipFunction::LeftShoulder {
                             top: 0.0,
                             foot: 50.0,
                         },
                     )
                     .term(
                         "high",
-                        Shape::SShape {
+                        MembershipFunction::SShape {
                             foot: 50.0,
                             top: 100.0,
                         },
