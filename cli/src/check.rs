@@ -115,10 +115,9 @@ fn examine(
         Ok(document) => document,
         Err(findings) => return Ok((findings, None)),
     };
-    let options = check::Options {
-        coverage: arguments.coverage,
-        monotone: arguments.monotone.clone(),
-    };
+    let mut options = check::Options::default();
+    options.coverage = arguments.coverage;
+    options.monotone.clone_from(&arguments.monotone);
     let (findings, report) = check::document(&document, text, &options).map_err(|finding| {
         Failure::usage(format!("--monotone: {}", finding.message)).help_if(finding.help)
     })?;

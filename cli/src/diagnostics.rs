@@ -55,7 +55,20 @@ fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Grou
     if let Some(help) = &finding.help {
         group = group.element(Level::HELP.message(help.as_str()));
     }
+    if let Some(command) = command(finding.code) {
+        group = group.element(Level::HELP.message(command));
+    }
     vec![group]
+}
+
+/// The command that helps with a finding: the engine knows no commands.
+fn command(code: &str) -> Option<&'static str> {
+    match code {
+        "empty-file" => Some("`flagred new NAME` writes a rule set to start from"),
+        "no-rules" => Some("`flagred learn` writes rules from data"),
+        "not-monotone" => Some("`flagred explain` shows the rules that fire at a point"),
+        _ => None,
+    }
 }
 
 /// Draws the findings that keep a file from being used, on standard error; what is left is the exit code.

@@ -47,7 +47,7 @@ struct Json<'a> {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (model, engine) = rule_set::load(&arguments.model)?;
     let values = values(&model, &arguments.inputs)?;
-    let explanation = engine.explain(&model, &values).map_err(Failure::usage)?;
+    let explanation = engine.explain(&values).map_err(Failure::usage)?;
     let mut out = anstream::stdout().lock();
     if arguments.json {
         let json = Json {
@@ -119,7 +119,7 @@ fn memberships(text: &mut String, terms: &[Degree]) {
         .map(|t| t.term.chars().count())
         .max()
         .unwrap_or(0);
-    for Degree { term, degree } in terms {
+    for Degree { term, degree, .. } in terms {
         let bar = "█".repeat((degree * BAR).round() as usize);
         let line = format!("  {term:width$} {degree:>8.5} {bar}");
         let _ = writeln!(text, "{}", line.trim_end());

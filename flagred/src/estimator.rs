@@ -4,7 +4,8 @@ use alloc::{string::String, sync::Arc, vec, vec::Vec};
 
 use fuzzy::{
     Engine, Model,
-    engine::{CompileError, EvaluateError, Outcome, Scratch},
+    diagnostic::Findings,
+    engine::{EvaluateError, Outcome, Scratch},
     table::ClosedForm,
 };
 
@@ -51,7 +52,7 @@ struct Compiled {
 pub enum EstimatorError {
     /// The rule set itself does not compile.
     #[error("the rule set cannot be used: {0}")]
-    Rules(#[from] CompileError),
+    Rules(#[from] Findings),
     /// It cannot be evaluated at the places that gaps are filled from.
     #[error("the rule set cannot be evaluated everywhere: {0}")]
     Evaluate(#[from] EvaluateError),

@@ -84,7 +84,7 @@ pub enum ExamineError {
     Learn(#[from] LearnError),
     /// The rules cannot be used.
     #[error(transparent)]
-    Compile(#[from] fuzzy::engine::CompileError),
+    Compile(#[from] fuzzy::diagnostic::Findings),
     /// The rules cannot be evaluated.
     #[error(transparent)]
     Evaluate(#[from] EvaluateError),

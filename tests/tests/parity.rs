@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use flagred_tests::shared_data;
-use fuzzy::model::{Model, Output, Sampling, SamplingRule, Shape, Variable};
+use fuzzy::model::{MembershipFunction, Model, Output, Sampling, SamplingRule, Variable};
 use fuzzy::rule::{Condition, Rule};
 use fuzzy::{Engine, engine::State};
 
@@ -23,16 +23,16 @@ fn system(text: &str) -> Model {
             }
             "term" => {
                 let shape = match words[2] {
-                    "gaussian" => Shape::Gaussian {
+                    "gaussian" => MembershipFunction::Gaussian {
                         mean: number(3),
                         sd: number(4),
                     },
-                    "triangle" => Shape::Triangle {
+                    "triangle" => MembershipFunction::Triangle {
                         left: number(3),
                         peak: number(4),
                         right: number(5),
                     },
-                    "trapezoid" => Shape::Trapezoid {
+                    "trapezoid" => MembershipFunction::Trapezoid {
                         left: number(3),
                         left_top: number(4),
                         right_top: number(5),

@@ -135,7 +135,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .help("name another file"));
     }
     let name = arguments.model.display().to_string();
-    let (mut model, text) = rule_set::read(&arguments.model)?;
+    let (document, text) = rule_set::read(&arguments.model)?;
+    let mut model = document.model;
     if !arguments.keep_rules {
         model.rules.clear();
     }

@@ -164,7 +164,7 @@ pub(crate) fn points_along(inputs: usize) -> usize {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let (model, _) = rule_set::read(&arguments.model)?;
+    let (model, _) = rule_set::load(&arguments.model)?;
     let evaluated = evaluate(arguments, model)?;
     let mut out = anstream::stdout().lock();
     let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();

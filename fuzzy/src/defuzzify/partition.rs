@@ -141,13 +141,13 @@ mod tests {
     use crate::defuzzify::piece::Integrals;
     use crate::defuzzify::polyline::Workspace;
     use crate::defuzzify::{Joint, Strengths};
-    use crate::model::{Aggregation, Implication, Shape, Variable};
+    use crate::model::{Aggregation, Implication, MembershipFunction, Variable};
     use crate::table::centroid;
     use proptest::prelude::*;
 
     /// The partition of the example risks, an unsymmetric one, and one with plateaus and gaps.
     fn partitions() -> Vec<Variable> {
-        let triangle = |left, peak, right| Shape::Triangle { left, peak, right };
+        let triangle = |left, peak, right| MembershipFunction::Triangle { left, peak, right };
         vec![
             Variable::new("risk", 0.0, 100.0)
                 .term("very_low", triangle(-25.0, 0.0, 25.0))
@@ -158,7 +158,7 @@ mod tests {
             Variable::new("uneven", -3.0, 8.0)
                 .term(
                     "a",
-                    Shape::LeftShoulder {
+                    MembershipFunction::LeftShoulder {
                         top: -1.0,
                         foot: 0.0,
                     },
@@ -166,7 +166,7 @@ mod tests {
                 .term("b", triangle(-1.0, 0.0, 6.0))
                 .term(
                     "c",
-                    Shape::RightShoulder {
+                    MembershipFunction::RightShoulder {
                         foot: 0.0,
                         top: 6.0,
                     },
@@ -175,14 +175,14 @@ mod tests {
                 .term("a", triangle(0.0, 1.0, 2.0))
                 .term(
                     "b",
-                    Shape::Rectangle {
+                    MembershipFunction::Rectangle {
                         left: 3.0,
                         right: 4.0,
                     },
                 )
                 .term(
                     "c",
-                    Shape::Trapezoid {
+                    MembershipFunction::Trapezoid {
                         left: 5.0,
                         left_top: 6.0,
                         right_top: 7.0,

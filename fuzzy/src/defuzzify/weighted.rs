@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::model::Shape;
+use crate::model::MembershipFunction;
 use crate::table::{Coefficient, Consequent};
 
 /// The consequents of the terms of an output, with spans in their own coefficients.
@@ -13,41 +13,37 @@ pub(crate) struct Consequents {
 }
 
 impl Consequents {
-    /// Adds the consequent of a term and returns `true`, or returns `false` where its shape is no consequent. A singleton is
-    /// a constant. Calls `unknown` with the names of inputs that `input` does not find.
+    /// Adds the consequent of a term of a valid model, in which `input` finds every name. A singleton is a constant.
     pub(crate) fn push(
         &mut self,
-        shape: &Shape,
+        shape: &MembershipFunction,
         input: impl Fn(&str) -> Option<usize>,
-        mut unknown: impl FnMut(&str),
-    ) -> bool {
+    ) {
         let first = self.coefficients.len();
         let constant = match shape {
-            Shape::Constant { value: constant } | Shape::Singleton { at: constant } => constant,
-            Shape::Linear {
+            MembershipFunction::Constant { value: constant }
+            | MembershipFunction::Singleton { at: constant } => constant,
+            MembershipFunction::Linear {
                 coefficients,
                 constant,
             } => {
                 for (name, coefficient) in coefficients {
-                    match input(name) {
-                        Some(index) => self.coefficients.push(Coefficient {
+                    self.coefficients
+                        .extend(input(name).map(|index| Coefficient {
                             coefficient: *coefficient,
                             input: index as u32,
-                        }),
-                        None => unknown(name),
-                    }
+                        }));
                 }
                 // By input, so that the order in the text does not change a bit of the sum.
                 self.coefficients[first..].sort_by_key(|coefficient| coefficient.input);
                 constant
             }
-            _ => return false,
+            _ => return,
         };
         self.consequents.push(Consequent {
             constant: *constant,
             first: first as u32,
             end: self.coefficients.len() as u32,
         });
-        true
     }
 }

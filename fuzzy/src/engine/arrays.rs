@@ -6,7 +6,9 @@ use super::literal::{Literal, Literals};
 use super::rules::Draft;
 use super::{CompiledOutput, Input as Range};
 use crate::defuzzify::Method;
-use crate::model::{Conjunction, Defuzzifier, Disjunction, NoRuleFires, Operators, Shape};
+use crate::model::{
+    Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires, Operators,
+};
 use crate::table::{
     Action, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge, Hedge,
     Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step, Table, arrays,
@@ -104,7 +106,7 @@ impl OwnedTable {
     fn curve(&mut self, index: u32, literal: &Literal) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
         let (kind, parameters) = literal.term.shape.kind();
-        if let Shape::Piecewise { points } = &literal.term.shape {
+        if let MembershipFunction::Piecewise { points } = &literal.term.shape {
             self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
         }
         self.hedges.extend(&literal.hedges);

@@ -22,11 +22,11 @@ impl Engine {
     ///
     /// # Example: two temperatures
     /// ```
-    /// use fuzzy::{Engine, model::{Model, Output, Shape, Variable}, rule};
+    /// use fuzzy::{Engine, model::{Model, Output, MembershipFunction, Variable}, rule};
     ///
     /// let model = Model::builder("heater")
-    ///     .input(Variable::new("room", 0.0, 20.0).term("cold", Shape::LeftShoulder { top: 0.0, foot: 10.0 }))
-    ///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("high", Shape::Rectangle { left: 50.0, right: 100.0 })))
+    ///     .input(Variable::new("room", 0.0, 20.0).term("cold", MembershipFunction::LeftShoulder { top: 0.0, foot: 10.0 }))
+    ///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("high", MembershipFunction::Rectangle { left: 50.0, right: 100.0 })))
     ///     .rule(rule::parse("IF room IS cold THEN power IS high")?)
     ///     .build();
     /// let engine = Engine::new(&model)?;

@@ -160,9 +160,9 @@ impl Lanes {
             put,
         };
         // Compiled for the widest vectors of the processor; the operations, and so the bits, stay the same.
-        #[cfg(feature = "std")]
+        #[cfg(feature = "simd")]
         pulp::Arch::new().dispatch(blocks);
-        #[cfg(not(feature = "std"))]
+        #[cfg(not(feature = "simd"))]
         blocks.evaluate();
     }
 
@@ -301,7 +301,7 @@ impl<Put: FnMut(Outcome)> Blocks<'_, Put> {
     }
 }
 
-#[cfg(feature = "std")]
+#[cfg(feature = "simd")]
 impl<Put: FnMut(Outcome)> pulp::WithSimd for Blocks<'_, Put> {
     type Output = ();
 

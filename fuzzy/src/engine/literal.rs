@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::model::{Shape, Term};
+use crate::model::{MembershipFunction, Term};
 use crate::rule::Hedge;
 use crate::table::Line;
 
@@ -115,7 +115,7 @@ pub(super) fn lines(literal: &Literal) -> Option<Vec<(f64, Line)>> {
 /// degree and is a line of its own.
 fn after(
     lines: &mut Vec<(f64, Line)>,
-    shape: &Shape,
+    shape: &MembershipFunction,
     corner: (f64, f64),
     next: Option<(f64, f64)>,
 ) {
@@ -155,49 +155,49 @@ mod tests {
     use alloc::{string::String, vec};
     use proptest::prelude::*;
 
-    fn shapes() -> Vec<Shape> {
+    fn shapes() -> Vec<MembershipFunction> {
         vec![
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 0.1,
                 peak: 0.3,
                 right: 0.7,
             },
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 0.0,
                 peak: 0.0,
                 right: 0.7,
             },
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 0.2,
                 peak: 1.0,
                 right: 1.0,
             },
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 0.5,
                 peak: 0.5,
                 right: 0.5,
             },
-            Shape::Trapezoid {
+            MembershipFunction::Trapezoid {
                 left: -0.5,
                 left_top: 0.2,
                 right_top: 0.4,
                 right: 1.5,
             },
-            Shape::LeftShoulder {
+            MembershipFunction::LeftShoulder {
                 top: 0.25,
                 foot: 0.25,
             },
-            Shape::RightShoulder {
+            MembershipFunction::RightShoulder {
                 foot: 0.1,
                 top: 0.9,
             },
-            Shape::Rectangle {
+            MembershipFunction::Rectangle {
                 left: 0.25,
                 right: 0.5,
             },
-            Shape::Singleton { at: 0.5 },
-            Shape::Constant { value: 0.4 },
-            Shape::Piecewise {
+            MembershipFunction::Singleton { at: 0.5 },
+            MembershipFunction::Constant { value: 0.4 },
+            MembershipFunction::Piecewise {
                 points: vec![
                     (0.1, 0.5),
                     (0.3, 0.2),
@@ -207,11 +207,11 @@ mod tests {
                     (0.9, 0.3),
                 ],
             },
-            Shape::Gaussian { mean: 0.4, sd: 0.1 },
+            MembershipFunction::Gaussian { mean: 0.4, sd: 0.1 },
         ]
     }
 
-    fn literal(shape: Shape, hedges: &[Hedge]) -> Literal {
+    fn literal(shape: MembershipFunction, hedges: &[Hedge]) -> Literal {
         Literal {
             term: Term {
                 name: String::new(),
@@ -233,7 +233,7 @@ mod tests {
             let x = match ulps { -1 => x.next_down(), 1 => x.next_up(), _ => x }.clamp(0.0, 1.0);
             let mut all: Vec<Literal> =
                 shapes().into_iter().map(|shape| literal(shape, &[])).collect();
-            all.push(literal(Shape::LeftShoulder { top: 0.2, foot: 0.6 }, &[Hedge::Very, Hedge::Not]));
+            all.push(literal(MembershipFunction::LeftShoulder { top: 0.2, foot: 0.6 }, &[Hedge::Very, Hedge::Not]));
             let mut owned = OwnedTable::default();
             owned.input(&Literals::new(0, all.clone(), 0.0, 1.0), 0.0, 1.0);
             let mut degrees = vec![0.0; all.len()];

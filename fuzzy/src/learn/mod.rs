@@ -11,7 +11,7 @@
 use alloc::{boxed::Box, collections::BTreeMap, string::ToString, vec, vec::Vec};
 
 use crate::{
-    model::{Model, Shape, Variable},
+    model::{MembershipFunction, Model, Variable},
     rule::{Condition, Name},
 };
 
@@ -314,7 +314,7 @@ fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
 }
 
 /// The middle of the interval where a term is highest.
-fn peak(variable: &Variable, shape: &Shape) -> f64 {
+fn peak(variable: &Variable, shape: &MembershipFunction) -> f64 {
     // By sampling, which is fine enough: the peaks of terms differ by far more than a thousandth of the range.
     const STEPS: u32 = 2000;
     let at =

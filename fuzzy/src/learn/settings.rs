@@ -90,29 +90,25 @@ pub struct Settings {
 }
 
 /// Why a model and settings cannot be learned with.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LearnError {
     /// The model does not have exactly one output.
-    #[error("the model has {outputs} outputs; learning takes one")]
     Outputs {
         /// The number of outputs.
         outputs: usize,
     },
     /// A variable without terms.
-    #[error("`{variable}` has no terms")]
     NoTerms {
         /// The variable.
         variable: String,
     },
     /// A setting names something that is not an input, or an input of the given antecedent.
-    #[error("`{name}` is not an input to learn over")]
     NoInput {
         /// The name.
         name: String,
     },
     /// The given antecedent names a term that its input does not have.
-    #[error("`{variable}` has no term `{term}`")]
     NoTerm {
         /// The input.
         variable: String,
@@ -120,16 +116,34 @@ pub enum LearnError {
         term: String,
     },
     /// The given antecedent is not made of propositions joined by AND.
-    #[error("the given antecedent is not of the form `input IS term AND ...`")]
     Given,
 }
 
+impl core::fmt::Display for LearnError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            LearnError::Outputs { outputs } => {
+                write!(f, "the model has {outputs} outputs; learning takes one")
+            }
+            LearnError::NoTerms { variable } => write!(f, "`{variable}` has no terms"),
+            LearnError::NoInput { name } => write!(f, "`{name}` is not an input to learn over"),
+            LearnError::NoTerm { variable, term } => {
+                write!(f, "`{variable}` has no term `{term}`")
+            }
+            LearnError::Given => {
+                f.write_str("the given antecedent is not of the form `input IS term AND ...`")
+            }
+        }
+    }
+}
+
+impl core::error::Error for LearnError {}
+
 /// Why a sample is invalid.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Refusal {
     /// The number of values is not that of the variables.
-    #[error("{got} values for {expected} variables")]
     WrongNumber {
         /// The number of inputs and the output.
         expected: usize,
@@ -137,13 +151,11 @@ pub enum Refusal {
         got: usize,
     },
     /// A value that is NaN or infinite.
-    #[error("`{variable}` is not a finite number")]
     NotFinite {
         /// The variable.
         variable: String,
     },
     /// A value outside the range of its variable.
-    #[error("`{variable}` is {value}, outside its range from {low} to {high}")]
     OutOfRange {
         /// The variable.
         variable: String,
@@ -155,7 +167,6 @@ pub enum Refusal {
         high: f64,
     },
     /// A value at which every term is 0.
-    #[error("every term of `{variable}` is 0 at {value}")]
     NoTerm {
         /// The variable.
         variable: String,
@@ -163,9 +174,36 @@ pub enum Refusal {
         value: f64,
     },
     /// A weight that is not a finite number above 0.
-    #[error("the weight {weight} is not a finite number above 0")]
     Weight {
         /// The weight.
         weight: f64,
     },
 }
+
+impl core::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Refusal::WrongNumber { expected, got } => {
+                write!(f, "{got} values for {expected} variables")
+            }
+            Refusal::NotFinite { variable } => write!(f, "`{variable}` is not a finite number"),
+            Refusal::OutOfRange {
+                variable,
+                value,
+                low,
+                high,
+            } => write!(
+                f,
+                "`{variable}` is {value}, outside its range from {low} to {high}"
+            ),
+            Refusal::NoTerm { variable, value } => {
+                write!(f, "every term of `{variable}` is 0 at {value}")
+            }
+            Refusal::Weight { weight } => {
+                write!(f, "the weight {weight} is not a finite number above 0")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}

@@ -10,10 +10,10 @@ use crate::Engine;
 ///
 /// # Example: a slice of a model with three inputs
 /// ```
-/// use fuzzy::model::{Model, Output, Shape, Variable};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// use fuzzy::{Engine, map::Grid, rule};
 ///
-/// let variable = |name, high| Variable::new(name, 0.0, high).term("high", Shape::RightShoulder { foot: 0.0, top: high });
+/// let variable = |name, high| Variable::new(name, 0.0, high).term("high", MembershipFunction::RightShoulder { foot: 0.0, top: high });
 /// let model = Model::builder("tip")
 ///     .input(variable("food", 10.0))
 ///     .input(variable("service", 10.0))
@@ -62,29 +62,25 @@ pub struct Fixed {
 }
 
 /// Why a grid cannot be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum GridError {
     /// An axis has fewer than 2 points.
-    #[error("an axis needs at least 2 points, not {points}")]
     TooFewPoints {
         /// The number of points.
         points: usize,
     },
     /// The grid has too many cells.
-    #[error("the grid has more than {most} cells")]
     TooManyCells {
         /// The most cells of a grid.
         most: usize,
     },
     /// No axis has this name: it is no input, or it is fixed.
-    #[error("the grid has no axis `{name}`")]
     NoAxis {
         /// The name.
         name: String,
     },
     /// A fixed value is not finite.
-    #[error("the value {value} of `{name}` is not finite")]
     NotFinite {
         /// The input.
         name: String,
@@ -92,6 +88,23 @@ pub enum GridError {
         value: f64,
     },
 }
+
+impl core::fmt::Display for GridError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            GridError::TooFewPoints { points } => {
+                write!(f, "an axis needs at least 2 points, not {points}")
+            }
+            GridError::TooManyCells { most } => write!(f, "the grid has more than {most} cells"),
+            GridError::NoAxis { name } => write!(f, "the grid has no axis `{name}`"),
+            GridError::NotFinite { name, value } => {
+                write!(f, "the value {value} of `{name}` is not finite")
+            }
+        }
+    }
+}
+
+impl core::error::Error for GridError {}
 
 /// The index of a cell fits 32 bits.
 const MOST_CELLS: usize = u32::MAX as usize;
@@ -108,7 +121,7 @@ impl Axis {
 
     /// The index of the point below `x`, and the share in [0, 1] of the way from there to the next point. `x` is clamped to
     /// the axis.
-    pub fn locate(&self, x: f64) -> (usize, f64) {
+    fn locate(&self, x: f64) -> (usize, f64) {
         let last = self.points.saturating_sub(2);
         let steps = (x - self.low) / (self.high - self.low) * (self.points - 1) as f64;
         if steps > 0.0 {

@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 
 use crate::Engine;
-use crate::engine::{EvaluateError, Outcome, Scratch, State};
+use crate::engine::{EvaluateError, Outcome, Scratch};
 
 mod grid;
 mod picture;
@@ -19,12 +19,12 @@ pub use table::{DecisionTable, TableError};
 ///
 /// # Example: the cells that rules cover
 /// ```
-/// use fuzzy::model::{Model, Output, Shape, Variable};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// use fuzzy::{Engine, map::{DecisionMap, Grid}, rule};
 ///
 /// let model = Model::builder("heater")
-///     .input(Variable::new("room", 0.0, 20.0).term("cold", Shape::LeftShoulder { top: 0.0, foot: 10.0 }))
-///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("high", Shape::Rectangle { left: 50.0, right: 100.0 })))
+///     .input(Variable::new("room", 0.0, 20.0).term("cold", MembershipFunction::LeftShoulder { top: 0.0, foot: 10.0 }))
+///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("high", MembershipFunction::Rectangle { left: 50.0, right: 100.0 })))
 ///     .rule(rule::parse("IF room IS cold THEN power IS high")?)
 ///     .build();
 /// let engine = Engine::new(&model)?;
@@ -231,14 +231,5 @@ impl DecisionMap {
     /// The N-linear interpolation between cells; `None` where one of those cells has no value.
     pub fn interpolate(&self, point: &[f64]) -> Option<f64> {
         self.grid.interpolate(|cell| self.value(cell), point)
-    }
-
-    /// The state that an evaluation at the cell has.
-    pub fn state(&self, cell: usize) -> State {
-        match (self.value(cell), self.dominant(cell)) {
-            (Some(value), Some(_)) => State::Defined(value),
-            (Some(value), None) => State::Default(value),
-            (None, _) => State::NoRuleFired,
-        }
     }
 }

@@ -22,12 +22,12 @@ const COVERED: f64 = 0.5;
 ///
 /// # Example: a snapshot of a rule set
 /// ```
-/// use fuzzy::model::{Model, Output, Shape, Variable};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// use fuzzy::{Engine, map::{DecisionMap, Grid, picture}, rule};
 ///
 /// let model = Model::builder("heater")
-///     .input(Variable::new("room", 0.0, 20.0).term("cold", Shape::LeftShoulder { top: 0.0, foot: 10.0 }))
-///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("high", Shape::Rectangle { left: 50.0, right: 100.0 })))
+///     .input(Variable::new("room", 0.0, 20.0).term("cold", MembershipFunction::LeftShoulder { top: 0.0, foot: 10.0 }))
+///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("high", MembershipFunction::Rectangle { left: 50.0, right: 100.0 })))
 ///     .rule(rule::parse("IF room IS cold THEN power IS high")?)
 ///     .build();
 /// let engine = Engine::new(&model)?;

@@ -13,11 +13,11 @@ use crate::engine::EvaluateError;
 ///
 /// # Example: a table within 0.5 % of the engine's power
 /// ```
-/// use fuzzy::model::{Model, Output, Shape, Variable};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
 /// use fuzzy::{Engine, map::DecisionTable, rule};
 ///
-/// let falling = |low, high| Shape::LeftShoulder { top: low, foot: high };
-/// let rising = |low, high| Shape::RightShoulder { foot: low, top: high };
+/// let falling = |low, high| MembershipFunction::LeftShoulder { top: low, foot: high };
+/// let rising = |low, high| MembershipFunction::RightShoulder { foot: low, top: high };
 /// let model = Model::builder("heater")
 ///     .input(Variable::new("room", 0.0, 20.0).term("cold", falling(0.0, 20.0)).term("warm", rising(0.0, 20.0)))
 ///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("low", falling(0.0, 100.0)).term("high", rising(0.0, 100.0))))
@@ -40,23 +40,19 @@ pub struct DecisionTable {
 }
 
 /// Why a table cannot be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum TableError {
     /// The grid has an error, or the grid that measures the table has too many cells.
-    #[error(transparent)]
-    Grid(#[from] GridError),
+    Grid(GridError),
     /// The grid belongs to another engine, or there is no such output.
-    #[error(transparent)]
-    Evaluate(#[from] EvaluateError),
+    Evaluate(EvaluateError),
     /// The error bound is not positive.
-    #[error("the error bound {bound} is not positive")]
     Bound {
         /// The bound.
         bound: f64,
     },
     /// The largest table exceeds the error bound.
-    #[error("a table of {cells} cells has an error of {error}, over the bound of {bound}")]
     TooCoarse {
         /// The number of cells of the largest table.
         cells: usize,
@@ -65,6 +61,38 @@ pub enum TableError {
         /// The bound.
         bound: f64,
     },
+}
+
+impl core::fmt::Display for TableError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            TableError::Grid(error) => error.fmt(f),
+            TableError::Evaluate(error) => error.fmt(f),
+            TableError::Bound { bound } => write!(f, "the error bound {bound} is not positive"),
+            TableError::TooCoarse {
+                cells,
+                error,
+                bound,
+            } => write!(
+                f,
+                "a table of {cells} cells has an error of {error}, over the bound of {bound}"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for TableError {}
+
+impl From<GridError> for TableError {
+    fn from(error: GridError) -> Self {
+        TableError::Grid(error)
+    }
+}
+
+impl From<EvaluateError> for TableError {
+    fn from(error: EvaluateError) -> Self {
+        TableError::Evaluate(error)
+    }
 }
 
 /// The error is measured on a grid this much finer on each axis.

@@ -7,9 +7,9 @@ use super::{
 
 /// Calls `$then!` with the given tokens and the arrays of a table, each as `name: Item,` with its documentation.
 ///
-/// [`Table`], the engine's own copy, both exports and the C interface are generated from this list. A new array is a line
-/// here, a line in `flagred.h` (a test compares the two), and its use. `Item` names a type of this module: plain data with the
-/// layout of C. Every bit pattern is a valid `Item`, except for `Hedge`.
+/// [`Table`], the engine's own copy, exports and the C interface are generated from this list. A new array is a line here, a
+/// line in the C header (a test compares the two), and its use. `Item` names a type of this module: plain data with the layout
+/// of C. Every bit pattern is a valid `Item`, except for `Hedge`.
 #[doc(hidden)] // Public for the exports and the C interface, which are in other packages.
 #[macro_export]
 macro_rules! table_arrays {

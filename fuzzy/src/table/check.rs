@@ -39,14 +39,12 @@ impl Table<'_> {
         let inputs = self.inputs.len();
 
         for input in self.inputs {
-            let intervals = input.end_cut.saturating_sub(input.first_cut) as usize + 1;
             require(
                 input.low.is_finite()
                     && input.high.is_finite()
                     && within(input.first_cut, input.end_cut, self.cuts.len())
                     && within(input.first_curve, input.end_curve, self.curves.len())
-                    && (self.starts.is_empty()
-                        || input.first_start as usize + intervals < self.starts.len())
+                    && (self.starts.is_empty() || self.starts_of(input).is_some())
                     && (literals == 0 || self.fits_literals(input, literals)),
                 "inputs",
             )?;
@@ -207,7 +205,8 @@ impl Table<'_> {
 
     /// Whether the literals of an input are below this number.
     fn fits_literals(&self, input: &Input, literals: usize) -> bool {
-        let fits = |literal: u32| (input.first_literal as usize + literal as usize) < literals;
+        let first = u64::from(input.first_literal);
+        let fits = |literal: u32| first + u64::from(literal) < literals as u64;
         let lines = self.starts_of(input).and_then(|starts| {
             let (first, last) = (starts.first()?, starts.last()?);
             self.lines.get(*first as usize..*last as usize)

@@ -136,12 +136,12 @@ impl Table<'_> {
     ///
     /// # Example: a fan's speed from the temperature
     /// ```
-    /// use fuzzy::{Engine, model::{Model, Output, Shape, Variable}, rule};
+    /// use fuzzy::{Engine, model::{Model, Output, MembershipFunction, Variable}, rule};
     /// use fuzzy::table::{Outcome, Partial, Scratch, Strongest};
     ///
     /// let model = Model::builder("fan")
-    ///     .input(Variable::new("temperature", 0.0, 40.0).term("hot", Shape::RightShoulder { foot: 20.0, top: 30.0 }))
-    ///     .output(Output::new(Variable::new("speed", 0.0, 100.0).term("fast", Shape::RightShoulder { foot: 50.0, top: 100.0 })))
+    ///     .input(Variable::new("temperature", 0.0, 40.0).term("hot", MembershipFunction::RightShoulder { foot: 20.0, top: 30.0 }))
+    ///     .output(Output::new(Variable::new("speed", 0.0, 100.0).term("fast", MembershipFunction::RightShoulder { foot: 50.0, top: 100.0 })))
     ///     .rule(rule::parse("IF temperature IS hot THEN speed IS fast")?)
     ///     .build();
     /// let engine = Engine::new(&model)?;
