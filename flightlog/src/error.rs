@@ -14,6 +14,7 @@ use std::io::ErrorKind;
 /// assert_eq!(error.to_string(), "`the log` is a PNG picture, not a flight log");
 /// ```
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file could not be opened, or reading it failed.
     #[error("`{path}` cannot be read: {source}")]

@@ -14,6 +14,7 @@ use crate::{Geometry, Intervals, Report, Series, Signal};
 /// # Ok::<(), flightlog::ReadError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// ArduPilot DataFlash, binary (`.bin`).
     DataFlash,
@@ -51,6 +52,7 @@ impl std::fmt::Display for Format {
 /// # Ok::<(), flightlog::ReadError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum VehicleKind {
     /// A multirotor: quad, hexa, octa, X8, tri, Y6 ...
     Multirotor,
@@ -117,6 +119,8 @@ impl std::fmt::Display for VehicleKind {
 /// # Ok::<(), flightlog::ReadError>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Vehicle {
     /// What kind it is.
     pub kind: VehicleKind,
@@ -142,6 +146,8 @@ pub struct Vehicle {
 /// # Ok::<(), flightlog::ReadError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Motor {
     /// Motor number of the autopilot, from 1.
     pub number: u16,
@@ -153,6 +159,7 @@ pub struct Motor {
 
 /// A range of commands, and where it came from.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Range {
     /// Lower end.
     pub low: f64,
@@ -265,6 +272,8 @@ impl<T> Event<T> {
 /// written for CSV. Where a log holds several boots of the autopilot, the clock goes on
 /// where the boot before ended; [`Flight::boots_s`] says where each began.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Flight {
     /// The kind of log.
     pub format: Format,
@@ -279,6 +288,7 @@ pub struct Flight {
     pub range: Option<Range>,
     /// The part of the range that is used in flight, as fractions of it: a motor at its
     /// upper end is saturated although the range goes further.
+    #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
     pub effective: Range,
     /// The motor commands.
     pub commands: Commands,

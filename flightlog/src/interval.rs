@@ -2,6 +2,7 @@
 
 /// One stretch of time on the log's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Interval {
     /// First time of the interval, seconds.
     pub start_s: f64,

@@ -43,6 +43,8 @@ mod place;
 mod px4;
 mod read;
 mod report;
+#[cfg(feature = "serde")]
+mod serialize;
 mod signal;
 mod statistics;
 mod tlog;

@@ -4,6 +4,8 @@
 ///
 /// `bytes` counts the log itself, after decompression.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Report {
     /// Bytes of the log that were read.
     pub bytes: u64,

@@ -13,6 +13,8 @@
 /// # Ok::<(), flightlog::ReadError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Label {
     /// Name with the unit in it, such as `roll_deg`.
     pub name: String,

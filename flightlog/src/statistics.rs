@@ -18,6 +18,8 @@ use crate::{Flight, Gap};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Statistics {
     /// Rows of motor commands in the air.
     pub samples: usize,

@@ -23,6 +23,7 @@ use crate::{Flight, Motor, VehicleKind};
 /// # Ok::<(), flightlog::ReadError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Geometry {
     /// `[roll, pitch, yaw]` of each motor, in the order of [`Flight::motors`]; the largest of

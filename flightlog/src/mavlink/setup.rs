@@ -10,6 +10,8 @@ const AUX_OUTPUTS: usize = 8;
 
 /// Motors and the range of their commands, with where each is known from.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Setup {
     /// The motors in order of their number.
     pub motors: Vec<Motor>,
@@ -18,10 +20,12 @@ pub struct Setup {
     /// Range of the commands, 0 % to 100 %.
     pub range: Range,
     /// The part of the range that is used in flight, as fractions of it.
+    #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
     pub effective: Range,
     /// What is assumed because the vehicle did not tell, in words; empty where it told everything.
     pub assumed: Vec<String>,
     /// The output of each motor, from 1.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) outputs: Vec<usize>,
 }
 
