@@ -11,7 +11,7 @@ const BOOT_STEP_S: f64 = -10.0;
 
 /// What to do with a message of some time.
 #[derive(Debug, PartialEq)]
-pub(crate) enum Placed {
+pub(crate) enum Checked {
     /// Take it, at this time.
     At(f64),
     /// Its time jumps: keep it until the next message tells whether that was true.
@@ -73,7 +73,7 @@ impl Clock {
         self.last_s.map(|last| last + self.offset_s)
     }
 
-    pub(crate) fn place(&mut self, t_s: f64) -> Placed {
+    pub(crate) fn check(&mut self, t_s: f64) -> Checked {
         let hint = std::mem::take(&mut self.boot_hint);
         let last_s = self.last_s;
         if let Some(last_s) = last_s {
@@ -81,29 +81,29 @@ impl Clock {
                 self.waiting_s = None;
                 self.boot(last_s);
                 self.last_s = Some(t_s);
-                return Placed::At(t_s + self.offset_s);
+                return Checked::At(t_s + self.offset_s);
             }
             if self.follows(last_s, t_s) {
                 let t_s = t_s + self.offset_s;
                 return match self.waiting_s.take() {
-                    Some(_) => Placed::Refuted(t_s),
-                    None => Placed::At(t_s),
+                    Some(_) => Checked::Refuted(t_s),
+                    None => Checked::At(t_s),
                 };
             }
         }
         match self.waiting_s.replace(t_s) {
-            None => Placed::Wait,
+            None => Checked::Wait,
             Some(first_s) if self.follows(first_s, t_s) => {
                 self.waiting_s = None;
                 self.first_s.get_or_insert(first_s);
                 if let Some(last_s) = last_s.filter(|last_s| first_s - last_s < BOOT_STEP_S) {
                     self.boot(last_s);
                 }
-                Placed::Confirmed(first_s + self.offset_s, t_s + self.offset_s)
+                Checked::Confirmed(first_s + self.offset_s, t_s + self.offset_s)
             }
             Some(_) => {
                 self.longest_s = (2.0 * self.longest_s).min(SLOWEST_S);
-                Placed::RefutedWait
+                Checked::RefutedWait
             }
         }
     }
@@ -166,17 +166,17 @@ mod tests {
     use super::*;
 
     /// Times at which messages end up; `None` for those thrown away.
-    fn places(times: &[f64]) -> Vec<f64> {
+    fn times_kept(times: &[f64]) -> Vec<f64> {
         let mut clock = Clock::default();
-        let mut placed = Vec::new();
+        let mut kept = Vec::new();
         for &t in times {
-            match clock.place(t) {
-                Placed::At(t) | Placed::Refuted(t) => placed.push(t),
-                Placed::Confirmed(a, b) => placed.extend([a, b]),
-                Placed::Wait | Placed::RefutedWait => {}
+            match clock.check(t) {
+                Checked::At(t) | Checked::Refuted(t) => kept.push(t),
+                Checked::Confirmed(a, b) => kept.extend([a, b]),
+                Checked::Wait | Checked::RefutedWait => {}
             }
         }
-        placed
+        kept
     }
 
     #[test]
@@ -203,7 +203,7 @@ mod tests {
             ),
         ];
         for (name, times, expected) in cases {
-            assert_eq!(places(times), *expected, "{name}");
+            assert_eq!(times_kept(times), *expected, "{name}");
         }
     }
 
@@ -220,10 +220,10 @@ mod tests {
     #[test]
     fn a_repeated_definition_announces_a_boot() {
         let mut clock = Clock::default();
-        clock.place(6.0);
-        clock.place(6.5);
+        clock.check(6.0);
+        clock.check(6.5);
         clock.expect_boot();
-        assert_eq!(clock.place(2.0), Placed::At(8.5));
+        assert_eq!(clock.check(2.0), Checked::At(8.5));
         assert_eq!(clock.boots_s(), [6.5]);
         assert_eq!(clock.now_s(), Some(8.5));
     }

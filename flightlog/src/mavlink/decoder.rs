@@ -1,10 +1,10 @@
 //! What the messages of one vehicle tell: armed, in the air, parameters, outputs. Telemetry logs
 //! and live links share it.
 
+use crate::field::{Kind, NumericField};
 use crate::geometry::Declared;
 use crate::mav_type::{MavType, mav_type};
 use crate::parameters::Parameters;
-use crate::place::{Kind, Place};
 use crate::{Motor, Range, Vehicle, ardupilot, px4};
 
 use super::Packet;
@@ -42,7 +42,7 @@ pub(crate) fn filled(packet: &Packet<'_>) -> Payload {
 }
 
 pub(crate) fn number(payload: &Payload, offset: usize, kind: Kind) -> Option<f64> {
-    Place { offset, kind }.number(payload)
+    NumericField { offset, kind }.number(payload)
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -199,7 +199,7 @@ impl Decoder {
     }
 
     fn learn(&mut self, name: String, value: [u8; 4], kind: u8) -> Told {
-        // PX4 sends the bytes of an integer in the place of the number, ArduPilot every number as
+        // PX4 sends the bytes of an integer instead of a float, ArduPilot every number as
         // a float (<https://mavlink.io/en/services/parameter.html#parameter_encoding>).
         let kind = match kind {
             _ if !self.is_px4() => Kind::F32,
@@ -211,7 +211,7 @@ impl Decoder {
             6 => Kind::I32,
             _ => Kind::F32,
         };
-        let value = Place { offset: 0, kind }.number(&value);
+        let value = NumericField { offset: 0, kind }.number(&value);
         match value.filter(|value| is_plausible(&name, *value)) {
             Some(value) if self.parameters.get(&name).is_none() => {
                 self.parameters.insert(&name, value);

@@ -77,12 +77,12 @@ impl Scanner<'_> {
         used
     }
 
-    /// Deals with what is at the start of `bytes`, at `place` in the file; gives its length.
+    /// Deals with what is at the start of `bytes`, at `offset` in the file; gives its length.
     /// Behind `room` bytes damage cannot be told from a message that is not all in sight.
-    fn step(&mut self, bytes: &[u8], place: u64, room: usize) -> usize {
+    fn step(&mut self, bytes: &[u8], offset: u64, room: usize) -> usize {
         // What was appended starts anew, wherever the message before would have ended.
-        let next = self.appended.iter().find(|&&start| start > place);
-        let limit = next.and_then(|start| usize::try_from(start - place).ok());
+        let next = self.appended.iter().find(|&&start| start > offset);
+        let limit = next.and_then(|start| usize::try_from(start - offset).ok());
         let within = &bytes[..limit.unwrap_or(bytes.len()).min(bytes.len())];
         let report = &mut self.collector.report;
         match self.collector.topics.message(within) {
