@@ -1,4 +1,4 @@
-//! `Flight`: one shape for every log.
+//! `Flight`, the common type of all logs.
 
 use crate::{Geometry, Intervals, Report, Series, Signal};
 
@@ -106,7 +106,7 @@ impl std::fmt::Display for VehicleKind {
     }
 }
 
-/// The vehicle, as far as the log names it.
+/// The vehicle, as far as the log describes it.
 ///
 /// # Example: what a flight CSV can say of it
 /// ```
@@ -151,7 +151,7 @@ pub struct Vehicle {
 pub struct Motor {
     /// Motor number of the autopilot, from 1.
     pub number: u16,
-    /// The output in the log's own words, such as `C3` or `actuator_motors.control[2]`.
+    /// The output as the log names it, such as `C3` or `actuator_motors.control[2]`.
     pub output: String,
     /// Where the assignment came from, such as `SERVO3_FUNCTION = 35`.
     pub source: String,
@@ -236,7 +236,7 @@ impl Commands {
     }
 }
 
-/// Something that was said or done at a time.
+/// A message or a change of mode at a time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event<T = String> {
     /// Time in microseconds on the log's clock.
@@ -269,8 +269,8 @@ impl<T> Event<T> {
 ///
 /// Times are in seconds on the log's own clock and never decrease within a series:
 /// since boot for ArduPilot and PX4 logs, since the first packet for telemetry, as
-/// written for CSV. Where a log holds several boots of the autopilot, the clock goes on
-/// where the boot before ended; [`Flight::boots_s`] says where each began.
+/// written for CSV. Where a log holds several boots of the autopilot, the clock continues
+/// at the end of the boot before; [`Flight::boots_s`] has the start of each.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -292,7 +292,7 @@ pub struct Flight {
     pub effective: Range,
     /// The motor commands.
     pub commands: Commands,
-    /// Everything else that was logged over time.
+    /// All other signals.
     pub series: Vec<Series>,
     /// Flight modes, from the time each was entered.
     pub modes: Vec<Event>,
@@ -307,9 +307,9 @@ pub struct Flight {
     pub utc_at_zero_s: Option<f64>,
     /// Times at which the autopilot booted again within the log; empty for one boot.
     pub boots_s: Vec<f64>,
-    /// Key and value lines that a CSV file carries on top, in their order.
+    /// Header lines of a CSV file as keys and values, in their order.
     pub header: Vec<(String, String)>,
-    /// How the reading went.
+    /// Amount of data and damage.
     pub report: Report,
 }
 

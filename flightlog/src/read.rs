@@ -1,4 +1,4 @@
-//! The front door: what kind of log is it, and who reads it.
+//! Detects the format of a log by its content and calls the reader of that format.
 
 use std::fs::File;
 use std::io::{self, Read};

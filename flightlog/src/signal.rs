@@ -1,6 +1,6 @@
 //! Signals: named values over time, each group of them on a time base of its own.
 
-/// What a signal is: its name, its unit and where in the log it came from.
+/// Name, unit and source of a signal.
 ///
 /// # Example: the unit is in the name
 /// ```
@@ -84,7 +84,7 @@ impl Series {
             })
     }
 
-    /// Keeps the signals of which `keep` says so by their name.
+    /// Keeps the signals whose names satisfy `keep`.
     fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
         let labels = std::mem::take(&mut self.labels);
         let columns = std::mem::take(&mut self.columns);
@@ -196,15 +196,15 @@ impl Hold<'_> {
     }
 }
 
-/// How a row goes with the rows before it. Times never go back: where one does, either it
+/// The order of a row and the rows before it. Times never go back: where one does, either it
 /// or the last before it is damaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Order {
     /// It comes last.
     Last,
-    /// It fits if the last row goes, which was too far ahead.
+    /// It fits once the last row, which was too far ahead, is dropped.
     Replaces,
-    /// It goes back even so: it is to be dropped itself.
+    /// It goes back even then, and is dropped itself.
     Back,
 }
 

@@ -42,7 +42,7 @@ impl Flight {
     ///
     /// # Errors
     ///
-    /// The gap in the log that stands in the way: no motors, no range, never in the air ...
+    /// The first gap of the log that prevents them: no motors, no range, never in the air ...
     ///
     /// ```
     /// let log = "t_s,motor1,motor2\n0,0.5,0.4\n0.1,0.5,0.8\n";

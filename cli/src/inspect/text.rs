@@ -263,12 +263,12 @@ fn report(flight: &Flight) -> Vec<String> {
     )];
     if report.skipped_bytes > 0 || report.bad_messages > 0 {
         lines.push(format!(
-            "{} bytes skipped, {} messages thrown away",
+            "{} bytes skipped, {} bad messages",
             report.skipped_bytes, report.bad_messages
         ));
     }
     if report.truncated {
-        lines.push("cut off at the end".into());
+        lines.push("the log is cut off at its end".into());
     }
     lines.extend(
         report

@@ -79,7 +79,7 @@ impl<'o> Collector<'o> {
         };
         let wanted = !matches!(kind.role, Role::Nothing);
         if wanted && !columns.iter().zip(cells).all(is_number) {
-            return Err("with a field that is no number");
+            return Err("with a field that is not a number");
         }
         Ok(())
     }
@@ -196,7 +196,7 @@ impl<'o> Collector<'o> {
 
     fn refute(&mut self) {
         self.waiting = None;
-        self.report.bad("a time that no other agrees with");
+        self.report.bad("a time stamp that does not fit the others");
     }
 
     fn take(&mut self, type_id: u8, cells: Cells<'_>, t_s: f64) {

@@ -1,4 +1,4 @@
-//! DataFlash is self-describing: FMT records say what the others hold.
+//! DataFlash is self-describing: FMT records define the other messages.
 
 use std::borrow::Cow;
 
@@ -13,7 +13,7 @@ pub(crate) struct Column {
     pub(crate) label: String,
     /// The letter that stands for its type.
     pub(crate) kind: u8,
-    /// Where its number is in the payload of a binary record.
+    /// Its number in the payload of a binary record.
     field: NumericField,
 }
 
@@ -25,7 +25,7 @@ pub(crate) struct Format {
     pub(crate) length: usize,
     pub(crate) name: String,
     pub(crate) columns: Vec<Column>,
-    /// The fields do not fill the record, so some of them are not where they seem to be.
+    /// The fields do not fill the record, so their offsets may be wrong.
     pub(crate) damaged: bool,
 }
 
@@ -34,7 +34,7 @@ impl Format {
         let mut offset = 0;
         let columns = kinds
             .bytes()
-            // What stands behind a field of unknown type cannot be found.
+            // The offsets after a field of unknown type are unknown.
             .take_while(|kind| width(*kind) > 0)
             .zip(labels.split(','))
             .map(|(kind, label)| {

@@ -2,10 +2,10 @@
 
 use super::format::Cells;
 
-/// Messages kept at most: a log in which none has a time must not fill the memory.
+/// Most messages kept: a log without any time must not fill the memory.
 const MOST: usize = 1 << 16;
 
-/// A message set aside until more is known of its time.
+/// A message that is kept until its time is known.
 pub(super) enum Kept {
     Binary(u8, Vec<u8>),
     Text(u8, Vec<String>),
@@ -32,8 +32,8 @@ impl Kept {
     }
 }
 
-/// Gives messages without a time one between those of the messages around them that have
-/// one (most often GPS, five times a second), evenly spread.
+/// Spreads messages without a time evenly between the messages around them that have
+/// one (most often GPS, five times a second).
 #[derive(Default)]
 pub(super) struct Untimed {
     kept: Vec<Kept>,
@@ -59,7 +59,7 @@ impl Untimed {
         self.kept.is_empty()
     }
 
-    /// The first message with a time has come, but still waits for a witness.
+    /// The first message with a time has come, but is not confirmed yet.
     pub(super) fn mark_first(&mut self) {
         self.before_first = self.kept.len();
     }

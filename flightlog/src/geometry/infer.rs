@@ -1,4 +1,4 @@
-//! The motor layout by the commands of a flight.
+//! Infers the motor layout from the commands of a flight.
 //!
 //! A mixer adds thrust, roll, pitch and yaw, so the commands of `n` motors lie in a space of
 //! four dimensions (thrust curves and limits bend it a little). A layout fits when little of
@@ -7,19 +7,20 @@
 use super::{Basis, Geometry, in_order, tables};
 use crate::Flight;
 
-/// Rows in the air under which nothing is said.
+/// Least number of rows in the air.
 const FEWEST_ROWS: usize = 100;
 /// A layout fits when at most this share of the variance is outside of its space. Calm and
 /// gusty flights have 0 to 0.02; failed motors and motors at a limit raise it.
 const FITS: f64 = 0.05;
-/// A layout does not fit, by itself, from this share on.
+/// From this share on a layout does not fit.
 const FITS_NOT: f64 = 0.2;
-/// A share is clearly larger than another one from so many times of it, and this, on.
+/// A share is clearly larger than another one times the first plus the second of these.
 const CLEARLY: (f64, f64) = (5.0, 0.01);
-/// Correlation of effort and attitude error up to which they do not go with each other. Right
+/// Correlation of effort and attitude error up to which a layout may be wrong. Right
 /// layouts have 0.0 to 0.9: well-tuned and slow flights little.
 const GOES_WITHOUT: f64 = 0.1;
-/// Correlations from which another layout fits: by itself, and where it is so far above.
+/// Correlation from which another layout fits; and a lower one, if it is above that of the
+/// declared layout by the second number.
 const GOES_WITH: f64 = 0.4;
 const GOES_WITH_RATHER: (f64, f64) = (0.25, 0.6);
 
@@ -167,7 +168,7 @@ impl Variance {
         ((total - inside) / total.max(1e-12)).max(0.0)
     }
 
-    /// How the effort of roll and of pitch goes with its attitude error, as correlations.
+    /// Correlations of the roll and pitch efforts with the attitude errors.
     fn goes_with_error(&self, factors: &[[f64; 3]]) -> Option<[f64; 2]> {
         if self.with_error.count < FEWEST_ROWS {
             return None;
@@ -175,7 +176,7 @@ impl Variance {
         let motors = factors.len();
         let column = |axis: usize| factors.iter().map(|f| f[axis]).collect::<Vec<f64>>();
         let correlation = |axis: usize| {
-            // The least-squares effort of an axis is along what of its column is outside of the others.
+            // The least-squares effort of an axis is along the part of its column that is orthogonal to the others.
             let others = (0..3).filter(|&other| other != axis).map(column);
             let mut direction = column(axis);
             for other in orthonormal(std::iter::once(vec![1.0; motors]).chain(others)) {
@@ -261,7 +262,7 @@ fn orthonormal(vectors: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     basis
 }
 
-/// Takes the part along a unit vector out of a vector.
+/// Makes a vector orthogonal to a unit vector.
 fn reject(vector: &mut [f64], unit: &[f64]) {
     let along = dot(vector, unit);
     for (x, u) in vector.iter_mut().zip(unit) {

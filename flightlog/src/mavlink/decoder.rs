@@ -1,5 +1,5 @@
-//! What the messages of one vehicle tell: armed, in the air, parameters, outputs. Telemetry logs
-//! and live links share it.
+//! The state of one vehicle by its messages: armed, in the air, parameters, outputs. Telemetry logs
+//! and live links use the same decoder.
 
 use crate::field::{Kind, NumericField};
 use crate::geometry::Declared;
@@ -51,10 +51,10 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(text).trim().to_owned()
 }
 
-/// What a message told.
+/// What a message changed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Told {
-    /// Nothing that is kept here.
+    /// Nothing that the decoder keeps.
     Nothing,
     /// Armed, in the air or the mode: [`Decoder`] has them.
     State,
@@ -115,7 +115,7 @@ impl Decoder {
         self.version.filter(|_| self.is_px4()).map(px4::firmware)
     }
 
-    /// Whether the vehicle is in the air; `None` while it has not told.
+    /// Whether the vehicle is in the air; `None` while that is unknown.
     ///
     /// EXTENDED_SYS_STATE says so. Without it the heartbeat of ArduPilot does, which is on standby
     /// while landed and active while not; during a failsafe it is critical either way, which
@@ -319,7 +319,7 @@ fn servo_outputs(payload: &Payload) -> ServoOutputs {
     }
 }
 
-/// Damaged limits would make every command look like one at a limit.
+/// Rejects damaged limits, with which every command would seem to be at a limit.
 fn is_plausible(name: &str, value: f64) -> bool {
     let most = if name.starts_with("MOT_SPIN_") {
         1.0

@@ -22,7 +22,7 @@ pub struct Setup {
     /// The part of the range that is used in flight, as fractions of it.
     #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
     pub effective: Range,
-    /// What is assumed because the vehicle did not tell, in words; empty where it told everything.
+    /// What is assumed because the vehicle did not report it, in words; empty where nothing is.
     pub assumed: Vec<String>,
     /// The output of each motor, from 1.
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -45,7 +45,7 @@ impl Setup {
             && usize::from(expected) != motors.len()
         {
             assumed.push(format!(
-                "the {} motors whose outputs are known are all that matter, of {expected}",
+                "outputs are known for {} of the {expected} motors",
                 motors.len()
             ));
         }
@@ -130,7 +130,7 @@ fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String
     names
 }
 
-/// PX4 does not answer for parameters that it does not have, so as soon as all motors are found no more is asked for.
+/// PX4 does not answer requests for parameters that it does not have, so functions are requested until all motors are found.
 fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     let motors = px4_motors(parameters);
     let all = vehicle.motors.map_or(usize::MAX, usize::from);

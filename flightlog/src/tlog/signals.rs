@@ -6,7 +6,7 @@ use crate::field::{Kind, NumericField};
 
 /// How a signal is made from the payload of a message.
 pub(super) enum From {
-    /// A number times a factor; the second number stands for "not known".
+    /// A number times a factor; the second number means "not known".
     Number(NumericField, f64, Option<f64>),
     /// Length of the vector of these.
     Length(&'static [NumericField]),

@@ -13,7 +13,7 @@ use crate::parameters::Parameters;
 use crate::signal::preferred;
 use crate::{Event, Flight, Format, Intervals, Options, Report, Series, px4};
 
-/// A time this far ahead of all before it is damage, unless the next one agrees.
+/// A time this far after all times before it is damage, unless the next one agrees.
 const LONGEST_PAUSE_S: f64 = 60.0;
 /// Logged values of an outputs message.
 const OUTPUTS: usize = 16;
@@ -71,7 +71,7 @@ impl<'o> Collector<'o> {
             b'F' => {
                 let text = String::from_utf8_lossy(body);
                 if self.topics.formats.define(&text).is_none() {
-                    self.report.bad("a definition that makes no sense");
+                    self.report.bad("a definition that is not valid");
                 }
             }
             b'A' => self.announce(body),
@@ -194,7 +194,7 @@ impl<'o> Collector<'o> {
             return self.report.bad("a message without a time");
         };
         if !self.latest.believe(t_s) {
-            return self.report.bad("a time that no other agrees with");
+            return self.report.bad("a time stamp that does not fit the others");
         }
         let flag = |field: &NumericField, yes: f64| Some((t_s, field.number(body)? == yes));
         match role {

@@ -1,4 +1,4 @@
-//! What is read from the messages of each ULog topic.
+//! The use of each ULog topic.
 
 use super::signals::{From, Spec};
 use crate::Options;
@@ -6,7 +6,7 @@ use crate::angle::Angle;
 use crate::field::{NumericField, vector_length};
 use crate::signal::Label;
 
-/// What the messages of one number are read for.
+/// The use of the messages of one topic.
 pub(super) enum Role {
     Nothing,
     /// Commands of motors or outputs: index in `outputs`.
