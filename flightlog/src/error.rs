@@ -54,13 +54,6 @@ pub enum ReadError {
 
 impl ReadError {
     /// What to do about it, apart from the message.
-    ///
-    /// ```
-    /// let picture = b"\x89PNG\r\n\x1a\n and so on";
-    /// let error = flightlog::read(&picture[..], &flightlog::Options::default()).unwrap_err();
-    /// assert_eq!(error.to_string(), "`the log` is a PNG picture, not a flight log");
-    /// assert!(error.help().is_some());
-    /// ```
     pub fn help(&self) -> Option<&str> {
         match self {
             Self::Io { source, .. } => match source.kind() {

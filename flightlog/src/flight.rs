@@ -3,16 +3,6 @@
 use crate::{Geometry, Intervals, Report, Series, Signal};
 
 /// The kind of log a flight was read from.
-///
-/// # Example: told by the content, not by the name
-/// ```
-/// use flightlog::Format;
-///
-/// let log = "t_s,motor1\n0,0.5\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// assert_eq!((flight.format, flight.format.to_string()), (Format::Csv, "flight CSV".to_string()));
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
@@ -41,16 +31,6 @@ impl std::fmt::Display for Format {
 }
 
 /// What kind of vehicle flew.
-///
-/// # Example: a log that does not say
-/// ```
-/// use flightlog::VehicleKind;
-///
-/// let flight = flightlog::read("t_s,motor1\n0,0.5\n".as_bytes(), &flightlog::Options::default())?;
-/// assert_eq!(flight.vehicle.kind, VehicleKind::Unknown);
-/// assert_eq!(VehicleKind::Vtol.to_string(), "VTOL plane");
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum VehicleKind {
@@ -107,17 +87,6 @@ impl std::fmt::Display for VehicleKind {
 }
 
 /// The vehicle, as far as the log describes it.
-///
-/// # Example: what a flight CSV can say of it
-/// ```
-/// use flightlog::{Vehicle, VehicleKind};
-///
-/// let log = "# vehicle: my quad\n# vehicle_kind: multirotor\nt_s,motor1\n0,0.5\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// let Vehicle { kind, frame, firmware, .. } = flight.vehicle;
-/// assert_eq!((kind, frame.as_deref(), firmware), (VehicleKind::Multirotor, Some("my quad"), None));
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -135,16 +104,6 @@ pub struct Vehicle {
 }
 
 /// One motor, and the output that drives it.
-///
-/// # Example: which output drives the second motor?
-/// ```
-/// use flightlog::Motor;
-///
-/// let flight = flightlog::read("t_s,motor1,motor2\n0,0.5,0.5\n".as_bytes(), &flightlog::Options::default())?;
-/// let Motor { number, output, .. } = &flight.motors[1];
-/// assert_eq!((*number, output.as_str()), (2, "motor2"));
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -254,12 +213,6 @@ impl<T> Event<T> {
     }
 
     /// Time in seconds on the log's clock.
-    ///
-    /// # Example
-    /// ```
-    /// let event = flightlog::Event { t_us: 12_500_000, what: "take-off".to_string() };
-    /// assert_eq!(event.t_s(), 12.5);
-    /// ```
     pub fn t_s(&self) -> f64 {
         self.t_us as f64 * 1e-6
     }

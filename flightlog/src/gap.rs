@@ -6,15 +6,6 @@ use crate::{Flight, Format, VehicleKind};
 const SLOWEST_HZ: f64 = 5.0;
 
 /// Information that the log lacks: the reason why a value is not available (NA).
-///
-/// # Example: a log too coarse for a spread
-/// ```
-/// let log = "t_s,motor1,motor2,motor3,motor4\n0,0.4,0.4,0.4,0.4\n1,0.4,0.5,0.4,0.4\n2,0.4,0.4,0.4,0.4\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// let gaps: Vec<String> = flight.gaps().iter().map(ToString::to_string).collect();
-/// assert!(gaps.contains(&"motor commands are logged at 1.0 Hz, too slow for a spread".into()), "{gaps:?}");
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Gap {

@@ -14,13 +14,6 @@ pub struct Interval {
 
 impl Interval {
     /// Length in seconds.
-    ///
-    /// # Example
-    /// ```
-    /// use flightlog::Interval;
-    ///
-    /// assert_eq!(Interval { start_s: 10.0, end_s: 12.5, ends_with_log: false }.duration_s(), 2.5);
-    /// ```
     pub fn duration_s(&self) -> f64 {
         self.end_s - self.start_s
     }

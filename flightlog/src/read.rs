@@ -37,13 +37,23 @@ impl Options {
     }
 }
 
-/// Reads the log at `path`; `-` is standard input. The content tells its format, never
-/// the name, and it may be gzipped.
+/// Reads the log at `path`; `-` is standard input. The content decides the format, not the
+/// name, and it may be gzipped.
 ///
 /// # Errors
 ///
-/// When there is no such file, when it is empty, or when it is no flight log. A damaged
-/// log is no error: see [`Flight::report`].
+/// When there is no such file, when it is empty, or when it is not a flight log. A damaged
+/// log is not an error: see [`Flight::report`].
+///
+/// # Example
+/// ```no_run
+/// let flight = flightlog::open("flight.bin", &flightlog::Options::default())?;
+/// for motor in &flight.motors {
+///     println!("motor {}: output {} ({})", motor.number, motor.output, motor.source);
+/// }
+/// println!("in the air: {:?}", flight.in_air);
+/// # Ok::<(), flightlog::ReadError>(())
+/// ```
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Flight, ReadError> {
     let path = path.as_ref();
     if path == Path::new("-") {

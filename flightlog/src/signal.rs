@@ -1,17 +1,6 @@
 //! Signals: named values over time, each group of them on a time base of its own.
 
 /// Name, unit and source of a signal.
-///
-/// # Example: the unit is in the name
-/// ```
-/// use flightlog::Label;
-///
-/// let log = "t_s,motor1,roll_deg\n0.0,0.4,1.5\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// let Label { name, unit, .. } = flight.signal("roll_deg").unwrap().label;
-/// assert_eq!((name.as_str(), unit.as_str()), ("roll_deg", "deg"));
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -106,18 +95,6 @@ pub(crate) fn preferred(mut series: Vec<Series>) -> Vec<Series> {
 }
 
 /// One signal: what it is, when, and its values.
-///
-/// # Example: a value that the log left out
-/// ```
-/// use flightlog::Signal;
-///
-/// let log = "t_s,motor1,roll_deg\n0.0,0.4,1.5\n0.1,0.5,\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// let Signal { t_s, values, .. } = flight.signal("roll_deg").unwrap();
-/// assert_eq!((t_s, values[0]), (&[0.0, 0.1][..], 1.5));
-/// assert!(values[1].is_nan());
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Signal<'a> {
     /// Name, unit and source.
@@ -178,15 +155,6 @@ pub struct Hold<'a> {
 
 impl Hold<'_> {
     /// The latest value at or before `t_s`; `t_s` must not be before that of the last call.
-    ///
-    /// # Example: before the first value, between two, and where it is not known
-    /// ```
-    /// let log = "t_s,motor1,roll_deg\n0.0,0.4,1.5\n0.1,0.5,2.5\n0.2,0.5,\n";
-    /// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// let mut roll = flight.signal("roll_deg").unwrap().hold();
-    /// assert_eq!([-1.0, 0.05, 0.1].map(|t_s| roll.at(t_s)), [None, Some(1.5), Some(2.5)]);
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn at(&mut self, t_s: f64) -> Option<f64> {
         while self.t_s.get(self.after).is_some_and(|&t| t <= t_s) {
             self.after += 1;

@@ -48,11 +48,6 @@ pub struct Requests {
 
 impl Requests {
     /// Nothing was requested yet.
-    ///
-    /// # Example
-    /// ```
-    /// assert!(!flightlog::mavlink::Requests::new().parameters_done());
-    /// ```
     pub fn new() -> Requests {
         Requests::default()
     }

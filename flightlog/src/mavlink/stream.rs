@@ -25,6 +25,18 @@ impl Skipped {
 /// Bytes as they arrive, and the packets in them.
 ///
 /// Its memory is bounded by the largest piece that was pushed and one packet.
+///
+/// # Example: a packet that arrives in pieces
+/// ```
+/// let heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
+/// let mut stream = flightlog::mavlink::Stream::new();
+/// stream.push(b"noise");
+/// stream.push(&heartbeat[..8]);
+/// assert!(stream.packet().is_none());
+/// stream.push(&heartbeat[8..]);
+/// assert_eq!(stream.packet().map(|packet| packet.id), Some(0));
+/// assert_eq!(stream.skipped().bytes, 5);
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Stream {
     buffer: Vec<u8>,
@@ -34,13 +46,6 @@ pub struct Stream {
 
 impl Stream {
     /// A stream that starts here.
-    ///
-    /// # Example
-    /// ```
-    /// use flightlog::mavlink::Stream;
-    ///
-    /// assert!(Stream::new().packet().is_none());
-    /// ```
     pub fn new() -> Stream {
         Stream::default()
     }
