@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{self, TEXT, UNNAMED, io_error};
 use crate::input::Input;
-use crate::{Flight, ReadError, csv, dataflash, tlog, ulog};
+use crate::{Flight, ReadError, csv, dataflash, geometry, tlog, ulog};
 
 /// What to read.
 ///
@@ -29,11 +29,16 @@ pub struct Options {
 }
 
 impl Options {
-    /// Whether the signal `name` is asked for.
-    pub(crate) fn wants(&self, name: &str) -> bool {
+    /// Whether the signal `name` is to be kept.
+    fn keeps(&self, name: &str) -> bool {
         self.signals
             .as_ref()
             .is_none_or(|names| names.iter().any(|wanted| wanted == name))
+    }
+
+    /// Whether the signal `name` is to be read: to be kept, or for the geometry.
+    pub(crate) fn wants(&self, name: &str) -> bool {
+        self.keeps(name) || geometry::infer::SIGNALS.contains(&name)
     }
 }
 
@@ -119,6 +124,10 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
     flight.in_air = flight
         .in_air
         .map(|in_air| in_air.joined(SHORTEST_LANDING_S));
+    for series in &mut flight.series {
+        series.retain(|name| options.keeps(name));
+    }
+    flight.series.retain(|series| !series.is_empty());
     flight.report.bytes = input.taken();
     if let Some(failure) = input.failure() {
         flight.report.truncated = true;

@@ -73,8 +73,13 @@ impl Series {
             })
     }
 
+    /// Whether it has no signals.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.labels.is_empty()
+    }
+
     /// Keeps the signals whose names satisfy `keep`.
-    fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
+    pub(crate) fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
         let labels = std::mem::take(&mut self.labels);
         let columns = std::mem::take(&mut self.columns);
         let kept = labels.into_iter().zip(columns);
@@ -90,7 +95,7 @@ pub(crate) fn preferred(mut series: Vec<Series>) -> Vec<Series> {
     for series in &mut series {
         series.retain(|name| names.insert(name.to_owned()));
     }
-    series.retain(|series| !series.labels.is_empty());
+    series.retain(|series| !series.is_empty());
     series
 }
 

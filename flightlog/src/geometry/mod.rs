@@ -1,7 +1,7 @@
 //! Motor geometry: how much each motor rolls, pitches and yaws the vehicle, with its source.
 
 mod declared;
-mod infer;
+pub(crate) mod infer;
 pub(crate) mod tables;
 
 pub(crate) use declared::Declared;
@@ -111,13 +111,11 @@ pub(crate) fn find(flight: &Flight, declared: &Declared) -> Option<Geometry> {
         return None;
     }
     match of(&flight.motors, declared) {
-        Some(mut geometry) => {
-            if geometry.basis == Basis::Declared {
-                geometry.doubt = infer::contradiction(flight, &geometry);
-            }
+        Some(mut geometry) if geometry.basis == Basis::Declared => {
+            geometry.doubt = infer::contradiction(flight, &geometry);
             Some(geometry)
         }
-        None => infer::geometry(flight, declared.class()),
+        assumed => infer::geometry(flight, declared.class()).or(assumed),
     }
 }
 
