@@ -229,6 +229,7 @@ impl Decoder {
     }
 
     /// Forgets what may have changed while the vehicle booted again; what it is stays.
+    #[cfg(feature = "mavlink")]
     pub(crate) fn boot(&mut self) {
         *self = Self {
             autopilot: self.autopilot,
@@ -267,6 +268,10 @@ pub(crate) struct KnownOutputs {
     /// The motors in order of their number, and the output of each, from 1.
     pub(crate) motors: Vec<(Motor, u16)>,
     /// They are on the first outputs because nothing else is known.
+    #[cfg_attr(
+        not(feature = "mavlink"),
+        expect(dead_code, reason = "recordings do not assume")
+    )]
     pub(crate) first_outputs: bool,
     pub(crate) range: Option<Range>,
     pub(crate) effective: Range,

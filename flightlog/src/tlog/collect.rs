@@ -195,15 +195,16 @@ impl Heard {
         if self.decoder.is_px4() {
             vehicle.firmware = self.decoder.px4_firmware();
         }
-        let Some((number, told)) = self.decoder.mav_type() else {
+        if self.decoder.mav_type().is_none() {
             return;
-        };
+        }
+        let told = self.decoder.vehicle();
         // What sends the heartbeat of a quadplane may call itself a plane, not the reverse.
         if !(vehicle.kind == VehicleKind::Vtol && told.kind == VehicleKind::Plane) {
             vehicle.kind = told.kind;
-            vehicle.source = format!("HEARTBEAT.type = {number}");
+            vehicle.source = told.source;
         }
-        vehicle.frame.get_or_insert_with(|| told.name.into());
+        vehicle.frame = vehicle.frame.take().or(told.frame);
         vehicle.motors = vehicle.motors.or(told.motors);
     }
 }
