@@ -1,4 +1,4 @@
-//! What ArduPilot's parameters and messages say about the vehicle: its kind, its motors,
+//! The vehicle by ArduPilot's parameters and messages: its kind, its motors,
 //! the range of their commands.
 
 use crate::geometry::tables;
@@ -112,7 +112,7 @@ pub(crate) fn air_from_commands(flight: &Flight) -> (Option<Intervals>, Option<I
     )
 }
 
-/// A flight mode as a log tells it.
+/// A flight mode as it is logged.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Mode {
     Number(i64),
@@ -186,12 +186,12 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
         return Some(range(own, "MOT_PWM_MIN/MAX".into()));
     }
     let (channel, from) = match parameters.get("RCMAP_THROTTLE") {
-        Some(channel) => (channel as i64, "RCMAP_THROTTLE"),
-        None => (3, "no RCMAP_THROTTLE, so its default"),
+        Some(channel) => (channel as i64, "by RCMAP_THROTTLE"),
+        None => (3, "is 3 by default"),
     };
     let radio = parameters.pair(&format!("RC{channel}_MIN"), &format!("RC{channel}_MAX"))?;
     let source =
-        format!("RC{channel}_MIN/MAX (MOT_PWM_MIN/MAX not set; throttle channel from {from})");
+        format!("RC{channel}_MIN/MAX: MOT_PWM_MIN/MAX are not set, the throttle channel {from}");
     Some(range(radio, source))
 }
 
@@ -221,12 +221,12 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
     };
     match high > low && high <= 1.0 {
         true => range(low, high, source.into()),
-        false => range(low, 1.0, format!("THR_MIN; {source} makes no sense")),
+        false => range(low, 1.0, format!("THR_MIN; {source} is not a limit")),
     }
 }
 
-/// Share of the commands that may be above an upper limit that is in force, and how far above
-/// counts, as a fraction of the range: a failed sample is no proof.
+/// Share of the commands that may be above an upper limit that is in force, and from how far
+/// above they count, as a fraction of the range: single damaged samples do not count.
 const ABOVE: (f64, f64) = (1e-4, 0.006);
 
 /// The effective range of a flight. Before firmware 3.4 a limit may be set without being in

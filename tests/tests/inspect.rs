@@ -52,7 +52,7 @@ fn the_document_tells_values_and_where_they_came_from() {
         document["range"]["source"],
         "header pwm_low_us, pwm_high_us"
     );
-    assert_eq!(document["in_air"]["spans_s"][0][0], 0.04);
+    assert_eq!(document["in_air"]["spans"][0]["start_s"], 0.04);
     assert_eq!(document["signals"][0]["unit"], "deg");
     assert_eq!(document["read"]["messages"], 4);
     // In the air the commands on the effective range are 0.5, 0.5, 1 and 0.

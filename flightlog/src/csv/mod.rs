@@ -322,7 +322,7 @@ fn number(record: &ByteRecord, column: usize) -> Result<f64, String> {
     }
 }
 
-/// The unit that the end of a name tells, as in `roll_deg`.
+/// The unit by the end of a name, as in `roll_deg`.
 fn unit_of(name: &str) -> &'static str {
     const UNITS: &[(&str, &str)] = &[
         ("_deg_s", "deg/s"),
