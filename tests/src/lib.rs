@@ -4,6 +4,7 @@ pub mod board;
 mod folder;
 pub mod log_writer;
 pub mod reference;
+pub mod schema;
 pub mod simulated;
 pub mod vehicle;
 pub mod watch;
