@@ -20,17 +20,25 @@ pub const STEADY: &str = concat!(
     "/../examples/flights/steady.BIN"
 );
 
-/// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent.
-///
-/// Says so where it does not: the tests that need the data are skipped then.
+/// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent: for tests that only look at
+/// more with it.
 pub fn shared_data() -> Option<PathBuf> {
-    match std::env::var_os("FLAGRED_SHARED") {
-        Some(folder) => Some(PathBuf::from(folder).join("data")),
-        None => {
-            eprintln!("skipped: FLAGRED_SHARED names no folder of reference data");
-            None
-        }
-    }
+    std::env::var_os("FLAGRED_SHARED").map(|folder| PathBuf::from(folder).join("data"))
+}
+
+/// The folder of reference data, for tests that are ignored without it.
+///
+/// # Panics
+///
+/// Where the environment variable `FLAGRED_SHARED` does not name its parent.
+#[expect(
+    clippy::expect_used,
+    reason = "a test without the data that it needs has failed"
+)]
+pub fn reference_data() -> PathBuf {
+    let folder = std::env::var_os("FLAGRED_SHARED")
+        .expect("FLAGRED_SHARED names the folder whose `data` this test needs");
+    PathBuf::from(folder).join("data")
 }
 
 /// The `flagred` binary of this workspace, built as the tests are, ready to be given arguments.
