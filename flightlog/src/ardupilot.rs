@@ -1,11 +1,12 @@
 //! What ArduPilot's parameters and messages say about the vehicle: its kind, its motors,
 //! the range of their commands.
 
+use crate::geometry::tables;
 use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
 
 /// Whether the log has any SERVOn_FUNCTION: firmware before 3.5 has none.
-fn has_functions(parameters: &Parameters) -> bool {
+pub(crate) fn has_functions(parameters: &Parameters) -> bool {
     (1..=32).any(|output| parameters.get(&format!("SERVO{output}_FUNCTION")).is_some())
 }
 
@@ -30,20 +31,26 @@ pub(crate) fn motors(
     name: impl Fn(u16) -> String,
 ) -> Vec<(Motor, u16)> {
     if !has_functions(parameters) {
-        let frame = vehicle.frame.as_deref().unwrap_or_default();
-        let source = format!("frame {frame} (the log has no SERVOn_FUNCTION)");
-        return numbered_motors(vehicle.motors.unwrap_or(0), name, &source);
+        let known_by = match &vehicle.frame {
+            Some(frame) => format!("frame {frame}"),
+            None => "the first outputs, which move together".into(),
+        };
+        let source = format!("{known_by} (the log has no SERVOn_FUNCTION)");
+        return match vehicle.motors.unwrap_or(0) {
+            TRI => [1, 2, REAR_OF_TRI]
+                .map(|number| (motor(number, name(number), &source), number))
+                .into(),
+            count => numbered_motors(count, name, &source),
+        };
     }
     let mut motors: Vec<(Motor, u16)> = (1..=32)
         .filter_map(|output| {
             let parameter = format!("SERVO{output}_FUNCTION");
             let function = parameters.get(&parameter)?;
-            let motor = Motor {
-                number: motor_of_function(function as i64)?,
-                output: name(output),
-                source: format!("{parameter} = {function}"),
-            };
-            Some((motor, output))
+            let number = motor_of_function(function as i64)?;
+            let source = format!("{parameter} = {function}");
+            let is_servo = vehicle.motors == Some(TRI) && number == SERVO_OF_TRI;
+            (!is_servo).then(|| (motor(number, name(output), &source), output))
         })
         .collect();
     motors.sort_by_key(|(motor, output)| (motor.number, *output));
@@ -57,16 +64,22 @@ pub(crate) fn numbered_motors(
     source: &str,
 ) -> Vec<(Motor, u16)> {
     (1..=motors)
-        .map(|number| {
-            let motor = Motor {
-                number,
-                output: name(number),
-                source: source.into(),
-            };
-            (motor, number)
-        })
+        .map(|number| (motor(number, name(number), source), number))
         .collect()
 }
+
+fn motor(number: u16, output: String, source: &str) -> Motor {
+    Motor {
+        number,
+        output,
+        source: source.into(),
+    }
+}
+
+/// Motors of a tricopter: 1, 2 and 4. Motor 7 stands for the servo that tilts the rear motor.
+const TRI: u16 = 3;
+const REAR_OF_TRI: u16 = 4;
+const SERVO_OF_TRI: u16 = 7;
 
 /// Armed and in-air times from the commands alone, for logs without events: armed while
 /// any motor runs, in the air while the mean command is above 0.2.
@@ -154,36 +167,7 @@ const COPTER_MODES: &[&str] = &[
 
 /// Number of motors of a frame by the name or class that the log gives it.
 fn motors_of_frame(frame: &str) -> Option<u16> {
-    let class = frame.split(['/', ' ']).next().unwrap_or(frame);
-    Some(match class.to_ascii_uppercase().as_str() {
-        "QUAD" | "QUAD_X" => 4,
-        "TRI" => 3,
-        "HEXA" | "Y6" => 6,
-        "OCTA" | "OCTA_QUAD" | "OCTAQUAD" => 8,
-        "DODECAHEXA" => 12,
-        "DECA" => 10,
-        _ => return None,
-    })
-}
-
-/// Name of a FRAME_CLASS.
-fn frame_of_class(class: i64) -> Option<&'static str> {
-    Some(match class {
-        1 => "QUAD",
-        2 => "HEXA",
-        3 => "OCTA",
-        4 => "OCTA_QUAD",
-        5 => "Y6",
-        6 => "HELI",
-        7 => "TRI",
-        8 => "SINGLE",
-        9 => "COAX",
-        11 => "HELI_DUAL",
-        12 => "DODECAHEXA",
-        13 => "HELI_QUAD",
-        14 => "DECA",
-        _ => return None,
-    })
+    tables::motors_of_class(tables::parse(frame)?.0)
 }
 
 /// Full range of the motor outputs: MOT_PWM_MIN/MAX if both are above 0, else
@@ -211,21 +195,68 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     Some(range(radio, source))
 }
 
-/// The part of the range that is used in flight: MOT_SPIN_MIN..MOT_SPIN_MAX, before
-/// firmware 3.4 THR_MIN / 1000 .. 1.
+/// The part of the range that is used in flight: MOT_SPIN_MIN to MOT_SPIN_MAX. Before firmware
+/// 3.4 it begins at THR_MIN per mille; firmware 3.3 goes up to the share MOT_THST_MAX of what
+/// is left, and 3.1 and 3.2 to MOT_TCRV_MAXPCT percent of all, if that curve is in use.
 pub(crate) fn effective_range(parameters: &Parameters) -> Range {
-    let range = |low, high, source: &str| Range {
+    let range = |low, high, source: String| Range {
         low,
         high,
         unit: "1",
-        source: source.into(),
+        source,
     };
     if let Some((low, high)) = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
-        return range(low, high, "MOT_SPIN_MIN/MAX");
+        return range(low, high, "MOT_SPIN_MIN/MAX".into());
     }
-    match parameters.get("THR_MIN").map(|value| value / 1000.0) {
-        Some(low) if (0.0..1.0).contains(&low) => range(low, 1.0, "THR_MIN / 1000 .. 1"),
-        _ => crate::flight::whole_range("the log has no MOT_SPIN_MIN/MAX and no THR_MIN"),
+    let low = parameters.get("THR_MIN").map(|value| value / 1000.0);
+    let Some(low) = low.filter(|low| (0.0..1.0).contains(low)) else {
+        return crate::flight::whole_range("the log has no MOT_SPIN_MIN/MAX and no THR_MIN");
+    };
+    let curve_is_used = parameters.get("MOT_TCRV_ENABLE").is_none_or(|on| on > 0.0);
+    let curve = parameters.get("MOT_TCRV_MAXPCT").filter(|_| curve_is_used);
+    let (high, source) = match (parameters.get("MOT_THST_MAX"), curve) {
+        (Some(share), _) => (low + share * (1.0 - low), "THR_MIN and MOT_THST_MAX"),
+        (None, Some(percent)) => (percent / 100.0, "THR_MIN and MOT_TCRV_MAXPCT"),
+        (None, None) => (1.0, "THR_MIN"),
+    };
+    match high > low && high <= 1.0 {
+        true => range(low, high, source.into()),
+        false => range(low, 1.0, format!("THR_MIN; {source} makes no sense")),
+    }
+}
+
+/// Share of the commands that may be above an upper limit that is in force, and how far above
+/// counts, as a fraction of the range: a failed sample is no proof.
+const ABOVE: (f64, f64) = (1e-4, 0.006);
+
+/// The effective range of a flight. Before firmware 3.4 a limit may be set without being in
+/// force: then the commands go beyond it.
+pub(crate) fn range_in_force(parameters: &Parameters, flight: &Flight) -> Range {
+    let effective = effective_range(parameters);
+    let is_new = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX").is_some();
+    if is_new || flight.range.is_none() || effective.high >= 1.0 {
+        return effective;
+    }
+    let (mut all, mut above) = (0_u64, 0_u64);
+    for (t_s, row) in flight.commands.rows() {
+        if flight.is_in_air(t_s) == Some(false) {
+            continue;
+        }
+        for command in row.iter().filter_map(|&raw| flight.command(raw)) {
+            all += 1;
+            above += u64::from(command > effective.high + ABOVE.1);
+        }
+    }
+    if above as f64 <= ABOVE.0 * all as f64 {
+        return effective;
+    }
+    Range {
+        high: 1.0,
+        source: format!(
+            "{}; the commands go beyond the upper limit",
+            effective.source
+        ),
+        ..effective
     }
 }
 
@@ -241,7 +272,7 @@ pub(crate) fn vehicle<'a>(
         .filter_map(|text| text.strip_prefix("Frame: "))
         .map(str::to_owned)
         .next()
-        .or_else(|| frame_of_class(class?).map(str::to_owned));
+        .or_else(|| tables::name_of_class(class?).map(str::to_owned));
     let (mut kind, mut source) = match firmware {
         Some(text) => (
             kind_of_firmware(text).unwrap_or_default(),
@@ -369,8 +400,21 @@ mod tests {
     fn effective_range_by_generation() {
         let new = parameters(&[("MOT_SPIN_MIN", 0.15), ("MOT_SPIN_MAX", 0.95)]);
         assert_eq!(effective_range(&new).high, 0.95);
-        let old = effective_range(&parameters(&[("THR_MIN", 130.0)]));
-        assert_eq!((old.low, old.high), (0.13, 1.0));
+        for (limit, high) in [
+            (("THR_MAX", 1000.0), 1.0),
+            (("MOT_TCRV_MAXPCT", 93.0), 0.93),
+            (("MOT_THST_MAX", 0.95), 0.13 + 0.95 * 0.87),
+            (("MOT_THST_MAX", 1.5), 1.0),
+        ] {
+            let old = effective_range(&parameters(&[("THR_MIN", 130.0), limit]));
+            assert_eq!((old.low, old.high), (0.13, high), "{}", old.source);
+        }
+        let unused = [
+            ("THR_MIN", 130.0),
+            ("MOT_TCRV_ENABLE", 0.0),
+            ("MOT_TCRV_MAXPCT", 93.0),
+        ];
+        assert_eq!(effective_range(&parameters(&unused)).high, 1.0);
         let none = effective_range(&parameters(&[]));
         assert_eq!((none.low, none.high), (0.0, 1.0));
     }

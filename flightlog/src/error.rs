@@ -71,6 +71,9 @@ impl ReadError {
             Self::NotALog { what, .. } if what.contains("git-lfs") => {
                 Some("fetch the log itself with `git lfs pull`")
             }
+            Self::NotALog { what, .. } if what == SDLOG2 => Some(
+                "PX4 has logged as ULog (.ulg) since 2016: export the flight as flight CSV, or log it again with newer firmware",
+            ),
             Self::NotALog { what, .. } if what == TEXT => Some(
                 "a flight CSV begins with the names of its columns, commas between them: `t_s`, and `pwm1` or `motor1` and so on; a text log of ArduPilot begins with `FMT` lines",
             ),
@@ -91,6 +94,9 @@ impl ReadError {
         self
     }
 }
+
+/// What a log of PX4's first format is.
+pub(crate) const SDLOG2: &str = "an sdlog2 log of PX4 1.6 or older (.px4log)";
 
 /// What a file is that is text and no log.
 pub(crate) const TEXT: &str = "a text file";

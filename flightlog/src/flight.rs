@@ -1,6 +1,6 @@
 //! `Flight`: one shape for every log.
 
-use crate::{Intervals, Report, Series, Signal};
+use crate::{Geometry, Intervals, Report, Series, Signal};
 
 /// The kind of log a flight was read from.
 ///
@@ -180,17 +180,6 @@ impl Range {
 }
 
 /// Motor commands: one row a logged sample, one raw value a motor, on their own time base.
-///
-/// # Example
-/// ```
-/// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-/// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// for (t_s, row) in flight.commands.rows() {
-///     assert_eq!(row.len(), flight.motors.len(), "at {t_s} s");
-/// }
-/// assert!(flight.commands.rows().any(|(_, row)| row[1].is_nan()), "one value is not known");
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Commands {
     t_s: Vec<f64>,
@@ -217,55 +206,22 @@ impl Commands {
     }
 
     /// Times of the rows, seconds on the log's clock.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert_eq!(flight.commands.t_s(), [0.0, 0.1, 0.2]);
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn t_s(&self) -> &[f64] {
         &self.t_s
     }
 
     /// Number of rows.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert_eq!(flight.commands.len(), 3);
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn len(&self) -> usize {
         self.t_s.len()
     }
 
     /// No motor command was logged.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert!(!flight.commands.is_empty());
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn is_empty(&self) -> bool {
         self.t_s.is_empty()
     }
 
     /// Rows in order of time: the time in seconds and the raw value of each motor, in
     /// the unit of [`Flight::range`]. NaN is a value that is not known.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// let (t_s, first) = flight.commands.rows().next().unwrap();
-    /// assert_eq!((t_s, first), (0.0, &[1500.0, 1600.0][..]));
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn rows(&self) -> impl ExactSizeIterator<Item = (f64, &[f64])> {
         // A flight without motors has no rows either, so the width is never 0 here.
         let rows = self.raw.chunks_exact(self.motors.max(1));
@@ -308,17 +264,6 @@ impl<T> Event<T> {
 /// since boot for ArduPilot and PX4 logs, since the first packet for telemetry, as
 /// written for CSV. Where a log holds several boots of the autopilot, the clock goes on
 /// where the boot before ended; [`Flight::boots_s`] says where each began.
-///
-/// # Example: what a small CSV log tells
-/// ```
-/// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-/// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// assert_eq!(flight.motors.len(), 2);
-/// assert_eq!(flight.range.as_ref().map(|range| (range.low, range.high)), Some((1000.0, 2000.0)));
-/// assert_eq!(flight.is_in_air(0.1), Some(true));
-/// assert!(flight.report.is_clean());
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flight {
     /// The kind of log.
@@ -327,6 +272,9 @@ pub struct Flight {
     pub vehicle: Vehicle,
     /// The motors in order of their number; a column of `commands` each.
     pub motors: Vec<Motor>,
+    /// How much each motor rolls, pitches and yaws the vehicle; `None` where the log does not
+    /// tell and the commands do not either.
+    pub geometry: Option<Geometry>,
     /// Range of the raw commands, 0 % to 100 %; `None` when the log does not tell.
     pub range: Option<Range>,
     /// The part of the range that is used in flight, as fractions of it: a motor at its
@@ -342,7 +290,8 @@ pub struct Flight {
     pub messages: Vec<Event>,
     /// When the motors were armed; `None` when the log does not tell.
     pub armed: Option<Intervals>,
-    /// When the vehicle was in the air; `None` when the log does not tell.
+    /// When the vehicle was in the air; `None` when the log does not tell. Land detectors
+    /// chatter: landings of less than a second are left out.
     pub in_air: Option<Intervals>,
     /// UTC at time 0 of the log's clock, in seconds since 1970; `None` when unknown.
     pub utc_at_zero_s: Option<f64>,
@@ -360,6 +309,7 @@ impl Flight {
             format,
             vehicle: Vehicle::default(),
             motors: Vec::new(),
+            geometry: None,
             range: None,
             effective: whole_range("the log names no tighter limits"),
             commands: Commands::default(),
@@ -376,29 +326,11 @@ impl Flight {
     }
 
     /// All signals.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// let names: Vec<&str> = flight.signals().map(|signal| signal.label.name.as_str()).collect();
-    /// assert!(names.contains(&"roll_deg"));
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn signals(&self) -> impl Iterator<Item = Signal<'_>> {
         self.series.iter().flat_map(Series::signals)
     }
 
     /// The signal of that name.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert_eq!(flight.signal("roll_deg").and_then(|roll| roll.at(0.15)), Some(0.4));
-    /// assert!(flight.signal("wind_m_s").is_none());
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn signal(&self, name: &str) -> Option<Signal<'_>> {
         self.signals().find(|signal| signal.label.name == name)
     }
@@ -407,15 +339,6 @@ impl Flight {
     /// `None` when the value or the range is unknown.
     ///
     /// A PX4 motor that is told to stop is logged as NaN in the file; it is read as 0.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert_eq!(flight.command(1250.0), Some(0.25));
-    /// assert_eq!(flight.command(f64::NAN), None);
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn command(&self, raw: f64) -> Option<f64> {
         let range = self.range.as_ref()?;
         raw.is_finite().then(|| range.fraction(raw))
@@ -443,27 +366,11 @@ impl Flight {
     }
 
     /// Whether the vehicle was in the air at `t_s`; `None` when the log does not tell.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert_eq!((flight.is_in_air(0.05), flight.is_in_air(0.15)), (Some(false), Some(true)));
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn is_in_air(&self, t_s: f64) -> Option<bool> {
         self.in_air.as_ref().map(|spans| spans.contains(t_s))
     }
 
     /// First and last time of the motor commands and the signals.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert_eq!(flight.time_span_s(), Some((0.0, 0.2)));
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn time_span_s(&self) -> Option<(f64, f64)> {
         std::iter::once(self.commands.t_s())
             .chain(self.series.iter().map(Series::t_s))
@@ -472,14 +379,6 @@ impl Flight {
     }
 
     /// Rows of motor commands a second, without pauses; `None` under two rows.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert!(flight.command_rate_hz().is_some_and(|hz| (hz - 10.0).abs() < 1e-9));
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn command_rate_hz(&self) -> Option<f64> {
         crate::signal::rate_hz(self.commands.t_s())
     }

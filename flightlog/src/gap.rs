@@ -1,6 +1,6 @@
 //! What a log does not hold, so that a question about it has no answer.
 
-use crate::{Flight, VehicleKind};
+use crate::{Flight, Format, VehicleKind};
 
 /// Rows a second below which a spread over a window means little.
 const SLOWEST_HZ: f64 = 5.0;
@@ -28,7 +28,10 @@ pub enum Gap {
     },
     /// No output is known to drive a motor.
     #[error("the log does not say which outputs drive the motors")]
-    NoMotors,
+    NoMotors {
+        /// The kind of log.
+        format: Format,
+    },
     /// Some motors are known, but others are missing.
     #[error("outputs are known for {found} of the {expected} motors only")]
     MotorsMissing {
@@ -37,12 +40,21 @@ pub enum Gap {
         /// Motors that the vehicle has, by its frame and the numbers of the known ones.
         expected: usize,
     },
-    /// Motors are known, but their commands were not logged, or not while in the air.
+    /// Motors are known, but their commands were not logged.
     #[error("the commands of the motors are not in the log")]
-    NoCommands,
+    NoCommands {
+        /// The kind of log.
+        format: Format,
+    },
+    /// Motor commands were logged, but none of them in the air.
+    #[error("no motor command was logged while the vehicle was in the air")]
+    NoCommandsInAir,
     /// The range of the motor commands is unknown.
     #[error("the range of the motor commands is not in the log")]
-    NoRange,
+    NoRange {
+        /// The kind of log.
+        format: Format,
+    },
     /// The motors were never armed.
     #[error("the motors were never armed")]
     NeverArmed,
@@ -51,7 +63,10 @@ pub enum Gap {
     NeverInAir,
     /// The log does not tell when the vehicle was in the air.
     #[error("the log does not tell when the vehicle was in the air")]
-    AirUnknown,
+    AirUnknown {
+        /// The kind of log.
+        format: Format,
+    },
     /// Attitude and its set point are not both logged.
     #[error("attitude and its set point are not both in the log")]
     NoAttitude,
@@ -60,44 +75,78 @@ pub enum Gap {
     TooSlow {
         /// Rows a second.
         rate_hz: f64,
+        /// The kind of log.
+        format: Format,
     },
 }
 
 impl Gap {
-    /// What the pilot can do so that the next log holds it.
+    /// What the pilot can do so that the next log of this kind holds it.
     ///
     /// # Example
     /// ```
-    /// use flightlog::Gap;
-    ///
-    /// assert!(Gap::NoRange.help().is_some_and(|help| help.contains("MOT_PWM_MIN/MAX")));
-    /// assert_eq!(Gap::NeverInAir.help(), None);
+    /// let flight = flightlog::read("t_s,pwm1\n0,1500\n".as_bytes(), &flightlog::Options::default())?;
+    /// let gap = &flight.gaps()[0];
+    /// assert_eq!(gap.to_string(), "the range of the motor commands is not in the log");
+    /// assert_eq!(gap.help(), Some("add `# pwm_low_us:` and `# pwm_high_us:` above the names"));
+    /// # Ok::<(), flightlog::ReadError>(())
     /// ```
     pub fn help(&self) -> Option<&'static str> {
-        match self {
+        use Format::{Csv, DataFlash, DataFlashText, Tlog, ULog};
+        Some(match self {
             Self::NotAMultirotor { .. }
             | Self::MotorsMissing { .. }
+            | Self::NoCommandsInAir
             | Self::NeverArmed
-            | Self::NeverInAir => None,
-            Self::NoMotors => Some(
-                "ArduPilot: log from boot, so that the SERVOn_FUNCTION parameters are in it; CSV: name the columns pwm1.. or motor1..",
-            ),
-            Self::NoCommands => {
-                Some("ArduPilot: set bit 10 (RCOUT) of LOG_BITMASK; PX4: log actuator_motors")
+            | Self::NeverInAir => return None,
+            Self::NoMotors { format } => match format {
+                DataFlash | DataFlashText => {
+                    "log from boot, so that the SERVOn_FUNCTION parameters are in the log"
+                }
+                ULog => "log from boot, so that MAV_TYPE or CA_ROTOR_COUNT is in the log",
+                Tlog => {
+                    "let the ground station load all parameters while it records, or use the log on the vehicle"
+                }
+                Csv => "name the columns of the motors pwm1.. (us) or motor1.. (0 to 1)",
+            },
+            Self::NoCommands { format } => match format {
+                DataFlash | DataFlashText => "set bit 10 (RCOUT) of LOG_BITMASK",
+                ULog => "log actuator_motors, or actuator_outputs before 1.13 (SDLOG_PROFILE)",
+                Tlog => {
+                    "let the ground station ask for SERVO_OUTPUT_RAW (ArduPilot: SRx_RC_CHAN), or use the log on the vehicle"
+                }
+                Csv => "add the columns pwm1.. (us) or motor1.. (0 to 1)",
+            },
+            Self::NoRange { format } => match format {
+                DataFlash | DataFlashText => {
+                    "log from boot, so that MOT_PWM_MIN/MAX or RC3_MIN/MAX are in the log"
+                }
+                ULog => {
+                    "the limits are not among the parameters of the log (PWM_MAIN_MIN/MAX, or those of single outputs): convert it to flight CSV and add `# pwm_low_us:` and `# pwm_high_us:`"
+                }
+                Tlog => {
+                    "let the ground station load all parameters while it records, or use the log on the vehicle"
+                }
+                Csv => "add `# pwm_low_us:` and `# pwm_high_us:` above the names",
+            },
+            Self::AirUnknown { format } => match format {
+                DataFlash | DataFlashText => "log from boot, with EV messages",
+                ULog => "log vehicle_land_detected",
+                Tlog => "record HEARTBEAT, and EXTENDED_SYS_STATE for PX4",
+                Csv => "add a column in_air",
+            },
+            Self::NoAttitude => {
+                "ArduPilot: set bit 0 or 1 (attitude) of LOG_BITMASK; PX4: log vehicle_attitude and vehicle_attitude_setpoint"
             }
-            Self::NoRange => Some(
-                "ArduPilot: log from boot, so that MOT_PWM_MIN/MAX are in it; CSV: add `# pwm_low_us:` and `# pwm_high_us:`",
-            ),
-            Self::AirUnknown => {
-                Some("ArduPilot: EV messages, PX4: vehicle_land_detected, CSV: a column `in_air`")
-            }
-            Self::NoAttitude => Some(
-                "ArduPilot: set bit 0 or 1 (attitude) of LOG_BITMASK; PX4: log vehicle_attitude and vehicle_attitude_setpoint",
-            ),
-            Self::TooSlow { .. } => Some(
-                "use the log on the vehicle instead of telemetry, or raise the rate: ArduPilot LOG_BITMASK bit 0 (fast attitude) or SRx_RC_CHAN for telemetry, PX4 SDLOG_PROFILE",
-            ),
-        }
+            Self::TooSlow { format, .. } => match format {
+                DataFlash | DataFlashText => "set bit 0 (fast attitude) of LOG_BITMASK",
+                ULog => "choose a higher rate of logging with SDLOG_PROFILE",
+                Tlog => {
+                    "use the log on the vehicle, or raise the rate of SERVO_OUTPUT_RAW (ArduPilot: SRx_RC_CHAN)"
+                }
+                Csv => "convert the log of the vehicle again at a higher rate",
+            },
+        })
     }
 
     pub(crate) fn stops_statistics(&self) -> bool {
@@ -133,26 +182,27 @@ impl Flight {
                 from: self.vehicle.source.clone(),
             }];
         }
+        let format = self.format;
         let mut gaps = Vec::new();
         if self.motors.is_empty() {
-            gaps.push(Gap::NoMotors);
+            gaps.push(Gap::NoMotors { format });
         } else if self.commands.is_empty() {
-            gaps.push(Gap::NoCommands);
+            gaps.push(Gap::NoCommands { format });
         }
-        let numbers = self.motors.iter().map(|motor| motor.number.into());
-        let expected = numbers.chain(self.vehicle.motors.map(usize::from)).max();
+        let numbers = self.motors.iter().map(|motor| motor.number).max();
+        let expected = self.vehicle.motors.or(numbers).map(usize::from);
         let found = self.motors.len();
         if let Some(expected) = expected.filter(|&expected| expected > found && found > 0) {
             gaps.push(Gap::MotorsMissing { found, expected });
         }
         if self.range.is_none() && !self.motors.is_empty() {
-            gaps.push(Gap::NoRange);
+            gaps.push(Gap::NoRange { format });
         }
         let never = |intervals: &crate::Intervals| intervals.spans.is_empty();
         match (&self.armed, &self.in_air) {
             (Some(armed), _) if never(armed) => gaps.push(Gap::NeverArmed),
             (_, Some(in_air)) if never(in_air) => gaps.push(Gap::NeverInAir),
-            (_, None) => gaps.push(Gap::AirUnknown),
+            (_, None) => gaps.push(Gap::AirUnknown { format }),
             _ => {}
         }
         let attitude = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
@@ -160,7 +210,7 @@ impl Flight {
             gaps.push(Gap::NoAttitude);
         }
         if let Some(rate_hz) = self.command_rate_hz().filter(|&rate| rate < SLOWEST_HZ) {
-            gaps.push(Gap::TooSlow { rate_hz });
+            gaps.push(Gap::TooSlow { rate_hz, format });
         }
         gaps
     }

@@ -59,16 +59,21 @@ impl Intervals {
     }
 
     /// Length of all intervals together, in seconds.
-    ///
-    /// ```
-    /// # use flightlog::{Interval, Intervals};
-    /// let span = Interval { start_s: 10.0, end_s: 12.5, ends_with_log: false };
-    /// let intervals = Intervals { spans: vec![span], rule: "an example".into() };
-    /// assert_eq!(intervals.duration_s(), 2.5);
-    /// assert!(intervals.contains(10.0) && !intervals.contains(12.5));
-    /// ```
     pub fn duration_s(&self) -> f64 {
         self.spans.iter().map(Interval::duration_s).sum()
+    }
+
+    /// Joins intervals that are less than `gap_s` apart.
+    pub(crate) fn joined(mut self, gap_s: f64) -> Self {
+        self.spans.dedup_by(|next, kept| {
+            let is_near = next.start_s - kept.end_s < gap_s;
+            if is_near {
+                kept.end_s = next.end_s;
+                kept.ends_with_log = next.ends_with_log;
+            }
+            is_near
+        });
+        self
     }
 
     /// From a state that is told again and again; its first value holds before it, too.
@@ -165,6 +170,21 @@ mod tests {
         ] {
             assert_eq!(found.contains(t), inside, "{t}");
         }
+    }
+
+    #[test]
+    fn near_intervals_are_one() {
+        let changes = [
+            (1.0, true),
+            (3.0, false),
+            (3.5, true),
+            (5.0, false),
+            (6.0, true),
+        ];
+        let found = Intervals::from_changes(&changes, false, 0.0, 8.0, "test").joined(1.0);
+        let spans: Vec<_> = found.spans.iter().map(|s| (s.start_s, s.end_s)).collect();
+        assert_eq!(spans, [(1.0, 5.0), (6.0, 8.0)]);
+        assert!(found.spans[1].ends_with_log && !found.spans[0].ends_with_log);
     }
 
     #[test]

@@ -8,6 +8,12 @@ const MISSING: u16 = u16::MAX;
 /// No output has longer pulses, in us; what has is damaged.
 const LONGEST_PULSE_US: f64 = 3000.0;
 
+/// Outputs that are looked at for whether they move like motors; the standard deviation of one
+/// that moves, in us, and its correlation with the mean of the first four from which it is one.
+const MOST_LIKE: usize = 8;
+const LEAST_MOVE_US: f64 = 20.0;
+const TOGETHER: f64 = 0.6;
+
 /// Rows of pulse widths, a column an output.
 #[derive(Debug, Default)]
 pub(crate) struct Outputs {
@@ -58,6 +64,44 @@ impl Outputs {
             });
         }
         order != Order::Last
+    }
+
+    /// How many motors the outputs drive, where nothing else tells: 4, 6 or 8 if the first so
+    /// many outputs, and not those after them, move together.
+    pub(crate) fn like_motors(&self) -> Option<u16> {
+        let rows: Vec<[f64; MOST_LIKE]> = (0..self.t_s.len())
+            .map(|row| {
+                std::array::from_fn(|output| {
+                    let column = self.columns.get(output);
+                    match column.and_then(|column| column.get(row)) {
+                        Some(&pulse) if pulse != MISSING => f64::from(pulse),
+                        _ => 0.0,
+                    }
+                })
+            })
+            .collect();
+        let count = rows.len() as f64;
+        let first = |row: &[f64; MOST_LIKE]| row[..4].iter().sum::<f64>() / 4.0;
+        let mean =
+            |value: &dyn Fn(&[f64; MOST_LIKE]) -> f64| rows.iter().map(value).sum::<f64>() / count;
+        let first_mean = mean(&first);
+        let is_motor = |output: usize| {
+            let own_mean = mean(&|row| row[output]);
+            let variance = mean(&|row| (row[output] - own_mean).powi(2));
+            let first_variance = mean(&|row| (first(row) - first_mean).powi(2));
+            let covariance = mean(&|row| (row[output] - own_mean) * (first(row) - first_mean));
+            variance.sqrt() > LEAST_MOVE_US
+                && covariance > TOGETHER * (variance * first_variance).sqrt()
+        };
+        let alike = (0..MOST_LIKE)
+            .take_while(|&output| is_motor(output))
+            .count();
+        match alike {
+            8 => Some(8),
+            6 | 7 => Some(6),
+            4 | 5 => Some(4),
+            _ => None,
+        }
     }
 
     fn pop(&mut self) {

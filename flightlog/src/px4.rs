@@ -101,7 +101,8 @@ pub(crate) fn actuator_outputs(
         )
     };
     let group = bank(instance);
-    let mut motors: Vec<_> = (0..16)
+    let functions = if has_static_mixer(parameters) { 0 } else { 16 };
+    let mut motors: Vec<_> = (0..functions)
         .filter_map(|index| {
             let name = format!("PWM_{group}_FUNC{}", index + 1);
             let function = parameters.get(&name)?;
@@ -121,6 +122,12 @@ pub(crate) fn actuator_outputs(
             motor(number, usize::from(number) - 1, source.into())
         })
         .collect()
+}
+
+/// PX4 1.13 may still use the mixers of before: the parameters of single outputs are there,
+/// and mean nothing.
+fn has_static_mixer(parameters: &Parameters) -> bool {
+    parameters.get("SYS_CTRL_ALLOC") == Some(0.0)
 }
 
 /// Bank of outputs that an instance of `actuator_outputs` shows.
@@ -155,15 +162,23 @@ pub(crate) fn output_range(
     let of_output = |end: &str| {
         let own = parameters.get(&format!("PWM_{bank}_{end}{output}"));
         // -1 stands for the value of the whole bank.
-        own.filter(|&value| value > 0.0)
-            .or_else(|| parameters.get(&format!("PWM_{bank}_{end}")))
-            .or_else(|| parameters.get(&format!("PWM_{end}")))
+        let own = own.filter(|&value| value > 0.0);
+        let of_bank = parameters
+            .get(&format!("PWM_{bank}_{end}"))
+            .or_else(|| parameters.get(&format!("PWM_{end}")));
+        match has_static_mixer(parameters) {
+            true => of_bank.or(own),
+            false => own.or(of_bank),
+        }
     };
     if let (Some(low), Some(high)) = (of_output("MIN"), of_output("MAX"))
         && high > low
         && low > 0.0
     {
-        let source = format!("PWM_{bank}_MIN/MAX of output {output}, or PWM_MIN/MAX");
+        let source = match has_static_mixer(parameters) {
+            true => format!("PWM_{bank}_MIN/MAX or PWM_MIN/MAX (SYS_CTRL_ALLOC = 0)"),
+            false => format!("PWM_{bank}_MIN/MAX of output {output}, or PWM_MIN/MAX"),
+        };
         return Some(range(low, high, "us", source));
     }
     match hardware {
@@ -265,11 +280,19 @@ mod tests {
             ("PWM_MAIN_MIN1", -1.0),
         ];
         let own = [("PWM_MAIN_MIN1", 1100.0), ("PWM_MAIN_MAX1", 1900.0)];
+        let mixer = [
+            ("SYS_CTRL_ALLOC", 0.0),
+            ("PWM_MAIN_MIN", 1075.0),
+            ("PWM_MAIN_MAX", 1950.0),
+            ("PWM_MAIN_MIN1", 1000.0),
+            ("PWM_MAIN_MAX1", 2000.0),
+        ];
         let aux = [("PWM_AUX_MIN3", 1050.0), ("PWM_AUX_MAX3", 1950.0)];
         for (pairs, instance, first, low) in [
             (&old[..], 0, 0, 1075.0),
             (&bank[..], 0, 0, 1000.0),
             (&own[..], 0, 0, 1100.0),
+            (&mixer[..], 0, 0, 1075.0),
             (&aux[..], 1, 2, 1050.0),
         ] {
             let range = output_range(&parameters(pairs), instance, first, 1800.0, "X").unwrap();

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::error::{TEXT, UNNAMED, io_error};
+use crate::error::{self, TEXT, UNNAMED, io_error};
 use crate::input::Input;
 use crate::{Flight, ReadError, csv, dataflash, tlog, ulog};
 
@@ -23,8 +23,8 @@ use crate::{Flight, ReadError, csv, dataflash, tlog, ulog};
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Options {
     /// Names of the signals to keep; `None` keeps all. Motor commands, armed and in-air
-    /// times, modes and messages are always read. Messages that hold nothing that was
-    /// asked for are passed over without being decoded.
+    /// times, modes and messages are always read, and the [`Report`](crate::Report) is the
+    /// same whatever is kept.
     pub signals: Option<Vec<String>>,
 }
 
@@ -44,17 +44,6 @@ impl Options {
 ///
 /// When there is no such file, when it is empty, or when it is no flight log. A damaged
 /// log is no error: see [`Flight::report`].
-///
-/// # Example: the name does not matter
-/// ```
-/// # let path = std::env::temp_dir().join(format!("flightlog-{}.bin", std::process::id()));
-/// std::fs::write(&path, "t_s,motor1,motor2\n0,0.5,0.4\n")?;
-/// let flight = flightlog::open(&path, &flightlog::Options::default())?;
-/// # std::fs::remove_file(&path)?;
-/// assert_eq!((flight.format, flight.motors.len()), (flightlog::Format::Csv, 2));
-/// assert!(flightlog::open("no/such/file", &flightlog::Options::default()).is_err());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Flight, ReadError> {
     let path = path.as_ref();
     if path == Path::new("-") {
@@ -94,6 +83,9 @@ pub fn read(source: impl Read, options: &Options) -> Result<Flight, ReadError> {
     read_unpacked(&mut input, options)
 }
 
+/// Shorter times on the ground between two in the air are chatter of the land detector.
+const SHORTEST_LANDING_S: f64 = 1.0;
+
 fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, ReadError> {
     let (start, _) = input.window().map_err(io_error)?;
     let mut flight = match sniff(start) {
@@ -114,6 +106,9 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
             });
         }
     };
+    flight.in_air = flight
+        .in_air
+        .map(|in_air| in_air.joined(SHORTEST_LANDING_S));
     flight.report.bytes = input.taken();
     if let Some(failure) = input.failure() {
         flight.report.truncated = true;
@@ -149,6 +144,9 @@ const OTHER_FILES: &[(&[u8], &str)] = &[
     (b"version https://git-lfs", "a git-lfs pointer"),
 ];
 
+/// The label of the only field of sdlog2's messages of time.
+const SDLOG2: &[u8] = b"StartTime\0";
+
 /// The content of a log from its first bytes; where those are damaged, from what follows.
 fn sniff(start: &[u8]) -> Content {
     if start.is_empty() {
@@ -158,7 +156,11 @@ fn sniff(start: &[u8]) -> Content {
         return Content::Other(what);
     }
     if dataflash::looks_like(start) {
-        return Content::DataFlash;
+        // PX4 before ULog logged in the same encoding, with messages of its own.
+        return match start.windows(SDLOG2.len()).any(|bytes| bytes == SDLOG2) {
+            true => Content::Other(error::SDLOG2),
+            false => Content::DataFlash,
+        };
     }
     if ulog::looks_like(start) {
         return Content::ULog;

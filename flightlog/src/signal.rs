@@ -26,18 +26,6 @@ pub struct Label {
 ///
 /// A value that is not known at some time is stored as NaN; [`Signal::at`] and
 /// [`Hold::at`] give `None` for it.
-///
-/// # Example
-/// ```
-/// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-/// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// // The fields of one message share their times.
-/// let series = &flight.series[0];
-/// for signal in series.signals() {
-///     assert_eq!(signal.values.len(), series.t_s().len());
-/// }
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
     t_s: Vec<f64>,
@@ -78,28 +66,11 @@ impl Series {
     }
 
     /// Times of the rows, in seconds on the log's clock, never decreasing.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert!(flight.series.iter().all(|series| series.t_s().is_sorted()));
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn t_s(&self) -> &[f64] {
         &self.t_s
     }
 
     /// The signals of this series.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// let named = |name| flight.series.iter().flat_map(|series| series.signals()).any(|signal| signal.label.name == name);
-    /// assert!(named("roll_deg"));
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn signals(&self) -> impl Iterator<Item = Signal<'_>> {
         self.labels
             .iter()
@@ -109,11 +80,6 @@ impl Series {
                 t_s: &self.t_s,
                 values,
             })
-    }
-
-    /// No signal of it was asked for.
-    pub(crate) fn is_without_signals(&self) -> bool {
-        self.labels.is_empty()
     }
 
     /// Keeps the signals of which `keep` says so by their name.
@@ -163,15 +129,6 @@ pub struct Signal<'a> {
 impl<'a> Signal<'a> {
     /// The latest value at or before `t_s` (zero-order hold); `None` before the first
     /// sample and where the value is not known.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// let roll = flight.signal("roll_deg").unwrap();
-    /// assert_eq!((roll.at(-1.0), roll.at(0.05), roll.at(0.1)), (None, Some(0.3), Some(0.4)));
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn at(&self, t_s: f64) -> Option<f64> {
         let after = self.t_s.partition_point(|&t| t <= t_s);
         let value = *self.values.get(after.checked_sub(1)?)?;
@@ -179,15 +136,6 @@ impl<'a> Signal<'a> {
     }
 
     /// A cursor for reading the signal at times that only go forward.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// let mut roll = flight.signal("roll_deg").unwrap().hold();
-    /// assert_eq!((roll.at(0.05), roll.at(0.15)), (Some(0.3), Some(0.4)));
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn hold(&self) -> Hold<'a> {
         Hold {
             t_s: self.t_s,
@@ -197,14 +145,6 @@ impl<'a> Signal<'a> {
     }
 
     /// Samples a second without pauses; `None` under two samples.
-    ///
-    /// # Example
-    /// ```
-    /// # let log = "# vehicle: my quad\n# pwm_low_us: 1000\n# pwm_high_us: 2000\n# effective_low: 0.2\n# effective_high: 1\nt_s,pwm1,pwm2,in_air,roll_deg\n0.0,1500,1600,0,0.3\n0.1,1400,,1,0.4\n0.2,1500,1600,1,\n";
-    /// # let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// assert!(flight.signal("roll_deg").and_then(|roll| roll.rate_hz()).is_some());
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn rate_hz(&self) -> Option<f64> {
         rate_hz(self.t_s)
     }

@@ -99,7 +99,7 @@ impl Flight {
             }
         }
         if samples == 0 {
-            return Err(Gap::NoCommands);
+            return Err(Gap::NoCommandsInAir);
         }
         Ok(Statistics {
             samples,

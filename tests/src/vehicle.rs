@@ -447,6 +447,8 @@ fn parameters(flight: &Flight) -> Vec<(String, f64)> {
         ("RCMAP_THROTTLE".to_owned(), 3.0),
         ("RC3_MIN".to_owned(), range.low),
         ("RC3_MAX".to_owned(), range.high),
+        ("FRAME_CLASS".to_owned(), 1.0),
+        ("FRAME_TYPE".to_owned(), 1.0),
     ];
     for number in 0..16 {
         let motor = flight

@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
-use flagred_tests::shared_data;
+use flagred_tests::reference_data;
 use flate2::read::GzDecoder;
-use flightlog::{Flight, Options, Range, Statistics};
+use flightlog::{Flight, Interval, Options, Range, Statistics};
 use serde_json::Value;
 
 fn open(path: &Path) -> Flight {
@@ -86,6 +86,29 @@ fn has_times(log: &str) -> bool {
     log != "aptxt_mechanical_fail.log"
 }
 
+/// Takes the one row out of the time in the air that the reference, which knows no shortest
+/// landing, has on the ground.
+fn leave_chatter_out(flight: &mut Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
+    let t_s = flight.commands.t_s().to_vec();
+    let is_other = |row: &usize| {
+        flight.is_in_air(t_s[*row]) == Some(true) && truth["in_air"][*row] == Some(0.0)
+    };
+    let rows: Vec<usize> = (0..t_s.len()).filter(is_other).collect();
+    let &[row] = rows.as_slice() else {
+        panic!("rows {rows:?} are not in the air for the reference");
+    };
+    let spans = &mut flight.in_air.as_mut().unwrap().spans;
+    let [span] = spans[..] else {
+        panic!("{spans:?}")
+    };
+    spans[0].end_s = t_s[row];
+    spans[0].ends_with_log = false;
+    spans.push(Interval {
+        start_s: t_s[row + 1],
+        ..span
+    });
+}
+
 /// Row by row: times and raw values.
 fn compare_rows(log: &str, flight: &Flight, truth: &HashMap<String, Vec<Option<f64>>>) {
     assert_eq!(flight.commands.len(), truth["t_s"].len(), "{log}: rows");
@@ -147,7 +170,7 @@ fn seconds_by_rows(flight: &Flight) -> f64 {
 }
 
 fn compare(folder: &Path, log: &str) {
-    let flight = open(&folder.join(log));
+    let mut flight = open(&folder.join(log));
     let truth_of = |end: &str| folder.join("truth").join(format!("{log}.{end}"));
     let summary = std::fs::read_to_string(truth_of("summary.json")).unwrap();
     let summary: Value = serde_json::from_str(&summary).unwrap();
@@ -181,6 +204,13 @@ fn compare(folder: &Path, log: &str) {
         Some(low) => compare_range(log, range, low, &summary["pwm_max"]),
         None => compare_range(log, range, &summary["out_min"], &summary["out_max"]),
     }
+    if log == "aptxt_mechanical_fail.log" {
+        // The reference knows no upper limit before 3.4; its margins on the full range end at 0.07.
+        assert_eq!(flight.effective.high, 0.93);
+        assert!((flight.full_range_statistics().unwrap().margin_min - 0.07).abs() < 1e-3);
+        flight.effective.high = 1.0;
+        leave_chatter_out(&mut flight, &columns(&gunzip(&truth_of("motors.csv.gz"))));
+    }
     if let Some(low) = summary.get("effective_lo") {
         compare_range(log, &flight.effective, low, &summary["effective_hi"]);
     }
@@ -213,8 +243,9 @@ fn compare(folder: &Path, log: &str) {
 }
 
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn simulated_flights_are_as_in_their_reference() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     for log in [
         "hover_calm.BIN",
         "steady.BIN",
@@ -228,8 +259,9 @@ fn simulated_flights_are_as_in_their_reference() {
 }
 
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn public_logs_are_as_in_their_reference() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     for log in [
         "ap_beast_mechfail36.bin",
         "ap_beast_sample.bin",
@@ -249,8 +281,9 @@ fn public_logs_are_as_in_their_reference() {
 
 /// Every row that pyulog recovers from the damaged log is there, and more.
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn a_damaged_log_gives_at_least_what_its_reference_does() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     let log = data.join("logs/x_corrupt_px_quadlocal.ulg");
     let flight = open(&log);
     let truth = data.join("logs/truth/x_corrupt_px_quadlocal.ulg.motors.csv.gz");
@@ -283,8 +316,9 @@ fn a_damaged_log_gives_at_least_what_its_reference_does() {
 
 /// Each log that cannot be assessed says why, and none of them gives a number.
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn logs_without_an_answer_say_why() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     for (log, why) in [
         (
             "ap_pymavlink_test.bin",
@@ -317,8 +351,9 @@ fn logs_without_an_answer_say_why() {
 
 /// Numbers that pymavlink 2.4.50 reads from the log.
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn telemetry_is_as_pymavlink_reads_it() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     let flight = open(&data.join("logs/tl_vtol.tlog"));
     assert!(flight.report.is_clean());
     assert_eq!(flight.report.messages, 23_894);
@@ -345,8 +380,9 @@ fn telemetry_is_as_pymavlink_reads_it() {
 }
 
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn flight_csv_series_are_read_whole() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     let flight = open(&data.join("sitl2/timeseries/f000.csv.gz"));
     assert!(flight.report.is_clean(), "{:?}", flight.report);
     assert_eq!(flight.motors.len(), 8);

@@ -13,6 +13,7 @@ pub(super) struct Document<'a> {
     format: String,
     vehicle: Vehicle<'a>,
     motors: Vec<Motor<'a>>,
+    geometry: Option<Geometry<'a>>,
     range: Option<Range<'a>>,
     effective: Range<'a>,
     clock: Clock<'a>,
@@ -41,6 +42,16 @@ struct Motor<'a> {
     number: u16,
     output: &'a str,
     source: &'a str,
+}
+
+#[derive(Serialize)]
+struct Geometry<'a> {
+    frame: Option<&'a str>,
+    basis: String,
+    source: &'a str,
+    doubt: Option<&'a str>,
+    /// Roll, pitch and yaw of each motor, in the order of `motors`.
+    factors: &'a [[f64; 3]],
 }
 
 #[derive(Serialize)]
@@ -129,6 +140,13 @@ impl<'a> Document<'a> {
                 source: &flight.vehicle.source,
             },
             motors: flight.motors.iter().map(motor).collect(),
+            geometry: flight.geometry.as_ref().map(|geometry| Geometry {
+                frame: geometry.frame.as_deref(),
+                basis: geometry.basis.to_string(),
+                source: &geometry.source,
+                doubt: geometry.doubt.as_deref(),
+                factors: &geometry.factors,
+            }),
             range: flight.range.as_ref().map(range),
             effective: range(&flight.effective),
             clock: Clock {

@@ -11,6 +11,7 @@ pub(super) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Re
     writeln!(out, "{name}: {}", flight.format)?;
     line(out, "vehicle", &vehicle(flight))?;
     lines(out, "motors", motors(flight))?;
+    lines(out, "geometry", geometry(flight))?;
     line(out, "range", &range(flight.range.as_ref(), ""))?;
     line(
         out,
@@ -81,6 +82,28 @@ fn motors(flight: &Flight) -> Vec<String> {
             motor.number, motor.output, motor.source
         )
     }));
+    lines
+}
+
+fn geometry(flight: &Flight) -> Vec<String> {
+    let Some(geometry) = &flight.geometry else {
+        return vec!["NA".into()];
+    };
+    let frame = geometry.frame.as_deref().unwrap_or("motor positions");
+    let mut lines = vec![format!("{frame}, {} ({})", geometry.basis, geometry.source)];
+    let motors = flight.motors.iter().zip(&geometry.factors);
+    lines.extend(motors.map(|(motor, [roll, pitch, yaw])| {
+        format!(
+            "motor {}: roll {roll:+.2}, pitch {pitch:+.2}, yaw {yaw:+.2}",
+            motor.number
+        )
+    }));
+    lines.extend(
+        geometry
+            .doubt
+            .iter()
+            .map(|doubt| format!("doubtful: {doubt}")),
+    );
     lines
 }
 

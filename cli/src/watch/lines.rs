@@ -213,7 +213,6 @@ pub(crate) enum EventLine<'a> {
         bad_checksums: u64,
         unknown_messages: u64,
         signed: u64,
-        not_understood: u64,
         unsent: u64,
         dropped_lines: u64,
     },

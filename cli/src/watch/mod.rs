@@ -159,7 +159,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     display.show(now_s, &mut out.events, &session, &estimator)?;
     let totals = Totals {
         skipped: stream.skipped(),
-        not_understood: session.not_understood(),
         unsent: port.unsent(),
     };
     display.end(now_s, worst, &totals)?;
@@ -173,19 +172,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// What the link cost.
 struct Totals {
     skipped: Skipped,
-    not_understood: u64,
     unsent: u64,
 }
 
 impl Totals {
     fn words(&self) -> String {
         format!(
-            "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets ignored, {} messages not understood, {} packets not sent",
+            "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets ignored, {} packets not sent",
             self.skipped.bytes,
             self.skipped.checksums,
             self.skipped.unknown,
             self.skipped.signed,
-            self.not_understood,
             self.unsent
         )
     }
@@ -305,7 +302,6 @@ impl Display {
                 bad_checksums: totals.skipped.checksums,
                 unknown_messages: totals.skipped.unknown,
                 signed: totals.skipped.signed,
-                not_understood: totals.not_understood,
                 unsent: totals.unsent,
                 dropped_lines: self.printer.dropped(),
             };

@@ -88,7 +88,6 @@ pub(crate) struct Session<'e> {
     heartbeat_s: Option<f64>,
     /// The worst level of the flights with a verdict.
     worst: Option<Level>,
-    not_understood: u64,
 }
 
 impl<'e> Session<'e> {
@@ -101,7 +100,6 @@ impl<'e> Session<'e> {
             others: Vec::new(),
             heartbeat_s: None,
             worst: None,
-            not_understood: 0,
         }
     }
 
@@ -121,13 +119,12 @@ impl<'e> Session<'e> {
             tracked.hear(now_s, out);
         }
         match tracked.telemetry.receive(packet) {
-            News::Nothing | News::Parameter => {}
-            News::NotUnderstood => self.not_understood += 1,
             News::Rebooted => {
                 let worst = tracked.start_anew(now_s, out);
                 self.worst = self.worst.max(worst);
             }
             News::Commands { t_s } => self.assess(now_s, t_s, out),
+            _ => {}
         }
         true
     }
@@ -280,11 +277,6 @@ impl<'e> Session<'e> {
     /// How things stand, for a screen.
     pub(crate) fn view(&self) -> Option<View<'_>> {
         self.tracked.as_ref().map(Tracked::view)
-    }
-
-    /// Messages whose fields hold what the dialect does not know.
-    pub(crate) fn not_understood(&self) -> u64 {
-        self.not_understood
     }
 }
 

@@ -8,6 +8,7 @@ use csv::{ByteRecord, ReaderBuilder};
 
 use crate::error::io_error;
 use crate::flight::whole_range;
+use crate::geometry::{self, Declared, tables};
 use crate::input::Input;
 use crate::signal::{Label, preferred};
 use crate::{
@@ -71,7 +72,8 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     flight.in_air = Some(rows.in_air());
     flight.commands = rows.commands;
     flight.series = preferred(vec![rows.series]);
-    apply_header(&mut flight, header, &layout)?;
+    let declared = apply_header(&mut flight, header, &layout)?;
+    flight.geometry = geometry::find(&flight, &declared);
     Ok(flight)
 }
 
@@ -132,7 +134,10 @@ struct Layout {
     /// `pwm` or `motor`.
     stem: &'static str,
     in_air: Option<usize>,
-    signals: Vec<(usize, String)>,
+    /// Column and name of each signal, and whether it is kept.
+    signals: Vec<(usize, String, bool)>,
+    /// Columns that a row must have.
+    columns: usize,
 }
 
 impl Layout {
@@ -180,11 +185,14 @@ impl Layout {
                     && Some(*column) != in_air
                     && !motors.contains(column)
                     && !name.is_empty()
-                    && options.wants(name)
             })
-            .map(|(column, name)| (column, name.clone()))
+            .map(|(column, name)| (column, name.clone(), options.wants(name)))
             .collect();
         Ok(Self {
+            columns: names
+                .iter()
+                .rposition(|name| !name.is_empty())
+                .map_or(0, |last| last + 1),
             time,
             motors,
             stem,
@@ -229,7 +237,8 @@ struct Rows {
 
 impl Rows {
     fn new(layout: &Layout) -> Self {
-        let labels = layout.signals.iter().map(|(_, name)| Label {
+        let kept = layout.signals.iter().filter(|(.., keep)| *keep);
+        let labels = kept.map(|(_, name, _)| Label {
             name: name.clone(),
             unit: unit_of(name).into(),
             source: format!("column `{name}`"),
@@ -251,14 +260,14 @@ impl Rows {
             Ok(()) => report.messages += 1,
             Err(why) => {
                 report.bad(&format!("line {line}: {why}"));
-                self.last_was_short = record.len() < layout.columns();
+                self.last_was_short = record.len() < layout.columns;
             }
         }
     }
 
     fn try_add(&mut self, layout: &Layout, record: &ByteRecord) -> Result<(), String> {
-        if record.len() < layout.columns() {
-            return Err(format!("{} of {} columns", record.len(), layout.columns()));
+        if record.len() < layout.columns {
+            return Err(format!("{} of {} columns", record.len(), layout.columns));
         }
         let t_s = number(record, layout.time)?;
         if !t_s.is_finite() {
@@ -269,11 +278,11 @@ impl Rows {
         }
         let read = |column: &usize| number(record, *column);
         let commands: Vec<f64> = layout.motors.iter().map(read).collect::<Result<_, _>>()?;
-        let signals: Vec<f64> = layout
-            .signals
-            .iter()
-            .map(|(column, _)| read(column))
-            .collect::<Result<_, _>>()?;
+        let mut signals = Vec::new();
+        for (column, _, keep) in &layout.signals {
+            let value = read(column)?;
+            signals.extend(keep.then_some(value));
+        }
         if let Some(column) = layout.in_air {
             self.air_changes.push((t_s, read(&column)? > 0.5));
             self.air_changes.dedup_by_key(|&mut (_, state)| state);
@@ -296,20 +305,6 @@ impl Rows {
         };
         let before = !self.has_air;
         Intervals::from_changes(&self.air_changes, before, self.first_s, self.last_s, rule)
-    }
-}
-
-impl Layout {
-    /// Columns a row must have for nothing to be missing.
-    fn columns(&self) -> usize {
-        let signals = self.signals.iter().map(|(column, _)| *column);
-        let all = self
-            .motors
-            .iter()
-            .copied()
-            .chain(signals)
-            .chain(self.in_air);
-        all.fold(self.time, usize::max) + 1
     }
 }
 
@@ -353,7 +348,7 @@ fn apply_header(
     flight: &mut Flight,
     header: Vec<HeaderLine>,
     layout: &Layout,
-) -> Result<(), ReadError> {
+) -> Result<Declared, ReadError> {
     let value = |key: &str| -> Result<Option<f64>, ReadError> {
         let Some(entry) = header.iter().find(|entry| entry.key == key) else {
             return Ok(None);
@@ -418,9 +413,75 @@ fn apply_header(
         }
     }
     flight.utc_at_zero_s = value("utc_at_zero_s")?;
+    let declared = geometry_of(&header, layout.motors.len())?;
     flight.header = header
         .into_iter()
         .map(|entry| (entry.key, entry.value))
         .collect();
-    Ok(())
+    Ok(declared)
+}
+
+/// The motor layout by `motorN_factors` of every motor, by `frame`, or by `frame_class` and
+/// `frame_type`.
+fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<Declared, ReadError> {
+    let entry = |key: &str| header.iter().find(|entry| entry.key == key);
+    let frame = entry("frame")
+        .map(|entry| {
+            let known = tables::parse(&entry.value).ok_or_else(|| {
+                let text = format!("unknown frame `{}`", entry.value);
+                problem(
+                    entry.line,
+                    text,
+                    "write class and type as ArduPilot does, such as `QUAD/X` or `HEXA/PLUS`",
+                )
+            })?;
+            Ok((entry.value.clone(), known))
+        })
+        .transpose()?;
+    let factors = (1..=motors)
+        .filter_map(|number| Some((number as u16, entry(&format!("motor{number}_factors"))?)))
+        .map(|(number, entry)| {
+            let parts: Vec<f64> = entry
+                .value
+                .split_whitespace()
+                .map_while(|part| part.parse().ok().filter(|part: &f64| part.is_finite()))
+                .collect();
+            match parts.as_slice() {
+                &[roll, pitch, yaw] => Ok((number, [roll, pitch, yaw])),
+                _ => {
+                    let text = format!("`{}` is `{}`", entry.key, entry.value);
+                    Err(problem(
+                        entry.line,
+                        text,
+                        "write three numbers: roll, pitch and yaw, such as `-1 1 1`",
+                    ))
+                }
+            }
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    if motors > 0 && factors.len() == motors {
+        return Ok(Declared::Factors {
+            frame: frame.map(|(name, _)| name),
+            factors,
+            source: "header motorN_factors".into(),
+        });
+    }
+    let number = |key: &str| entry(key)?.value.parse::<i64>().ok();
+    Ok(match (frame, number("frame_class")) {
+        (Some((name, (class, kind))), _) => Declared::Frame {
+            class,
+            kind,
+            source: format!("header frame `{name}`"),
+        },
+        (None, Some(class)) => {
+            let kind = number("frame_type");
+            let text = kind.map_or(String::new(), |kind| format!(", frame_type {kind}"));
+            Declared::Frame {
+                class,
+                kind,
+                source: format!("header frame_class {class}{text}"),
+            }
+        }
+        (None, None) => Declared::Nothing,
+    })
 }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::{Flight, Hold, VehicleKind};
+use crate::{Basis, Flight, Hold, VehicleKind};
 
 impl Flight {
     /// Writes the flight as CSV: its vehicle and ranges in the lines on top, then a row for
@@ -102,6 +102,20 @@ impl Flight {
         }
         line(out, "effective_low", &self.effective.low.to_string())?;
         line(out, "effective_high", &self.effective.high.to_string())?;
+        let declared = self.geometry.as_ref();
+        if let Some(geometry) = declared.filter(|geometry| geometry.basis == Basis::Declared) {
+            if let Some(frame) = &geometry.frame {
+                line(out, "frame", frame)?;
+            }
+            // The columns are numbered anew, so a frame with gaps in its numbers is not told by its name.
+            let in_turn = (1..).zip(&self.motors).all(|(n, motor)| n == motor.number);
+            if geometry.frame.is_none() || !in_turn {
+                for (number, [roll, pitch, yaw]) in (1..).zip(&geometry.factors) {
+                    let key = format!("motor{number}_factors");
+                    line(out, &key, &format!("{roll} {pitch} {yaw}"))?;
+                }
+            }
+        }
         if let Some(utc_s) = self.utc_at_zero_s {
             line(out, "utc_at_zero_s", &utc_s.to_string())?;
         }

@@ -7,11 +7,12 @@ use super::signals::SPECS;
 use super::untimed::{Kept, Untimed};
 use crate::ardupilot::{self, Mode};
 use crate::clock::{Clock, Placed};
+use crate::geometry::{self, Declared};
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
 use crate::place::vector_length;
 use crate::signal::{Label, preferred};
-use crate::{Event, Flight, Options, Report, Series, utc};
+use crate::{Event, Flight, Options, Report, Series, VehicleKind, utc};
 
 pub(super) struct Collector<'o> {
     options: &'o Options,
@@ -248,9 +249,6 @@ impl<'o> Collector<'o> {
                 if self.utc_at_zero_s.is_none() && format.name == "GPS" {
                     self.utc_at_zero_s = gps_utc_s(format, &cells).map(|utc_s| utc_s - t_s);
                 }
-                if parts.is_empty() {
-                    return;
-                }
                 let values = parts.iter().map(|part| match part {
                     Part::Field { column, scale } => {
                         number(*column).map_or(f64::NAN, |value| value * scale)
@@ -281,6 +279,13 @@ impl<'o> Collector<'o> {
         let said = self.texts.iter().map(|text| &text.what);
         let texts = self.greetings.iter().chain(said).map(String::as_str);
         flight.vehicle = ardupilot::vehicle(texts, &self.parameters);
+        let vehicle = &mut flight.vehicle;
+        if vehicle.motors.is_none() && vehicle.kind == VehicleKind::Multirotor {
+            vehicle.motors = match self.named_motors {
+                0 => self.outputs.like_motors(),
+                motors => Some(motors),
+            };
+        }
         let motors = match self.named_motors {
             0 => ardupilot::motors(&self.parameters, &flight.vehicle, |output| {
                 format!("{}{output}", self.label)
@@ -293,7 +298,6 @@ impl<'o> Collector<'o> {
         let outputs: Vec<u16>;
         (flight.motors, outputs) = motors.into_iter().unzip();
         flight.range = ardupilot::pwm_range(&self.parameters);
-        flight.effective = ardupilot::effective_range(&self.parameters);
         flight.commands = self.outputs.commands(&outputs);
         let span_s = self.clock.first_s().zip(self.clock.now_s());
         (flight.armed, flight.in_air) = ardupilot::air_from_commands(&flight);
@@ -303,6 +307,7 @@ impl<'o> Collector<'o> {
             flight.armed = Some(armed);
             flight.in_air = in_air.or(flight.in_air);
         }
+        flight.effective = ardupilot::range_in_force(&self.parameters, &flight);
         self.series
             .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.message == *name));
         let series = self.series.into_iter().map(|(_, series)| series);
@@ -318,6 +323,8 @@ impl<'o> Collector<'o> {
         flight.utc_at_zero_s = self.utc_at_zero_s;
         flight.boots_s = self.clock.boots_s().to_vec();
         flight.report = self.report;
+        let declared = Declared::of_ardupilot(&self.parameters, &flight.vehicle);
+        flight.geometry = geometry::find(&flight, &declared);
         flight
     }
 }

@@ -65,11 +65,8 @@ impl Kind {
         let role = match timed && !format.damaged {
             true => role(&format).or_else(|| {
                 let spec = SPECS.iter().find(|spec| spec.message == format.name)?;
-                let parts = parts(spec, &format, options);
-                // GPS messages tell UTC, too.
-                let useful = !parts.is_empty() || format.name == "GPS";
-                let (parts, labels) = parts.into_iter().unzip();
-                useful.then(|| Role::Series(series(spec.message, labels), parts))
+                let (parts, labels) = parts(spec, &format, options).into_iter().unzip();
+                Some(Role::Series(series(spec.message, labels), parts))
             }),
             false => None,
         };

@@ -4,6 +4,7 @@
 //! Nothing here opens a port: bytes come in, packets and bytes to send go out, and time is passed in.
 
 mod checksum;
+pub(crate) mod decoder;
 #[cfg(feature = "mavlink")]
 mod heartbeat;
 pub(crate) mod packet;
@@ -23,7 +24,7 @@ mod telemetry;
 pub use ::mavlink::dialects::ardupilotmega as dialect;
 
 #[cfg(feature = "mavlink")]
-pub use heartbeat::{is_in_air, vehicle_of};
+pub use heartbeat::vehicle_of;
 pub use packet::{Next, Packet, Version, Why, next_packet};
 #[cfg(feature = "mavlink")]
 pub use requests::{MOTOR_RATE_HZ, Requests, parameters_known};

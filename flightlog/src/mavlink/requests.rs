@@ -36,28 +36,6 @@ const PARAMETER_WAIT_S: f64 = 0.5;
 const PARAMETER_TRIES: u32 = 20;
 
 /// Keeps what was asked for and when.
-///
-/// # Example: what is asked for first
-/// ```
-/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
-/// # use flightlog::mavlink::{Requests, Telemetry, Version, vehicle_of};
-/// # use vehicle::packet;
-/// # let (mut autopilot, heartbeat) = vehicle::autopilot();
-/// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-/// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-/// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-/// let (mut requests, mut out) = (Requests::new(), Vec::new());
-/// requests.due(0.0, &telemetry, &mut out);
-/// assert!(!out.is_empty() && !requests.parameters_done());
-/// let asked = out.len();
-/// requests.due(0.1, &telemetry, &mut out);
-/// assert_eq!(out.len(), asked, "not so soon again");
-/// for i in 1..60 {
-///     requests.due(f64::from(i) * 0.5, &telemetry, &mut Vec::new());
-/// }
-/// assert!(requests.parameters_done(), "they were asked for often enough");
-/// # Ok::<(), &str>(())
-/// ```
 #[derive(Debug, Default)]
 pub struct Requests {
     rate_tries: u32,
@@ -80,40 +58,11 @@ impl Requests {
     }
 
     /// Whether all parameters came, or were asked for often enough.
-    ///
-    /// # Example: a vehicle that never answers
-    /// ```
-    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
-    /// # let (_, _, _, telemetry) = vehicle::followed();
-    /// # use flightlog::mavlink::Requests;
-    /// let mut requests = Requests::new();
-    /// for i in 0..60 {
-    ///     requests.due(f64::from(i) * 0.5, &telemetry, &mut Vec::new());
-    /// }
-    /// assert!(requests.parameters_done(), "half a minute of asking is enough");
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn parameters_done(&self) -> bool {
         self.parameters_done
     }
 
     /// Adds what is to be sent now. The time is the receiver's own, in seconds.
-    ///
-    /// # Example: how often motors are to be told
-    /// ```
-    /// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
-    /// # use flightlog::mavlink::dialect::*;
-    /// # let (_, _, _, telemetry) = vehicle::followed();
-    /// # use flightlog::mavlink::{MOTOR_RATE_HZ, Requests};
-    /// let mut out = Vec::new();
-    /// Requests::new().due(0.0, &telemetry, &mut out);
-    /// let interval_us = out.iter().find_map(|message| match message {
-    ///     MavMessage::COMMAND_LONG(asked) if asked.param1 == 36.0 => Some(f64::from(asked.param2)), // SERVO_OUTPUT_RAW
-    ///     _ => None,
-    /// });
-    /// assert_eq!(interval_us, Some(1e6 / MOTOR_RATE_HZ));
-    /// # Ok::<(), &str>(())
-    /// ```
     pub fn due(&mut self, now_s: f64, telemetry: &Telemetry, out: &mut Vec<MavMessage>) {
         self.ask_rates(now_s, telemetry, out);
         if !self.parameters_done {
@@ -199,19 +148,6 @@ impl Requests {
 }
 
 /// Whether everything is known that the motors and their range depend on.
-///
-/// # Example
-/// ```
-/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
-/// # use flightlog::mavlink::{Telemetry, Version, parameters_known, vehicle_of};
-/// # use vehicle::packet;
-/// # let (mut autopilot, heartbeat) = vehicle::autopilot();
-/// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-/// # let vehicle = vehicle_of(&packet(&heartbeat)).ok_or("no vehicle")?;
-/// # let mut telemetry = Telemetry::new(&packet(&heartbeat), vehicle);
-/// assert!(!parameters_known(&telemetry));
-/// # Ok::<(), &str>(())
-/// ```
 pub fn parameters_known(telemetry: &Telemetry) -> bool {
     telemetry.missing_parameters().is_empty()
 }

@@ -1,22 +1,21 @@
-//! Messages into packets.
+//! Messages into packets, and out of them.
 
-use ::mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader};
+use ::mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
-use super::{Version, dialect::MavMessage};
+use super::{Packet, Version, dialect::MavMessage};
+
+impl Packet<'_> {
+    /// The message; `None` where a field holds a value that the dialect does not know.
+    pub fn message(&self) -> Option<MavMessage> {
+        let version = match self.version {
+            Version::V1 => MavlinkVersion::V1,
+            Version::V2 => MavlinkVersion::V2,
+        };
+        MavMessage::parse(version, self.id, self.payload).ok()
+    }
+}
 
 /// Numbers the packets of one component.
-///
-/// # Example: a component of the vehicle's own system
-/// ```
-/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
-/// # use flightlog::mavlink::{Sender, Version, dialect::*};
-/// # use vehicle::packet;
-/// # let (mut autopilot, heartbeat) = vehicle::autopilot();
-/// # let heartbeat = autopilot.packet(Version::V2, 1, &heartbeat);
-/// let mut sender = Sender::new(191);
-/// let bytes = sender.packet(Version::V2, 1, &MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
-/// assert_eq!((packet(&bytes).system, packet(&bytes).component), (1, 191));
-/// ```
 #[derive(Debug, Clone)]
 pub struct Sender {
     component: u8,

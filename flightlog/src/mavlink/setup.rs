@@ -1,29 +1,20 @@
 //! Which outputs drive the motors of a live vehicle and what their limits are, from the parameters it told; and which
 //! parameters those are.
 
+use super::decoder::KnownOutputs;
 use super::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
-use crate::{Motor, Range, Vehicle, ardupilot, parameters::Parameters, px4};
+use crate::{Geometry, Motor, Range, Vehicle, ardupilot, geometry, parameters::Parameters};
 
 /// Outputs of PX4's AUX bank that any board has.
 const AUX_OUTPUTS: usize = 8;
 
 /// Motors and the range of their commands, with where each is known from.
-///
-/// # Example: a quadrotor that told nothing yet
-/// ```
-/// # mod vehicle { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/vehicle.rs")); }
-/// # let (_, _, _, telemetry) = vehicle::followed();
-/// use flightlog::mavlink::Setup;
-///
-/// let Setup { motors, range, assumed, .. } = telemetry.setup();
-/// assert_eq!((motors.len(), range.low, range.high), (4, 1000.0, 2000.0));
-/// assert!(assumed.contains(&"commands from 1000 to 2000 us".to_string()));
-/// # Ok::<(), &str>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
     /// The motors in order of their number.
     pub motors: Vec<Motor>,
+    /// How much each motor rolls, pitches and yaws the vehicle; `None` where that is not known.
+    pub geometry: Option<Geometry>,
     /// Range of the commands, 0 % to 100 %.
     pub range: Range,
     /// The part of the range that is used in flight, as fractions of it.
@@ -35,12 +26,45 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Motors and ranges from what is known; what is not is assumed, and said to be.
+    /// Motors and ranges from what is known. Without parameters that name them the motors are the
+    /// first outputs, as many as the type of vehicle has; limits are those of a vehicle on which
+    /// nobody changed them.
     pub(super) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Setup {
-        if is_px4 {
-            of_px4(parameters, vehicle)
-        } else {
-            of_ardupilot(parameters, vehicle)
+        let known = KnownOutputs::of(parameters, vehicle, is_px4);
+        let (motors, outputs): (Vec<Motor>, Vec<u16>) = known.motors.into_iter().unzip();
+        let mut assumed = Vec::new();
+        if known.first_outputs && !motors.is_empty() {
+            let count = motors.len();
+            assumed.push(format!("motors 1 to {count} on outputs 1 to {count}"));
+        }
+        if let Some(expected) = vehicle.motors
+            && usize::from(expected) != motors.len()
+        {
+            assumed.push(format!(
+                "the {} motors whose outputs are known are all that matter, of {expected}",
+                motors.len()
+            ));
+        }
+        let range = known.range.unwrap_or_else(|| {
+            assumed.push("commands from 1000 to 2000 us".to_owned());
+            assumed_range(1000.0, 2000.0, "us")
+        });
+        let limits_known = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX").is_some()
+            || parameters.get("THR_MIN").is_some();
+        let effective = match is_px4 || limits_known {
+            true => known.effective,
+            false => {
+                assumed.push("effective range 0.15 to 0.95".to_owned());
+                assumed_range(0.15, 0.95, "1")
+            }
+        };
+        Setup {
+            geometry: geometry::of(&motors, &known.declared),
+            outputs: outputs.iter().map(|&output| usize::from(output)).collect(),
+            motors,
+            range,
+            effective,
+            assumed,
         }
     }
 
@@ -60,89 +84,6 @@ fn assumed_range(low: f64, high: f64, unit: &'static str) -> Range {
     }
 }
 
-/// Notes what the type of the vehicle has beside what is known.
-fn compare_count(vehicle: &Vehicle, motors: usize, assumed: &mut Vec<String>) {
-    if let Some(expected) = vehicle.motors
-        && usize::from(expected) != motors
-    {
-        assumed.push(format!(
-            "the {motors} motors whose outputs are known are all that matter, of {expected}"
-        ));
-    }
-}
-
-/// Without SERVOn_FUNCTION the motors are the first outputs, as many as the type of vehicle has; without limits they
-/// are those ArduPilot has when nobody changed them.
-fn of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Setup {
-    let mut assumed = Vec::new();
-    let (motors, outputs): (Vec<Motor>, Vec<u16>) = ardupilot::motors(parameters, vehicle, field)
-        .into_iter()
-        .unzip();
-    let numbered = parameters.get("SERVO1_FUNCTION").is_none();
-    if numbered && !motors.is_empty() {
-        assumed.push(format!(
-            "motors 1 to {n} on outputs 1 to {n}",
-            n = motors.len()
-        ));
-    }
-    compare_count(vehicle, motors.len(), &mut assumed);
-    let range = ardupilot::pwm_range(parameters).unwrap_or_else(|| {
-        assumed.push("commands from 1000 to 2000 us".to_owned());
-        assumed_range(1000.0, 2000.0, "us")
-    });
-    let effective = match parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
-        None if parameters.get("THR_MIN").is_none() => {
-            assumed.push("flown between 0.15 and 0.95 of that".to_owned());
-            assumed_range(0.15, 0.95, "1")
-        }
-        _ => ardupilot::effective_range(parameters),
-    };
-    Setup {
-        outputs: outputs.iter().map(|&output| usize::from(output)).collect(),
-        motors,
-        range,
-        effective,
-        assumed,
-    }
-}
-
-/// Without PWM_MAIN_FUNCn and PWM_AUX_FUNCn (before 1.13) the motors are the first outputs of MAIN. PX4 uses all of the
-/// range that it drives an output over.
-fn of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Setup {
-    let mut assumed = Vec::new();
-    let mut motors = px4_motors(parameters);
-    if motors.is_empty() {
-        let count = vehicle.motors.unwrap_or(0);
-        let source = "the type of vehicle, the first outputs";
-        motors = ardupilot::numbered_motors(count, field, source);
-        if count > 0 {
-            assumed.push(format!("motors 1 to {count} on outputs 1 to {count}"));
-        }
-    }
-    let (bank, index) = bank(motors.first().map_or(1, |(_, output)| *output));
-    let (motors, outputs): (Vec<Motor>, Vec<usize>) = motors
-        .into_iter()
-        .map(|(motor, output)| (motor, usize::from(output)))
-        .unzip();
-    compare_count(vehicle, motors.len(), &mut assumed);
-    let range = px4::output_range(parameters, bank, index, 0.0, "").unwrap_or_else(|| {
-        assumed.push("commands from 1000 to 2000 us".to_owned());
-        assumed_range(1000.0, 2000.0, "us")
-    });
-    Setup {
-        motors,
-        outputs,
-        range,
-        effective: Range {
-            low: 0.0,
-            high: 1.0,
-            unit: "1",
-            source: "PX4 uses the whole range".to_owned(),
-        },
-        assumed,
-    }
-}
-
 /// The parameters that motors and their range depend on, and that are not known yet.
 pub(super) fn missing(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Vec<String> {
     let mut names = if is_px4 {
@@ -155,7 +96,14 @@ pub(super) fn missing(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) 
 }
 
 fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
-    let fixed = ["MOT_PWM_MIN", "MOT_PWM_MAX", "MOT_SPIN_MIN", "MOT_SPIN_MAX"];
+    let fixed = [
+        "MOT_PWM_MIN",
+        "MOT_PWM_MAX",
+        "MOT_SPIN_MIN",
+        "MOT_SPIN_MAX",
+        "FRAME_CLASS",
+        "FRAME_TYPE",
+    ];
     let mut names: Vec<String> = fixed.iter().map(|&name| name.to_owned()).collect();
     let functions = |outputs: std::ops::RangeInclusive<usize>| {
         outputs.map(|output| format!("SERVO{output}_FUNCTION"))
@@ -193,8 +141,13 @@ fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     };
     let (bank, index) = bank(*output);
     let bank = ["MAIN", "AUX"][usize::from(bank).min(1)];
-    ends.map(|end| format!("PWM_{bank}_{end}{}", index + 1))
-        .into()
+    let limits = ends.map(|end| format!("PWM_{bank}_{end}{}", index + 1));
+    let rotors = (0..motors.len()).flat_map(|rotor| {
+        let parts = ["PX", "PY", "PZ", "AX", "AY", "AZ", "KM"];
+        parts.map(|part| format!("CA_ROTOR{rotor}_{part}"))
+    });
+    let count = "CA_ROTOR_COUNT".to_owned();
+    limits.into_iter().chain([count]).chain(rotors).collect()
 }
 
 #[cfg(test)]
@@ -223,7 +176,8 @@ mod tests {
             ("PWM_MAIN_MIN4", 1100.0),
             ("PWM_MAIN_MAX4", 1900.0),
         ]);
-        assert_eq!(missing(&known, &vehicle(3), true), Vec::<String>::new());
+        let missing = missing(&known, &vehicle(3), true);
+        assert!(missing.iter().all(|name| name.starts_with("CA_ROTOR")));
         let setup = Setup::of(&known, &vehicle(3), true);
         assert_eq!(setup.outputs, [4, 1, 19]);
         assert_eq!(setup.last_port(), 1);
@@ -244,10 +198,17 @@ mod tests {
             .map(|(function, n)| (format!("PWM_AUX_FUNC{n}"), function))
             .collect();
         let known: Parameters = names.iter().map(|(name, f)| (name.as_str(), *f)).collect();
+        let asked_for = missing(&known, &vehicle(4), true);
         assert_eq!(
-            missing(&known, &vehicle(4), true),
-            ["PWM_AUX_MIN1", "PWM_AUX_MAX1"]
+            asked_for[..4],
+            [
+                "PWM_AUX_MIN1",
+                "PWM_AUX_MAX1",
+                "CA_ROTOR_COUNT",
+                "CA_ROTOR0_PX"
+            ]
         );
+        assert_eq!(asked_for.len(), 3 + 4 * 7);
     }
 
     #[test]

@@ -3,20 +3,6 @@
 use super::{Next, Packet, Why, next_packet};
 
 /// What was passed over.
-///
-/// # Example: noise, and a packet that was damaged on its way
-/// ```
-/// # let mut heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
-/// use flightlog::mavlink::{Skipped, Stream};
-///
-/// let mut stream = Stream::new();
-/// stream.push(b"noise");
-/// heartbeat[8] ^= 1;
-/// stream.push(&heartbeat);
-/// assert!(stream.packet().is_none());
-/// let Skipped { bytes, checksums, .. } = stream.skipped();
-/// assert_eq!((bytes, checksums), (5 + heartbeat.len() as u64, 1));
-/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Skipped {
     /// Bytes that belong to no packet that could be read.
@@ -31,15 +17,6 @@ pub struct Skipped {
 
 impl Skipped {
     /// Nothing was passed over.
-    ///
-    /// # Example
-    /// ```
-    /// # let heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
-    /// # use flightlog::mavlink::Stream;
-    /// let mut stream = Stream::new();
-    /// stream.push(&heartbeat);
-    /// assert!(stream.packet().is_some() && stream.skipped().is_empty());
-    /// ```
     pub fn is_empty(&self) -> bool {
         *self == Skipped::default()
     }
@@ -48,20 +25,6 @@ impl Skipped {
 /// Bytes as they arrive, and the packets in them.
 ///
 /// Its memory is bounded by the largest piece that was pushed and one packet.
-///
-/// # Example: a packet that arrives in pieces
-/// ```
-/// # let heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
-/// use flightlog::mavlink::Stream;
-///
-/// let mut stream = Stream::new();
-/// stream.push(b"noise");
-/// stream.push(&heartbeat[..8]);
-/// assert!(stream.packet().is_none(), "half a packet is none yet");
-/// stream.push(&heartbeat[8..]);
-/// assert_eq!(stream.packet().map(|packet| packet.id), Some(0));
-/// assert_eq!(stream.skipped().bytes, 5);
-/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Stream {
     buffer: Vec<u8>,
@@ -83,16 +46,6 @@ impl Stream {
     }
 
     /// Adds the bytes that arrived.
-    ///
-    /// # Example
-    /// ```
-    /// # let heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
-    /// # use flightlog::mavlink::Stream;
-    /// let mut stream = Stream::new();
-    /// stream.push(&heartbeat);
-    /// stream.push(&heartbeat);
-    /// assert!(stream.packet().is_some() && stream.packet().is_some() && stream.packet().is_none());
-    /// ```
     pub fn push(&mut self, bytes: &[u8]) {
         self.buffer.drain(..self.taken.min(self.buffer.len()));
         self.taken = 0;
@@ -100,17 +53,6 @@ impl Stream {
     }
 
     /// The next packet; `None` until more bytes arrive. Signed packets are counted and passed over.
-    ///
-    /// # Example
-    /// ```
-    /// # let heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
-    /// # use flightlog::mavlink::Stream;
-    /// let mut stream = Stream::new();
-    /// stream.push(&heartbeat);
-    /// while let Some(packet) = stream.packet() {
-    ///     assert_eq!((packet.system, packet.component), (1, 1));
-    /// }
-    /// ```
     pub fn packet(&mut self) -> Option<Packet<'_>> {
         let length = loop {
             match next_packet(self.buffer.get(self.taken..)?) {
@@ -143,18 +85,6 @@ impl Stream {
     }
 
     /// The bytes end here, as at the end of a datagram: the beginning of a packet that is left is none.
-    ///
-    /// # Example
-    /// ```
-    /// # let heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
-    /// # use flightlog::mavlink::Stream;
-    /// let mut stream = Stream::new();
-    /// stream.push(&heartbeat[..8]);
-    /// stream.end();
-    /// stream.push(&heartbeat);
-    /// assert!(stream.packet().is_some());
-    /// assert_eq!(stream.skipped().bytes, 8);
-    /// ```
     pub fn end(&mut self) {
         self.skipped.bytes += self.buffer.len().saturating_sub(self.taken) as u64;
         self.buffer.clear();
@@ -162,18 +92,6 @@ impl Stream {
     }
 
     /// What was passed over since the stream began.
-    ///
-    /// # Example
-    /// ```
-    /// # let heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
-    /// # use flightlog::mavlink::Stream;
-    /// let mut damaged = heartbeat;
-    /// damaged[8] ^= 1;
-    /// let mut stream = Stream::new();
-    /// stream.push(&damaged);
-    /// assert!(stream.packet().is_none());
-    /// assert_eq!(stream.skipped().checksums, 1);
-    /// ```
     pub fn skipped(&self) -> Skipped {
         self.skipped
     }

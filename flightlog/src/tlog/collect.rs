@@ -3,37 +3,21 @@
 use super::signals::{SPECS, Spec};
 use crate::ardupilot::{self, Mode};
 use crate::clock::Latest;
-use crate::interval::both_hold;
-use crate::mav_type::{MavType, mav_type};
+use crate::geometry;
+use crate::mavlink::decoder::{AUTOPILOT, Decoder, Payload, ServoOutputs, Told, filled};
 use crate::mavlink::packet::Packet;
-use crate::mavlink::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
+use crate::mavlink::servo::OUTPUTS_A_PORT;
 use crate::outputs::Outputs;
-use crate::parameters::Parameters;
-use crate::place::{Kind, Place};
 use crate::signal::{Label, preferred};
 use crate::{Event, Flight, Format, Intervals, Options, Report, Series, VehicleKind, px4};
 
 /// Telemetry pauses while the link is lost; a time further ahead is damage.
 const LONGEST_PAUSE_S: f64 = 3600.0;
-/// The component of a system that is its autopilot.
-const AUTOPILOT: u8 = 1;
-/// MAV_AUTOPILOT of PX4.
-const PX4: u8 = 12;
-/// Flag of HEARTBEAT.base_mode: the motors are armed.
-const ARMED: u8 = 128;
 
-const HEARTBEAT: u32 = 0;
-const PARAM_VALUE: u32 = 22;
-const SERVO_OUTPUT_RAW: u32 = 36;
 const BATTERY_STATUS: u32 = 147;
-const AUTOPILOT_VERSION: u32 = 148;
-const EXTENDED_SYS_STATE: u32 = 245;
-const STATUSTEXT: u32 = 253;
 
 pub(super) struct Collector<'o> {
     options: &'o Options,
-    /// Numbers of the messages that are read.
-    wanted: Vec<u32>,
     pub(super) report: Report,
     /// Time of the first packet of the log, microseconds since 1970.
     zero_us: Option<u64>,
@@ -45,38 +29,20 @@ pub(super) struct Collector<'o> {
 /// What was heard of a system.
 #[derive(Default)]
 struct Heard {
-    autopilot: u8,
-    mav_type: Option<u8>,
-    version: Option<u32>,
-    parameters: Parameters,
+    decoder: Decoder,
     outputs: Outputs,
     has_port_0: bool,
     series: Vec<(usize, Series)>,
     armed: Vec<(f64, bool)>,
-    active: Vec<(f64, bool)>,
-    flying: Vec<(f64, bool)>,
+    in_air: Vec<(f64, bool)>,
     modes: Vec<(f64, u32)>,
     texts: Vec<Event>,
 }
 
 impl<'o> Collector<'o> {
     pub(super) fn new(options: &'o Options) -> Self {
-        let always = [
-            HEARTBEAT,
-            PARAM_VALUE,
-            SERVO_OUTPUT_RAW,
-            AUTOPILOT_VERSION,
-            EXTENDED_SYS_STATE,
-            STATUSTEXT,
-        ];
-        let asked_for = |spec: &&Spec| {
-            let mut signals = spec.signals.iter();
-            signals.any(|(_, name, _)| options.wants(name))
-        };
-        let asked_for = SPECS.iter().filter(asked_for).map(|spec| spec.id);
         Self {
             options,
-            wanted: always.into_iter().chain(asked_for).collect(),
             report: Report::default(),
             zero_us: None,
             latest: Latest::new(LONGEST_PAUSE_S),
@@ -91,23 +57,13 @@ impl<'o> Collector<'o> {
         if !self.latest.believe(t_s) {
             return self.report.bad("a time that no other agrees with");
         }
-        // Ground stations store parameters under the number of another component.
-        if packet.component != AUTOPILOT && packet.id != PARAM_VALUE
-            || !self.wanted.contains(&packet.id)
-        {
-            return;
-        }
-        // Version 2 leaves out the zeros at the end of a payload.
-        let mut payload = [0; 255];
-        let length = packet.payload.len().min(payload.len());
-        payload[..length].copy_from_slice(&packet.payload[..length]);
         let known = (self.systems.iter()).position(|(system, _)| *system == packet.system);
         let index = known.unwrap_or_else(|| {
             self.systems.push((packet.system, Heard::default()));
             self.systems.len() - 1
         });
         if let Some((_, heard)) = self.systems.get_mut(index) {
-            let dropped = heard.message(t_s, packet.id, &payload, self.options);
+            let dropped = heard.message(t_s, packet, self.options);
             self.report.dropped_row(dropped);
         }
     }
@@ -119,7 +75,7 @@ impl<'o> Collector<'o> {
         flight.utc_at_zero_s = self.zero_us.map(|zero_us| zero_us as f64 * 1e-6);
         // The vehicle is the first system that says of itself to be one; where none does,
         // the first that sends anything as an autopilot.
-        let is_vehicle = |(_, heard): &(u8, Heard)| heard.mav_type().is_some();
+        let is_vehicle = |(_, heard): &(u8, Heard)| heard.decoder.mav_type().is_some();
         let mut systems = self.systems;
         let chosen = systems.iter().position(is_vehicle).unwrap_or(0);
         if chosen < systems.len() {
@@ -129,98 +85,51 @@ impl<'o> Collector<'o> {
     }
 }
 
-fn number(payload: &[u8], offset: usize, kind: Kind) -> Option<f64> {
-    Place { offset, kind }.number(payload)
-}
-
-fn text(bytes: &[u8]) -> String {
-    let end = bytes
-        .iter()
-        .position(|&byte| byte == 0)
-        .unwrap_or(bytes.len());
-    String::from_utf8_lossy(&bytes[..end]).trim().to_owned()
-}
-
 impl Heard {
-    /// Takes in a message of the vehicle; `true` when a row was dropped because times go back.
-    fn message(&mut self, t_s: f64, id: u32, payload: &[u8; 255], options: &Options) -> bool {
-        match id {
-            HEARTBEAT => self.heartbeat(t_s, payload),
-            PARAM_VALUE => self.parameter(payload),
-            SERVO_OUTPUT_RAW => return self.servos(t_s, payload),
-            AUTOPILOT_VERSION => {
-                // PX4 tells its version only here; capabilities, uid, then the version.
-                let version = number(payload, 16, Kind::U32).map(|version| version as u32);
-                self.version = self.version.or(version);
+    /// Takes in a message of the system; `true` when a row was dropped because times go back.
+    fn message(&mut self, t_s: f64, packet: &Packet<'_>, options: &Options) -> bool {
+        let payload = filled(packet);
+        match self.decoder.message(packet.component, packet.id, &payload) {
+            Told::State => self.state(t_s),
+            Told::Outputs(outputs) => return self.servos(t_s, &outputs),
+            Told::Text(text) => self.texts.push(Event::new(t_s, text)),
+            Told::Nothing if packet.component == AUTOPILOT => {
+                return self.signals(t_s, packet.id, &payload, options);
             }
-            EXTENDED_SYS_STATE => {
-                // 1 on the ground, 2 in the air, 3 taking off, 4 landing.
-                if let landed @ 1..=4 = payload[1] {
-                    self.flying.push((t_s, landed != 1));
-                }
-            }
-            STATUSTEXT => self.texts.push(Event::new(t_s, text(&payload[1..51]))),
-            BATTERY_STATUS if payload[32] != 0 => {}
-            _ => return self.signals(t_s, id, payload, options),
+            Told::Nothing | Told::Parameter => {}
         }
         false
     }
 
-    /// The type in its heartbeats, if it is that of a vehicle.
-    fn mav_type(&self) -> Option<(u8, MavType)> {
-        let number = self.mav_type?;
-        Some((number, mav_type(number.into())?))
-    }
-
-    fn heartbeat(&mut self, t_s: f64, payload: &[u8; 255]) {
-        let [mode @ .., mav_type, autopilot, base_mode, status] =
-            *payload.first_chunk::<8>().unwrap_or(&[0; 8]);
-        self.autopilot = autopilot;
-        self.mav_type = Some(mav_type);
-        self.armed.push((t_s, base_mode & ARMED != 0));
-        // ArduPilot is in STANDBY on the ground, and ACTIVE or CRITICAL in the air.
-        self.active.push((t_s, matches!(status, 4 | 5)));
-        let mode = u32::from_le_bytes(mode);
-        if self.modes.last().is_none_or(|(_, last)| *last != mode) {
-            self.modes.push((t_s, mode));
-        }
-    }
-
-    fn parameter(&mut self, payload: &[u8; 255]) {
-        // PX4 sends the bits of integers; ArduPilot sends every number as a float.
-        let is_integer = matches!(payload[24], 1..=6);
-        let kind = match self.autopilot == PX4 && is_integer {
-            true => Kind::I32,
-            false => Kind::F32,
-        };
-        if let Some(value) = number(payload, 0, kind) {
-            self.parameters.insert(&text(&payload[8..24]), value);
-        }
+    fn state(&mut self, t_s: f64) {
+        self.armed.push((t_s, self.decoder.is_armed()));
+        self.in_air
+            .extend(self.decoder.is_in_air().map(|in_air| (t_s, in_air)));
+        let last = self.modes.last().map(|(_, last)| *last);
+        let mode = self.decoder.mode().filter(|mode| last != Some(*mode));
+        self.modes.extend(mode.map(|mode| (t_s, mode)));
     }
 
     /// Outputs 1 to 8 of a port, and 9 to 16 in version 2; those of port 1 complete the row that port 0 began.
-    fn servos(&mut self, t_s: f64, payload: &[u8; 255]) -> bool {
-        let port = payload[20];
+    fn servos(&mut self, t_s: f64, outputs: &ServoOutputs) -> bool {
+        let port = outputs.port;
         if port > 1 {
             return false;
         }
         self.has_port_0 |= port == 0;
         let first = port == 0 || !self.has_port_0;
         let before = u16::from(port) * OUTPUTS_A_PORT as u16;
-        let offset = |output: u16| match output {
-            ..=8 => 2 + 2 * usize::from(output),
-            _ => 3 + 2 * usize::from(output),
-        };
-        // Those above 8 are 0 where the sender does not have them.
-        let outputs = (1..=16)
-            .filter_map(|output| Some((output, number(payload, offset(output), Kind::U16)?)))
-            .filter(|&(output, pulse_us)| output <= 8 || pulse_us > 0.0)
-            .map(|(output, pulse_us)| (before + output, pulse_us));
-        self.outputs.add(t_s, first, outputs)
+        // An output that is not driven is 0, as are those above 8 of version 1.
+        let pulses = (1..).zip(outputs.pulses_us).filter(|&(_, us)| us > 0);
+        let pulses = pulses.map(|(output, us)| (before + output, f64::from(us)));
+        self.outputs.add(t_s, first, pulses)
     }
 
-    fn signals(&mut self, t_s: f64, id: u32, payload: &[u8; 255], options: &Options) -> bool {
-        let Some(index) = SPECS.iter().position(|spec| spec.id == id) else {
+    fn signals(&mut self, t_s: f64, id: u32, payload: &Payload, options: &Options) -> bool {
+        // Only the first battery.
+        let is_other = id == BATTERY_STATUS && payload[32] != 0;
+        let index = SPECS.iter().position(|spec| spec.id == id);
+        let Some(index) = index.filter(|_| !is_other) else {
             return false;
         };
         let spec = &SPECS[index];
@@ -236,40 +145,24 @@ impl Heard {
             .filter(|(_, name, _)| options.wants(name));
         let values = wanted.map(|(from, _, _)| from.value(payload).unwrap_or(f64::NAN));
         match self.series.get_mut(slot) {
-            Some((_, series)) if !series.is_without_signals() => series.push(t_s, values),
-            _ => false,
+            Some((_, series)) => series.push(t_s, values),
+            None => false,
         }
     }
 
     fn finish(mut self, flight: &mut Flight) {
+        self.decoder.finish();
         self.name_vehicle(flight);
-        let motors = match self.autopilot {
-            PX4 => match px4_motors(&self.parameters) {
-                none if none.is_empty() => {
-                    let source = "MAV_TYPE, the first outputs";
-                    let count = flight.vehicle.motors.unwrap_or(0);
-                    ardupilot::numbered_motors(count, field, source)
-                }
-                named => named,
-            },
-            _ => ardupilot::motors(&self.parameters, &flight.vehicle, field),
-        };
-        let (of_bank, index) = bank(motors.first().map_or(1, |(_, output)| *output));
+        let known = self.decoder.outputs(&flight.vehicle);
         let outputs: Vec<u16>;
-        (flight.motors, outputs) = motors.into_iter().unzip();
-        flight.range = match self.autopilot {
-            PX4 => px4::output_range(&self.parameters, of_bank, index, 0.0, ""),
-            _ => ardupilot::pwm_range(&self.parameters),
-        };
-        if self.autopilot != PX4 {
-            flight.effective = ardupilot::effective_range(&self.parameters);
-        }
+        (flight.motors, outputs) = known.motors.into_iter().unzip();
+        flight.range = known.range;
         flight.commands = self.outputs.commands(&outputs);
         self.series.sort_by_key(|(index, _)| *index);
         flight.series = preferred(self.series.into_iter().map(|(_, series)| series).collect());
         flight.messages = self.texts;
         let kind = flight.vehicle.kind;
-        let is_px4 = self.autopilot == PX4;
+        let is_px4 = self.decoder.is_px4();
         let mode = |number: u32| match is_px4 {
             true => px4::custom_mode(number),
             false => Mode::Number(number.into()).name(kind),
@@ -279,36 +172,30 @@ impl Heard {
             .into_iter()
             .map(|(t_s, number)| Event::new(t_s, mode(number)))
             .collect();
-        let Some(span_s) = flight.time_span_s() else {
-            return;
-        };
-        if self.armed.is_empty() {
-            return;
+        if let Some(span_s) = flight.time_span_s() {
+            let intervals = |states: &[(f64, bool)], rule: &str| {
+                (!states.is_empty()).then(|| Intervals::from_states(states, span_s, rule))
+            };
+            flight.armed = intervals(&self.armed, "HEARTBEAT.base_mode has its armed bit");
+            let rule = "EXTENDED_SYS_STATE.landed_state, or HEARTBEAT.system_status, and armed";
+            flight.in_air = intervals(&self.in_air, rule);
         }
-        let rule = "HEARTBEAT.base_mode has its armed bit";
-        flight.armed = Some(Intervals::from_states(&self.armed, span_s, rule));
-        let (flying, rule) = match (self.flying.is_empty(), is_px4) {
-            (false, _) => (&self.flying, "EXTENDED_SYS_STATE.landed_state, and armed"),
-            (true, false) => (
-                &self.active,
-                "HEARTBEAT.system_status active or critical, and armed",
-            ),
-            // PX4 is active as soon as it is armed.
-            (true, true) => return,
+        flight.effective = match is_px4 {
+            true => known.effective,
+            false => ardupilot::range_in_force(&self.decoder.parameters, flight),
         };
-        let in_air = both_hold(flying, &self.armed);
-        flight.in_air = Some(Intervals::from_states(&in_air, span_s, rule));
+        flight.geometry = geometry::find(flight, &known.declared);
     }
 
     /// The vehicle by its texts and parameters, and by the type in its heartbeats.
     fn name_vehicle(&self, flight: &mut Flight) {
         let texts = self.texts.iter().map(|text| text.what.as_str());
-        flight.vehicle = ardupilot::vehicle(texts, &self.parameters);
+        flight.vehicle = ardupilot::vehicle(texts, &self.decoder.parameters);
         let vehicle = &mut flight.vehicle;
-        if self.autopilot == PX4 {
-            vehicle.firmware = self.version.map(px4::firmware);
+        if self.decoder.is_px4() {
+            vehicle.firmware = self.decoder.px4_firmware();
         }
-        let Some((number, told)) = self.mav_type() else {
+        let Some((number, told)) = self.decoder.mav_type() else {
             return;
         };
         // What sends the heartbeat of a quadplane may call itself a plane, not the reverse.

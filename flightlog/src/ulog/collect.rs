@@ -6,6 +6,7 @@ use super::plan::{Role, parts};
 use super::signals::SPECS;
 use super::topics::{Topics, key};
 use crate::clock::Latest;
+use crate::geometry::{self, Declared};
 use crate::interval::both_hold;
 use crate::parameters::Parameters;
 use crate::place::Place;
@@ -162,9 +163,6 @@ impl<'o> Collector<'o> {
                 };
                 let utc = place("time_utc_usec");
                 let parts = parts(spec, &place, self.options);
-                if parts.is_empty() && utc.is_none() {
-                    return Role::Nothing;
-                }
                 let (parts, labels): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
                 self.series.push((spec.topic, Series::new(labels)));
                 return Role::Series(self.series.len() - 1, parts, utc);
@@ -234,9 +232,7 @@ impl<'o> Collector<'o> {
                     let utc_us = place.number(body).filter(|&utc_us| utc_us > 0.0);
                     self.utc_at_zero_s = utc_us.map(|utc_us| utc_us * 1e-6 - t_s);
                 }
-                if let Some((_, series)) = self.series.get_mut(*index)
-                    && !parts.is_empty()
-                {
+                if let Some((_, series)) = self.series.get_mut(*index) {
                     let values = parts
                         .iter()
                         .map(|part| part.value(body).unwrap_or(f64::NAN));
@@ -281,6 +277,7 @@ impl<'o> Collector<'o> {
                 }
             });
         }
+        flight.geometry = geometry::find(&flight, &Declared::of_px4(&self.parameters));
         flight
     }
 

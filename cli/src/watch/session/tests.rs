@@ -103,6 +103,8 @@ impl<'e> Bench<'e> {
             ("MOT_PWM_MAX", 2000.0),
             ("MOT_SPIN_MIN", 0.1),
             ("MOT_SPIN_MAX", 0.9),
+            ("FRAME_CLASS", 1.0),
+            ("FRAME_TYPE", 1.0),
         ] {
             self.parameter(name, value);
         }
@@ -162,7 +164,7 @@ fn parameters_that_never_come_are_assumed_and_those_that_come_late_are_taken() {
         [
             "motors 1 to 4 on outputs 1 to 4",
             "commands from 1000 to 2000 us",
-            "flown between 0.15 and 0.95 of that",
+            "effective range 0.15 to 0.95",
         ]
     );
     let asked = |message: &MavMessage| match message {

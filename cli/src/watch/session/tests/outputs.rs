@@ -64,6 +64,8 @@ fn motors_on_both_ports_are_complete_with_the_second_and_not_carried_on_without_
         ("MOT_PWM_MAX", 2000.0),
         ("MOT_SPIN_MIN", 0.125),
         ("MOT_SPIN_MAX", 0.875),
+        ("FRAME_CLASS", 2.0),
+        ("FRAME_TYPE", 1.0),
     ] {
         bench.parameter(name, value);
     }
@@ -76,7 +78,10 @@ fn motors_on_both_ports_are_complete_with_the_second_and_not_carried_on_without_
     bench.parameter("SERVO17_FUNCTION", 37.0);
     bench.parameter("SERVO18_FUNCTION", 38.0);
     bench.wait(0.1);
-    assert_eq!(bench.setups().last().unwrap().motors.len(), 6);
+    let setup = bench.setups().last().copied().unwrap();
+    assert_eq!(setup.motors.len(), 6);
+    let geometry = setup.geometry.as_ref().unwrap();
+    assert_eq!(geometry.frame.as_deref(), Some("HEXA/X"));
 
     // The first time stamp alone is not believed yet.
     for t_s in [9.96, 10.0] {
@@ -107,10 +112,32 @@ fn a_px4_vehicle_is_asked_for_the_functions_and_limits_of_its_outputs() {
     assert!(bench.is_asked_for("PWM_MAIN_MIN1") && bench.is_asked_for("PWM_MAIN_MAX1"));
     bench.integer("PWM_MAIN_MIN1", 1100);
     bench.integer("PWM_MAIN_MAX1", 1900);
+    bench.integer("CA_ROTOR_COUNT", 4);
+    assert!(bench.is_asked_for("CA_ROTOR3_KM"));
+    for (rotor, (px, py, km)) in (0..).zip([
+        (1.0, 1.0, 0.05),
+        (-1.0, -1.0, 0.05),
+        (1.0, -1.0, -0.05),
+        (-1.0, 1.0, -0.05),
+    ]) {
+        for (part, value) in [
+            ("PX", px),
+            ("PY", py),
+            ("PZ", 0.0),
+            ("AX", 0.0),
+            ("AY", 0.0),
+            ("AZ", -1.0),
+            ("KM", km),
+        ] {
+            bench.parameter(&format!("CA_ROTOR{rotor}_{part}"), value);
+        }
+    }
     bench.wait(0.1);
     let setup = bench.setups()[0].clone();
     assert_eq!(setup.assumed, Vec::<String>::new());
     assert_eq!((setup.range.low, setup.range.high), (1100.0, 1900.0));
+    let factors = setup.geometry.unwrap().factors;
+    assert_eq!(factors[..2], [[-1.0, 1.0, 1.0], [1.0, -1.0, 1.0]]);
     bench.pulses(9.96, 0, 1500, 1100);
     bench.pulses(10.0, 0, 1500, 1100);
     assert_eq!(bench.motors(), [0.0, 0.0, 0.5, 0.5]);

@@ -1,0 +1,134 @@
+//! Motor geometry: how much each motor rolls, pitches and yaws the vehicle, and how that is known.
+
+mod declared;
+mod infer;
+pub(crate) mod tables;
+
+pub(crate) use declared::Declared;
+
+use crate::{Flight, Motor, VehicleKind};
+
+/// Mixer factors of the motors, and where they came from.
+///
+/// # Example: turning the nose is no imbalance
+/// ```
+/// let log = "# frame: QUAD/X\nt_s,motor1,motor2,motor3,motor4\n0,0.6,0.6,0.4,0.4\n";
+/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
+/// let geometry = flight.geometry.unwrap();
+/// assert_eq!(geometry.frame.as_deref(), Some("QUAD/X"));
+/// // All of the difference between these motors is yaw.
+/// let (_, row) = flight.commands.rows().next().unwrap();
+/// let yaw: f64 = geometry.factors.iter().zip(row).map(|([_, _, yaw], c)| yaw * c).sum();
+/// assert!((yaw - 0.4).abs() < 1e-12);
+/// # Ok::<(), flightlog::ReadError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Geometry {
+    /// `[roll, pitch, yaw]` of each motor, in the order of [`Flight::motors`]; the largest of
+    /// each axis is 1. More thrust of a motor rolls the vehicle to the right where roll is
+    /// positive (a motor on the left), raises the nose where pitch is positive (a motor in
+    /// front), and turns the nose to the right where yaw is positive (a propeller that turns
+    /// counter-clockwise). Yaw is 0 for all motors where no motor command turns the vehicle,
+    /// as on a tricopter.
+    pub factors: Vec<[f64; 3]>,
+    /// Frame class and type in ArduPilot's words, such as `QUAD/X`; `None` for motor positions
+    /// without a name.
+    pub frame: Option<String>,
+    /// How well it is known.
+    pub basis: Basis,
+    /// Where it came from, such as `FRAME_CLASS = 1, FRAME_TYPE = 1`.
+    pub source: String,
+    /// Why the commands contradict it; `None` where they do not.
+    pub doubt: Option<String>,
+}
+
+/// How well a [`Geometry`] is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Basis {
+    /// The log says so.
+    Declared,
+    /// The log does not say, but only one of the common layouts fits the motor commands.
+    Inferred,
+    /// The most common layout for that number of motors. The yaw pattern is the same in
+    /// ArduPilot's and PX4's usual orders; roll and pitch may be turned.
+    Assumed,
+}
+
+impl std::fmt::Display for Basis {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Declared => "declared",
+            Self::Inferred => "inferred",
+            Self::Assumed => "assumed",
+        })
+    }
+}
+
+/// The geometry of these motors by what is declared; quadrotors of an unknown type are assumed
+/// to be numbered as usual.
+pub(crate) fn of(motors: &[Motor], declared: &Declared) -> Option<Geometry> {
+    let layout = match declared {
+        Declared::Factors { factors, .. } => Some(factors.clone()),
+        Declared::Frame { class, kind, .. } => {
+            // The type of a tricopter is seldom set, and only one of them is special.
+            let kind = kind.or((*class == tables::TRI).then_some(tables::X));
+            kind.and_then(|kind| tables::layout(*class, kind))
+        }
+        Declared::Nothing => None,
+    };
+    if let Some(factors) = layout.and_then(|layout| in_order(motors, &layout)) {
+        return Some(Geometry {
+            factors,
+            frame: declared.frame(),
+            basis: Basis::Declared,
+            source: declared.source().to_owned(),
+            doubt: None,
+        });
+    }
+    let is_quad =
+        motors.len() == 4 && !matches!(declared.class(), Some(class) if class != tables::QUAD);
+    let factors =
+        in_order(motors, &tables::layout(tables::QUAD, tables::X)?).filter(|_| is_quad)?;
+    Some(Geometry {
+        factors,
+        frame: Some(tables::name(tables::QUAD, tables::X)),
+        basis: Basis::Assumed,
+        source: "usual order of four motors; the type of the frame is not known".into(),
+        doubt: None,
+    })
+}
+
+/// The geometry of a flight by what its log declares; by its commands where the log does not
+/// declare any. Says where the commands contradict what is declared.
+pub(crate) fn find(flight: &Flight, declared: &Declared) -> Option<Geometry> {
+    if !matches!(
+        flight.vehicle.kind,
+        VehicleKind::Multirotor | VehicleKind::Unknown
+    ) {
+        return None;
+    }
+    match of(&flight.motors, declared) {
+        Some(mut geometry) => {
+            if geometry.basis == Basis::Declared {
+                geometry.doubt = infer::contradiction(flight, &geometry);
+            }
+            Some(geometry)
+        }
+        None => infer::geometry(flight, declared.class()),
+    }
+}
+
+/// The factors of these motors, by their numbers; `None` where one is not in the layout.
+fn in_order(motors: &[Motor], layout: &[(u16, [f64; 3])]) -> Option<Vec<[f64; 3]>> {
+    let of_motor = |motor: &Motor| {
+        let found = layout.iter().find(|(number, _)| *number == motor.number);
+        found.map(|(_, factors)| *factors)
+    };
+    let factors: Vec<[f64; 3]> = motors.iter().map(of_motor).collect::<Option<_>>()?;
+    (factors.len() == layout.len()).then_some(factors)
+}
+
+#[cfg(test)]
+mod tests;

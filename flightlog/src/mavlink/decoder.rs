@@ -1,0 +1,339 @@
+//! What the messages of one vehicle tell: armed, in the air, parameters, outputs. Telemetry logs
+//! and live links share it.
+
+use crate::geometry::Declared;
+use crate::mav_type::{MavType, mav_type};
+use crate::parameters::Parameters;
+use crate::place::{Kind, Place};
+use crate::{Motor, Range, Vehicle, ardupilot, px4};
+
+use super::Packet;
+use super::servo::{bank, field, px4_motors};
+
+/// The component of a system that is its autopilot.
+pub(crate) const AUTOPILOT: u8 = 1;
+/// MAV_AUTOPILOT of ArduPilot, of what is no autopilot, and of PX4.
+const ARDUPILOT: u8 = 3;
+const NO_AUTOPILOT: u8 = 8;
+const PX4: u8 = 12;
+/// Flag of HEARTBEAT.base_mode: the motors are armed.
+const ARMED: u8 = 128;
+
+const HEARTBEAT: u32 = 0;
+const PARAM_VALUE: u32 = 22;
+const SERVO_OUTPUT_RAW: u32 = 36;
+const AUTOPILOT_VERSION: u32 = 148;
+const EXTENDED_SYS_STATE: u32 = 245;
+const STATUSTEXT: u32 = 253;
+
+/// Parameters that wait for the first heartbeat, at most: any vehicle has fewer.
+const MOST_WAITING: usize = 1 << 12;
+/// No limit of an output is longer, in us; what is longer is damaged.
+pub(crate) const LONGEST_PULSE_US: f64 = 3000.0;
+
+/// A payload with the zeros that version 2 leaves out at its end.
+pub(crate) type Payload = [u8; 255];
+
+pub(crate) fn filled(packet: &Packet<'_>) -> Payload {
+    let mut payload = [0; 255];
+    let length = packet.payload.len().min(payload.len());
+    payload[..length].copy_from_slice(&packet.payload[..length]);
+    payload
+}
+
+pub(crate) fn number(payload: &Payload, offset: usize, kind: Kind) -> Option<f64> {
+    Place { offset, kind }.number(payload)
+}
+
+fn text(bytes: &[u8]) -> String {
+    let end = bytes.iter().position(|&byte| byte == 0);
+    let text = bytes.get(..end.unwrap_or(bytes.len())).unwrap_or_default();
+    String::from_utf8_lossy(text).trim().to_owned()
+}
+
+/// What a message told.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Told {
+    /// Nothing that is kept here.
+    Nothing,
+    /// Armed, in the air or the mode: [`Decoder`] has them.
+    State,
+    /// A parameter became known.
+    Parameter,
+    Outputs(ServoOutputs),
+    Text(String),
+}
+
+/// SERVO_OUTPUT_RAW.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ServoOutputs {
+    pub(crate) port: u8,
+    /// Time of the vehicle, which starts over after 71 minutes.
+    pub(crate) time_us: u32,
+    /// Outputs 1 to 16 of the port; those above 8 are 0 in version 1.
+    pub(crate) pulses_us: [u16; 16],
+}
+
+/// The state of one vehicle, by its messages so far.
+#[derive(Debug, Default)]
+pub(crate) struct Decoder {
+    autopilot: Option<u8>,
+    mav_type: Option<u8>,
+    version: Option<u32>,
+    pub(crate) parameters: Parameters,
+    /// PARAM_VALUE messages that came before the autopilot was known: name, value, type.
+    waiting: Vec<(String, [u8; 4], u8)>,
+    is_armed: bool,
+    /// By HEARTBEAT.system_status.
+    is_active: Option<bool>,
+    /// By EXTENDED_SYS_STATE.landed_state.
+    is_flying: Option<bool>,
+    mode: Option<u32>,
+}
+
+impl Decoder {
+    pub(crate) fn is_px4(&self) -> bool {
+        self.autopilot == Some(PX4)
+    }
+
+    /// Whether a heartbeat of an autopilot came.
+    pub(crate) fn is_known(&self) -> bool {
+        self.autopilot.is_some()
+    }
+
+    pub(crate) fn is_armed(&self) -> bool {
+        self.is_armed
+    }
+
+    /// HEARTBEAT.custom_mode.
+    pub(crate) fn mode(&self) -> Option<u32> {
+        self.mode
+    }
+
+    /// Firmware of PX4, which tells its version by a message of its own.
+    pub(crate) fn px4_firmware(&self) -> Option<String> {
+        self.version.filter(|_| self.is_px4()).map(px4::firmware)
+    }
+
+    /// Whether the vehicle is in the air; `None` while it has not told.
+    ///
+    /// EXTENDED_SYS_STATE says so. Without it the heartbeat of ArduPilot does, which is on standby
+    /// while landed and active while not; during a failsafe it is critical either way, which
+    /// counts as in the air. PX4 is active as soon as it is armed, so its heartbeat does not tell.
+    pub(crate) fn is_in_air(&self) -> Option<bool> {
+        let by_heartbeat = self.is_active.filter(|_| !self.is_px4());
+        self.is_flying
+            .or(by_heartbeat)
+            .map(|flying| flying && self.is_armed)
+    }
+
+    /// The type in its heartbeats, if it is that of a vehicle.
+    pub(crate) fn mav_type(&self) -> Option<(u8, MavType)> {
+        let number = self.mav_type?;
+        Some((number, mav_type(number.into())?))
+    }
+
+    /// Takes in a message of the vehicle.
+    pub(crate) fn message(&mut self, component: u8, id: u32, payload: &Payload) -> Told {
+        // Ground stations store parameters under the number of another component.
+        if component != AUTOPILOT && id != PARAM_VALUE {
+            return Told::Nothing;
+        }
+        match id {
+            HEARTBEAT => self.heartbeat(payload),
+            PARAM_VALUE => self.parameter(payload),
+            SERVO_OUTPUT_RAW => Told::Outputs(servo_outputs(payload)),
+            AUTOPILOT_VERSION => {
+                // Capabilities, uid, then the version.
+                let version = number(payload, 16, Kind::U32).map(|version| version as u32);
+                self.version = self.version.or(version);
+                Told::Nothing
+            }
+            EXTENDED_SYS_STATE => {
+                // 1 on the ground, 2 in the air, 3 taking off, 4 landing; 0 is not known.
+                self.is_flying = match payload[1] {
+                    1 => Some(false),
+                    2..=4 => Some(true),
+                    _ => None,
+                };
+                Told::State
+            }
+            STATUSTEXT => Told::Text(text(&payload[1..51])),
+            _ => Told::Nothing,
+        }
+    }
+
+    fn heartbeat(&mut self, payload: &Payload) -> Told {
+        let [mode @ .., mav_type, autopilot, base_mode, status] =
+            *payload.first_chunk::<8>().unwrap_or(&[0; 8]);
+        if autopilot == NO_AUTOPILOT {
+            return Told::Nothing;
+        }
+        self.autopilot = Some(autopilot);
+        self.mav_type = Some(mav_type);
+        self.mode = Some(u32::from_le_bytes(mode));
+        self.is_armed = base_mode & ARMED != 0;
+        self.is_active = match status {
+            // Active, critical (a failsafe) and emergency (going down).
+            4..=6 => Some(true),
+            // While it terminates the flight, what was the case goes on.
+            8 => self.is_active.or(Some(self.is_armed)),
+            _ => Some(false),
+        };
+        for (name, value, kind) in std::mem::take(&mut self.waiting) {
+            self.learn(name, value, kind);
+        }
+        Told::State
+    }
+
+    fn parameter(&mut self, payload: &Payload) -> Told {
+        let &[a, b, c, d, ..] = payload;
+        let (name, value, kind) = (text(&payload[8..24]), [a, b, c, d], payload[24]);
+        if self.is_known() {
+            return self.learn(name, value, kind);
+        }
+        if self.waiting.len() < MOST_WAITING {
+            self.waiting.push((name, value, kind));
+        }
+        Told::Nothing
+    }
+
+    fn learn(&mut self, name: String, value: [u8; 4], kind: u8) -> Told {
+        // PX4 sends the bytes of an integer in the place of the number, ArduPilot every number as
+        // a float (<https://mavlink.io/en/services/parameter.html#parameter_encoding>).
+        let kind = match kind {
+            _ if !self.is_px4() => Kind::F32,
+            1 => Kind::U8,
+            2 => Kind::I8,
+            3 => Kind::U16,
+            4 => Kind::I16,
+            5 => Kind::U32,
+            6 => Kind::I32,
+            _ => Kind::F32,
+        };
+        let value = Place { offset: 0, kind }.number(&value);
+        match value.filter(|value| is_plausible(&name, *value)) {
+            Some(value) if self.parameters.get(&name).is_none() => {
+                self.parameters.insert(&name, value);
+                Told::Parameter
+            }
+            _ => Told::Nothing,
+        }
+    }
+
+    /// Takes in the parameters that wait for a heartbeat, of a vehicle that never sent one.
+    pub(crate) fn finish(&mut self) {
+        for (name, value, kind) in std::mem::take(&mut self.waiting) {
+            self.learn(name, value, kind);
+        }
+    }
+
+    /// Forgets what may have changed while the vehicle booted again; what it is stays.
+    pub(crate) fn boot(&mut self) {
+        *self = Self {
+            autopilot: self.autopilot,
+            mav_type: self.mav_type,
+            ..Self::default()
+        };
+    }
+
+    /// The vehicle by its heartbeat.
+    pub(crate) fn vehicle(&self) -> Vehicle {
+        let mut vehicle = Vehicle::default();
+        if let Some(number) = self.mav_type {
+            vehicle.source = format!("HEARTBEAT.type = {number}");
+        }
+        if let Some((_, MavType { kind, name, motors })) = self.mav_type() {
+            vehicle.kind = kind;
+            vehicle.frame = Some(name.to_owned());
+            vehicle.motors = motors;
+        }
+        vehicle.firmware = match self.autopilot {
+            Some(ARDUPILOT) => Some("ArduPilot".to_owned()),
+            Some(PX4) => Some("PX4".to_owned()),
+            _ => None,
+        };
+        vehicle
+    }
+
+    /// Motors and ranges, as far as the parameters tell.
+    pub(crate) fn outputs(&self, vehicle: &Vehicle) -> KnownOutputs {
+        KnownOutputs::of(&self.parameters, vehicle, self.is_px4())
+    }
+}
+
+/// What parameters tell of motors and of the range of their commands.
+pub(crate) struct KnownOutputs {
+    /// The motors in order of their number, and the output of each, from 1.
+    pub(crate) motors: Vec<(Motor, u16)>,
+    /// They are on the first outputs because nothing else is known.
+    pub(crate) first_outputs: bool,
+    pub(crate) range: Option<Range>,
+    pub(crate) effective: Range,
+    pub(crate) declared: Declared,
+}
+
+impl KnownOutputs {
+    pub(crate) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Self {
+        if !is_px4 {
+            return Self {
+                motors: ardupilot::motors(parameters, vehicle, field),
+                first_outputs: !ardupilot::has_functions(parameters),
+                range: ardupilot::pwm_range(parameters),
+                effective: ardupilot::effective_range(parameters),
+                declared: Declared::of_ardupilot(parameters, vehicle),
+            };
+        }
+        let mut motors = px4_motors(parameters);
+        let first_outputs = motors.is_empty();
+        if first_outputs {
+            let count = vehicle.motors.unwrap_or(0);
+            let source = "MAV_TYPE, the first outputs";
+            motors = ardupilot::numbered_motors(count, field, source);
+        }
+        let (bank, index) = bank(motors.first().map_or(1, |(_, output)| *output));
+        Self {
+            motors,
+            first_outputs,
+            range: px4::output_range(parameters, bank, index, 0.0, ""),
+            effective: crate::flight::whole_range("PX4 has no tighter limits"),
+            declared: Declared::of_px4(parameters),
+        }
+    }
+}
+
+fn servo_outputs(payload: &Payload) -> ServoOutputs {
+    // Extensions of version 2 follow the port.
+    let offset = |output: usize| {
+        if output < 8 {
+            4 + 2 * output
+        } else {
+            5 + 2 * output
+        }
+    };
+    let pulse = |output| number(payload, offset(output), Kind::U16).unwrap_or_default();
+    ServoOutputs {
+        port: payload[20],
+        time_us: number(payload, 0, Kind::U32).unwrap_or_default() as u32,
+        pulses_us: std::array::from_fn(|output| pulse(output) as u16),
+    }
+}
+
+/// Damaged limits would make every command look like one at a limit.
+fn is_plausible(name: &str, value: f64) -> bool {
+    let most = if name.starts_with("MOT_SPIN_") {
+        1.0
+    } else if name.starts_with("MOT_PWM_") || is_radio_limit(name) {
+        LONGEST_PULSE_US
+    } else {
+        // PX4 has -1 for a limit that is the bank's.
+        let is_limit = name.starts_with("PWM_") && !name.contains("FUNC");
+        return value.is_finite() && (!is_limit || (-1.0..=LONGEST_PULSE_US).contains(&value));
+    };
+    (0.0..=most).contains(&value)
+}
+
+/// RCn_MIN and RCn_MAX.
+fn is_radio_limit(name: &str) -> bool {
+    name.starts_with("RC") && (name.ends_with("_MIN") || name.ends_with("_MAX"))
+}

@@ -1,0 +1,166 @@
+//! What the logs of old firmware leave out, and limits that only it has.
+
+use flagred_tests::log_writer::{DataFlash, ULog, Value};
+use flightlog::{Basis, Flight, Options, ReadError};
+
+fn read(bytes: &[u8]) -> Flight {
+    flightlog::read(bytes, &Options::default()).unwrap()
+}
+
+/// ArduCopter 3.2 with six outputs, `moving` of which follow the throttle from 1200 to `to_us`;
+/// the others stay or swing on their own.
+fn copter(moving: usize, to_us: f64, parameters: &[(&str, f64)]) -> DataFlash {
+    let mut log = DataFlash::new();
+    log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
+    let labels = "TimeUS,Ch1,Ch2,Ch3,Ch4,Ch5,Ch6";
+    log.define(130, "RCOU", "QHHHHHH", labels);
+    log.define(131, "MSG", "QZ", "TimeUS,Message");
+    log.define(132, "EV", "QB", "TimeUS,Id");
+    log.write("MSG", [1e6.into(), "ArduCopter V3.2 (c8e0f3e1)".into()]);
+    for (name, value) in [("RC3_MIN", 1000.0), ("RC3_MAX", 2000.0)] {
+        log.parameter(1e6, name, value);
+    }
+    for (name, value) in parameters {
+        log.parameter(1e6, name, *value);
+    }
+    for row in 0..100 {
+        let time = Value::Number(2e6 + 1e5 * f64::from(row));
+        let event = match row {
+            5 => Some(10.0),
+            // The land detector tells 0.2 s of landing in the middle of the flight.
+            10 | 52 => Some(28.0),
+            50 | 90 => Some(18.0),
+            95 => Some(11.0),
+            _ => None,
+        };
+        if let Some(id) = event {
+            log.write("EV", [time, Value::Number(id)]);
+        }
+        let flying = (10..90).contains(&row);
+        let share = (f64::from(row) - 10.0) / 80.0;
+        let throttle = if flying {
+            1200.0 + share * (to_us - 1200.0)
+        } else {
+            1000.0
+        };
+        let gimbal = if row % 2 == 0 { 1400.0 } else { 1600.0 };
+        let pulses = (0..6).map(|output| match output < moving {
+            true => Value::Number((throttle + 3.0 * f64::from(row % (output as i32 + 2))).round()),
+            false => Value::Number(gimbal),
+        });
+        log.write("RCOU", std::iter::once(time).chain(pulses));
+    }
+    log
+}
+
+#[test]
+fn without_a_frame_the_outputs_that_move_together_are_the_motors() {
+    for (moving, motors, frame) in [(4, 4, "QUAD/PLUS"), (6, 6, "HEXA/PLUS")] {
+        let flight = read(&copter(moving, 1800.0, &[("FRAME", 0.0)]).bytes);
+        assert_eq!(flight.motors.len(), motors);
+        let source = &flight.motors[0].source;
+        assert!(source.contains("move together"), "{source}");
+        let geometry = flight.geometry.unwrap();
+        assert_eq!(geometry.basis, Basis::Declared);
+        assert_eq!(geometry.frame.as_deref(), Some(frame));
+    }
+    // Two outputs that move together drive no multirotor.
+    assert!(read(&copter(2, 1800.0, &[]).bytes).motors.is_empty());
+}
+
+#[test]
+fn landings_of_less_than_a_second_are_chatter() {
+    let flight = read(&copter(4, 1800.0, &[]).bytes);
+    let in_air = flight.in_air.unwrap();
+    let spans: Vec<_> = in_air.spans.iter().map(|s| (s.start_s, s.end_s)).collect();
+    assert_eq!(spans, [(3.0, 11.0)]);
+    assert_eq!(in_air.duration_s(), 8.0);
+}
+
+#[test]
+fn the_upper_limit_is_that_of_the_generation_unless_the_commands_go_beyond() {
+    let low = ("THR_MIN", 130.0);
+    for (limit, to_us, high) in [
+        (("MOT_TCRV_MAXPCT", 93.0), 1900.0, 0.93),
+        (("MOT_TCRV_MAXPCT", 93.0), 1990.0, 1.0),
+        (("MOT_THST_MAX", 0.95), 1900.0, 0.13 + 0.95 * 0.87),
+        (("OTHER", 0.0), 1900.0, 1.0),
+    ] {
+        let flight = read(&copter(4, to_us, &[low, limit]).bytes);
+        let effective = flight.effective;
+        assert_eq!(effective.low, 0.13, "{}", effective.source);
+        // Parameters are single precision.
+        assert!((effective.high - high).abs() < 1e-7, "{}", effective.source);
+    }
+}
+
+/// PX4 1.13 with SYS_CTRL_ALLOC = 0 has the parameters of single outputs, and does not use them.
+#[test]
+fn static_mixers_have_the_range_of_their_bank() {
+    let mut log = ULog::new(1_000_000);
+    log.define("actuator_outputs:uint64_t timestamp;float[4] output;");
+    for (name, value) in [
+        ("MAV_TYPE", 2.0),
+        ("SYS_CTRL_ALLOC", 0.0),
+        ("SYS_AUTOSTART", 4001.0),
+        ("PWM_MAIN_MIN", 1075.0),
+        ("PWM_MAIN_MAX", 1950.0),
+        ("PWM_MAIN_MIN1", 1000.0),
+        ("PWM_MAIN_MAX1", 2000.0),
+        ("PWM_MAIN_FUNC1", 0.0),
+        ("PWM_MAIN_FUNC2", 101.0),
+    ] {
+        log.parameter(name, value);
+    }
+    log.announce(0, 1, "actuator_outputs");
+    for row in 0..20_u64 {
+        log.floats(1, 1_000_000 + 100_000 * row, &[1500.0; 4]);
+    }
+    let flight = read(&log.bytes);
+    let range = flight.range.unwrap();
+    assert_eq!(
+        (range.low, range.high),
+        (1075.0, 1950.0),
+        "{}",
+        range.source
+    );
+    assert_eq!(flight.motors.len(), 4);
+    assert_eq!(flight.geometry.unwrap().source, "SYS_AUTOSTART = 4001");
+}
+
+#[test]
+fn a_log_of_px4_before_ulog_is_told_as_what_it_is() {
+    let mut log = DataFlash::new();
+    log.define(129, "TIME", "Q", "StartTime");
+    log.define(2, "ATT", "ffff", "qw,qx,qy,qz");
+    log.write("TIME", [1e6.into()]);
+    let error = flightlog::read(&log.bytes[..], &Options::default()).unwrap_err();
+    assert!(matches!(error, ReadError::NotALog { .. }));
+    assert!(error.to_string().contains("sdlog2"), "{error}");
+    assert!(error.help().unwrap().contains("ULog"));
+}
+
+/// What is counted as bad does not depend on which signals are kept.
+#[test]
+fn the_report_is_the_same_whatever_is_kept() {
+    let mut log = copter(4, 1800.0, &[]);
+    log.define(133, "ATT", "Qcccc", "TimeUS,DesRoll,Roll,DesPitch,Pitch");
+    for time_us in [12.0e6, 12.1e6, 12.2e6, 12.05e6, 12.07e6, 12.3e6] {
+        log.write(
+            "ATT",
+            std::iter::once(Value::Number(time_us)).chain([Value::Number(0.0); 4]),
+        );
+    }
+    let csv = "t_s,motor1,roll_deg,note\n0,0.5,1,2\n1,0.5,x,2\n2,0.5,1\n3,0.5,1,y\n";
+    for bytes in [&log.bytes[..], log.text.as_bytes(), csv.as_bytes()] {
+        let all = read(bytes);
+        let none = Options {
+            signals: Some(Vec::new()),
+        };
+        let few = flightlog::read(bytes, &none).unwrap();
+        assert!(all.report.bad_messages > 1 && all.signals().count() > 0);
+        assert_eq!(few.report, all.report);
+        assert_eq!(few.commands, all.commands);
+        assert_eq!(few.signals().count(), 0);
+    }
+}
