@@ -41,21 +41,6 @@ pub fn reference_data() -> PathBuf {
     PathBuf::from(folder).join("data")
 }
 
-/// The folder of reference data, for tests that are ignored without it.
-///
-/// # Panics
-///
-/// Where the environment variable `FLAGRED_SHARED` does not name its parent.
-#[expect(
-    clippy::expect_used,
-    reason = "a test without the data that it needs has failed"
-)]
-pub fn reference_data() -> PathBuf {
-    let folder = std::env::var_os("FLAGRED_SHARED")
-        .expect("FLAGRED_SHARED names the folder whose `data` this test needs");
-    PathBuf::from(folder).join("data")
-}
-
 /// The `flagred` binary of this workspace, built as the tests are, ready to be given arguments.
 ///
 /// Cargo gives a path to a binary only to tests of its own package; these are in another, so the binary is built

@@ -72,6 +72,18 @@ fn evaluate() {
 }
 
 #[test]
+fn inspect() {
+    let folder = Folder::new();
+    let ground = folder.file(
+        "ground.csv",
+        "# kind: idle\nt_s,motor1,in_air\n0,0.1,0\n1,0.1,0\n",
+    );
+    for log in [STEADY, &ground] {
+        valid("inspect", &json(&["inspect", "--json", log]));
+    }
+}
+
+#[test]
 fn explain_and_check() {
     valid(
         "explain",
