@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     html: Option<PathBuf>,
 
     /// Also write the picture of risk over time, as an SVG file
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 
     /// Exit with 1 from this verdict on

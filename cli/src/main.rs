@@ -9,7 +9,6 @@ mod completions;
 mod convert;
 mod dataset;
 mod diagnostics;
-mod drawing;
 mod eval;
 mod evaluate;
 mod explain;

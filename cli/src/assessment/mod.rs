@@ -1,6 +1,5 @@
-//! What becomes of a flight: followed sample by sample, and told in words, as a document, as a picture of characters.
+//! The assessment of a flight: its samples through the monitor, the result in words and as a document.
 
 pub(crate) mod document;
 pub(crate) mod follow;
-mod picture;
 pub(crate) mod words;

@@ -8,12 +8,9 @@ use flagred::{
     verdict::{Finding, Level, Measure},
 };
 use flightlog::Flight;
+use fuzzy::drawing::{number, over_time_text};
 
-use super::{
-    follow::{Assessed, Summary, Verdict, word},
-    picture,
-};
-use crate::drawing::text::number;
+use super::follow::{Assessed, Summary, Verdict, word};
 
 /// Columns of the picture of risk over time.
 const PICTURE_COLUMNS: usize = 64;
@@ -76,7 +73,7 @@ pub(crate) fn write(
         .collect();
     if points.iter().any(|(_, risk)| risk.is_some()) {
         writeln!(out, "risk over time")?;
-        writeln!(out, "{}", picture::over_time(&points, PICTURE_COLUMNS))?;
+        writeln!(out, "{}", over_time_text(&points, PICTURE_COLUMNS))?;
     }
     Ok(())
 }

@@ -46,8 +46,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     json: bool,
 
-    /// Draw the receiver operating characteristic and the reliability into a file
-    #[arg(long, value_name = "FILE")]
+    /// Write an SVG picture of the ROC curves and the reliability to this file; `-` is standard output
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 }
 

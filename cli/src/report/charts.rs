@@ -1,4 +1,4 @@
-//! Which curves tell a flight, and from what they are drawn.
+//! The curves of a report, and the data they are drawn from.
 
 use flagred::{
     attitude::Attitude,
@@ -6,18 +6,14 @@ use flagred::{
     verdict::{Level, Threshold},
 };
 use flightlog::{Flight, Signal};
-use fuzzy::Model;
-
-use super::{
-    curve::{Stretch, path},
-    panel::{Line, Mark, Panel, Size, Timeline},
-};
-use crate::{
-    assessment::follow::{Assessed, Step, word},
-    drawing::text::number,
+use fuzzy::{
+    Model,
+    drawing::{Line, Mark, Panel, Phase, Scale, Size, Stretch, Timeline, number, path},
 };
 
-/// Signals beside those of the profile that a report draws.
+use crate::assessment::follow::{Assessed, Step, word};
+
+/// The signals that a report draws besides those of the profile.
 pub(crate) const SIGNALS: [&str; 6] = [
     "roll_des_deg",
     "roll_deg",
@@ -27,10 +23,10 @@ pub(crate) const SIGNALS: [&str; 6] = [
     "battery_remaining_pct",
 ];
 
-/// More events than this are a carpet; the rest is said to be left out.
+/// The most events that are drawn; the last one counts the others.
 const MOST_EVENTS: usize = 200;
 
-/// The stretch that is drawn: from the first time in the air to the last, or all of the log where there is none.
+/// The stretch that is drawn: from the first take-off to the last landing, or the whole log where there is none.
 fn stretch(flight: &Flight) -> Stretch {
     let air = flight.in_air.iter().flat_map(|air| &air.spans);
     let hull = air
@@ -43,13 +39,13 @@ fn stretch(flight: &Flight) -> Stretch {
     }
 }
 
-/// What stands behind and over all curves of a flight.
+/// The flight modes, findings and events of a flight, for all its curves.
 pub(crate) fn timeline(flight: &Flight, assessed: &Assessed) -> Timeline {
     let stretch = stretch(flight);
     let ends = flight.modes.iter().skip(1).map(|next| next.t_s());
     let ends = ends.chain([f64::INFINITY]);
     let mut kinds: Vec<&str> = Vec::new();
-    let mut modes = Vec::new();
+    let mut phases = Vec::new();
     for (mode, end_s) in flight.modes.iter().zip(ends) {
         let span = Stretch {
             start_s: mode.t_s().max(stretch.start_s),
@@ -61,10 +57,14 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessed) -> Timeline {
                 kinds.push(&mode.what);
                 kinds.len() - 1
             });
-            modes.push((span, mode.what.clone(), kind));
+            phases.push(Phase {
+                stretch: span,
+                name: mode.what.clone(),
+                kind,
+            });
         }
     }
-    // The gravest come first; drawn last, they are not hidden by what goes on about them.
+    // The gravest finding comes first; it is drawn last, on top of the others.
     let findings = assessed.findings.iter().rev().map(|finding| {
         let span = Stretch {
             start_s: finding.from_s,
@@ -77,7 +77,7 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessed) -> Timeline {
         .iter()
         .map(|message| (message.t_s(), message.what.clone()));
     let boots = flight.boots_s.iter();
-    let boots = boots.map(|t_s| (*t_s, "the autopilot booted again".to_owned()));
+    let boots = boots.map(|t_s| (*t_s, "the autopilot rebooted".to_owned()));
     let mut events: Vec<(f64, String)> = said
         .chain(boots)
         .filter(|(t_s, _)| stretch.contains(*t_s))
@@ -92,8 +92,8 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessed) -> Timeline {
     }
     Timeline {
         stretch,
-        modes,
-        findings: findings.collect(),
+        phases,
+        alerts: findings.collect(),
         events,
     }
 }
@@ -106,7 +106,7 @@ pub(crate) fn level_class(level: Level) -> &'static str {
     }
 }
 
-/// The curves of one value of the steps.
+/// The curve of one value of the steps.
 fn of_steps(
     steps: &[Step],
     stretch: Stretch,
@@ -120,13 +120,13 @@ fn of_steps(
     path(points, stretch, gap_s, decimals)
 }
 
-/// Without a sample for this long, a curve is broken: a few samples, and what the profile calls a gap.
+/// A curve is broken where there is no sample for this long: five samples, at least the profile's longest gap.
 fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
     let longest_gap_s = estimator.profile().sampling.longest_gap_s;
     rate_hz.map_or(longest_gap_s, |rate_hz| longest_gap_s.max(5.0 / rate_hz))
 }
 
-/// Risk and elevated risk; `None` where no moment of the flight could be assessed.
+/// Risk and elevated risk; `None` where no risk is known.
 pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch) -> Option<Panel> {
     let gap_s = gap_s(estimator, None);
     let draw =
@@ -150,8 +150,7 @@ pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch)
     Some(Panel {
         title: "Risk".into(),
         unit: "%",
-        low: 0.0,
-        high: 100.0,
+        scale: Scale::new(0.0, 100.0),
         size: Size::Large,
         lines: vec![
             Line {
@@ -167,11 +166,10 @@ pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch)
         ],
         marks: marks.into_iter().flatten().collect(),
         zones: Vec::new(),
-        input: None,
     })
 }
 
-/// How far the nearest motor is from its lower and from its upper limit, and the mean margin.
+/// The smallest distance of a motor from its lower and from its upper limit, and the mean margin.
 pub(crate) fn margins(
     flight: &Flight,
     assessed: &Assessed,
@@ -199,8 +197,7 @@ pub(crate) fn margins(
     Some(Panel {
         title: "Margin of the nearest motor".into(),
         unit: "",
-        low: 0.0,
-        high: 1.0,
+        scale: Scale::new(0.0, 1.0),
         size: Size::Medium,
         lines: vec![
             line("mean", "mean margin", mean),
@@ -209,11 +206,10 @@ pub(crate) fn margins(
         ],
         marks: Vec::new(),
         zones: Vec::new(),
-        input: None,
     })
 }
 
-/// The command of each motor on its full range, with what lies beyond the effective limits shaded.
+/// The command of each motor on its full range; the parts outside the effective range are shaded.
 pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
     let gap_s = gap_s(estimator, flight.command_rate_hz());
     let limits = &flight.effective;
@@ -230,8 +226,7 @@ pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -
         Panel {
             title: format!("Motor {}", motor.number),
             unit: "%",
-            low: 0.0,
-            high: 100.0,
+            scale: Scale::new(0.0, 100.0),
             size: Size::Small,
             lines: vec![Line {
                 class: "motor",
@@ -239,34 +234,35 @@ pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -
                 data: path(rows, stretch, gap_s, 1),
             }],
             marks: [limits.low, limits.high].map(limit).into(),
-            zones: vec![(0.0, limits.low * 100.0), (limits.high * 100.0, 100.0)],
-            input: None,
+            zones: vec![
+                Scale::new(0.0, limits.low * 100.0),
+                Scale::new(limits.high * 100.0, 100.0),
+            ],
         }
     };
     let panels = flight.motors.iter().enumerate().map(panel);
-    panels.filter(has_data).collect()
+    panels.filter(Panel::has_data).collect()
 }
 
-/// What the rules saw: each of their inputs.
+/// The inputs of the rules, each with its index.
 pub(crate) fn inputs(
     assessed: &Assessed,
     estimator: &Estimator,
     model: &Model,
     stretch: Stretch,
-) -> Vec<Panel> {
+) -> Vec<(usize, Panel)> {
     let gap_s = gap_s(estimator, None);
     let panel = |(i, input): (usize, &flagred::profile::ProfileInput)| {
-        let (low, high) = super::decision::focus(model, &input.name, i, &assessed.steps);
+        let scale = super::decision::focus(model, &input.name, i, &assessed.steps);
         let unit = model.inputs.iter().find(|known| known.name == input.name);
         let unit = unit.and_then(|known| known.unit.as_deref());
         let data = of_steps(&assessed.steps, stretch, gap_s, 4, |step| {
             step.inputs.get(i).copied()
         });
-        Panel {
+        let panel = Panel {
             title: input.name.clone(),
             unit: "",
-            low,
-            high,
+            scale,
             size: Size::Small,
             lines: vec![Line {
                 class: "value",
@@ -275,11 +271,11 @@ pub(crate) fn inputs(
             }],
             marks: Vec::new(),
             zones: Vec::new(),
-            input: Some(i),
-        }
+        };
+        panel.has_data().then_some((i, panel))
     };
     let inputs = estimator.profile().inputs.iter().enumerate();
-    inputs.map(panel).filter(has_data).collect()
+    inputs.filter_map(panel).collect()
 }
 
 /// The attitude error in degrees: `sqrt((roll_des - roll)^2 + (pitch_des - pitch)^2)`.
@@ -311,7 +307,7 @@ pub(crate) fn attitude_error(
             (*t_s, attitude.squared_error_deg2().sqrt())
         })
         .collect();
-    // Up to the critical error at least, so that a calm flight looks calm.
+    // The scale reaches the critical error at least, so that a calm flight looks calm.
     let critical_deg = flagred::attitude::CRITICAL_ERROR_DEG;
     let largest = errors
         .iter()
@@ -322,8 +318,7 @@ pub(crate) fn attitude_error(
     let panel = Panel {
         title: "Attitude error".into(),
         unit: "°",
-        low: 0.0,
-        high: largest,
+        scale: Scale::new(0.0, largest),
         size: Size::Medium,
         lines: vec![Line {
             class: "value",
@@ -336,12 +331,11 @@ pub(crate) fn attitude_error(
             name: "critical".into(),
         }],
         zones: Vec::new(),
-        input: None,
     };
-    has_data(&panel).then_some(panel)
+    panel.has_data().then_some(panel)
 }
 
-/// Battery voltage and what remains, as far as the log has them.
+/// Battery voltage and remaining charge, where the log has them.
 pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
     let curve = |signal: &Signal<'_>, decimals| {
         let points = signal.t_s.iter().copied();
@@ -353,11 +347,10 @@ pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) 
             decimals,
         )
     };
-    let panel = |title: &str, unit, (low, high), signal: Signal<'_>, decimals| Panel {
+    let panel = |title: &str, unit, scale, signal: Signal<'_>, decimals| Panel {
         title: title.into(),
         unit,
-        low,
-        high,
+        scale,
         size: Size::Medium,
         lines: vec![Line {
             class: "value",
@@ -366,7 +359,6 @@ pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) 
         }],
         marks: Vec::new(),
         zones: Vec::new(),
-        input: None,
     };
     let voltage = flight.signal("battery_v").and_then(|signal| {
         let seen = signal.t_s.iter().zip(signal.values);
@@ -375,16 +367,12 @@ pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) 
             .map(|(_, value)| (*value, *value))
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let room = ((high - low) * 0.1).max(0.1);
-        let span = ((low - room).max(0.0), high + room);
-        Some(panel("Battery voltage", "V", span, signal, 2))
+        let scale = Scale::new((low - room).max(0.0), high + room);
+        Some(panel("Battery voltage", "V", scale, signal, 2))
     });
     let remaining = flight
         .signal("battery_remaining_pct")
-        .map(|signal| panel("Battery remaining", "%", (0.0, 100.0), signal, 1));
+        .map(|signal| panel("Battery remaining", "%", Scale::new(0.0, 100.0), signal, 1));
     let panels = voltage.into_iter().chain(remaining);
-    panels.filter(has_data).collect()
-}
-
-fn has_data(panel: &Panel) -> bool {
-    panel.lines.iter().any(|line| !line.data.is_empty())
+    panels.filter(Panel::has_data).collect()
 }
