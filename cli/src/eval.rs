@@ -1,4 +1,4 @@
-//! `flagred eval`: a rule set over many points, CSV in and CSV out.
+//! `flagred eval`: a rule set at many points, from CSV to CSV.
 
 use std::{
     fs::File,
@@ -23,12 +23,12 @@ pub(crate) struct Arguments {
     /// The rule set in YAML
     #[arg(value_name = "MODEL")]
     model: PathBuf,
-    /// Points: a column for each input, named as it is; other columns are kept as they are. Standard input where absent
+    /// A table with a column for each input; other columns are copied. `-` is standard input
     #[arg(value_name = "POINTS.csv", default_value = "-")]
     points: PathBuf,
 }
 
-/// Rows that are evaluated at once; they are split over the threads.
+/// Rows that are evaluated at a time, split over the threads.
 const BLOCK: usize = 16_384;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 .help("check the path")
         })?))
     };
-    // Fields may be padded; they are kept as they are, and trimmed where they are read as numbers.
+    // Fields are copied with their padding, and trimmed where they are read as numbers.
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .from_reader(input);
@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     for (name, undefined) in engine.output_names().zip(undefined) {
         if let Some(why) = undefined.why() {
             // Nothing is left to tell a user whose standard error is closed.
-            let _ = writeln!(err, "`{name}` is undefined in {why}, of {rows} rows");
+            let _ = writeln!(err, "`{name}` has no value in {why}, of {rows} rows");
         }
     }
     Ok(Exit::Clean)
@@ -112,23 +112,23 @@ impl Undefined {
     fn why(&self) -> Option<String> {
         match (self.no_rule, self.no_input) {
             (0, 0) => None,
-            (rows, 0) => Some(format!("{rows} where no rule fires")),
-            (0, rows) => Some(format!("{rows} where an input is unknown")),
+            (rows, 0) => Some(format!("{rows} rows where no rule fires")),
+            (0, rows) => Some(format!("{rows} rows where an input is unknown")),
             (rule, input) => Some(format!(
-                "{rule} where no rule fires, {input} where an input is unknown"
+                "{rule} rows where no rule fires and {input} rows where an input is unknown"
             )),
         }
     }
 }
 
-/// Where each input stands in a row.
+/// The column of each input.
 fn columns(engine: &Engine, header: &csv::StringRecord) -> Result<Vec<usize>, Failure> {
     let names = || header.iter().map(str::trim);
     for output in engine.output_names() {
         if names().any(|name| name == output) {
             return Err(
                 Failure::usage(format!("the points have a column `{output}` already"))
-                    .help("that is the name of an output; rename the column"),
+                    .help("the results go into a column of that name; rename yours"),
             );
         }
     }
@@ -150,7 +150,7 @@ fn columns(engine: &Engine, header: &csv::StringRecord) -> Result<Vec<usize>, Fa
 
 type Row<'b> = (&'b csv::StringRecord, Vec<Outcome>);
 
-/// Evaluates a block, its parts on threads of their own; the rows stay in order.
+/// Evaluates a block, each part on a thread; the order of the rows is kept.
 fn evaluate<'b>(
     engine: &Engine,
     columns: &[usize],
@@ -214,7 +214,7 @@ fn number(field: &str, name: &str, record: &csv::StringRecord) -> Result<f64, Fa
     }
     field.parse().map_err(|_| {
         Failure::unreadable(format!(
-            "{}: `{field}` of `{name}` is no number",
+            "{}: `{field}` of `{name}` is not a number",
             line(record)
         ))
         .help("leave the field empty where the value is unknown")
@@ -247,7 +247,7 @@ fn unreadable(error: &csv::Error) -> Failure {
         .help("every row needs as many fields as the header")
 }
 
-/// The output could not be written; a closed pipe is no failure.
+/// The output could not be written; a closed pipe is not a failure.
 fn written(error: csv::Error) -> Failure {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => Failure::from(error),

@@ -20,13 +20,13 @@ pub(crate) struct Arguments {
     /// The rule set in YAML; `-` is standard input
     #[arg(value_name = "MODEL")]
     model: PathBuf,
-    /// The value of each input: margin=0.07
+    /// A value for each input: `margin=0.07`
     #[arg(required = true, value_name = "INPUT=VALUE", value_parser = assignment)]
     inputs: Vec<(String, f64)>,
     /// Print a JSON document instead of text
     #[arg(long)]
     json: bool,
-    /// Write an SVG picture of terms, rules and result to this file instead; `-` is standard output
+    /// Write an SVG picture of terms, rules and results to this file instead; `-` is standard output
     #[arg(long, value_name = "FILE", conflicts_with = "json", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 }
@@ -86,8 +86,7 @@ fn values(model: &Model, given: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
     let value = |name: &str| {
         let found = given.iter().find(|(known, _)| known == name);
         found.map(|(_, value)| *value).ok_or_else(|| {
-            Failure::usage(format!("the input `{name}` has no value"))
-                .help(format!("add `{name}=0.5`"))
+            Failure::usage(format!("input `{name}` has no value")).help(format!("add `{name}=0.5`"))
         })
     };
     names().map(value).collect()

@@ -132,7 +132,10 @@ fn explain_asks_for_what_is_missing() {
             &["margin=0.1", "margin=0.2", "spread=0"],
             "`margin` is given twice",
         ),
-        (&["margin=much", "spread=0"], "`much` is not a finite number"),
+        (
+            &["margin=much", "spread=0"],
+            "`much` is not a finite number",
+        ),
         (&["margin"], "write NAME=VALUE"),
     ] {
         let all: Vec<&str> = ["explain", "flagred-paper.yaml"]
