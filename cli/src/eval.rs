@@ -85,9 +85,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     writer.flush()?;
     let mut err = anstream::stderr().lock();
     for (name, undefined) in engine.output_names().zip(undefined) {
-        if let Some(why) = undefined.why() {
+        if let Some(why) = undefined.why(rows) {
             // Nothing is left to tell a user whose standard error is closed.
-            let _ = writeln!(err, "`{name}` has no value in {why}, of {rows} rows");
+            let _ = writeln!(err, "`{name}` is undefined {why}");
         }
     }
     Ok(Exit::Clean)
@@ -109,13 +109,17 @@ impl Undefined {
         }
     }
 
-    fn why(&self) -> Option<String> {
-        match (self.no_rule, self.no_input) {
+    /// Where an output has no value, of so many rows; `None` where it always has one.
+    fn why(&self, rows: usize) -> Option<String> {
+        let Undefined { no_rule, no_input } = self;
+        match (no_rule, no_input) {
             (0, 0) => None,
-            (rows, 0) => Some(format!("{rows} rows where no rule fires")),
-            (0, rows) => Some(format!("{rows} rows where an input is unknown")),
-            (rule, input) => Some(format!(
-                "{rule} rows where no rule fires and {input} rows where an input is unknown"
+            (no_rule, 0) => Some(format!("where no rule fires ({no_rule} of {rows} rows)")),
+            (0, no_input) => Some(format!(
+                "where an input is unknown ({no_input} of {rows} rows)"
+            )),
+            (no_rule, no_input) => Some(format!(
+                "where no rule fires ({no_rule} of {rows} rows) and where an input is unknown ({no_input})"
             )),
         }
     }

@@ -118,7 +118,7 @@ pub(crate) fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
         h1 { (title) }
         p.soft {
             "All curves have the same scale of time, " (number(longest_s, 0)) " s. "
-            "`flagred assess LOG --html FILE` writes the whole report of one flight."
+            code { "flagred assess LOG --html FILE" } " writes the whole report of one flight."
         }
         .scroll { table {
             thead { tr {

@@ -139,8 +139,11 @@ impl Sheet {
         self.body.push('\n');
     }
 
-    /// A text of a class.
+    /// A text of a class; nothing where it is empty.
     pub fn text(&mut self, (x, y): (f64, f64), anchor: Anchor, class: &str, text: &str) {
+        if text.is_empty() {
+            return;
+        }
         let (x, y, text) = (px(x), px(y), Escaped(text));
         self.push(format_args!(
             r#"<text x="{x}" y="{y}" text-anchor="{anchor}" class="{class}">{text}</text>"#
@@ -149,6 +152,9 @@ impl Sheet {
 
     /// A title along an axis, turned clockwise about its middle.
     pub fn turned(&mut self, (x, y): (f64, f64), degrees: f64, text: &str) {
+        if text.is_empty() {
+            return;
+        }
         let (x, y, degrees, text) = (px(x), px(y), px(degrees), Escaped(text));
         self.push(format_args!(
             r#"<text transform="translate({x} {y}) rotate({degrees})" text-anchor="middle" class="title">{text}</text>"#
