@@ -23,6 +23,9 @@ pub(crate) const SIGNALS: [&str; 6] = [
     "battery_remaining_pct",
 ];
 
+/// The scale of a percentage.
+const PERCENT: (Scale, &str) = (Scale::new(0.0, 100.0), "%");
+
 /// The most events that are drawn; the last one counts the others.
 const MOST_EVENTS: usize = 200;
 
@@ -147,25 +150,14 @@ pub(crate) fn risk(assessed: &Assessed, estimator: &Estimator, stretch: Stretch)
         mark(&verdict.warn.raise, Level::Warn),
         mark(&verdict.fail.raise, Level::Fail),
     ];
+    let elevated = draw(&|step| step.elevated_risk_pct);
+    let lines = vec![
+        Line::new("elevated", "elevated risk", elevated),
+        Line::new("risk", "risk", risk),
+    ];
     Some(Panel {
-        title: "Risk".into(),
-        unit: "%",
-        scale: Scale::new(0.0, 100.0),
-        size: Size::Large,
-        lines: vec![
-            Line {
-                class: "elevated",
-                name: "elevated risk".into(),
-                data: draw(&|step| step.elevated_risk_pct),
-            },
-            Line {
-                class: "risk",
-                name: "risk".into(),
-                data: risk,
-            },
-        ],
         marks: marks.into_iter().flatten().collect(),
-        zones: Vec::new(),
+        ..Panel::new("Risk", PERCENT, Size::Large, lines)
     })
 }
 
@@ -188,25 +180,19 @@ pub(crate) fn margins(
     if low.is_empty() {
         return None;
     }
-    let line = |class, name: &str, data| Line {
-        class,
-        name: name.into(),
-        data,
-    };
     let mean = of_steps(&assessed.steps, stretch, gap_s, 3, |step| step.margin);
-    Some(Panel {
-        title: "Margin of the nearest motor".into(),
-        unit: "",
-        scale: Scale::new(0.0, 1.0),
-        size: Size::Medium,
-        lines: vec![
-            line("mean", "mean margin", mean),
-            line("low", "to its lower limit", low),
-            line("high", "to its upper limit", least(&|e| 1.0 - e)),
-        ],
-        marks: Vec::new(),
-        zones: Vec::new(),
-    })
+    let lines = vec![
+        Line::new("mean", "mean margin", mean),
+        Line::new("low", "to its lower limit", low),
+        Line::new("high", "to its upper limit", least(&|e| 1.0 - e)),
+    ];
+    let scale = (Scale::new(0.0, 1.0), "");
+    Some(Panel::new(
+        "Margin of the nearest motor",
+        scale,
+        Size::Medium,
+        lines,
+    ))
 }
 
 /// The command of each motor on its full range; the parts outside the effective range are shaded.
@@ -223,21 +209,20 @@ pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -
             let command = row.get(i).and_then(|raw| flight.command(*raw));
             (t_s, command.unwrap_or(f64::NAN) * 100.0)
         });
+        let data = path(rows, stretch, gap_s, 1);
+        let lines = vec![Line::new("motor", motor.output.as_str(), data)];
         Panel {
-            title: format!("Motor {}", motor.number),
-            unit: "%",
-            scale: Scale::new(0.0, 100.0),
-            size: Size::Small,
-            lines: vec![Line {
-                class: "motor",
-                name: motor.output.clone(),
-                data: path(rows, stretch, gap_s, 1),
-            }],
             marks: [limits.low, limits.high].map(limit).into(),
             zones: vec![
                 Scale::new(0.0, limits.low * 100.0),
                 Scale::new(limits.high * 100.0, 100.0),
             ],
+            ..Panel::new(
+                format!("Motor {}", motor.number),
+                PERCENT,
+                Size::Small,
+                lines,
+            )
         }
     };
     let panels = flight.motors.iter().enumerate().map(panel);
@@ -259,19 +244,8 @@ pub(crate) fn inputs(
         let data = of_steps(&assessed.steps, stretch, gap_s, 4, |step| {
             step.inputs.get(i).copied()
         });
-        let panel = Panel {
-            title: input.name.clone(),
-            unit: "",
-            scale,
-            size: Size::Small,
-            lines: vec![Line {
-                class: "value",
-                name: unit.unwrap_or_default().to_owned(),
-                data,
-            }],
-            marks: Vec::new(),
-            zones: Vec::new(),
-        };
+        let lines = vec![Line::new("value", unit.unwrap_or_default(), data)];
+        let panel = Panel::new(input.name.as_str(), (scale, ""), Size::Small, lines);
         panel.has_data().then_some((i, panel))
     };
     let inputs = estimator.profile().inputs.iter().enumerate();
@@ -315,50 +289,30 @@ pub(crate) fn attitude_error(
         .map(|(_, error)| *error)
         .fold(critical_deg * 1.1, f64::max);
     let gap_s = gap_s(estimator, roll.rate_hz());
+    let data = path(errors.into_iter(), stretch, gap_s, 2);
+    let name = "roll and pitch against their set points";
+    let lines = vec![Line::new("value", name, data)];
+    let scale = (Scale::new(0.0, largest), "°");
     let panel = Panel {
-        title: "Attitude error".into(),
-        unit: "°",
-        scale: Scale::new(0.0, largest),
-        size: Size::Medium,
-        lines: vec![Line {
-            class: "value",
-            name: "roll and pitch against their set points".into(),
-            data: path(errors.into_iter(), stretch, gap_s, 2),
-        }],
         marks: vec![Mark {
             value: critical_deg,
             class: "limit",
             name: "critical".into(),
         }],
-        zones: Vec::new(),
+        ..Panel::new("Attitude error", scale, Size::Medium, lines)
     };
     panel.has_data().then_some(panel)
 }
 
 /// Battery voltage and remaining charge, where the log has them.
 pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
-    let curve = |signal: &Signal<'_>, decimals| {
+    let panel = |title: &str, scale, signal: Signal<'_>, decimals| {
         let points = signal.t_s.iter().copied();
         let points = points.zip(signal.values.iter().copied());
-        path(
-            points,
-            stretch,
-            gap_s(estimator, signal.rate_hz()),
-            decimals,
-        )
-    };
-    let panel = |title: &str, unit, scale, signal: Signal<'_>, decimals| Panel {
-        title: title.into(),
-        unit,
-        scale,
-        size: Size::Medium,
-        lines: vec![Line {
-            class: "value",
-            name: signal.label.source.clone(),
-            data: curve(&signal, decimals),
-        }],
-        marks: Vec::new(),
-        zones: Vec::new(),
+        let gap_s = gap_s(estimator, signal.rate_hz());
+        let data = path(points, stretch, gap_s, decimals);
+        let lines = vec![Line::new("value", signal.label.source.as_str(), data)];
+        Panel::new(title, scale, Size::Medium, lines)
     };
     let voltage = flight.signal("battery_v").and_then(|signal| {
         let seen = signal.t_s.iter().zip(signal.values);
@@ -368,11 +322,11 @@ pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) 
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let room = ((high - low) * 0.1).max(0.1);
         let scale = Scale::new((low - room).max(0.0), high + room);
-        Some(panel("Battery voltage", "V", scale, signal, 2))
+        Some(panel("Battery voltage", (scale, "V"), signal, 2))
     });
     let remaining = flight
         .signal("battery_remaining_pct")
-        .map(|signal| panel("Battery remaining", "%", Scale::new(0.0, 100.0), signal, 1));
+        .map(|signal| panel("Battery remaining", PERCENT, signal, 1));
     let panels = voltage.into_iter().chain(remaining);
     panels.filter(Panel::has_data).collect()
 }

@@ -88,7 +88,33 @@ pub enum Size {
     Small,
 }
 
+impl Line {
+    /// A curve of a class, from the data of its path.
+    pub fn new(class: &'static str, name: impl Into<String>, data: String) -> Line {
+        let name = name.into();
+        Line { class, name, data }
+    }
+}
+
 impl Panel {
+    /// Curves on a scale of a unit, without marks and zones.
+    pub fn new(
+        title: impl Into<String>,
+        (scale, unit): (Scale, &'static str),
+        size: Size,
+        lines: Vec<Line>,
+    ) -> Panel {
+        Panel {
+            title: title.into(),
+            unit,
+            scale,
+            size,
+            lines,
+            marks: Vec::new(),
+            zones: Vec::new(),
+        }
+    }
+
     /// Whether there is anything to draw.
     pub fn has_data(&self) -> bool {
         self.lines.iter().any(|line| !line.data.is_empty())

@@ -11,7 +11,7 @@ pub struct Scale {
 
 impl Scale {
     /// A scale from one value to another.
-    pub fn new(low: f64, high: f64) -> Scale {
+    pub const fn new(low: f64, high: f64) -> Scale {
         Scale { low, high }
     }
 
