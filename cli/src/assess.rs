@@ -22,35 +22,35 @@ const STEP_S: f64 = 0.1;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Flight logs (ArduPilot, PX4, MAVLink, flight CSV; plain or gzipped); `-` is standard input
+    /// Flight logs: ArduPilot, PX4, MAVLink or flight CSV, plain or gzipped; `-` is standard input
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// What the motors mean to the rules and the risk to the pilot: a shipped profile's name, or a file
+    /// Profile: inputs, rule set and thresholds. A built-in name or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
-    /// One JSON document instead of words
+    /// Print a JSON document instead of text
     #[arg(long, conflicts_with = "csv")]
     json: bool,
 
-    /// A table of the steps instead of words
+    /// Print a CSV table of the steps instead of text
     #[arg(long)]
     csv: bool,
 
-    /// Also write a report to look at: one HTML file that opens offline; of several logs, a comparison
+    /// Also write a report to this file: one HTML page that opens offline; for several logs, a comparison
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
 
-    /// Also write the picture of risk over time, as an SVG file
-    #[arg(long, value_name = "FILE")]
+    /// Also write an SVG picture of the risk over time to this file
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 
-    /// Exit with 1 from this verdict on
+    /// Exit with 1 for this verdict and worse ones
     #[arg(long, value_enum, value_name = "VERDICT", default_value = "warn")]
     fail_on: FailOn,
 
-    /// Seconds between the steps shown; every motor sample is assessed in any case
+    /// Seconds between the steps shown; every motor sample is assessed
     #[arg(long, value_name = "SECONDS", default_value_t = STEP_S, value_parser = step)]
     step: f64,
 }

@@ -12,7 +12,7 @@ use crate::failure::{Exit, Failure};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The flight log; `-` is standard input
+    /// The flight log to convert; `-` is standard input
     #[arg(value_name = "LOG")]
     log: PathBuf,
 

@@ -52,6 +52,8 @@ pub mod check;
 mod defuzzify;
 #[cfg(feature = "alloc")]
 pub mod diagnostic;
+#[cfg(feature = "drawing")]
+pub mod drawing;
 #[cfg(feature = "alloc")]
 pub mod engine;
 #[cfg(feature = "serde")]

@@ -9,9 +9,7 @@ use flagred::{
     verdict::{Finding, Level},
 };
 use flightlog::{Flight, Motor};
-
-use super::picture;
-use crate::drawing::text::number;
+use fuzzy::drawing::{number, over_time_text};
 
 /// Columns of the picture of risk over time.
 const PICTURE_COLUMNS: usize = 64;
@@ -74,7 +72,7 @@ pub(crate) fn write(
         .collect();
     if points.iter().any(|(_, risk)| risk.is_some()) {
         writeln!(out, "risk over time")?;
-        writeln!(out, "{}", picture::over_time(&points, PICTURE_COLUMNS))?;
+        writeln!(out, "{}", over_time_text(&points, PICTURE_COLUMNS))?;
     }
     Ok(())
 }

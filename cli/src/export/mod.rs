@@ -21,13 +21,13 @@ mod rust;
 #[derive(clap::Args)]
 #[command(group = clap::ArgGroup::new("language").required(true))]
 pub(crate) struct Arguments {
-    /// Write Rust, for the crate `flagred` without its default features
+    /// Write Rust for the crate `flagred` with `default-features = false`
     #[arg(long, group = "language")]
     rust: bool,
-    /// Write C, for `flagred.h` and the library of `flagred-c`
+    /// Write C for `flagred.h` and the library of `flagred-c`
     #[arg(long, group = "language")]
     c: bool,
-    /// A shipped profile by its name, or a file
+    /// Profile: a built-in name or a file
     #[arg(value_name = "PROFILE", default_value = profile::DEFAULT)]
     profile: String,
     /// The file to write; `-` is standard output
