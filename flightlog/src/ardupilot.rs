@@ -2,6 +2,7 @@
 //! the range of their commands.
 
 use crate::geometry::tables;
+use crate::outputs::LONGEST_PULSE_US;
 use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
 
@@ -181,7 +182,7 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     };
     let own = parameters
         .pair("MOT_PWM_MIN", "MOT_PWM_MAX")
-        .filter(|(low, _)| *low > 0.0);
+        .filter(|(low, high)| *low > 0.0 && *high <= LONGEST_PULSE_US);
     if let Some(own) = own {
         return Some(range(own, "MOT_PWM_MIN/MAX".into()));
     }
@@ -190,6 +191,9 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
         None => (3, "is 3 by default"),
     };
     let radio = parameters.pair(&format!("RC{channel}_MIN"), &format!("RC{channel}_MAX"))?;
+    if radio.0 < 0.0 || radio.1 > LONGEST_PULSE_US {
+        return None;
+    }
     let source =
         format!("RC{channel}_MIN/MAX: MOT_PWM_MIN/MAX are not set, the throttle channel {from}");
     Some(range(radio, source))
@@ -205,7 +209,8 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
         unit: "1",
         source,
     };
-    if let Some((low, high)) = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
+    let spin = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX");
+    if let Some((low, high)) = spin.filter(|(low, high)| *low >= 0.0 && *high <= 1.0) {
         return range(low, high, "MOT_SPIN_MIN/MAX".into());
     }
     let low = parameters.get("THR_MIN").map(|value| value / 1000.0);
