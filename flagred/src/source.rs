@@ -2,12 +2,12 @@
 
 use alloc::{string::String, vec, vec::Vec};
 
+pub use crate::channel::{Motors, Observation, Statistic};
 use crate::{
     channel::{Channel, Input, Now, Observed, Seen, Threshold, push, value},
     monitor::Craft,
     motor::{Bin, Motor, clear, set_geometry, take},
 };
-pub use crate::channel::{Motors, Observation, Statistic};
 
 /// What is observed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -344,7 +344,10 @@ mod tests {
             source(Statistic::Std, Motors::Pooled, "motor_command"),
             source(Statistic::Std, Motors::Min, "motor_command"),
         ];
-        assert_eq!(Observer::new(&sources, craft(&[])).unwrap().channels.len(), 2);
+        assert_eq!(
+            Observer::new(&sources, craft(&[])).unwrap().channels.len(),
+            2
+        );
     }
 
     #[test]

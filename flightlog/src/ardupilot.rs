@@ -274,10 +274,12 @@ pub(crate) fn vehicle<'a>(
     let firmware = texts.clone().find(|text| kind_of_firmware(text).is_some());
     let class = parameters.get("FRAME_CLASS").map(|class| class as i64);
     let frame = texts
+        .clone()
         .filter_map(|text| text.strip_prefix("Frame: "))
         .map(str::to_owned)
         .next()
         .or_else(|| tables::name_of_class(class?).map(str::to_owned));
+    let id = texts.into_iter().find(|text| is_board_id(text));
     let (mut kind, mut source) = match firmware {
         Some(text) => (
             kind_of_firmware(text).unwrap_or_default(),
@@ -299,7 +301,16 @@ pub(crate) fn vehicle<'a>(
         motors: frame.as_deref().and_then(motors_of_frame),
         frame,
         firmware: firmware.map(str::to_owned),
+        id: id.map(str::to_owned),
     }
+}
+
+/// Whether a text names the board and the 96 bits of its serial number: `Pixhawk4 0047002B 34385105 36363539`.
+fn is_board_id(text: &str) -> bool {
+    let mut words = text.split(' ');
+    let name = words.next().is_some_and(|name| !name.is_empty());
+    let is_hex = |word: &str| word.len() == 8 && word.bytes().all(|b| b.is_ascii_hexdigit());
+    name && words.clone().count() == 3 && words.all(is_hex)
 }
 
 fn kind_of_firmware(text: &str) -> Option<VehicleKind> {
@@ -342,6 +353,19 @@ mod tests {
 
     fn parameters(pairs: &[(&str, f64)]) -> Parameters {
         pairs.iter().copied().collect()
+    }
+
+    #[test]
+    fn a_board_names_itself_by_its_serial_number() {
+        for (text, is_id) in [
+            ("Pixhawk4 0047002B 34385105 36363539", true),
+            ("ArduCopter V4.7.0-dev (15f9bed0)", false),
+            ("PX4: 11112222 NuttX: 33334444", false),
+            ("Pixhawk4 0047002B 34385105 3636353", false),
+        ] {
+            let vehicle = vehicle([text].into_iter(), &parameters(&[]));
+            assert_eq!(vehicle.id.as_deref(), is_id.then_some(text));
+        }
     }
 
     #[test]

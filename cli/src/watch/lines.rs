@@ -2,12 +2,7 @@
 
 use std::io;
 
-use flagred::{
-    estimator::Estimator,
-    flight::Verdict,
-    monitor::Update,
-    verdict::Level,
-};
+use flagred::{estimator::Estimator, flight::Verdict, monitor::Update, verdict::Level};
 use flightlog::{Vehicle, mavlink::Setup};
 use serde::Serialize;
 
@@ -93,11 +88,7 @@ pub(crate) fn describe(event: &Event) -> String {
         Event::Level { text, .. } => text.clone(),
         Event::Ended { finding } => format!(
             "{} from {:.1} to {:.1} s of the vehicle's clock: {} up to {:.0} %",
-            finding.level,
-            finding.from_s,
-            finding.to_s,
-            finding.measure,
-            finding.peak_pct
+            finding.level, finding.from_s, finding.to_s, finding.measure, finding.peak_pct
         ),
         Event::Landed { verdict } => match verdict {
             Verdict::Known(level) => format!("{level}: the flight is over"),

@@ -413,6 +413,7 @@ fn apply_header(
     for entry in &header {
         match entry.key.as_str() {
             "vehicle" => flight.vehicle.frame = Some(entry.value.clone()),
+            "vehicle_id" => flight.vehicle.id = Some(entry.value.clone()),
             "firmware" => flight.vehicle.firmware = Some(entry.value.clone()),
             "vehicle_kind" => {
                 flight.vehicle.kind = VehicleKind::from_name(&entry.value);
