@@ -5,6 +5,7 @@ mod folder;
 pub mod log_writer;
 pub mod reference;
 pub mod simulated;
+pub mod tuning;
 pub mod vehicle;
 pub mod watch;
 pub mod wire;
