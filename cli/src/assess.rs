@@ -1,21 +1,19 @@
 //! `flagred assess`: how risky was this flight?
 
-use std::{
-    io::{IsTerminal, Write},
-    path::PathBuf,
-};
+use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use flagred::{
     flight::{Assessment, Verdict},
-    log,
+    log::assess,
     verdict::Level,
 };
+use flightlog::{Flight, ReadError};
 
 use crate::{
     assessment::{document, words},
     failure::{Exit, Failure},
-    output, profile,
+    output, parallel, profile,
     report::{self, Subject},
 };
 
@@ -71,7 +69,7 @@ fn step(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Assesses every log in turn; one that cannot be read is told of and does not stop the others.
+/// Assesses every log; one that cannot be read does not stop the others.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let loaded = profile::load(&arguments.profile)?;
     let estimator = &loaded.estimator;
@@ -91,32 +89,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut exit = Exit::Clean;
     let mut documents = Vec::new();
     let mut head = true;
-    let mut progress = Progress::new(arguments.logs.len());
-    for log in &arguments.logs {
-        progress.show(log);
-        let flight = match flightlog::open(log, &options) {
-            Ok(flight) => flight,
-            Err(error) => {
-                progress.clear();
-                Failure::from(error).report();
-                exit = Exit::Unreadable;
-                continue;
-            }
-        };
-        let assessed = log::assess(&flight, estimator, Some(arguments.step));
-        progress.clear();
-        exit = exit.max(exit_of(&assessed, arguments.fail_on));
+    let mut show = |log: &String, flight: Flight, assessed: Assessment| {
         if arguments.json {
             let document = document::document(log, &flight, estimator, &assessed);
             documents.push(serde_json::to_value(document).map_err(std::io::Error::from)?);
         } else if arguments.csv {
-            document::write_csv(
-                &mut out,
-                several.then_some(log.as_str()),
-                head,
-                estimator,
-                &assessed,
-            )?;
+            let name = several.then_some(log.as_str());
+            document::write_csv(&mut out, name, head, estimator, &assessed)?;
             head = false;
             if let Verdict::NotAvailable(reason) = &assessed.verdict {
                 let failure = Failure::unreadable(format!("`{log}`: no verdict: {reason}"));
@@ -132,7 +111,32 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 assessed,
             });
         }
-    }
+        Ok(())
+    };
+    let mut shown: Result<(), Failure> = Ok(());
+    parallel::in_order(
+        &arguments.logs,
+        "logs",
+        |log| {
+            let flight = flightlog::open(log, &options)?;
+            let assessed = assess(&flight, estimator, Some(arguments.step));
+            Ok((flight, assessed))
+        },
+        |log, read: Result<(Flight, Assessment), ReadError>| {
+            match read {
+                Ok((flight, assessed)) => {
+                    exit = exit.max(exit_of(&assessed, arguments.fail_on));
+                    shown = show(log, flight, assessed);
+                }
+                Err(error) => {
+                    Failure::from(error).report();
+                    exit = Exit::Unreadable;
+                }
+            }
+            shown.is_ok()
+        },
+    );
+    shown?;
     if arguments.json {
         match (documents.as_slice(), several) {
             ([], _) => {}
@@ -143,37 +147,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     out.flush()?;
     write_reports(arguments, &subjects, &loaded)?;
     Ok(exit)
-}
-
-/// Says on the terminal which of several logs is being read, in a line that goes again.
-struct Progress {
-    done: usize,
-    logs: usize,
-    shown: bool,
-}
-
-impl Progress {
-    fn new(logs: usize) -> Self {
-        Progress {
-            done: 0,
-            logs,
-            shown: logs > 1 && std::io::stderr().is_terminal(),
-        }
-    }
-
-    fn show(&mut self, log: &str) {
-        self.done += 1;
-        if self.shown {
-            // Nothing is lost where it cannot be shown.
-            let _ = write!(std::io::stderr(), "{} of {}: {log}", self.done, self.logs);
-        }
-    }
-
-    fn clear(&self) {
-        if self.shown {
-            let _ = write!(std::io::stderr(), "\r\x1b[K");
-        }
-    }
 }
 
 /// Writes the files that were asked for; where no log could be read, there is nothing to write.

@@ -84,7 +84,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         let mut out = anstream::stdout().lock();
         if arguments.json {
             let json = Json {
-                schema: "flagred-check-1",
+                schema: "flagred.check/1",
                 file: &file,
                 model: analysed
                     .as_ref()

@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut out = anstream::stdout().lock();
     if arguments.json {
         let json = Json {
-            schema: "flagred-explain-1",
+            schema: "flagred.explain/1",
             model: &model.name,
             explanation: &explanation,
         };

@@ -17,6 +17,7 @@ mod failure;
 mod flights;
 mod help;
 mod inspect;
+mod json;
 mod learn;
 mod man;
 mod map;

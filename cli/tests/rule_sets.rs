@@ -53,7 +53,7 @@ fn check_holds_outputs_against_what_their_author_says() {
     let (output, text) = flagred(&claims, "");
     assert_eq!(output.status.code(), Some(0));
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(json["schema"], "flagred-check-1");
+    assert_eq!(json["schema"], "flagred.check/1");
     let worst = &json["report"]["counterexamples"][0];
     assert_eq!(worst["claim"]["input"], "spread");
     assert_eq!(worst["at"][0]["value"], 0.2);
@@ -118,7 +118,7 @@ fn explain_shows_why() {
         "",
     );
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(json["schema"], "flagred-explain-1");
+    assert_eq!(json["schema"], "flagred.explain/1");
     assert_eq!(json["inputs"][0]["terms"][1]["term"], "low");
     assert!(json["outputs"][0]["value"].as_f64().unwrap() > 40.0);
 }

@@ -20,6 +20,9 @@ struct Vehicle {
     packets: Vec<(f64, Vec<u8>)>,
 }
 
+/// Time, motor outputs, armed, in the air.
+type Decoded = (f64, [f64; 4], bool, bool);
+
 impl Vehicle {
     fn send(&mut self, t_s: f64, message: Message, payload: &[u8]) {
         let from = self.log.bytes.len() + STAMP;
@@ -59,7 +62,7 @@ impl Vehicle {
 
     /// Live: the vehicle, and at each row of commands the time, the commands, whether it is
     /// armed, and whether it is in the air.
-    fn live(&self) -> (Telemetry, Vec<(f64, [f64; 4], bool, bool)>) {
+    fn live(&self) -> (Telemetry, Vec<Decoded>) {
         let mut telemetry: Option<Telemetry> = None;
         let mut rows = Vec::new();
         for (_, bytes) in &self.packets {

@@ -3,6 +3,8 @@
 use flightlog::{Flight, Intervals};
 use serde::Serialize;
 
+use crate::json::{Motor, Range, Read};
+
 /// Version of this document's form.
 const SCHEMA: &str = "flagred.inspect/1";
 
@@ -15,7 +17,7 @@ pub(super) struct Document<'a> {
     motors: Vec<Motor<'a>>,
     geometry: Option<Geometry<'a>>,
     range: Option<Range<'a>>,
-    effective: Range<'a>,
+    effective_range: Range<'a>,
     clock: Clock<'a>,
     commands: Commands,
     statistics: Option<Statistics>,
@@ -38,13 +40,6 @@ struct Vehicle<'a> {
 }
 
 #[derive(Serialize)]
-struct Motor<'a> {
-    number: u16,
-    output: &'a str,
-    source: &'a str,
-}
-
-#[derive(Serialize)]
 struct Geometry<'a> {
     frame: Option<&'a str>,
     basis: String,
@@ -52,14 +47,6 @@ struct Geometry<'a> {
     doubt: Option<&'a str>,
     /// Roll, pitch and yaw of each motor, in the order of `motors`.
     factors: &'a [[f64; 3]],
-}
-
-#[derive(Serialize)]
-struct Range<'a> {
-    low: f64,
-    high: f64,
-    unit: &'static str,
-    source: &'a str,
 }
 
 #[derive(Serialize)]
@@ -116,16 +103,6 @@ struct Missing {
     help: Option<&'static str>,
 }
 
-#[derive(Serialize)]
-struct Read<'a> {
-    bytes: u64,
-    messages: u64,
-    skipped_bytes: u64,
-    bad_messages: u64,
-    truncated: bool,
-    reason: Option<&'a str>,
-}
-
 impl<'a> Document<'a> {
     pub(super) fn new(log: &'a str, flight: &'a Flight) -> Self {
         let span_s = flight.time_span_s();
@@ -139,7 +116,7 @@ impl<'a> Document<'a> {
                 firmware: flight.vehicle.firmware.as_deref(),
                 source: &flight.vehicle.source,
             },
-            motors: flight.motors.iter().map(motor).collect(),
+            motors: flight.motors.iter().map(Motor::from).collect(),
             geometry: flight.geometry.as_ref().map(|geometry| Geometry {
                 frame: geometry.frame.as_deref(),
                 basis: geometry.basis.to_string(),
@@ -147,8 +124,8 @@ impl<'a> Document<'a> {
                 doubt: geometry.doubt.as_deref(),
                 factors: &geometry.factors,
             }),
-            range: flight.range.as_ref().map(range),
-            effective: range(&flight.effective),
+            range: flight.range.as_ref().map(Range::from),
+            effective_range: Range::from(&flight.effective),
             clock: Clock {
                 first_s: span_s.map(|span| span.0),
                 last_s: span_s.map(|span| span.1),
@@ -178,32 +155,8 @@ impl<'a> Document<'a> {
                     help: gap.help(),
                 })
                 .collect(),
-            read: Read {
-                bytes: flight.report.bytes,
-                messages: flight.report.messages,
-                skipped_bytes: flight.report.skipped_bytes,
-                bad_messages: flight.report.bad_messages,
-                truncated: flight.report.truncated,
-                reason: flight.report.reason.as_deref(),
-            },
+            read: Read::from(&flight.report),
         }
-    }
-}
-
-fn motor(motor: &flightlog::Motor) -> Motor<'_> {
-    Motor {
-        number: motor.number,
-        output: &motor.output,
-        source: &motor.source,
-    }
-}
-
-fn range(range: &flightlog::Range) -> Range<'_> {
-    Range {
-        low: range.low,
-        high: range.high,
-        unit: range.unit,
-        source: &range.source,
     }
 }
 
