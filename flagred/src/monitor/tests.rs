@@ -144,7 +144,7 @@ fn risk_follows_the_motors_within_the_window_and_is_unknown_on_the_ground() {
     let levels: Vec<Level> = findings.iter().map(|f| f.level).collect();
     assert_eq!(levels, [Level::Warn, Level::Fail]);
     assert_eq!(findings[0].motor.map(|m| m.mean_margin), Some(0.0));
-    assert_eq!(monitor.finish(), [None; 2]);
+    assert_eq!(monitor.finish(), [None; 4]);
 }
 
 #[test]

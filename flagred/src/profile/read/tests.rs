@@ -40,7 +40,9 @@ verdict:
   clear_after_s: 2
   quiet_after_take_off_s: 3
   quiet_before_landing_s: 4
-  idle: {command_below: 0.2, risk_at_most: 30}
+  idle_below: 0.2
+  noise: {above: 0.05, after_s: 4}
+  reserve: {below: 0.2}
 "
     .parse::<Profile>()
     .unwrap();
@@ -54,7 +56,8 @@ verdict:
         Sampling {
             min_samples: 7,
             warm_up_s: 0.5,
-            longest_gap_s: 4.0
+            longest_gap_s: 4.0,
+            take_off_s: 0.0,
         }
     );
     let source = |statistic, motors, signal: &str, window_s| Source {
@@ -117,9 +120,17 @@ verdict:
             clear_after_s: 2.0,
             quiet_after_take_off_s: 3.0,
             quiet_before_landing_s: 4.0,
-            idle: Idle {
-                command_below: 0.2,
-                risk_at_most_pct: 30.0,
+            idle_below: 0.2,
+            notices: NoticeSettings {
+                noise: Some(Limit {
+                    value: 0.05,
+                    after_s: 4.0,
+                }),
+                reserve: Some(Limit {
+                    value: 0.2,
+                    after_s: 0.0,
+                }),
+                imbalance: None,
             },
         }
     );
