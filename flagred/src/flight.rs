@@ -491,7 +491,12 @@ impl Flight {
                 Verdict::NotAvailable(match longest {
                     Some((unknown, _)) => Reason::RiskUnknown {
                         unknown: *unknown,
-                        explanation: unknown.explain(profile),
+                        explanation: match unknown {
+                            Unknown::OnGround => {
+                                "the motors idle for most of the time in the air".into()
+                            }
+                            _ => unknown.explain(profile),
+                        },
                         help: None,
                     },
                     None => Reason::NoCommands,

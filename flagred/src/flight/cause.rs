@@ -36,7 +36,8 @@ impl Deref for Finding {
     }
 }
 
-/// What raised the risk when a level was reached: of the rules that fired, the one without which the risk were lowest.
+/// What raised the risk when a level was reached: of the rules that fired, the one with the largest share of the risk above
+/// half of its value, `share (centre of its term - risk / 2)`.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -69,7 +70,8 @@ impl Cause {
             .find(|output| output.name == estimator.profile().output)?;
         let value = output.value?;
         let centre = |share: &Share| centre(model, &output.name, &share.term);
-        let raises = |share: &Share| raises_by(share.share, centre(share), value);
+        // Against half of the risk: of rules that conclude the same, the one with the largest share counts.
+        let raises = |share: &Share| share.share * (centre(share) - value / 2.0);
         let shares = output.rules.iter();
         let highest = shares.max_by(|a, b| raises(a).total_cmp(&raises(b)))?;
         let condition = &model.rules.get(highest.rule)?.rule.condition;
@@ -94,16 +96,6 @@ impl Cause {
                 Signal::MotorMargin | Signal::MotorMarginLowSide | Signal::MotorMarginHighSide
             )
         })
-    }
-}
-
-/// By how much a rule raises a value to which it contributes a share around a centre: the value less that of the other
-/// rules, `(value - share centre) / (1 - share)`.
-fn raises_by(share: f64, centre: f64, value: f64) -> f64 {
-    const ALONE: f64 = 1.0 - 1e-9;
-    match share < ALONE {
-        true => share * (centre - value) / (1.0 - share),
-        false => f64::INFINITY,
     }
 }
 
