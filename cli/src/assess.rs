@@ -38,6 +38,10 @@ pub(crate) struct Arguments {
     #[arg(long)]
     csv: bool,
 
+    /// Tell every finding, and what is behind it
+    #[arg(short, long, conflicts_with_all = ["json", "csv"])]
+    verbose: bool,
+
     /// Also write a report to this file: one HTML page that opens offline; for several logs, a comparison
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
@@ -102,7 +106,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 failure.help_if(reason.help()).report();
             }
         } else {
-            words::write(&mut out, log, &flight, &estimator.profile().name, &assessed)?;
+            words::write(
+                &mut out,
+                log,
+                &flight,
+                estimator,
+                &assessed,
+                arguments.verbose,
+            )?;
         }
         if reports {
             subjects.push(Subject {

@@ -5,7 +5,7 @@ use alloc::{string::String, sync::Arc, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     diagnostic::Findings,
-    engine::{EvaluateError, Outcome, Scratch},
+    engine::{EvaluateError, Explanation, Outcome, Scratch},
     table::ClosedForm,
 };
 
@@ -163,6 +163,18 @@ impl Estimator {
     /// The profile.
     pub fn profile(&self) -> &Profile {
         &self.0.profile
+    }
+
+    /// The rule set.
+    pub fn model(&self) -> &Model {
+        self.0.engine.model()
+    }
+
+    /// Which rules fire at values of the inputs, in the order of the profile; `None` where a value is not finite.
+    pub(crate) fn explain(&self, inputs: &[f64]) -> Option<Explanation> {
+        let order = self.0.order.iter();
+        let point: Option<Vec<f64>> = order.map(|i| inputs.get(*i as usize).copied()).collect();
+        self.0.engine.explain(&point?).ok()
     }
 
     /// The risk at the values of the inputs, in the order of the profile: as a monitor computes it.

@@ -9,8 +9,12 @@ use crate::{
     margin::margin,
     monitor::{Craft, Estimate, Monitor, MonitorError, Sample, Unknown, Update},
     profile::Profile,
-    verdict::{Ended, Finding, Level, VerdictSettings},
+    verdict::{Ended, Level, VerdictSettings},
 };
+
+mod cause;
+pub use cause::{Cause, Finding};
+use cause::{Open, is_of_risk};
 
 #[cfg(feature = "serde")]
 mod serialize;
@@ -197,6 +201,9 @@ pub struct Assessor {
     step_s: Option<f64>,
     known_in_air_s: Option<f64>,
     flight: Flight,
+    open: Open,
+    /// How many of the findings ended before the latest sample.
+    ended_before: usize,
 }
 
 /// What adds up over a flight.
@@ -249,6 +256,8 @@ impl Assessor {
             step_s,
             known_in_air_s: None,
             flight: Flight::new(),
+            open: Open::default(),
+            ended_before: 0,
         })
     }
 
@@ -260,6 +269,8 @@ impl Assessor {
     /// Takes a sample in, in the air or on the ground.
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let update = self.monitor.push(sample);
+        self.keep_findings(update.ended);
+        self.keep_cause(&update);
         if update.risk != Err(Unknown::OutOfOrder) {
             let profile = self.monitor.estimator().profile();
             self.flight.add(&update, sample, profile);
@@ -276,11 +287,44 @@ impl Assessor {
         self.known_in_air_s = Some(in_air_s);
     }
 
+    /// The finding behind the current level, as it stands so far; `None` while the level is good.
+    pub fn open_finding(&self) -> Option<Finding> {
+        let found = self.monitor.open_finding()?;
+        Some(self.open.explain(found, self.monitor.estimator()))
+    }
+
+    /// The findings that ended with the latest sample, or with [`Assessor::end_findings`].
+    pub fn ended(&self) -> &[Finding] {
+        self.flight.findings.get(self.ended_before..).unwrap_or(&[])
+    }
+
     /// Ends the findings that are still open, and gives them.
-    pub fn end_findings(&mut self) -> Ended {
+    pub fn end_findings(&mut self) -> &[Finding] {
         let ended = self.monitor.finish();
-        self.flight.findings.extend(ended.into_iter().flatten());
-        ended
+        self.keep_findings(ended);
+        self.ended()
+    }
+
+    /// Keeps the cause of the worst level of the risk that is open.
+    fn keep_cause(&mut self, update: &Update) {
+        let monitor = &self.monitor;
+        let is_raised = update.level > Some(Level::Good);
+        let found = is_raised.then(|| monitor.open_finding()).flatten();
+        match (found.filter(is_of_risk), &update.risk) {
+            (Some(found), Ok(estimate)) => self.open.raise(found.level, || {
+                Cause::of(monitor.estimator(), monitor.inputs(), estimate)
+            }),
+            (Some(_), Err(_)) => {}
+            (None, _) => self.open.end(),
+        }
+    }
+
+    fn keep_findings(&mut self, ended: Ended) {
+        self.ended_before = self.flight.findings.len();
+        for found in ended.into_iter().flatten() {
+            let finding = self.open.explain(found, self.monitor.estimator());
+            self.flight.findings.push(finding);
+        }
     }
 
     /// Ends the flight and gives its assessment. Samples that follow are those of a new flight.
@@ -289,6 +333,8 @@ impl Assessor {
         let mut flight = core::mem::replace(&mut self.flight, Flight::new());
         flight.settle(f64::INFINITY);
         let known_in_air_s = self.known_in_air_s.take();
+        self.open.end();
+        self.ended_before = 0;
         flight.assessment(known_in_air_s, self.monitor.estimator().profile())
     }
 
@@ -339,7 +385,6 @@ impl Flight {
             t_s,
             in_air: sample.in_air,
         });
-        self.findings.extend(update.ended.into_iter().flatten());
         let flown_s = last.filter(|last| last.in_air).map_or(0.0, |last| {
             let held_s = (t_s - last.t_s).max(0.0);
             // It may have landed at any time of a gap.
@@ -446,7 +491,12 @@ impl Flight {
                 Verdict::NotAvailable(match longest {
                     Some((unknown, _)) => Reason::RiskUnknown {
                         unknown: *unknown,
-                        explanation: unknown.explain(profile),
+                        explanation: match unknown {
+                            Unknown::OnGround => {
+                                "the motors idle for most of the time in the air".into()
+                            }
+                            _ => unknown.explain(profile),
+                        },
                         help: None,
                     },
                     None => Reason::NoCommands,

@@ -88,13 +88,27 @@ impl Follower {
     /// Takes a sample in; `estimate` gives what is said about values of the inputs.
     pub(crate) fn push(
         &mut self,
+        plan: (&[Channel], &[Input]),
+        room: &mut Room<'_>,
+        sample: &Sample<'_>,
+        estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
+    ) -> Update {
+        let before = self.level();
+        let mut update = self.take(plan, room, sample, estimate);
+        let level = self.level();
+        update.change = (level != before).then_some(level);
+        update
+    }
+
+    fn take(
+        &mut self,
         (channels, inputs): (&[Channel], &[Input]),
         room: &mut Room<'_>,
         sample: &Sample<'_>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Update {
         let t_s = sample.t_s;
-        let mut ended = Changed::default();
+        let mut ended = Ended::default();
         let longest_gap_s = self.settings.sampling.longest_gap_s;
         let held_s = match self.last_s {
             _ if !t_s.is_finite() => return self.unknown(t_s, Unknown::OutOfOrder, ended),
@@ -162,17 +176,16 @@ impl Follower {
             takes_off,
         };
         let step = self.alert.push(now, room.motors);
-        ended.change = step.change.or(ended.change);
         // Both at once cannot be: what was just forgotten takes a while to be raised again.
-        ended.findings[0] = step.ended.or(ended.findings[0]);
+        ended[0] = step.ended.or(ended[0]);
         Update {
             t_s,
             risk: Ok(said),
             elevated_risk_pct: Some(elevated),
             level: Some(self.level()),
-            change: ended.change,
+            change: None,
             judged: !takes_off,
-            ended: ended.findings,
+            ended,
         }
     }
 
@@ -190,7 +203,7 @@ impl Follower {
             Some(down_s) => (down_s, true),
             None => (last_s, false),
         };
-        self.forget(end_s, landed, room).findings
+        self.forget(end_s, landed, room)
     }
 
     fn level(&self) -> Level {
@@ -256,21 +269,21 @@ impl Follower {
     }
 
     /// What is known where the risk is not.
-    fn unknown(&self, t_s: f64, reason: Unknown, changed: Changed) -> Update {
+    fn unknown(&self, t_s: f64, reason: Unknown, ended: Ended) -> Update {
         let judging = self.in_air_since_s.is_some() && self.last_known_s.is_some();
         Update {
             t_s,
             risk: Err(reason),
             elevated_risk_pct: None,
             level: judging.then(|| self.level()),
-            change: changed.change,
+            change: None,
             judged: false,
-            ended: changed.findings,
+            ended,
         }
     }
 
     /// Resets the state after a flight or a gap.
-    fn forget(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Changed {
+    fn forget(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Ended {
         for seen in room.seen.iter_mut() {
             seen.clear();
         }
@@ -282,28 +295,17 @@ impl Follower {
         self.idle = None;
         self.last_high_s = None;
         let [noise, reserve, imbalance] = self.notices.end();
-        let mut changed = self.stop_judging(t_s, landed, room);
+        let [risk, ..] = self.stop_judging(t_s, landed, room);
         motor::clear(room.motors);
-        changed.findings = [changed.findings[0], noise, reserve, imbalance];
-        changed
+        [risk, noise, reserve, imbalance]
     }
 
-    fn stop_judging(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Changed {
+    fn stop_judging(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Ended {
         self.sum.clear(room.risks);
         self.last_known_s = None;
         let step = self.alert.end(t_s, landed, room.motors);
-        Changed {
-            change: step.change,
-            findings: [step.ended, None, None, None],
-        }
+        [step.ended, None, None, None]
     }
-}
-
-/// What a sample changed.
-#[derive(Debug, Clone, Copy, Default)]
-struct Changed {
-    change: Option<Level>,
-    findings: Ended,
 }
 
 /// The value of an input, where enough is known of its window.

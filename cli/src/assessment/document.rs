@@ -4,13 +4,13 @@ use std::io::Write;
 
 use flagred::{
     estimator::Estimator,
-    flight::{Assessment, Step, Steps, Summary, Verdict},
-    verdict::{Finding, VerdictSettings},
+    flight::{Assessment, Finding, Step, Steps, Summary, Verdict},
+    verdict::VerdictSettings,
 };
 use flightlog::{Flight, Motor, Range, Report};
 use serde::Serialize;
 
-use super::words;
+use super::finding::Teller;
 use crate::failure::Failure;
 
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
@@ -65,10 +65,10 @@ pub(crate) struct FindingDocument<'a> {
 }
 
 impl<'a> FindingDocument<'a> {
-    pub(crate) fn new(finding: &'a Finding, motors: &'a [Motor]) -> Self {
+    pub(crate) fn new(finding: &'a Finding, teller: Teller<'a>) -> Self {
         FindingDocument {
-            output: words::motor_of(finding, motors).map(|motor| motor.output.as_str()),
-            text: words::describe(finding, motors),
+            output: teller.motor(finding).map(|motor| motor.output.as_str()),
+            text: teller.finding(finding),
             finding,
         }
     }
@@ -83,6 +83,10 @@ pub(crate) fn document<'a>(
 ) -> Document<'a> {
     let profile = estimator.profile();
     let findings = assessed.findings.iter();
+    let teller = Teller {
+        model: estimator.model(),
+        motors: &flight.motors,
+    };
     Document {
         schema: SCHEMA,
         log: Log {
@@ -105,7 +109,7 @@ pub(crate) fn document<'a>(
         },
         verdict: &assessed.verdict,
         findings: findings
-            .map(|finding| FindingDocument::new(finding, &flight.motors))
+            .map(|finding| FindingDocument::new(finding, teller))
             .collect(),
         summary: &assessed.summary,
         steps: assessed.steps_by_name(),

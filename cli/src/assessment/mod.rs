@@ -1,4 +1,5 @@
 //! The assessment of a flight in words and as a document.
 
 pub(crate) mod document;
+pub(crate) mod finding;
 pub(crate) mod words;

@@ -4,23 +4,26 @@ use std::io::{self, Write};
 
 use anstyle::{AnsiColor, Style};
 use flagred::{
+    estimator::Estimator,
     flight::{Assessment, Peak, Summary, Verdict},
-    margin::Side,
-    verdict::{Finding, Level},
+    verdict::Level,
 };
-use flightlog::{Flight, Motor};
+use flightlog::Flight;
 use fuzzy::drawing::{number, over_time_text};
+
+use super::finding::{self, Teller};
 
 /// Columns of the picture of risk over time.
 const PICTURE_COLUMNS: usize = 64;
 
-/// Writes the assessment of one flight.
+/// Writes the assessment of one flight: one line a cause, or every finding with its details.
 pub(crate) fn write(
     out: &mut impl Write,
     name: &str,
     flight: &Flight,
-    profile: &str,
+    estimator: &Estimator,
     assessed: &Assessment,
+    verbose: bool,
 ) -> io::Result<()> {
     let style = style(&assessed.verdict);
     writeln!(out, "{style}{:<4}{style:#} {name}", assessed.verdict)?;
@@ -42,26 +45,35 @@ pub(crate) fn write(
             .iter()
             .map(|s| format!("{:.1} to {:.1} s", s.start_s, s.end_s))
             .collect();
-        let rate = flight.command_rate_hz().unwrap_or(0.0);
-        writeln!(
-            out,
-            "     in the air {:.1} s ({}), motors at {rate:.1} Hz; profile {profile}",
+        let mut text = format!(
+            "in the air {:.1} s ({})",
             assessed.summary.in_air_s,
-            when.join(", "),
-        )?;
+            when.join(", ")
+        );
+        if verbose {
+            let rate_hz = flight.command_rate_hz().unwrap_or(0.0);
+            let profile = &estimator.profile().name;
+            text += &format!(", motors at {rate_hz:.1} Hz; profile {profile}");
+        }
+        writeln!(out, "     {text}")?;
     }
     if assessed.summary.assessed_s > 0.0 {
-        writeln!(out, "     {}", summary(&assessed.summary))?;
+        writeln!(out, "     {}", summary(&assessed.summary, verbose))?;
     }
     writeln!(out)?;
-    for finding in &assessed.findings {
-        let style = level_style(finding.level);
-        writeln!(
-            out,
-            "{style}{:<4}{style:#} {}",
-            finding.level,
-            describe(finding, &flight.motors)
-        )?;
+    let teller = Teller {
+        model: estimator.model(),
+        motors: &flight.motors,
+    };
+    if verbose {
+        for finding in &assessed.findings {
+            line(out, finding.level, &teller.finding(finding))?;
+            writeln!(out, "     {}", teller.details(finding))?;
+        }
+    } else {
+        for one in finding::lines(&assessed.findings) {
+            line(out, one.worst.level, &teller.line(&one))?;
+        }
     }
     if !assessed.findings.is_empty() {
         writeln!(out)?;
@@ -77,6 +89,11 @@ pub(crate) fn write(
     Ok(())
 }
 
+fn line(out: &mut impl Write, level: Level, text: &str) -> io::Result<()> {
+    let style = level_style(level);
+    writeln!(out, "{style}{level:<4}{style:#} {text}")
+}
+
 /// The vehicle in a line: firmware, frame, motors and ranges.
 pub(crate) fn vehicle(flight: &Flight) -> String {
     let mut parts = vec![flight.format.to_string()];
@@ -89,7 +106,11 @@ pub(crate) fn vehicle(flight: &Flight) -> String {
         });
     }
     if let Some(range) = &flight.range {
-        parts.push(format!("{} to {} {}", range.low, range.high, range.unit));
+        let unit = match range.unit {
+            "1" => "",
+            unit => &format!(" {unit}"),
+        };
+        parts.push(format!("{} to {}{unit}", range.low, range.high));
         parts.push(effective_range(&flight.effective));
     }
     parts.join(", ")
@@ -138,7 +159,7 @@ pub(crate) fn damage(report: &flightlog::Report) -> String {
     format!("damaged log, read in part: {}{reason}", parts.join(", "))
 }
 
-fn summary(summary: &Summary) -> String {
+fn summary(summary: &Summary, verbose: bool) -> String {
     let at = |peak: Option<Peak>| {
         peak.map_or("unknown".to_owned(), |peak| {
             format!("{:.0} % at {:.1} s", peak.value_pct, peak.t_s)
@@ -146,13 +167,15 @@ fn summary(summary: &Summary) -> String {
     };
     let share = |part: f64| 100.0 * part / summary.in_air_s;
     let mut text = format!(
-        "risk: mean {}, highest {}; elevated risk: highest {}",
+        "risk: mean {}, highest {}",
         summary
             .risk_mean_pct
             .map_or("unknown".to_owned(), |mean| format!("{mean:.0} %")),
         at(summary.risk_max),
-        at(summary.elevated_risk_max),
     );
+    if verbose {
+        text += &format!("; elevated risk: highest {}", at(summary.elevated_risk_max));
+    }
     if summary.filled_s > 0.0 {
         text += &format!(
             "; interpolated for {:.0} % of the time, where no rule applies",
@@ -166,40 +189,6 @@ fn summary(summary: &Summary) -> String {
         );
     }
     text
-}
-
-/// A finding in words: when, what, against which threshold, and which motor.
-pub(crate) fn describe(finding: &Finding, motors: &[Motor]) -> String {
-    let mut text = format!(
-        "{:.1} to {:.1} s: {} up to {:.0} % (threshold {:.0} %)",
-        finding.from_s, finding.to_s, finding.measure, finding.peak_pct, finding.threshold_pct
-    );
-    if let Some(weakest) = &finding.motor
-        && let Some(motor) = motor_of(finding, motors)
-    {
-        text += &format!(
-            "; motor {}, output {}, near its {} limit: margin {:.2} on average, {:.2} at least",
-            motor.number,
-            motor.output,
-            side(weakest.side),
-            weakest.mean_margin,
-            weakest.least_margin
-        );
-    }
-    text
-}
-
-/// The motor that a finding names.
-pub(crate) fn motor_of<'a>(finding: &Finding, motors: &'a [Motor]) -> Option<&'a Motor> {
-    finding.motor.and_then(|weakest| motors.get(weakest.motor))
-}
-
-/// The limit a motor was nearest to.
-pub(crate) fn side(side: Side) -> &'static str {
-    match side {
-        Side::Low => "lower",
-        Side::High => "upper",
-    }
 }
 
 fn style(verdict: &Verdict) -> Style {

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use flagred::{
+    flight::Finding,
     attitude::Attitude,
     evaluation::{BaselineObserver, ErrorRecord, Judged, Span, judge, upset_s},
     flight::{Assessor, Verdict},
     log,
-    verdict::{Finding, Level, VerdictSettings},
+    verdict::{Level, VerdictSettings},
 };
 use flightlog::Flight;
 

@@ -9,7 +9,10 @@ use fuzzy::{
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{charts, decision, panel::panel};
-use crate::{assessment::words, profile::Loaded};
+use crate::{
+    assessment::{finding::{self, Teller}, words},
+    profile::Loaded,
+};
 
 const CHART_CSS: &str = include_str!("chart.css");
 const PAGE_CSS: &str = include_str!("page.css");
@@ -57,7 +60,7 @@ pub(crate) fn report(subject: &Subject, loaded: &Loaded) -> String {
         @if !flight.report.is_clean() {
             p.soft { (words::damage(&flight.report)) }
         }
-        (findings(subject))
+        (findings(subject, model))
         (figures(subject))
         (section("Risk over time", "", risk, &timeline))
         @if let Some(map) = decision::map(estimator, model, &assessed.steps) {
@@ -138,7 +141,7 @@ pub(crate) fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
             section id={ "flight" (i) } {
                 h2 { (badge(&subject.assessed.verdict)) " " (subject.title()) }
                 p.soft { (words::vehicle(&subject.flight)) }
-                (findings(subject))
+                (findings(subject, &loaded.model))
                 @if let Some(risk) = charts::risk(&subject.assessed, &loaded.estimator, timeline.stretch) {
                     (panel(&risk, timeline, None))
                 }
@@ -217,8 +220,13 @@ fn share(value: Option<f64>) -> String {
     percent(value.map(|share| 100.0 * share))
 }
 
-fn findings(subject: &Subject) -> Markup {
+/// One line a cause, with the details of its worst finding.
+fn findings(subject: &Subject, model: &Model) -> Markup {
     let assessed = &subject.assessed;
+    let teller = Teller {
+        model,
+        motors: &subject.flight.motors,
+    };
     let unknown = match &assessed.verdict {
         Verdict::NotAvailable(reason) => Some(reason),
         Verdict::Known(_) => None,
@@ -231,9 +239,11 @@ fn findings(subject: &Subject) -> Markup {
                     @if let Some(help) = reason.help() { br; span.soft { (help) } }
                 }
             }
-            @for finding in &assessed.findings {
-                li.(charts::level_class(finding.level)) {
-                    b { (finding.level) } " " (words::describe(finding, &subject.flight.motors))
+            @for line in finding::lines(&assessed.findings) {
+                li.(charts::level_class(line.worst.level)) {
+                    b { (line.worst.level) } " " (teller.line(&line))
+                    br;
+                    span.soft { (teller.details(line.worst)) }
                 }
             }
             @if unknown.is_none() && assessed.findings.is_empty() {

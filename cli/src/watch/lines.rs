@@ -7,7 +7,7 @@ use flightlog::{Motor, Range, Vehicle, mavlink::Setup};
 use serde::Serialize;
 
 use super::session::{Event, Session, Silent, View};
-use crate::assessment::{document::FindingDocument, words::effective_range};
+use crate::assessment::{document::FindingDocument, finding::Teller, words::effective_range};
 
 /// Seconds of the vehicle's clock between two lines of risk in words.
 const STEP_S: f64 = 1.0;
@@ -27,7 +27,7 @@ impl Words {
         estimator: &Estimator,
     ) -> Option<String> {
         let Event::Risk { update } = event else {
-            return Some(words(at_s, &describe(event)));
+            return Some(words(at_s, &describe(event, session, estimator)));
         };
         let Some(view) = session.view().filter(|view| view.is_in_air) else {
             self.next_s = None;
@@ -49,7 +49,7 @@ pub(crate) fn words(at_s: f64, text: &str) -> String {
 }
 
 /// An event in words; a risk is described with how things stand, by [`Words`].
-pub(crate) fn describe(event: &Event) -> String {
+pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimator) -> String {
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
         Event::Another { system } => {
@@ -83,16 +83,25 @@ pub(crate) fn describe(event: &Event) -> String {
             |estimate| format!("risk {:.0} %", estimate.risk_pct),
         ),
         Event::Level { text, .. } => text.clone(),
-        Event::Ended { finding } => format!(
-            "{} from {:.1} to {:.1} s of the vehicle's clock: {} up to {:.0} %",
-            finding.level, finding.from_s, finding.to_s, finding.measure, finding.peak_pct
-        ),
+        Event::Ended { finding } => {
+            let view = session.view();
+            let text = teller(view.as_ref(), estimator).finding(finding);
+            format!("{} of {text}", finding.level)
+        }
         Event::Landed { verdict } => match verdict {
             Verdict::Known(level) => format!("{level}: the flight is over"),
             Verdict::NotAvailable(reason) => {
                 format!("NA: the flight is over; no verdict: {reason}")
             }
         },
+    }
+}
+
+fn teller<'a>(view: Option<&View<'a>>, estimator: &'a Estimator) -> Teller<'a> {
+    let setup = view.and_then(|view| view.setup);
+    Teller {
+        model: estimator.model(),
+        motors: setup.map_or(&[], |setup| &setup.motors),
     }
 }
 
@@ -278,8 +287,8 @@ pub(crate) fn json(
             text,
         },
         Event::Ended { finding } => {
-            let motors = view.and_then(|view| view.setup).map(|setup| &*setup.motors);
-            EventLine::Finding(FindingDocument::new(finding, motors.unwrap_or(&[])))
+            let teller = teller(view.as_ref(), estimator);
+            EventLine::Finding(FindingDocument::new(finding, teller))
         }
         Event::Landed { verdict } => EventLine::Landed(verdict),
     };

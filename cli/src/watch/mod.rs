@@ -244,7 +244,7 @@ impl Display {
                 Face::Json => lines::json(at_s, &event, session, estimator)?,
                 Face::Words(words) => words.line(at_s, &event, session, estimator),
                 Face::Screen(screen) => {
-                    screen.add(at_s, &event);
+                    screen.add(at_s, &event, session, estimator);
                     None
                 }
             };

@@ -7,7 +7,7 @@ use fuzzy::drawing::bar;
 
 use super::{
     lines,
-    session::{Event, View},
+    session::{Event, Session, View},
 };
 use crate::assessment::words::level_style;
 
@@ -39,12 +39,18 @@ impl Screen {
     }
 
     /// Adds an event to the latest ones.
-    pub(crate) fn add(&mut self, at_s: f64, event: &Event) {
+    pub(crate) fn add(
+        &mut self,
+        at_s: f64,
+        event: &Event,
+        session: &Session<'_>,
+        estimator: &Estimator,
+    ) {
         if matches!(event, Event::Risk { .. }) {
             return;
         }
-        self.latest
-            .push_back(format!("{at_s:8.1} s  {}", lines::describe(event)));
+        let text = lines::describe(event, session, estimator);
+        self.latest.push_back(format!("{at_s:8.1} s  {text}"));
         while self.latest.len() > LATEST {
             self.latest.pop_front();
         }
@@ -219,7 +225,8 @@ mod tests {
                 "note {i} {}",
                 "which is longer than a line: 1000 µs ".repeat(5)
             );
-            screen.add(f64::from(i), &Event::Note { text });
+            let event = Event::Note { text };
+            screen.add(f64::from(i), &event, &bench.session, &estimator);
         }
         let view = bench.session.view();
         for size in [(80, 24), (60, 20), (40, 12), (20, 8), (1, 1), (0, 0)] {

@@ -5,9 +5,9 @@
 
 use flagred::{
     estimator::Estimator,
-    flight::Verdict,
+    flight::{Finding, Verdict},
     monitor::{Sample, Unknown, Update},
-    verdict::{Finding, Level},
+    verdict::Level,
 };
 use flightlog::{
     Vehicle,
@@ -238,7 +238,7 @@ impl<'e> Session<'e> {
             return;
         }
         watch.latest = Some(update);
-        tell(update.ended, out);
+        tell(watch.assessor.ended(), out);
         if in_air && !watch.is_flying {
             watch.is_flying = true;
             out.events.push(Event::TookOff { t_s });
@@ -247,8 +247,8 @@ impl<'e> Session<'e> {
         }
         out.events.push(Event::Risk { update });
         if let Some(level) = update.change.filter(|_| in_air) {
-            let finding = watch.assessor.monitor().open_finding();
-            let text = voice::say(level, &update, finding, &watch.setup);
+            let finding = watch.assessor.open_finding();
+            let text = voice::say(level, &update, finding.as_ref(), &watch.setup);
             if let Some(sender) = &mut self.sender {
                 let message = voice::status(level, &text);
                 out.packets.push(sender.packet(version, system, &message));

@@ -1,9 +1,9 @@
 //! The messages to the vehicle and its ground station.
 
 use flagred::{
-    margin::Side,
+    flight::{Cause, Finding},
     monitor::Update,
-    verdict::{Finding, Level, Measure},
+    verdict::{Level, Measure},
 };
 use flightlog::mavlink::{
     Setup,
@@ -12,6 +12,8 @@ use flightlog::mavlink::{
         NAMED_VALUE_FLOAT_DATA, STATUSTEXT_DATA,
     },
 };
+
+use crate::assessment::finding::limit;
 
 /// The names of the values that are sent.
 pub(crate) const RISK: &str = "FR_RISK";
@@ -59,12 +61,12 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     })
 }
 
-/// A change of level in at most 50 characters: `FLAGRED: WARN risk 78 %, motor 3 upper limit`. A level that ends
-/// because the risk became unknown is not reported as GOOD.
+/// A change of level in at most 50 characters, with its cause: `FLAGRED: WARN risk 78 %, unsteady_now violent`, or where
+/// a motor is the cause `FLAGRED: WARN risk 78 %, motor 3 upper limit`. A level that ends because the risk became unknown is not reported as GOOD.
 pub(crate) fn say(
     level: Level,
     update: &Update,
-    finding: Option<Finding>,
+    finding: Option<&Finding>,
     setup: &Setup,
 ) -> String {
     if level == Level::Good && update.risk.is_err() {
@@ -82,17 +84,28 @@ pub(crate) fn say(
     if let Some(value) = value {
         text += &format!(" {name} {value:.0} %");
     }
-    if level > Level::Good
-        && let Some(weakest) = finding.and_then(|finding| finding.motor)
-        && let Some(motor) = setup.motors.get(weakest.motor)
-    {
-        let side = match weakest.side {
-            Side::Low => "lower",
-            Side::High => "upper",
-        };
-        text += &format!(", motor {} {side} limit", motor.number);
-    }
+    let Some(finding) = finding.filter(|_| level > Level::Good) else {
+        return text;
+    };
+    let motor = finding.motor.and_then(|named| {
+        let motor = setup.motors.get(named.motor)?;
+        Some(match measure {
+            Measure::Imbalance => format!(", motor {}", motor.number),
+            _ => format!(", motor {} {} limit", motor.number, limit(named.side)),
+        })
+    });
+    text += &motor.unwrap_or_else(|| cause(finding.cause.as_ref(), TEXT.saturating_sub(text.len())));
     text
+}
+
+/// A cause in so many bytes: input and term, else the input alone, else nothing.
+fn cause(cause: Option<&Cause>, room: usize) -> String {
+    let Some(Cause { input, term, .. }) = cause else {
+        return String::new();
+    };
+    let told = [format!(", {input} {term}"), format!(", {input}")];
+    let mut fits = told.into_iter().filter(|text| text.len() <= room);
+    fits.next().unwrap_or_default()
 }
 
 #[cfg(test)]

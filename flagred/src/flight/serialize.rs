@@ -4,8 +4,8 @@ use alloc::string::ToString;
 
 use serde::{Serialize, Serializer, ser::SerializeMap, ser::SerializeStruct};
 
-use super::{Assessment, Step, Summary, Verdict};
-use crate::{sample::serialize_risk, verdict::Finding};
+use super::{Assessment, Finding, Step, Summary, Verdict};
+use crate::sample::serialize_risk;
 
 impl Serialize for Verdict {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -2,9 +2,9 @@
 
 use flagred::{
     estimator::Estimator,
-    flight::{Assessor, Verdict},
+    flight::{Assessor, Finding, Verdict},
     monitor::{Craft, Update},
-    verdict::{Ended, Level},
+    verdict::Level,
 };
 use flightlog::{
     Vehicle,
@@ -166,7 +166,10 @@ impl Tracked {
         {
             return None;
         }
-        match Assessor::new(estimator, Craft::new(setup.motors.len()), None) {
+        let geometry = setup.geometry.as_ref();
+        let craft = Craft::new(setup.motors.len())
+            .with_geometry(geometry.map_or(&[], |geometry| &geometry.factors));
+        match Assessor::new(estimator, craft, None) {
             Ok(assessor) => {
                 let level = self.end_flight(out);
                 out.events.push(Event::Ready {
@@ -242,8 +245,8 @@ impl Watch {
     }
 }
 
-pub(super) fn tell(ended: Ended, out: &mut Out) {
-    let findings = ended.into_iter().flatten();
+pub(super) fn tell(ended: &[Finding], out: &mut Out) {
+    let findings = ended.iter().cloned();
     out.events
         .extend(findings.map(|finding| Event::Ended { finding }));
 }

@@ -1,0 +1,200 @@
+//! Findings in words: one line a cause.
+
+use flagred::{
+    flight::{Cause, Finding},
+    margin::Side,
+    verdict::Measure,
+};
+use flightlog::Motor;
+use fuzzy::{Model, drawing::number};
+
+/// What a finding is told with.
+#[derive(Clone, Copy)]
+pub(crate) struct Teller<'a> {
+    /// The rule set.
+    pub(crate) model: &'a Model,
+    /// The motors of the flight.
+    pub(crate) motors: &'a [Motor],
+}
+
+/// The findings of one cause.
+pub(crate) struct Line<'a> {
+    pub(crate) worst: &'a Finding,
+    count: usize,
+}
+
+/// One line a cause, in the order of the findings: the gravest first.
+pub(crate) fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
+    let mut lines: Vec<Line<'_>> = Vec::new();
+    for finding in findings {
+        match lines.iter_mut().find(|line| is_same(line.worst, finding)) {
+            Some(line) => {
+                line.count += 1;
+                if (finding.level, gravity(finding)) > (line.worst.level, gravity(line.worst)) {
+                    line.worst = finding;
+                }
+            }
+            None => lines.push(Line {
+                worst: finding,
+                count: 1,
+            }),
+        }
+    }
+    lines
+}
+
+/// Whether two findings have one cause: an input of the rules, or what a notice is about.
+fn is_same(a: &Finding, b: &Finding) -> bool {
+    let motor = |finding: &Finding| finding.motor.map(|motor| motor.motor);
+    match (is_of_risk(a), is_of_risk(b)) {
+        (true, true) => match (&a.cause, &b.cause) {
+            (Some(a), Some(b)) => a.input == b.input,
+            (a, b) => a.is_none() && b.is_none(),
+        },
+        (false, false) => a.measure == b.measure && motor(a) == motor(b),
+        _ => false,
+    }
+}
+
+fn is_of_risk(finding: &Finding) -> bool {
+    matches!(finding.measure, Measure::Risk | Measure::ElevatedRisk)
+}
+
+/// How bad its peak is: of a reserve, how small.
+fn gravity(finding: &Finding) -> f64 {
+    match finding.measure {
+        Measure::Reserve => -finding.peak_pct,
+        _ => finding.peak_pct,
+    }
+}
+
+impl<'a> Teller<'a> {
+    /// The findings of one cause: `3 times, worst 12.0 to 14.5 s: ...`. A notice holds until landing and has no span.
+    pub(crate) fn line(&self, line: &Line<'_>) -> String {
+        let Line { worst, count } = line;
+        let what = self.what(worst);
+        match (*count, is_of_risk(worst)) {
+            (1, true) => format!("{}: {what}", span(worst)),
+            (count, true) => format!("{count} times, worst {}: {what}", span(worst)),
+            (1, false) => what,
+            (count, false) => format!("{what}; {count} times"),
+        }
+    }
+
+    /// One finding: when, what, and its cause.
+    pub(crate) fn finding(&self, finding: &Finding) -> String {
+        format!("{}: {}", span(finding), self.what(finding))
+    }
+
+    /// What stands behind a finding: threshold, when its levels were raised, the description of the input, the margin of
+    /// the motor.
+    pub(crate) fn details(&self, finding: &Finding) -> String {
+        let mut text = format!(
+            "threshold {:.0} %, raised at {:.1} s",
+            finding.threshold_pct, finding.raised_s
+        );
+        if let Some(failed_s) = finding.failed_s {
+            text += &format!(", FAIL at {failed_s:.1} s");
+        }
+        if is_of_risk(finding)
+            && let Some(motor) = finding.motor
+        {
+            text += &format!(
+                "; margin {:.2} on average, {:.2} at least",
+                motor.mean_margin, motor.least_margin
+            );
+        }
+        if let Some(cause) = &finding.cause
+            && let Some(description) = self.description(cause)
+            && description.len() > first_phrase(description).len()
+        {
+            text += &format!("; {}: {description}", cause.input);
+        }
+        text
+    }
+
+    /// The motor that a finding names.
+    pub(crate) fn motor(&self, finding: &Finding) -> Option<&'a Motor> {
+        finding.motor.and_then(|motor| self.motors.get(motor.motor))
+    }
+
+    fn what(&self, finding: &Finding) -> String {
+        let peak = finding.peak_pct;
+        let motor = self.motor(finding);
+        let name = |motor: &Motor| format!("motor {} (output {})", motor.number, motor.output);
+        let side = finding.motor.map(|motor| motor.side);
+        match finding.measure {
+            Measure::Risk | Measure::ElevatedRisk => {
+                let mut text = format!("{} up to {peak:.0} %", finding.measure);
+                text += &match &finding.cause {
+                    Some(cause) => format!(", {}", self.cause(cause)),
+                    None => ", interpolated where no rule applies".to_owned(),
+                };
+                if let (Some(motor), Some(side)) = (motor, side) {
+                    text += &format!("; {} near its {} limit", name(motor), limit(side));
+                }
+                text
+            }
+            Measure::CommandNoise => {
+                format!("command noise {peak:.1} %: vibration, or gains too high?")
+            }
+            Measure::Reserve => format!(
+                "little reserve: the mean command leaves {peak:.0} % below the limit (wanted {:.0} %)",
+                finding.threshold_pct
+            ),
+            Measure::Imbalance => {
+                let motor = motor.map_or("a motor".to_owned(), name);
+                let side = match side {
+                    Some(Side::Low) => "below",
+                    _ => "above",
+                };
+                format!("imbalance: {motor} is {peak:.0} % {side} its part earlier in the flight")
+            }
+        }
+    }
+
+    /// `unsteady_now is violent (how much the motors differ: 0.041; rule 3)`.
+    fn cause(&self, cause: &Cause) -> String {
+        let value = number(cause.value, 3);
+        let behind = match self.description(cause) {
+            Some(description) => format!("{}: {value}", first_phrase(description)),
+            None => value,
+        };
+        format!(
+            "{} is {} ({behind}; rule {})",
+            cause.input,
+            cause.term,
+            cause.rule + 1
+        )
+    }
+
+    fn description(&self, cause: &Cause) -> Option<&'a str> {
+        let mut inputs = self.model.inputs.iter();
+        let input = inputs.find(|input| input.name == cause.input)?;
+        input.description.as_deref()
+    }
+}
+
+fn span(finding: &Finding) -> String {
+    format!("{:.1} to {:.1} s", finding.from_s, finding.to_s)
+}
+
+/// The limit that a motor was nearest to.
+pub(crate) fn limit(side: Side) -> &'static str {
+    match side {
+        Side::Low => "lower",
+        Side::High => "upper",
+    }
+}
+
+/// A description up to its first comma, in small letters as inside a sentence.
+fn first_phrase(description: &str) -> String {
+    let phrase = description.split([',', '.', ';']).next().unwrap_or(description);
+    let mut letters = phrase.chars();
+    match (letters.next(), letters.clone().next()) {
+        (Some(first), Some(second)) if !second.is_uppercase() => {
+            first.to_lowercase().chain(letters).collect()
+        }
+        _ => phrase.to_owned(),
+    }
+}
