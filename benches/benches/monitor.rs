@@ -1,14 +1,11 @@
-//! Time and allocations of a sample of eight motors: at the ground, and on board.
+//! Time and allocations of a sample of eight motors: on a computer, and on board.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use flagred::{
-    board::{self, Memory, Parts, table},
-    channel::Seen,
+    board::OwnedMemory,
     estimator::Estimator,
     monitor::{Craft, Monitor, Sample},
     shipped,
-    verdict::Motor,
-    window::Window,
 };
 
 #[global_allocator]
@@ -68,18 +65,8 @@ fn monitor(bencher: Bencher<'_, '_>, profile: &str) {
 fn on_board(bencher: Bencher<'_, '_>, profile: &str) {
     let estimator = estimator(profile);
     let plan = estimator.plan().unwrap();
-    let sizes = plan.sizes();
-    let parts = Parts {
-        numbers: &mut vec![0.0; sizes.numbers],
-        partials: &mut vec![table::Partial::NONE; sizes.partials],
-        strongest: &mut vec![table::Strongest::NONE; sizes.outputs],
-        outcomes: &mut vec![table::Outcome::UNDEFINED; sizes.outputs],
-        seen: &mut vec![Seen::IDLE; sizes.channels],
-        risks: &mut Window::IDLE.clone(),
-        motors: &mut [Motor::UNKNOWN; MOTORS],
-    };
-    let memory = Memory::of(&plan, parts).unwrap();
-    let mut monitor = board::Monitor::new(&plan, memory).unwrap();
+    let mut memory = OwnedMemory::new(&plan, MOTORS);
+    let mut monitor = memory.monitor(&plan).unwrap();
     run(bencher, |sample| {
         black_box(monitor.push(sample));
     });

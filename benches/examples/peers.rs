@@ -10,7 +10,7 @@ use std::time::Instant;
 use flagred_benches::{four_inputs, points, published, tipper};
 use fuzzy::engine::Outcome;
 use fuzzy::map::{DecisionMap, Grid};
-use fuzzy::model::{Model, Shape, Variable};
+use fuzzy::model::{MembershipFunction, Model, Variable};
 use fuzzy::{Engine, rule::Condition, rule::Rule};
 
 const POINTS: usize = 1024;
@@ -65,8 +65,10 @@ fn fll(model: &Model) -> String {
         }
         for term in &v.terms {
             let shape = match term.shape {
-                Shape::Triangle { left, peak, right } => format!("Triangle {left} {peak} {right}"),
-                Shape::Trapezoid {
+                MembershipFunction::Triangle { left, peak, right } => {
+                    format!("Triangle {left} {peak} {right}")
+                }
+                MembershipFunction::Trapezoid {
                     left,
                     left_top,
                     right_top,
@@ -74,10 +76,10 @@ fn fll(model: &Model) -> String {
                 } => {
                     format!("Trapezoid {left} {left_top} {right_top} {right}")
                 }
-                Shape::RightShoulder { foot, top } => {
+                MembershipFunction::RightShoulder { foot, top } => {
                     format!("Trapezoid {foot} {top} {} {}", v.high, v.high + 0.1)
                 }
-                Shape::Gaussian { mean, sd } => format!("Gaussian {mean} {sd}"),
+                MembershipFunction::Gaussian { mean, sd } => format!("Gaussian {mean} {sd}"),
                 ref other => format!("{other:?}"),
             };
             text += &format!("  term: {} {shape}\n", term.name);

@@ -1,16 +1,16 @@
 //! The systems that are timed here and in `benches/peers`, made in code.
 
-use fuzzy::model::{Model, Output, Shape, Variable};
+use fuzzy::model::{MembershipFunction, Model, Output, Variable};
 use fuzzy::rule::{Condition, Rule};
 
-fn triangle(left: f64, peak: f64, right: f64) -> Shape {
-    Shape::Triangle { left, peak, right }
+fn triangle(left: f64, peak: f64, right: f64) -> MembershipFunction {
+    MembershipFunction::Triangle { left, peak, right }
 }
 
 /// (a): the tipper, 2 inputs, 3 rules, gaussian and trapezoid inputs.
 pub fn tipper() -> Model {
-    let gaussian = |mean| Shape::Gaussian { mean, sd: 1.5 };
-    let trapezoid = |left, left_top, right_top, right| Shape::Trapezoid {
+    let gaussian = |mean| MembershipFunction::Gaussian { mean, sd: 1.5 };
+    let trapezoid = |left, left_top, right_top, right| MembershipFunction::Trapezoid {
         left,
         left_top,
         right_top,
@@ -56,7 +56,7 @@ pub fn published(weighted: bool) -> Model {
                 .term("medium", triangle(0.1, 0.2, 0.3))
                 .term(
                     "high",
-                    Shape::RightShoulder {
+                    MembershipFunction::RightShoulder {
                         foot: 0.2,
                         top: 0.3,
                     },
@@ -68,7 +68,7 @@ pub fn published(weighted: bool) -> Model {
                 .term("medium", triangle(0.0, 0.1, 0.2))
                 .term(
                     "high",
-                    Shape::RightShoulder {
+                    MembershipFunction::RightShoulder {
                         foot: 0.1,
                         top: 0.2,
                     },

@@ -1,21 +1,19 @@
 //! `flagred assess`: how risky was this flight?
 
-use std::{
-    io::{IsTerminal, Write},
-    path::PathBuf,
-};
+use std::{io::Write, path::PathBuf};
 
 use clap::ValueEnum;
 use flagred::{
     flight::{Assessment, Verdict},
-    log,
+    log::assess,
     verdict::Level,
 };
+use flightlog::{Flight, ReadError};
 
 use crate::{
     assessment::{document, words},
     failure::{Exit, Failure},
-    output, profile,
+    output, parallel, profile,
     report::{self, Subject},
 };
 
@@ -24,35 +22,35 @@ const STEP_S: f64 = 0.1;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Flight logs (ArduPilot, PX4, MAVLink, flight CSV; plain or gzipped); `-` is standard input
+    /// Flight logs: ArduPilot, PX4, MAVLink or flight CSV, plain or gzipped; `-` is standard input
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// What the motors mean to the rules and the risk to the pilot: a shipped profile's name, or a file
+    /// Profile: inputs, rule set and thresholds. A built-in name or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
-    /// One JSON document instead of words
+    /// Print a JSON document instead of text
     #[arg(long, conflicts_with = "csv")]
     json: bool,
 
-    /// A table of the steps instead of words
+    /// Print a CSV table of the steps instead of text
     #[arg(long)]
     csv: bool,
 
-    /// Also write a report to look at: one HTML file that opens offline; of several logs, a comparison
+    /// Also write a report to this file: one HTML page that opens offline; for several logs, a comparison
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
 
-    /// Also write the picture of risk over time, as an SVG file
-    #[arg(long, value_name = "FILE")]
+    /// Also write an SVG picture of the risk over time to this file
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 
-    /// Exit with 1 from this verdict on
+    /// Exit with 1 for this verdict and worse ones
     #[arg(long, value_enum, value_name = "VERDICT", default_value = "warn")]
     fail_on: FailOn,
 
-    /// Seconds between the steps shown; every motor sample is assessed in any case
+    /// Seconds between the steps shown; every motor sample is assessed
     #[arg(long, value_name = "SECONDS", default_value_t = STEP_S, value_parser = step)]
     step: f64,
 }
@@ -71,7 +69,7 @@ fn step(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Assesses every log in turn; one that cannot be read is told of and does not stop the others.
+/// Assesses every log; one that cannot be read does not stop the others.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let loaded = profile::load(&arguments.profile)?;
     let estimator = &loaded.estimator;
@@ -91,32 +89,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut exit = Exit::Clean;
     let mut documents = Vec::new();
     let mut head = true;
-    let mut progress = Progress::new(arguments.logs.len());
-    for log in &arguments.logs {
-        progress.show(log);
-        let flight = match flightlog::open(log, &options) {
-            Ok(flight) => flight,
-            Err(error) => {
-                progress.clear();
-                Failure::from(error).report();
-                exit = Exit::Unreadable;
-                continue;
-            }
-        };
-        let assessed = log::assess(&flight, estimator, Some(arguments.step));
-        progress.clear();
-        exit = exit.max(exit_of(&assessed, arguments.fail_on));
+    let mut show = |log: &String, flight: Flight, assessed: Assessment| {
         if arguments.json {
             let document = document::document(log, &flight, estimator, &assessed);
             documents.push(serde_json::to_value(document).map_err(std::io::Error::from)?);
         } else if arguments.csv {
-            document::write_csv(
-                &mut out,
-                several.then_some(log.as_str()),
-                head,
-                estimator,
-                &assessed,
-            )?;
+            let name = several.then_some(log.as_str());
+            document::write_csv(&mut out, name, head, estimator, &assessed)?;
             head = false;
             if let Verdict::NotAvailable(reason) = &assessed.verdict {
                 let failure = Failure::unreadable(format!("`{log}`: no verdict: {reason}"));
@@ -132,7 +111,32 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 assessed,
             });
         }
-    }
+        Ok(())
+    };
+    let mut shown: Result<(), Failure> = Ok(());
+    parallel::in_order(
+        &arguments.logs,
+        "logs",
+        |log| {
+            let flight = flightlog::open(log, &options)?;
+            let assessed = assess(&flight, estimator, Some(arguments.step));
+            Ok((flight, assessed))
+        },
+        |log, read: Result<(Flight, Assessment), ReadError>| {
+            match read {
+                Ok((flight, assessed)) => {
+                    exit = exit.max(exit_of(&assessed, arguments.fail_on));
+                    shown = show(log, flight, assessed);
+                }
+                Err(error) => {
+                    Failure::from(error).report();
+                    exit = Exit::Unreadable;
+                }
+            }
+            shown.is_ok()
+        },
+    );
+    shown?;
     if arguments.json {
         match (documents.as_slice(), several) {
             ([], _) => {}
@@ -143,37 +147,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     out.flush()?;
     write_reports(arguments, &subjects, &loaded)?;
     Ok(exit)
-}
-
-/// Says on the terminal which of several logs is being read, in a line that goes again.
-struct Progress {
-    done: usize,
-    logs: usize,
-    shown: bool,
-}
-
-impl Progress {
-    fn new(logs: usize) -> Self {
-        Progress {
-            done: 0,
-            logs,
-            shown: logs > 1 && std::io::stderr().is_terminal(),
-        }
-    }
-
-    fn show(&mut self, log: &str) {
-        self.done += 1;
-        if self.shown {
-            // Nothing is lost where it cannot be shown.
-            let _ = write!(std::io::stderr(), "{} of {}: {log}", self.done, self.logs);
-        }
-    }
-
-    fn clear(&self) {
-        if self.shown {
-            let _ = write!(std::io::stderr(), "\r\x1b[K");
-        }
-    }
 }
 
 /// Writes the files that were asked for; where no log could be read, there is nothing to write.

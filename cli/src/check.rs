@@ -1,4 +1,4 @@
-//! `flagred check`: what is wrong with a rule set, and what its author should know about it.
+//! `flagred check`: errors, gaps and conflicts in a rule set.
 
 use std::{io::Write, path::PathBuf};
 
@@ -23,30 +23,30 @@ pub(crate) struct Arguments {
     /// Print one JSON document per rule set instead of text
     #[arg(long)]
     json: bool,
-    /// What an output does when an input rises, to be checked: INPUT:increasing or INPUT:decreasing, with :OUTPUT
-    /// behind it for one of several
+    /// Check that the output never falls (INPUT:increasing) or never rises (INPUT:decreasing) when an input rises;
+    /// with several outputs, INPUT:increasing:OUTPUT
     #[arg(long, value_name = "CLAIM", num_args = 1..)]
     monotone: Vec<check::Monotone>,
-    /// The degree that some rule should reach everywhere
-    #[arg(long, default_value_t = 0.5, value_parser = degree)]
+    /// Warn where no rule fires with at least this strength
+    #[arg(long, value_name = "DEGREE", default_value_t = 0.5, value_parser = degree)]
     coverage: f64,
-    /// What makes the exit code 1, besides errors
+    /// Exit with 1 for these too; errors always do
     #[arg(long, value_name = "SEVERITY")]
     deny: Option<Deny>,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Deny {
-    /// Warnings too
+    /// Warnings
     Warnings,
-    /// Warnings and notes too
+    /// Warnings and notes
     Notes,
 }
 
 fn degree(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(degree) if degree > 0.0 && degree <= 1.0 => Ok(degree),
-        _ => Err("write a number over 0, up to 1".into()),
+        _ => Err("write a number above 0 and at most 1".into()),
     }
 }
 
@@ -84,7 +84,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         let mut out = anstream::stdout().lock();
         if arguments.json {
             let json = Json {
-                schema: "flagred-check-1",
+                schema: "flagred.check/1",
                 file: &file,
                 model: analysed
                     .as_ref()
@@ -115,10 +115,9 @@ fn examine(
         Ok(document) => document,
         Err(findings) => return Ok((findings, None)),
     };
-    let options = check::Options {
-        coverage: arguments.coverage,
-        monotone: arguments.monotone.clone(),
-    };
+    let mut options = check::Options::default();
+    options.coverage = arguments.coverage;
+    options.monotone.clone_from(&arguments.monotone);
     let (findings, report) = check::document(&document, text, &options).map_err(|finding| {
         Failure::usage(format!("--monotone: {}", finding.message)).help_if(finding.help)
     })?;
@@ -138,7 +137,7 @@ fn summary(findings: &Findings) -> String {
     ];
     let counts: Vec<String> = counts.into_iter().flatten().collect();
     if counts.is_empty() {
-        "nothing found".into()
+        "no findings".into()
     } else {
         counts.join(", ")
     }

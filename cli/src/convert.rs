@@ -12,7 +12,7 @@ use crate::failure::{Exit, Failure};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The flight log; `-` is standard input
+    /// The flight log to convert; `-` is standard input
     #[arg(value_name = "LOG")]
     log: PathBuf,
 
@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     output: PathBuf,
 }
 
-/// Writes the motor commands and signals of a log, and says of a damaged one what is missing.
+/// Writes the motor commands and signals of a log; warns where the log is damaged.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let flight = flightlog::open(&arguments.log, &Options::default())?;
     if arguments.output == Path::new("-") {
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let mut err = anstream::stderr().lock();
         writeln!(
             err,
-            "`{}` was read as far as it goes: {reason}",
+            "warning: `{}` is damaged: {reason}; the undamaged part is converted",
             arguments.log.display()
         )?;
     }

@@ -1,4 +1,4 @@
-//! Findings in a text, drawn as a compiler draws them, or as JSON.
+//! Findings in a text, drawn as a compiler draws them.
 
 use std::{
     fs,
@@ -11,8 +11,7 @@ use fuzzy::diagnostic::{Diagnostic, Findings, Severity};
 
 use crate::failure::Failure;
 
-/// Draws findings with the lines they are about. `colored` is for terminals; pass what is drawn to `anstream`, which
-/// knows whether it writes to one.
+/// Draws findings with their lines. `colored` text goes through `anstream`, which drops colours that a terminal lacks.
 pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: bool) -> String {
     let renderer = if colored {
         Renderer::styled()
@@ -55,10 +54,23 @@ fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Grou
     if let Some(help) = &finding.help {
         group = group.element(Level::HELP.message(help.as_str()));
     }
+    if let Some(command) = command(finding.code) {
+        group = group.element(Level::HELP.message(command));
+    }
     vec![group]
 }
 
-/// Draws the findings that keep a file from being used, on standard error; what is left is the exit code.
+/// The command that helps with a finding: the engine knows no commands.
+fn command(code: &str) -> Option<&'static str> {
+    match code {
+        "empty-file" => Some("`flagred new NAME` writes a rule set to start from"),
+        "no-rules" => Some("`flagred learn` writes rules from data"),
+        "not-monotone" => Some("`flagred explain` shows the rules that fire at a point"),
+        _ => None,
+    }
+}
+
+/// Draws the findings that make a file unusable on standard error, and returns the exit code.
 pub(crate) fn refuse(findings: &Findings, file: &str, text: &str) -> Failure {
     let mut err = anstream::stderr().lock();
     // Nothing is left to tell a user whose standard error is closed.
@@ -80,7 +92,9 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     })?;
     String::from_utf8(bytes).map_err(|error| {
         let good = error.utf8_error().valid_up_to();
-        Failure::unreadable(format!("`{shown}` is no UTF-8 text: byte {good} is none"))
-            .help("a rule set is a text file")
+        Failure::unreadable(format!(
+            "`{shown}` is not a text file: invalid UTF-8 at byte {good}"
+        ))
+        .help("save it as UTF-8")
     })
 }

@@ -1,4 +1,4 @@
-//! `flagred eval`: a rule set over many points, CSV in and CSV out.
+//! `flagred eval`: a rule set at many points, from CSV to CSV.
 
 use std::{
     fs::File,
@@ -23,12 +23,12 @@ pub(crate) struct Arguments {
     /// The rule set in YAML
     #[arg(value_name = "MODEL")]
     model: PathBuf,
-    /// Points: a column for each input, named as it is; other columns are kept as they are. Standard input where absent
+    /// A table with a column for each input; other columns are copied. `-` is standard input
     #[arg(value_name = "POINTS.csv", default_value = "-")]
     points: PathBuf,
 }
 
-/// Rows that are evaluated at once; they are split over the threads.
+/// Rows that are evaluated at a time, split over the threads.
 const BLOCK: usize = 16_384;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 .help("check the path")
         })?))
     };
-    // Fields may be padded; they are kept as they are, and trimmed where they are read as numbers.
+    // Fields are copied with their padding, and trimmed where they are read as numbers.
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .from_reader(input);
@@ -83,9 +83,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     writer.flush()?;
     let mut err = anstream::stderr().lock();
     for (name, undefined) in engine.output_names().zip(undefined) {
-        if let Some(why) = undefined.why() {
+        if let Some(why) = undefined.why(rows) {
             // Nothing is left to tell a user whose standard error is closed.
-            let _ = writeln!(err, "`{name}` is undefined in {why}, of {rows} rows");
+            let _ = writeln!(err, "`{name}` is undefined {why}");
         }
     }
     Ok(Exit::Clean)
@@ -107,26 +107,30 @@ impl Undefined {
         }
     }
 
-    fn why(&self) -> Option<String> {
-        match (self.no_rule, self.no_input) {
+    /// Where an output has no value, of so many rows; `None` where it always has one.
+    fn why(&self, rows: usize) -> Option<String> {
+        let Undefined { no_rule, no_input } = self;
+        match (no_rule, no_input) {
             (0, 0) => None,
-            (rows, 0) => Some(format!("{rows} where no rule fires")),
-            (0, rows) => Some(format!("{rows} where an input is unknown")),
-            (rule, input) => Some(format!(
-                "{rule} where no rule fires, {input} where an input is unknown"
+            (no_rule, 0) => Some(format!("where no rule fires ({no_rule} of {rows} rows)")),
+            (0, no_input) => Some(format!(
+                "where an input is unknown ({no_input} of {rows} rows)"
+            )),
+            (no_rule, no_input) => Some(format!(
+                "where no rule fires ({no_rule} of {rows} rows) and where an input is unknown ({no_input})"
             )),
         }
     }
 }
 
-/// Where each input stands in a row.
+/// The column of each input.
 fn columns(engine: &Engine, header: &csv::StringRecord) -> Result<Vec<usize>, Failure> {
     let names = || header.iter().map(str::trim);
     for output in engine.output_names() {
         if names().any(|name| name == output) {
             return Err(
                 Failure::usage(format!("the points have a column `{output}` already"))
-                    .help("that is the name of an output; rename the column"),
+                    .help("the results go into a column of that name; rename yours"),
             );
         }
     }
@@ -148,7 +152,7 @@ fn columns(engine: &Engine, header: &csv::StringRecord) -> Result<Vec<usize>, Fa
 
 type Row<'b> = (&'b csv::StringRecord, Vec<Outcome>);
 
-/// Evaluates a block, its parts on threads of their own; the rows stay in order.
+/// Evaluates a block, each part on a thread; the order of the rows is kept.
 fn evaluate<'b>(
     engine: &Engine,
     columns: &[usize],
@@ -212,7 +216,7 @@ fn number(field: &str, name: &str, record: &csv::StringRecord) -> Result<f64, Fa
     }
     field.parse().map_err(|_| {
         Failure::unreadable(format!(
-            "{}: `{field}` of `{name}` is no number",
+            "{}: `{field}` of `{name}` is not a number",
             line(record)
         ))
         .help("leave the field empty where the value is unknown")

@@ -1,6 +1,6 @@
 //! The `flagred` command: assess flights; author, check and explain fuzzy rule sets.
 //!
-//! One file per command; this one only reads the command line and dispatches.
+//! Each command has a file; this one reads the command line and dispatches.
 
 mod assess;
 mod assessment;
@@ -9,7 +9,6 @@ mod completions;
 mod convert;
 mod dataset;
 mod diagnostics;
-mod drawing;
 mod eval;
 mod evaluate;
 mod explain;
@@ -18,6 +17,7 @@ mod failure;
 mod flights;
 mod help;
 mod inspect;
+mod json;
 mod learn;
 mod man;
 mod map;
@@ -35,9 +35,9 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use failure::{Exit, Failure};
 
-/// Tells from motor commands alone how close a multirotor is to losing it, and serves the authors of fuzzy rule sets.
+/// Estimates the risk that a multirotor loses control from its motor commands; checks, explains and learns fuzzy rule sets.
 ///
-/// Exit codes: 0 nothing found, 1 findings, 2 wrong usage, 3 unreadable or not a multirotor.
+/// Exit codes: 0 no findings, 1 findings, 2 wrong usage, 3 no answer: the input is unreadable or not a multirotor.
 #[derive(Parser)]
 #[command(name = "flagred", version, max_term_width = 100, after_help = help::FLAGRED)]
 struct Arguments {
@@ -47,49 +47,49 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Say how risky a flight was: verdict, findings, risk over time
+    /// Assess the risk of a flight: verdict, findings, risk over time
     #[command(after_help = help::ASSESS)]
     Assess(assess::Arguments),
-    /// Say what is wrong with a rule set, and what its author should know about it
+    /// Find errors, gaps and conflicts in a rule set
     #[command(after_help = help::CHECK)]
     Check(check::Arguments),
-    /// Write a flight log as flight CSV
+    /// Convert a flight log to flight CSV
     #[command(after_help = help::CONVERT)]
     Convert(convert::Arguments),
-    /// Write completions for a shell
+    /// Print completions for a shell
     #[command(after_help = help::COMPLETIONS)]
     Completions(completions::Arguments),
     /// Evaluate a rule set at the points of a CSV file
     #[command(after_help = help::EVAL)]
     Eval(eval::Arguments),
-    /// Say why the outputs of a rule set are what they are
+    /// Explain the outputs of a rule set at one point: degrees, rules, result
     #[command(after_help = help::EXPLAIN)]
     Explain(explain::Arguments),
-    /// Write a profile and its rule set as constant data, to fly on board
+    /// Export a profile and its rule set as Rust or C constants for firmware
     #[command(after_help = help::EXPORT)]
     Export(export::Arguments),
-    /// Turn flights into rows to learn from: inputs, attitude error, risk
+    /// Make a table of flights for `learn`: inputs, attitude error, risk
     #[command(after_help = help::DATASET)]
     Dataset(dataset::Arguments),
-    /// Measure how well profiles tell what comes, beside predictors that need no rules
+    /// Measure how well profiles predict attitude errors, compared with simple baselines
     #[command(after_help = help::EVALUATE)]
     Evaluate(evaluate::Arguments),
-    /// Show what is in a flight log, and where each value came from
+    /// Show the contents of a flight log and the source of each value
     #[command(after_help = help::INSPECT)]
     Inspect(inspect::Arguments),
-    /// Learn the rules of a rule set from rows of data
+    /// Learn the rules of a rule set from a table
     #[command(after_help = help::LEARN)]
     Learn(learn::Arguments),
-    /// Draw what a rule set decides over its inputs
+    /// Draw the output of a rule set over its inputs
     #[command(after_help = help::MAP)]
     Map(map::Arguments),
-    /// Print the manual
+    /// Print a manual page
     #[command(after_help = help::MAN)]
     Man(man::Arguments),
-    /// Say how risky a flight is while it is flown, to you and to the ground station
+    /// Assess a flight live over MAVLink and send warnings to the ground station
     #[command(after_help = help::WATCH)]
     Watch(watch::Arguments),
-    /// Write a rule set to start from
+    /// Write a commented rule set to start from
     #[command(after_help = help::NEW)]
     New(new::Arguments),
 }

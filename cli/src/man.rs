@@ -11,10 +11,10 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The command whose page to print; of flagred itself where none is named
+    /// The command whose page is printed [default: flagred itself]
     #[arg(value_name = "COMMAND")]
     command: Option<String>,
-    /// Write all pages into a folder instead
+    /// Write all pages to this folder instead
     #[arg(long, value_name = "FOLDER", conflicts_with = "command")]
     all: Option<PathBuf>,
 }

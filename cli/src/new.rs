@@ -1,4 +1,4 @@
-//! `flagred new`: a rule set to start from.
+//! `flagred new`: a commented rule set to start from.
 
 use std::{
     fs::OpenOptions,
@@ -10,10 +10,10 @@ use crate::failure::{Exit, Failure};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The name of the rule set; it is written to NAME.yaml
+    /// The name of the rule set and of the file NAME.yaml
     #[arg(value_name = "NAME", value_parser = name)]
     name: String,
-    /// Where to write it; `-` is standard output
+    /// The file to write [default: NAME.yaml]; `-` is standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -24,7 +24,7 @@ fn name(text: &str) -> Result<String, String> {
     if text.starts_with(|c: char| c.is_ascii_alphabetic()) && text.chars().all(plain) {
         Ok(text.into())
     } else {
-        Err("a name begins with a letter and has letters, digits, `-` and `_`".into())
+        Err("a name is a letter followed by letters, digits, `-` and `_`".into())
     }
 }
 
@@ -41,17 +41,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Ok(Exit::Clean);
     }
     let shown = path.display();
-    // A file that is there is somebody's work.
+    // An existing file is never overwritten.
     let file = OpenOptions::new().write(true).create_new(true).open(&path);
     let mut file = file.map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists => Failure::usage(format!("`{shown}` is there already"))
+        io::ErrorKind::AlreadyExists => Failure::usage(format!("`{shown}` exists already"))
             .help("choose another name, or another file with `--output`"),
         _ => Failure::unreadable(format!("`{shown}` cannot be written: {error}")),
     })?;
     file.write_all(text.as_bytes())
         .map_err(|error| Failure::unreadable(format!("`{shown}` cannot be written: {error}")))?;
     let mut out = anstream::stdout().lock();
-    writeln!(out, "wrote {shown}; look at it, then try:")?;
+    writeln!(out, "wrote {shown}; edit it, then try:")?;
     writeln!(out, "  flagred check {shown}")?;
     writeln!(out, "  flagred explain {shown} temperature=24 humidity=70")?;
     Ok(Exit::Clean)

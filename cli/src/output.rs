@@ -1,6 +1,10 @@
 //! Files that are written.
 
-use std::{fs, io::Write, path::Path};
+use std::{
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 use crate::failure::Failure;
 
@@ -19,4 +23,16 @@ pub(crate) fn write(path: &Path, text: &str) -> Result<(), Failure> {
         Failure::unreadable(format!("`{}` cannot be written: {error}", path.display()))
             .help("check that its folder exists and can be written to")
     })
+}
+
+/// A file for an SVG picture: another extension would lie about what is in it.
+pub(crate) fn svg_path(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension() {
+        Some(other) if !other.eq_ignore_ascii_case("svg") => Err(format!(
+            "the picture is SVG; write `{}`, and convert it with another program",
+            path.with_extension("svg").display()
+        )),
+        _ => Ok(path),
+    }
 }

@@ -3,29 +3,34 @@
 use std::path::Path;
 
 use flagred::profile::Profile;
-use fuzzy::{Engine, Model};
+use fuzzy::{Engine, Findings, Model, format::Document, validate};
 
 use crate::{
     diagnostics::{read_text, refuse},
     failure::Failure,
 };
 
-/// Reads a rule set. What is wrong with it is drawn on standard error; warnings are not: `flagred check` tells them.
-pub(crate) fn read(path: &Path) -> Result<(Model, String), Failure> {
+/// Reads a rule set, which may have no rules yet. What is wrong with it is drawn on standard error; warnings are not:
+/// `flagred check` tells them.
+pub(crate) fn read(path: &Path) -> Result<(Document, String), Failure> {
     let text = read_text(path)?;
     let file = path.display().to_string();
     let document = fuzzy::yaml::parse(&text).map_err(|findings| {
         profile_instead(&file, &text).unwrap_or_else(|| refuse(&findings, &file, &text))
     })?;
-    Ok((document.model, text))
+    Ok((document, text))
 }
 
 /// Reads and compiles a rule set.
 pub(crate) fn load(path: &Path) -> Result<(Model, Engine), Failure> {
-    let (model, text) = read(path)?;
-    let file = path.display().to_string();
-    let engine = Engine::new(&model).map_err(|error| refuse(&error.findings(), &file, &text))?;
-    Ok((model, engine))
+    let (document, text) = read(path)?;
+    let refuse = |findings| refuse(&findings, &path.display().to_string(), &text);
+    let invalid = validate(&document.model, &document.spans);
+    if !invalid.is_empty() {
+        return Err(refuse(Findings::locate(invalid, &text)));
+    }
+    let engine = Engine::new(&document.model).map_err(refuse)?;
+    Ok((document.model, engine))
 }
 
 /// What to say of a text that is no rule set because it is a profile: one thing, where its keys would be a page of

@@ -53,7 +53,7 @@ fn check_holds_outputs_against_what_their_author_says() {
     let (output, text) = flagred(&claims, "");
     assert_eq!(output.status.code(), Some(0));
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(json["schema"], "flagred-check-1");
+    assert_eq!(json["schema"], "flagred.check/1");
     let worst = &json["report"]["counterexamples"][0];
     assert_eq!(worst["claim"]["input"], "spread");
     assert_eq!(worst["at"][0]["value"], 0.2);
@@ -118,21 +118,53 @@ fn explain_shows_why() {
         "",
     );
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(json["schema"], "flagred-explain-1");
+    assert_eq!(json["schema"], "flagred.explain/1");
     assert_eq!(json["inputs"][0]["terms"][1]["term"], "low");
     assert!(json["outputs"][0]["value"].as_f64().unwrap() > 40.0);
 }
 
 #[test]
+fn explain_draws_terms_rules_and_the_aggregated_set() {
+    let picture = [
+        "explain",
+        "flagred-paper.yaml",
+        "margin=0.13",
+        "spread=9",
+        "--svg",
+    ];
+    let (output, text) = flagred(&[&picture[..], &["-"]].concat(), "");
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    for said in [
+        "margin = 0.13<",
+        "spread = 9, outside the range, used as 0.5<",
+        ">low 0.7<",
+        ">medium 0.511<",
+        "7: IF margin IS low AND spread IS high THEN risk IS very_high",
+    ] {
+        assert!(text.contains(said), "no `{said}` in {text}");
+    }
+    let (output, _) = flagred(&[&picture[..], &["fan.png"]].concat(), "");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        errors(&output).contains("write `fan.svg`"),
+        "{}",
+        errors(&output)
+    );
+}
+
+#[test]
 fn explain_asks_for_what_is_missing() {
     for (arguments, said) in [
-        (&["margin=0.1"][..], "the input `spread` has no value"),
+        (&["margin=0.1"][..], "input `spread` has no value"),
         (&["margin=0.1", "sprad=0.1"], "did you mean `spread`?"),
         (
             &["margin=0.1", "margin=0.2", "spread=0"],
             "`margin` is given twice",
         ),
-        (&["margin=much", "spread=0"], "`much` is no finite number"),
+        (
+            &["margin=much", "spread=0"],
+            "`much` is not a finite number",
+        ),
         (&["margin"], "write NAME=VALUE"),
     ] {
         let all: Vec<&str> = ["explain", "flagred-paper.yaml"]
@@ -167,8 +199,9 @@ fn eval_adds_the_outputs_with_all_digits() {
     assert_eq!((rows[2][3], rows[3][3]), ("", ""));
     assert_eq!(rows[4][3].parse().ok(), value(0.05, 0.5));
     assert!(
-        errors(&output)
-            .contains("undefined in 1 where no rule fires, 1 where an input is unknown, of 4 rows")
+        errors(&output).contains(
+            "undefined where no rule fires (1 of 4 rows) and where an input is unknown (1)"
+        )
     );
 }
 
@@ -199,7 +232,7 @@ fn eval_says_what_is_wrong_with_points() {
         (
             "margin,spread\n0.1,0.1\n0.1,wide\n",
             3,
-            "line 3: `wide` of `spread` is no number",
+            "line 3: `wide` of `spread` is not a number",
         ),
         ("margin,spread\n0.1\n", 3, "as many fields as the header"),
     ] {

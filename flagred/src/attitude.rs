@@ -1,9 +1,9 @@
-//! The attitude error of a flight and the risk it stands for: what rules are learned from.
+//! The attitude error of a flight, and the risk that rules are learned from.
 
-/// The error that the paper calls critical, in degrees: from here on the risk is 100 %.
+/// The critical error of the paper in degrees: a risk of 100 %.
 pub const CRITICAL_ERROR_DEG: f64 = 5.0;
 
-/// Roll and pitch, wanted and actual, in degrees.
+/// Wanted and actual roll and pitch in degrees.
 ///
 /// # Example: a pitch that lags behind
 /// ```

@@ -1,7 +1,12 @@
 //! Channels: one thing observed over one window, and the statistics taken of it. What is to be observed is plain data,
 //! which can lie in a table; what was seen is the caller's memory.
 
-use crate::{margin::margin, moments::Moments, window::Window};
+use crate::{
+    margin::margin,
+    moments::Moments,
+    motor::{Motor, Together, bin_of},
+    window::Window,
+};
 
 /// A statistic over time.
 ///
@@ -40,6 +45,19 @@ pub enum Statistic {
     ShareBelow(f64),
     /// The share of time, in [0, 1], spent above a value; over motors, the mean of their shares.
     ShareAbove(f64),
+    /// The standard deviation without noise: `sqrt(max(0, std^2 - noise^2))`. What is left is what successive values
+    /// share.
+    StdLessNoise,
+    /// The standard deviation of the noise: `sqrt(mean(step^2) / 2)`, with the steps between the means of successive
+    /// times of 0.1 s (of successive samples where they are rarer). White noise has `noise = std`, slow movement 0.
+    Noise,
+}
+
+impl Statistic {
+    /// Whether it is one of means over 0.1 s, and not of samples.
+    pub(crate) const fn is_of_bins(self) -> bool {
+        matches!(self, Statistic::StdLessNoise | Statistic::Noise)
+    }
 }
 
 /// How the motors of one sample become one value.
@@ -81,13 +99,19 @@ pub enum Motors {
 pub enum Observed {
     /// The effective command of each motor.
     Command,
+    /// The same without the part that turns the nose; the command itself where the geometry is unknown.
+    CommandLessYaw,
     /// Its margin.
     Margin,
     /// Its distance from the lower limit.
     LowSide,
     /// Its distance from the upper limit.
     HighSide,
-    /// The signal at this place among those that samples carry.
+    /// One of the efforts that the commands add up to: roll, pitch, yaw, thrust; unknown without a geometry.
+    Effort(usize),
+    /// The noise of the commands, all motors together.
+    CommandNoise,
+    /// The signal of this index among those that samples carry.
     Named(usize),
 }
 
@@ -123,7 +147,7 @@ pub enum Threshold {
 ///
 /// let plan = estimator.plan()?;
 /// assert_eq!(plan.inputs[1], Input { channel: 1, statistic: Statistic::Std });
-/// let spread = Channel { observed: Observed::Command, motors: Motors::Pooled, threshold: None, window_s: 2.0 };
+/// let spread = Channel { observed: Observed::Command, motors: Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 };
 /// assert_eq!(plan.channels[1], spread);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -135,6 +159,8 @@ pub struct Channel {
     pub motors: Motors,
     /// Which values count, for a share of time.
     pub threshold: Option<Threshold>,
+    /// Whether values are averaged over 0.1 s first.
+    pub in_bins: bool,
     /// Over how many seconds.
     pub window_s: f64,
 }
@@ -154,6 +180,50 @@ pub struct Seen {
     window: Window,
     /// The latest value; over motors, their mean.
     last: Option<f64>,
+    bin: Bin,
+}
+
+/// The values of the latest bin.
+#[derive(Debug, Clone, Copy)]
+struct Bin {
+    index: f64,
+    samples: u32,
+    sum: f64,
+    held_s: f64,
+    end_s: f64,
+    /// The mean of the bin before; NaN is unknown.
+    before: f64,
+}
+
+impl Bin {
+    const IDLE: Bin = Bin {
+        index: 0.0,
+        samples: 0,
+        sum: 0.0,
+        held_s: 0.0,
+        end_s: 0.0,
+        before: 0.0,
+    };
+
+    const EMPTY: Bin = Bin {
+        before: f64::NAN,
+        ..Bin::IDLE
+    };
+
+    fn moments(&self) -> Moments {
+        if self.samples == 0 || self.held_s <= 0.0 {
+            return Moments::EMPTY;
+        }
+        let mean = self.mean();
+        match self.before.is_finite() {
+            true => Moments::after(self.before, mean, self.held_s),
+            false => Moments::of(mean, self.held_s),
+        }
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / f64::from(self.samples)
+    }
 }
 
 impl Seen {
@@ -163,6 +233,7 @@ impl Seen {
         Seen {
             window: Window::new(window_s),
             last: None,
+            bin: Bin::EMPTY,
         }
     }
 
@@ -170,39 +241,83 @@ impl Seen {
     pub const IDLE: Seen = Seen {
         window: Window::IDLE,
         last: None,
+        bin: Bin::IDLE,
     };
 
     /// Nothing yet, over a window of so many seconds, where it is.
     pub(crate) fn restart(&mut self, window_s: f64) {
         self.window.restart(window_s);
-        self.last = None;
+        self.clear_latest();
     }
 
     /// Forgets everything.
     pub(crate) fn clear(&mut self) {
         self.window.clear();
+        self.clear_latest();
+    }
+
+    fn clear_latest(&mut self) {
         self.last = None;
+        self.bin = Bin::EMPTY;
+    }
+
+    /// Drops what was before a time from a window that is longer than `short_s`.
+    pub(crate) fn forget_before(&mut self, t_s: f64, short_s: f64) {
+        if self.window.length_s() > short_s {
+            self.window.forget_before(t_s);
+        }
+    }
+
+    fn push_into_bin(&mut self, (t_s, held_s): (f64, f64), value: Option<f64>) {
+        let index = bin_of(t_s);
+        if self.bin.samples > 0 && self.bin.index != index {
+            let before = self.bin.mean();
+            self.window
+                .push(self.bin.end_s, self.bin.held_s, &self.bin.moments());
+            self.bin = Bin {
+                before,
+                ..Bin::IDLE
+            };
+        }
+        self.window.advance(t_s);
+        if let Some(value) = value {
+            self.bin.index = index;
+            self.bin.samples += 1;
+            self.bin.sum += value;
+            self.bin.held_s += held_s;
+            self.bin.end_s = t_s;
+        }
     }
 }
 
-/// Adds a sample, of a time and the seconds before it that it stands for, to all channels; NaN is unknown.
+/// What is observed at one time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Now<'a> {
+    pub(crate) motors: &'a [Motor],
+    pub(crate) together: Together,
+    /// The signals that samples carry; NaN is unknown.
+    pub(crate) named: &'a [f64],
+}
+
+/// Adds a sample, of a time and the seconds before it that it stands for, to all channels.
 pub(crate) fn push(
     channels: &[Channel],
     seen: &mut [Seen],
     (t_s, held_s): (f64, f64),
-    motors: impl Iterator<Item = f64> + Clone,
-    named: &[f64],
+    observed: &Now<'_>,
 ) {
     let mut before: Option<(&Channel, Moments)> = None;
     for (channel, seen) in channels.iter().zip(seen) {
         // Neighbours often differ in their windows alone.
         let now = match before {
             Some((same, now)) if same.sees_as(channel) => now,
-            _ => channel.reduce(motors.clone(), named),
+            _ => channel.reduce(observed),
         };
         before = Some((channel, now));
         seen.last = now.mean();
-        if now.weight() > 0.0 {
+        if channel.in_bins {
+            seen.push_into_bin((t_s, held_s), now.mean());
+        } else if now.weight() > 0.0 {
             // A sample weighs its time, however many motors it knows.
             let moments = now.scaled(held_s / now.weight());
             seen.window.push(t_s, held_s, &moments);
@@ -215,8 +330,14 @@ pub(crate) fn push(
 /// The value of an input, and how much of its window is behind it; `None` where nothing is known.
 pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Observation> {
     let Input { channel, statistic } = *inputs.get(input)?;
-    let Seen { window, last } = seen.get(channel)?;
-    let total = window.total();
+    let Seen { window, last, bin } = seen.get(channel)?;
+    let mut total = window.total();
+    let mut samples = window.samples();
+    if statistic.is_of_bins() {
+        let latest = bin.moments();
+        samples += u32::from(latest.weight() > 0.0);
+        total.merge(&latest);
+    }
     let value = match statistic {
         Statistic::Mean | Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => total.mean(),
         Statistic::Std => total.std(),
@@ -224,12 +345,14 @@ pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Obs
         Statistic::Min => total.min(),
         Statistic::Max => total.max(),
         Statistic::Last => *last,
+        Statistic::StdLessNoise => total.std_less_noise(),
+        Statistic::Noise => total.noise(),
     };
     Some(Observation {
         value: value?,
         samples: match statistic {
             Statistic::Last => None,
-            _ => Some(window.samples()),
+            _ => Some(samples),
         },
         covered_s: total.weight(),
         window_s: window.length_s(),
@@ -271,12 +394,21 @@ impl Channel {
     }
 
     /// The values of one sample, each motor known with weight 1.
-    fn reduce(&self, motors: impl Iterator<Item = f64> + Clone, named: &[f64]) -> Moments {
+    fn reduce(&self, now: &Now<'_>) -> Moments {
+        let commands = now.motors.iter().map(|motor| motor.command);
         match self.observed {
-            Observed::Named(index) => self.threshold(named.get(index).copied().unwrap_or(f64::NAN)),
-            Observed::Command | Observed::LowSide => self.over(motors),
-            Observed::Margin => self.over(motors.map(margin)),
-            Observed::HighSide => self.over(motors.map(|e| 1.0 - e)),
+            Observed::Named(index) => {
+                self.threshold(now.named.get(index).copied().unwrap_or(f64::NAN))
+            }
+            Observed::Effort(axis) => {
+                let effort = now.together.efforts.get(axis).copied();
+                self.threshold(effort.unwrap_or(f64::NAN))
+            }
+            Observed::CommandNoise => self.threshold(now.together.noise),
+            Observed::CommandLessYaw => self.over(now.motors.iter().map(|motor| motor.less_yaw)),
+            Observed::Command | Observed::LowSide => self.over(commands),
+            Observed::Margin => self.over(commands.map(margin)),
+            Observed::HighSide => self.over(commands.map(|e| 1.0 - e)),
         }
     }
 

@@ -1,11 +1,12 @@
-//! From input values to a risk: the engine where rules apply, the filled map where none does.
+//! A profile and its rule set, compiled: from input values to a risk.
 
 use alloc::{string::String, sync::Arc, vec, vec::Vec};
 
 use fuzzy::{
     Engine, Model,
-    engine::{CompileError, EvaluateError, Outcome, Scratch},
-    table::Set,
+    diagnostic::Findings,
+    engine::{EvaluateError, Outcome, Scratch},
+    table::ClosedForm,
 };
 
 use crate::{
@@ -49,9 +50,9 @@ struct Compiled {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EstimatorError {
-    /// The rule set itself does not compile.
+    /// The rule set does not compile.
     #[error("the rule set cannot be used: {0}")]
-    Rules(#[from] CompileError),
+    Rules(#[from] Findings),
     /// It cannot be evaluated at the places that gaps are filled from.
     #[error("the rule set cannot be evaluated everywhere: {0}")]
     Evaluate(#[from] EvaluateError),
@@ -85,7 +86,7 @@ pub enum EstimatorError {
     },
 }
 
-/// The value of an output takes more than a table of numbers, so it cannot fly on board.
+/// An output has no closed form, so the profile cannot be exported.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the value of output `{output}` has no closed form, so it cannot be written as a table")]
 pub struct NoClosedForm {
@@ -94,7 +95,7 @@ pub struct NoClosedForm {
 }
 
 impl NoClosedForm {
-    /// What has one.
+    /// Which outputs have a closed form.
     pub fn help(&self) -> &'static str {
         "closed forms have: the centroid over straight terms that overlap only where one falls while the next one rises \
          (a `partition`), with minimum and maximum; the centroid with `implication: product` and `aggregation: sum`, over \
@@ -159,13 +160,13 @@ impl Estimator {
         })))
     }
 
-    /// The profile it was made of.
+    /// The profile.
     pub fn profile(&self) -> &Profile {
         &self.0.profile
     }
 
-    /// The risk at the values of the inputs, in the order of the profile: what a monitor says at such a moment.
-    /// `None` where rules say nothing and there is nothing to fill from, or a value is not finite.
+    /// The risk at the values of the inputs, in the order of the profile: as a monitor computes it.
+    /// `None` where no rule applies and there is nothing to interpolate from, or a value is not finite.
     pub fn at(&self, inputs: &[f64]) -> Option<Estimate> {
         self.estimate(inputs, &mut Memory::of(self))
     }
@@ -193,7 +194,7 @@ impl Estimator {
     /// The output has no closed form.
     pub fn plan(&self) -> Result<Plan<'_>, NoClosedForm> {
         let table = self.0.engine.table();
-        let open = |output: &fuzzy::table::Output| output.set == Set::OPEN;
+        let open = |output: &fuzzy::table::Output| output.form == ClosedForm::NONE;
         if table.outputs.get(self.0.output).is_none_or(open) {
             return Err(NoClosedForm {
                 output: self.0.profile.output.clone(),
@@ -239,5 +240,45 @@ impl Memory {
             point: vec![0.0; inputs],
             outcomes: vec![Outcome::default(); estimator.0.engine.output_names().len()],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shipped;
+    use fuzzy::model::Defuzzifier;
+
+    #[test]
+    fn a_risk_is_a_percentage() {
+        let profile = shipped::flagred_paper().profile().clone();
+        for (range, is_percentage) in [("[0, 1]", false), ("[0, 100]", true), ("[0, 200]", false)] {
+            let text = shipped::RULE_SETS[1].text.replace("[0, 100]", range);
+            let rules = fuzzy::yaml::parse(&text).unwrap().model;
+            let made = Estimator::new(&profile, &rules);
+            let is_refused = matches!(made, Err(EstimatorError::NoPercentage { .. }));
+            assert_eq!(is_refused, !is_percentage, "{range}");
+        }
+    }
+
+    #[test]
+    fn profile_and_rules_name_the_same_inputs() {
+        let mut profile = shipped::flagred_paper().profile().clone();
+        let rules = shipped::flagred_paper_rules();
+        profile.inputs.retain(|input| input.name != "spread");
+        let refused = Estimator::new(&profile, &rules).unwrap_err();
+        let input = "spread".into();
+        assert_eq!(refused, EstimatorError::NoSource { input });
+    }
+
+    #[test]
+    fn an_output_without_a_closed_form_makes_no_plan() {
+        let profile = shipped::flagred_paper().profile().clone();
+        let mut rules = shipped::flagred_paper_rules();
+        rules.outputs[0].defuzzifier = Defuzzifier::Bisector;
+        let estimator = Estimator::new(&profile, &rules).unwrap();
+        assert!(estimator.at(&[0.3, 0.1]).is_some());
+        let output = "risk".into();
+        assert_eq!(estimator.plan().err(), Some(NoClosedForm { output }));
     }
 }

@@ -437,8 +437,9 @@ impl Flight {
     fn verdict(&self, summary: &Summary, profile: &Profile) -> Verdict {
         let knows_enough =
             summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;
-        match self.findings.first() {
-            Some(gravest) => Verdict::Known(gravest.level),
+        let gravest = self.findings.first().map(|finding| finding.level);
+        match gravest.filter(|level| *level > Level::Info) {
+            Some(gravest) => Verdict::Known(gravest),
             None if knows_enough => Verdict::Known(Level::Good),
             None => {
                 let longest = self.unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1));

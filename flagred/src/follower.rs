@@ -2,9 +2,10 @@
 
 use crate::{
     accumulator::{AccumulatorSettings, RunningSum},
-    channel::{Channel, Input, Seen, push, value},
+    channel::{self, Channel, Input, Seen, push, value},
+    motor::{self, Bin, Motor},
     sample::{Estimate, Sample, Sampling, Unknown, Update},
-    verdict::{Alert, Ended, Finding, Motor, Step, VerdictSettings},
+    verdict::{self, Alert, Ended, Finding, Level, Notices, VerdictSettings},
     window::Window,
 };
 
@@ -25,9 +26,30 @@ pub(crate) struct Follower {
     settings: Settings,
     sum: RunningSum,
     alert: Alert,
+    notices: Notices,
+    bin: Bin,
     last_s: Option<f64>,
     in_air_since_s: Option<f64>,
+    /// Whether the windows have dropped the take-off.
+    settled: bool,
+    /// Since when the vehicle seems to be on the ground; within [`TOUCH_S`] the flight may go on.
+    down_since_s: Option<f64>,
+    /// Whether the motors idle, and whether a high risk came before.
+    idle: Option<Idle>,
+    last_high_s: Option<f64>,
     last_known_s: Option<f64>,
+}
+
+/// For less than this, in seconds, neither a land detector nor idle motors are a landing.
+const TOUCH_S: f64 = 1.0;
+
+/// Motors that idle within this time after a high risk, in seconds, are no landing.
+const TROUBLE_S: f64 = 2.0;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Idle {
+    Landing,
+    InTrouble,
 }
 
 /// The memory of a flight: the risks of the last seconds, what each channel has seen, the values of the inputs after the
@@ -45,9 +67,15 @@ impl Follower {
         Follower {
             sum: RunningSum::new(settings.elevated_risk),
             alert: Alert::new(settings.verdict),
+            notices: Notices::new(settings.verdict.notices),
+            bin: Bin::NONE,
             settings,
             last_s: None,
             in_air_since_s: None,
+            settled: false,
+            down_since_s: None,
+            idle: None,
+            last_high_s: None,
             last_known_s: None,
         }
     }
@@ -66,84 +94,140 @@ impl Follower {
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Update {
         let t_s = sample.t_s;
-        let mut step = Step::default();
+        let mut ended = Changed::default();
         let longest_gap_s = self.settings.sampling.longest_gap_s;
         let held_s = match self.last_s {
-            _ if !t_s.is_finite() => return self.unknown(t_s, Unknown::OutOfOrder, step),
+            _ if !t_s.is_finite() => return self.unknown(t_s, Unknown::OutOfOrder, ended),
             None => 0.0,
             Some(last_s) if t_s <= last_s && last_s - t_s <= longest_gap_s => {
-                return self.unknown(t_s, Unknown::OutOfOrder, step);
+                return self.unknown(t_s, Unknown::OutOfOrder, ended);
             }
-            // A jump, forward (a lost link) or back (a vehicle that restarted): what was before is no guide.
+            // A jump, forward (a lost link) or back (a restarted vehicle), resets the state.
             Some(last_s) if !(0.0..=longest_gap_s).contains(&(t_s - last_s)) => {
-                step = self.forget(last_s, false, room);
+                ended = self.forget(last_s, false, room);
                 0.0
             }
             Some(last_s) => t_s - last_s,
         };
         self.last_s = Some(t_s);
-        if !sample.in_air {
+        let together = motor::take(room.motors, &mut self.bin, t_s, sample.motors);
+        if !sample.in_air || self.rests(t_s, room.motors) {
             if self.in_air_since_s.is_some() {
-                step = self.forget(t_s, true, room);
+                let down_since_s = *self.down_since_s.get_or_insert(t_s);
+                if t_s - down_since_s >= TOUCH_S {
+                    ended = self.forget(down_since_s, true, room);
+                }
             }
-            return self.unknown(t_s, Unknown::OnGround, step);
+            return self.unknown(t_s, Unknown::OnGround, ended);
         }
+        self.down_since_s = None;
         let in_air_since_s = *self.in_air_since_s.get_or_insert(t_s);
-
-        let known = sample.motors.iter().map(|e| match e {
-            0.0..=1.0 => *e,
-            _ => f64::NAN,
-        });
-        let commands = known.chain(core::iter::repeat(f64::NAN));
-        for (motor, command) in room.motors.iter_mut().zip(commands) {
-            motor.command = command;
+        let now = channel::Now {
+            motors: room.motors,
+            together,
+            named: sample.signals,
+        };
+        push(channels, room.seen, (t_s, held_s), &now);
+        self.settle(t_s, in_air_since_s, room);
+        if self.settled {
+            self.notices
+                .push((t_s, held_s), together.noise, room.motors);
         }
-        let commands = room.motors.iter().map(|motor| motor.command);
-        push(channels, room.seen, (t_s, held_s), commands, sample.signals);
-        let risk = self.estimate(inputs, room, estimate);
-        let Ok(said) = risk else {
-            let known_s = self.last_known_s.unwrap_or(t_s);
-            if t_s - known_s > longest_gap_s {
-                step = self.stop_judging(known_s, false, room);
+        let said = match self.estimate(inputs, room, estimate) {
+            Ok(said) => said,
+            Err(reason) => {
+                let known_s = self.last_known_s.unwrap_or(t_s);
+                if t_s - known_s > longest_gap_s {
+                    ended = self.stop_judging(known_s, false, room);
+                }
+                return self.unknown(t_s, reason, ended);
             }
-            let reason = risk.err().unwrap_or(Unknown::NoRule);
-            return self.unknown(t_s, reason, step);
         };
         self.last_known_s = Some(t_s);
-        let elevated = self.sum.push(room.risks, (t_s, held_s), said.risk_pct);
-        let is_judged = t_s - in_air_since_s >= self.settings.verdict.quiet_after_take_off_s;
-        if is_judged {
-            let judged = self.alert.push(t_s, said.risk_pct, elevated, room.motors);
-            step = Step {
-                change: judged.change.or(step.change),
-                // Both at once cannot be: what was just forgotten takes a while to be raised again.
-                ended: if step.ended == [None; 2] {
-                    judged.ended
-                } else {
-                    step.ended
-                },
-            };
+        let verdict = &self.settings.verdict;
+        if verdict.warn.raise.risk_pct.is_some_and(|high| said.risk_pct >= high) {
+            self.last_high_s = Some(t_s);
         }
+        let elevated = self.sum.push(room.risks, (t_s, held_s), said.risk_pct);
+        let takes_off = t_s - in_air_since_s < verdict.quiet_after_take_off_s;
+        let now = verdict::Now {
+            t_s,
+            risk_pct: said.risk_pct,
+            elevated_pct: elevated,
+            takes_off,
+        };
+        let step = self.alert.push(now, room.motors);
+        ended.change = step.change.or(ended.change);
+        // Both at once cannot be: what was just forgotten takes a while to be raised again.
+        ended.findings[0] = step.ended.or(ended.findings[0]);
         Update {
             t_s,
-            risk,
+            risk: Ok(said),
             elevated_risk_pct: Some(elevated),
-            level: Some(self.alert.level()),
-            change: step.change,
-            judged: is_judged,
-            ended: step.ended,
+            level: Some(self.level()),
+            change: ended.change,
+            judged: !takes_off,
+            ended: ended.findings,
         }
     }
 
     /// The finding that the level rests on, as it stands so far; `None` while the level is good.
     pub(crate) fn open_finding(&self, motors: &[Motor]) -> Option<Finding> {
-        self.alert.open(motors)
+        self.alert.open(motors).or_else(|| self.notices.open())
     }
 
     /// Ends the flight: the findings that were still open.
     pub(crate) fn finish(&mut self, room: &mut Room<'_>) -> Ended {
-        self.last_s
-            .map_or([None; 2], |last_s| self.forget(last_s, false, room).ended)
+        let Some(last_s) = self.last_s else {
+            return Ended::default();
+        };
+        let (end_s, landed) = match self.down_since_s {
+            Some(down_s) => (down_s, true),
+            None => (last_s, false),
+        };
+        self.forget(end_s, landed, room).findings
+    }
+
+    fn level(&self) -> Level {
+        let noticed = self.notices.open().map_or(Level::Good, |f| f.level);
+        self.alert.level().max(noticed)
+    }
+
+    /// Whether the motors idle as they do on the ground: before take-off, and after a flight that was calm to its end.
+    fn rests(&mut self, t_s: f64, motors: &[Motor]) -> bool {
+        let commands = motors.iter().map(|motor| motor.command);
+        let known = commands.filter(|e| e.is_finite());
+        let (sum, count) = known.fold((0.0, 0.0), |(sum, count), e| (sum + e, count + 1.0));
+        if count == 0.0 || sum >= self.settings.verdict.idle_below * count {
+            self.idle = None;
+            return false;
+        }
+        let was_high = |high_s: f64| t_s - high_s <= TROUBLE_S;
+        let in_trouble = self.last_high_s.is_some_and(was_high);
+        let idle = *self.idle.get_or_insert(match in_trouble {
+            true => Idle::InTrouble,
+            false => Idle::Landing,
+        });
+        idle == Idle::Landing
+    }
+
+    /// Some time after take-off, drops it from the long windows and from the elevated risk.
+    fn settle(&mut self, t_s: f64, in_air_since_s: f64, room: &mut Room<'_>) {
+        let Sampling {
+            take_off_s,
+            warm_up_s,
+            ..
+        } = self.settings.sampling;
+        if self.settled || t_s - in_air_since_s < take_off_s + warm_up_s {
+            return;
+        }
+        self.settled = true;
+        if take_off_s > 0.0 {
+            for seen in room.seen.iter_mut() {
+                seen.forget_before(in_air_since_s + take_off_s, take_off_s);
+            }
+            self.sum.clear(room.risks);
+        }
     }
 
     fn estimate(
@@ -166,35 +250,55 @@ impl Follower {
         }
     }
 
-    /// What is known after a sample without a risk.
-    fn unknown(&self, t_s: f64, reason: Unknown, step: Step) -> Update {
+    /// What is known where the risk is not.
+    fn unknown(&self, t_s: f64, reason: Unknown, changed: Changed) -> Update {
         let judging = self.in_air_since_s.is_some() && self.last_known_s.is_some();
         Update {
             t_s,
             risk: Err(reason),
             elevated_risk_pct: None,
-            level: judging.then(|| self.alert.level()),
-            change: step.change,
+            level: judging.then(|| self.level()),
+            change: changed.change,
             judged: false,
-            ended: step.ended,
+            ended: changed.findings,
         }
     }
 
-    /// Starts anew: what is behind says nothing about what comes.
-    fn forget(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Step {
+    /// Resets the state after a flight or a gap.
+    fn forget(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Changed {
         for seen in room.seen.iter_mut() {
             seen.clear();
         }
         room.inputs.fill(f64::NAN);
+        self.bin = Bin::NONE;
         self.in_air_since_s = None;
-        self.stop_judging(t_s, landed, room)
+        self.settled = false;
+        self.down_since_s = None;
+        self.idle = None;
+        self.last_high_s = None;
+        let [noise, reserve, imbalance] = self.notices.end();
+        let mut changed = self.stop_judging(t_s, landed, room);
+        motor::clear(room.motors);
+        changed.findings = [changed.findings[0], noise, reserve, imbalance];
+        changed
     }
 
-    fn stop_judging(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Step {
+    fn stop_judging(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Changed {
         self.sum.clear(room.risks);
         self.last_known_s = None;
-        self.alert.end(t_s, landed, room.motors)
+        let step = self.alert.end(t_s, landed, room.motors);
+        Changed {
+            change: step.change,
+            findings: [step.ended, None, None, None],
+        }
     }
+}
+
+/// What a sample changed.
+#[derive(Debug, Clone, Copy, Default)]
+struct Changed {
+    change: Option<Level>,
+    findings: Ended,
 }
 
 /// The value of an input, where enough is known of its window.

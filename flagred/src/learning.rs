@@ -17,12 +17,11 @@ pub struct Row {
     pub values: Vec<f64>,
     /// How much it counts.
     pub weight: f64,
-    /// What it belongs to, such as its vehicle: rows of one group are learned from together or not at all.
+    /// Its group, such as its vehicle. Cross-validation keeps the rows of a group together.
     pub group: Option<u32>,
 }
 
-/// How far predictions are from what the rows say, in the unit of the output; rows count by their weight. Where no row was
-/// compared the errors are NaN.
+/// Errors of predictions on rows, in the unit of the output, weighted by row. NaN where no row was compared.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Errors {
     /// The rows compared.
@@ -75,7 +74,7 @@ impl Tally {
     }
 }
 
-/// Why learned rules could not be examined.
+/// Why rules cannot be learned from or compared with rows.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExamineError {
@@ -84,7 +83,7 @@ pub enum ExamineError {
     Learn(#[from] LearnError),
     /// The rules cannot be used.
     #[error(transparent)]
-    Compile(#[from] fuzzy::engine::CompileError),
+    Compile(#[from] fuzzy::diagnostic::Findings),
     /// The rules cannot be evaluated.
     #[error(transparent)]
     Evaluate(#[from] EvaluateError),
@@ -142,7 +141,7 @@ const FOLDS: u32 = 10;
 /// Leaving out one group at a time is affordable up to so many.
 const MOST_GROUPS: usize = 50;
 
-/// Learns without a part of the rows and predicts that part, for each part in turn.
+/// Cross-validation: learns without a part of the rows and predicts that part, for each part in turn.
 ///
 /// The parts are the groups where the rows have any (tenths of the groups where there are over 50), else tenths of the
 /// rows, divided by their values so that their order does not matter.
@@ -235,7 +234,7 @@ fn fingerprint(values: &[f64]) -> u64 {
     hash ^ (hash >> 32)
 }
 
-/// What each gap method makes of cells whose rule was taken away.
+/// How well each gap method predicts cells whose rule was removed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GapComparison {
     /// The rules left out, one at a time: those with samples in the gap they leave.
@@ -256,10 +255,10 @@ pub struct MethodErrors {
     pub by_rule_mean_absolute: f64,
 }
 
-/// Leaves out the rules one by one, fills the gap each leaves, and compares what is filled in with the rows there.
+/// Removes each rule in turn, fills its gap by each method, and compares the filling with the rows there.
 ///
-/// Rows belong to the rule that fires most strongly on them. Those that other rules cover too, or none, say nothing of
-/// a filling and are left out.
+/// Rows belong to the rule that fires most strongly on them. Rows that other rules cover too, or that none covers,
+/// are ignored.
 ///
 /// # Errors
 ///

@@ -46,9 +46,11 @@ pub mod gap;
 pub mod learning;
 #[cfg(feature = "flightlog")]
 pub mod log;
+mod effort;
 mod lookup;
 pub mod margin;
 mod moments;
+mod motor;
 #[cfg(feature = "std")]
 pub mod monitor;
 #[cfg(feature = "std")]

@@ -60,8 +60,11 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
 }
 
 /// The craft that flew, with samples that carry the named signals.
-pub fn craft<'a>(flight: &Flight, signals: &'a [&'a str]) -> Craft<'a> {
-    Craft::new(flight.motors.len()).with_signals(signals)
+pub fn craft<'a>(flight: &'a Flight, signals: &'a [&'a str]) -> Craft<'a> {
+    let geometry = flight.geometry.as_ref();
+    Craft::new(flight.motors.len())
+        .with_signals(signals)
+        .with_geometry(geometry.map_or(&[], |geometry| &geometry.factors))
 }
 
 /// Those of the named signals that the flight carries.

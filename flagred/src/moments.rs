@@ -10,6 +10,8 @@ pub(crate) struct Moments {
     mean: f64,
     /// `sum(weight (value - mean)^2)`.
     squares: f64,
+    /// `sum(weight (value - value before)^2)`, where the value before is known.
+    steps: f64,
     min: f64,
     max: f64,
 }
@@ -20,6 +22,7 @@ impl Moments {
         weight: 0.0,
         mean: 0.0,
         squares: 0.0,
+        steps: 0.0,
         min: f64::INFINITY,
         max: f64::NEG_INFINITY,
     };
@@ -37,8 +40,17 @@ impl Moments {
             weight,
             mean: value,
             squares: 0.0,
+            steps: 0.0,
             min: value,
             max: value,
+        }
+    }
+
+    /// Of one finite value that follows another one.
+    pub(crate) fn after(previous: f64, value: f64, weight: f64) -> Moments {
+        Moments {
+            steps: weight * (value - previous) * (value - previous),
+            ..Moments::of(value, weight)
         }
     }
 
@@ -48,6 +60,7 @@ impl Moments {
             weight,
             mean: (from + to) / 2.0,
             squares: weight * (to - from) * (to - from) / 12.0,
+            steps: 0.0,
             min: from.min(to),
             max: from.max(to),
         }
@@ -87,6 +100,7 @@ impl Moments {
         let step = other.mean - self.mean;
         self.mean += step * share;
         self.squares += other.squares + step * step * self.weight * share;
+        self.steps += other.steps;
         self.weight = weight;
         self.min = self.min.min(other.min);
         self.max = self.max.max(other.max);
@@ -98,6 +112,7 @@ impl Moments {
         Moments {
             weight: self.weight * factor,
             squares: self.squares * factor,
+            steps: self.steps * factor,
             ..*self
         }
     }
@@ -115,6 +130,19 @@ impl Moments {
     /// The weighted standard deviation of the population; `None` without a value.
     pub(crate) fn std(&self) -> Option<f64> {
         self.known(libm::sqrt(self.squares / self.weight))
+    }
+
+    /// The standard deviation of white noise that would make the values step as they do,
+    /// `sqrt(mean((value - value before)^2) / 2)`; `None` without a value.
+    pub(crate) fn noise(&self) -> Option<f64> {
+        self.known(libm::sqrt(self.steps / self.weight / 2.0))
+    }
+
+    /// The standard deviation without that noise, `sqrt(max(0, std^2 - noise^2))`: what is left is the part of the
+    /// variance that successive values share. `None` without a value.
+    pub(crate) fn std_less_noise(&self) -> Option<f64> {
+        let variance = (self.squares - self.steps / 2.0) / self.weight;
+        self.known(libm::sqrt(variance.max(0.0)))
     }
 
     /// The weighted root mean square; `None` without a value.

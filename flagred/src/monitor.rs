@@ -6,12 +6,14 @@ use crate::{
     channel::{Channel, Input, Seen},
     estimator::{Estimator, Memory},
     follower::{Follower, Room, reading},
+    motor::{Motor, set_geometry},
     profile::Profile,
     source::{Motors, Signal, Source, Statistic, channels},
-    verdict::{Ended, Finding, Motor},
+    verdict::{Ended, Finding},
     window::Window,
 };
 
+pub use crate::effort::Factors;
 pub use crate::sample::{Estimate, Sample, Unknown, Update};
 
 impl Unknown {
@@ -53,13 +55,15 @@ impl Unknown {
 }
 
 /// The vehicle that samples come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Craft<'a> {
     /// The number of motors.
     pub motors: usize,
     /// The names of the signals that samples carry beside the motors, in their order.
     pub signals: &'a [&'a str],
+    /// The factors of each motor, in the order of the samples; empty where the geometry is unknown.
+    pub geometry: &'a [Factors],
 }
 
 impl<'a> Craft<'a> {
@@ -68,12 +72,18 @@ impl<'a> Craft<'a> {
         Craft {
             motors,
             signals: &[],
+            geometry: &[],
         }
     }
 
     /// The same craft with samples that carry signals of these names, in this order.
     pub const fn with_signals(self, signals: &'a [&'a str]) -> Craft<'a> {
         Craft { signals, ..self }
+    }
+
+    /// The same craft with the factors of each motor, so that turning the nose is told from what pushes the craft around.
+    pub const fn with_geometry(self, geometry: &'a [Factors]) -> Craft<'a> {
+        Craft { geometry, ..self }
     }
 }
 
@@ -156,13 +166,15 @@ impl Monitor {
         let (channels, inputs) = channels(sources.chain(&always), craft.signals)
             .map_err(|signal| MonitorError::NoSignal { signal })?;
         let seen = channels.iter().map(|channel| Seen::new(channel.window_s));
+        let mut motors = vec![Motor::UNKNOWN; craft.motors];
+        set_geometry(&mut motors, craft.geometry);
         Ok(Monitor {
             memory: Memory::of(estimator),
             room: OwnRoom {
                 risks: Window::new(profile.elevated_risk.window_s),
                 seen: seen.collect(),
                 inputs: vec![f64::NAN; profile.inputs.len()],
-                motors: vec![Motor::UNKNOWN; craft.motors],
+                motors,
             },
             channels,
             inputs,

@@ -88,6 +88,9 @@ pub struct Sampling {
     pub warm_up_s: f64,
     /// After a longer time without a sample, in seconds, the state is reset.
     pub longest_gap_s: f64,
+    /// What was before this time in the air, in seconds, is dropped from longer windows once they cover `warm_up_s` of
+    /// what follows: the take-off itself says nothing about the flight. 0 keeps it.
+    pub take_off_s: f64,
 }
 
 impl Default for Sampling {
@@ -96,6 +99,7 @@ impl Default for Sampling {
             min_samples: 5,
             warm_up_s: 1.0,
             longest_gap_s: 2.0,
+            take_off_s: 0.0,
         }
     }
 }

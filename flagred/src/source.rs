@@ -2,69 +2,78 @@
 
 use alloc::{string::String, vec, vec::Vec};
 
-use crate::channel::{Channel, Input, Observed, Seen, Threshold, push, value};
+use crate::{
+    channel::{Channel, Input, Now, Observed, Seen, Threshold, push, value},
+    monitor::Craft,
+    motor::{Bin, Motor, clear, set_geometry, take},
+};
 pub use crate::channel::{Motors, Observation, Statistic};
 
 /// What is observed.
-///
-/// # Example
-/// ```
-/// use flagred::source::Signal;
-///
-/// assert_eq!(Signal::named("motor_margin"), Signal::MotorMargin);
-/// assert_eq!(Signal::named("battery_v"), Signal::Named("battery_v".into()));
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Signal {
     /// The effective command `e` of each motor: 0 at its lower limit, 1 at its upper one.
     MotorCommand,
+    /// The command of each motor without the part that turns the nose: `e_i - y_i yaw`, with the yaw factor `y_i` of the
+    /// motor and the yaw effort of all. The command itself where the geometry is unknown.
+    MotorCommandLessYaw,
     /// The margin `min(e, 1 - e)` of each motor, 0 to 0.5.
     MotorMargin,
     /// How far each motor is from its lower limit: `e`.
     MotorMarginLowSide,
     /// How far each motor is from its upper limit: `1 - e`.
     MotorMarginHighSide,
+    /// The roll effort of all motors; this and the other efforts are unknown without a geometry.
+    RollEffort,
+    /// The pitch effort.
+    PitchEffort,
+    /// The yaw effort.
+    YawEffort,
+    /// The thrust effort.
+    ThrustEffort,
+    /// The noise of the commands, every 0.1 s: `sqrt(mean over motors of (step^2) / 2)`, with the steps between the
+    /// means of successive times of 0.1 s.
+    CommandNoise,
     /// A signal that the flight carries beside the motors, by name: `battery_v`.
     Named(String),
 }
 
-impl Signal {
-    /// The signals every flight has, by the names profiles use.
-    pub const MOTORS: [(&'static str, Signal); 4] = [
-        ("motor_command", Signal::MotorCommand),
-        ("motor_margin", Signal::MotorMargin),
-        ("motor_margin_low_side", Signal::MotorMarginLowSide),
-        ("motor_margin_high_side", Signal::MotorMarginHighSide),
-    ];
+/// The signals with a value for each motor, by the names profiles use.
+const OF_MOTORS: [(&str, Signal); 5] = [
+    ("motor_command", Signal::MotorCommand),
+    ("motor_command_less_yaw", Signal::MotorCommandLessYaw),
+    ("motor_margin", Signal::MotorMargin),
+    ("motor_margin_low_side", Signal::MotorMarginLowSide),
+    ("motor_margin_high_side", Signal::MotorMarginHighSide),
+];
 
-    /// The signal of a name; a name that is not one of [`Signal::MOTORS`] is one of the flight's own.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::source::Signal;
-    ///
-    /// for (name, signal) in Signal::MOTORS {
-    ///     assert_eq!(Signal::named(name), signal);
-    /// }
-    /// ```
+/// The signals with one value for all motors.
+const OF_ALL_MOTORS: [(&str, Signal); 5] = [
+    ("roll_effort", Signal::RollEffort),
+    ("pitch_effort", Signal::PitchEffort),
+    ("yaw_effort", Signal::YawEffort),
+    ("thrust_effort", Signal::ThrustEffort),
+    ("command_noise", Signal::CommandNoise),
+];
+
+impl Signal {
+    /// The names of the signals that have a value for each motor.
+    pub fn names_of_motors() -> impl Iterator<Item = &'static str> {
+        OF_MOTORS.iter().map(|(name, _)| *name)
+    }
+
+    /// The signal of a name; an unknown name is a signal of the flight's own.
     pub fn named(name: &str) -> Signal {
-        Signal::MOTORS
+        OF_MOTORS
             .into_iter()
+            .chain(OF_ALL_MOTORS)
             .find(|(known, _)| *known == name)
             .map_or_else(|| Signal::Named(name.into()), |(_, signal)| signal)
     }
 
     /// Whether the signal has one value for each motor.
-    ///
-    /// # Example
-    /// ```
-    /// use flagred::source::Signal;
-    ///
-    /// assert!(Signal::MotorCommand.is_of_motors());
-    /// assert!(!Signal::named("wind_m_s").is_of_motors());
-    /// ```
     pub fn is_of_motors(&self) -> bool {
-        !matches!(self, Signal::Named(_))
+        OF_MOTORS.iter().any(|(_, signal)| signal == self)
     }
 }
 
@@ -105,7 +114,7 @@ pub struct Source {
 /// # Example: the mean margin of two motors over a second
 ///
 /// ```
-/// use flagred::source::{Motors, Observer, Signal, Source, Statistic};
+/// use flagred::{monitor::Craft, source::{Motors, Observer, Signal, Source, Statistic}};
 ///
 /// let margin = Source {
 ///     statistic: Statistic::Mean,
@@ -113,7 +122,7 @@ pub struct Source {
 ///     signal: Signal::named("motor_margin"),
 ///     window_s: 1.0,
 /// };
-/// let mut observer = Observer::new([&margin], &[])?;
+/// let mut observer = Observer::new([&margin], Craft::new(2))?;
 /// for i in 1..=20 {
 ///     observer.push(f64::from(i) * 0.1, 0.1, &[0.2, 0.7], &[]);
 /// }
@@ -127,83 +136,56 @@ pub struct Observer {
     inputs: Vec<Input>,
     channels: Vec<Channel>,
     seen: Vec<Seen>,
+    motors: Vec<Motor>,
+    bin: Bin,
 }
 
 impl Observer {
-    /// The windows for `sources`; the named signals stand at the places of their names.
+    /// The windows for `sources`, of a craft whose samples carry the craft's signals.
     ///
     /// # Errors
     ///
-    /// The name of a signal that is not among `names`.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::source::{Motors, Observer, Signal, Source, Statistic};
-    /// # let last = |name| Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named(name), window_s: 1.0 };
-    /// let wind = last("wind_m_s");
-    /// assert!(Observer::new([&wind], &["battery_v", "wind_m_s"]).is_ok());
-    /// assert_eq!(Observer::new([&wind], &["battery_v"]).err().as_deref(), Some("wind_m_s"));
-    /// ```
+    /// The name of a signal that the craft does not carry.
     pub fn new<'a>(
         sources: impl IntoIterator<Item = &'a Source>,
-        names: &[&str],
+        craft: Craft<'_>,
     ) -> Result<Observer, String> {
-        let (channels, inputs) = channels(sources, names)?;
+        let (channels, inputs) = channels(sources, craft.signals)?;
         let seen = channels.iter().map(|channel| Seen::new(channel.window_s));
+        let mut motors = vec![Motor::UNKNOWN; craft.motors];
+        set_geometry(&mut motors, craft.geometry);
         Ok(Observer {
             seen: seen.collect(),
             inputs,
             channels,
+            motors,
+            bin: Bin::NONE,
         })
     }
 
     /// Forgets everything.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::source::{Motors, Observer, Signal, Source, Statistic};
-    /// # let last = |name| Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named(name), window_s: 1.0 };
-    /// let mut observer = Observer::new([&last("wind_m_s")], &["wind_m_s"])?;
-    /// observer.push(0.1, 0.1, &[], &[5.0]);
-    /// observer.clear();
-    /// assert!(observer.value(0).is_none());
-    /// # Ok::<(), String>(())
-    /// ```
     pub fn clear(&mut self) {
         for seen in &mut self.seen {
             seen.clear();
         }
+        clear(&mut self.motors);
+        self.bin = Bin::NONE;
     }
 
-    /// Adds a sample at `t_s` that stands for the `held_s` seconds before it: the effective command of each motor, and
-    /// the named signals in the order of their names; NaN is unknown.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::source::{Motors, Observer, Signal, Source, Statistic};
-    /// # let last = |name| Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named(name), window_s: 1.0 };
-    /// let mut observer = Observer::new([&last("wind_m_s")], &["wind_m_s"])?;
-    /// observer.push(0.1, 0.1, &[0.4, 0.5], &[5.0]);
-    /// assert_eq!(observer.value(0).map(|observed| observed.value), Some(5.0));
-    /// # Ok::<(), String>(())
-    /// ```
+    /// Adds a sample, of a time and the seconds before it that it stands for: the effective commands of the motors and the
+    /// values of the craft's signals, NaN where one is unknown.
     pub fn push(&mut self, t_s: f64, held_s: f64, motors: &[f64], named: &[f64]) {
-        let motors = motors.iter().copied();
-        push(&self.channels, &mut self.seen, (t_s, held_s), motors, named);
+        let together = take(&mut self.motors, &mut self.bin, t_s, motors);
+        let motors = &self.motors;
+        let now = Now {
+            motors,
+            together,
+            named,
+        };
+        push(&self.channels, &mut self.seen, (t_s, held_s), &now);
     }
 
-    /// The value of an input, and how much of its window is behind it; `None` where nothing is known.
-    ///
-    /// # Example
-    /// ```
-    /// # use flagred::source::{Motors, Observer, Signal, Source, Statistic};
-    /// # let last = |name| Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named(name), window_s: 1.0 };
-    /// let mut observer = Observer::new([&last("wind_m_s")], &["wind_m_s"])?;
-    /// assert!(observer.value(0).is_none(), "nothing is known yet");
-    /// observer.push(0.1, 0.1, &[], &[f64::NAN]);
-    /// assert!(observer.value(0).is_none(), "NaN is unknown");
-    /// # Ok::<(), String>(())
-    /// ```
+    /// The value of a source, by its index; `None` where nothing is known.
     pub fn value(&self, input: usize) -> Option<Observation> {
         value(&self.inputs, &self.seen, input)
     }
@@ -223,6 +205,12 @@ pub(crate) fn channels<'a>(
             Signal::MotorMargin => Observed::Margin,
             Signal::MotorMarginLowSide => Observed::LowSide,
             Signal::MotorMarginHighSide => Observed::HighSide,
+            Signal::MotorCommandLessYaw => Observed::CommandLessYaw,
+            Signal::RollEffort => Observed::Effort(0),
+            Signal::PitchEffort => Observed::Effort(1),
+            Signal::YawEffort => Observed::Effort(2),
+            Signal::ThrustEffort => Observed::Effort(3),
+            Signal::CommandNoise => Observed::CommandNoise,
             Signal::Named(name) => Observed::Named(
                 names
                     .iter()
@@ -238,6 +226,7 @@ pub(crate) fn channels<'a>(
                 Statistic::ShareAbove(value) => Some(Threshold::Above(value)),
                 _ => None,
             },
+            in_bins: source.statistic.is_of_bins(),
             window_s: source.window_s,
         };
         let same = channels.iter().position(|known| *known == channel);
@@ -256,6 +245,10 @@ pub(crate) fn channels<'a>(
 mod tests {
     use super::*;
 
+    fn craft<'a>(signals: &'a [&'a str]) -> Craft<'a> {
+        Craft::new(2).with_signals(signals)
+    }
+
     fn source(statistic: Statistic, motors: Motors, signal: &str) -> Source {
         Source {
             statistic,
@@ -266,7 +259,7 @@ mod tests {
     }
 
     fn observe(sources: &[Source], samples: &[[f64; 2]]) -> Vec<Option<f64>> {
-        let mut observer = Observer::new(sources, &["battery_v"]).unwrap();
+        let mut observer = Observer::new(sources, craft(&["battery_v"])).unwrap();
         for (i, motors) in samples.iter().enumerate() {
             observer.push(i as f64 * 0.1, 0.1, motors, &[14.8]);
         }
@@ -351,14 +344,14 @@ mod tests {
             source(Statistic::Std, Motors::Pooled, "motor_command"),
             source(Statistic::Std, Motors::Min, "motor_command"),
         ];
-        assert_eq!(Observer::new(&sources, &[]).unwrap().channels.len(), 2);
+        assert_eq!(Observer::new(&sources, craft(&[])).unwrap().channels.len(), 2);
     }
 
     #[test]
     fn a_signal_that_the_flight_lacks_is_named() {
         let sources = [source(Statistic::Last, Motors::Pooled, "rangefinder_m")];
         assert_eq!(
-            Observer::new(&sources, &["battery_v"]).unwrap_err(),
+            Observer::new(&sources, craft(&["battery_v"])).unwrap_err(),
             "rangefinder_m"
         );
     }

@@ -6,10 +6,11 @@
 use crate::margin::Side;
 
 mod alert;
-mod watch;
+mod notices;
 
-pub(crate) use alert::{Alert, Step};
-pub use watch::Motor;
+pub use crate::motor::Motor;
+pub(crate) use alert::{Alert, Now};
+pub(crate) use notices::{Average, Notices};
 
 /// How risky it is, or was.
 ///
@@ -26,6 +27,8 @@ pub use watch::Motor;
 pub enum Level {
     /// Nothing to say.
     Good,
+    /// Worth knowing, and no danger: the flight is as good as without it.
+    Info,
     /// The pilot should know.
     Warn,
     /// Control is about to be lost, or was.
@@ -36,6 +39,7 @@ impl core::fmt::Display for Level {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.pad(match self {
             Level::Good => "GOOD",
+            Level::Info => "INFO",
             Level::Warn => "WARN",
             Level::Fail => "FAIL",
         })
@@ -51,6 +55,24 @@ pub enum Measure {
     Risk,
     /// The elevated risk.
     ElevatedRisk,
+    /// The noise of the motor commands, in % of their range.
+    CommandNoise,
+    /// What the mean command leaves below the upper limit, in % of the range.
+    Reserve,
+    /// How far a motor is from its own part of the thrust earlier in the flight, in % of the range.
+    Imbalance,
+}
+
+impl core::fmt::Display for Measure {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.pad(match self {
+            Measure::Risk => "risk",
+            Measure::ElevatedRisk => "elevated risk",
+            Measure::CommandNoise => "command noise",
+            Measure::Reserve => "reserve",
+            Measure::Imbalance => "imbalance",
+        })
+    }
 }
 
 /// A limit on each quantity; reaching either is enough.
@@ -115,42 +137,48 @@ pub struct VerdictSettings {
     pub fail: LevelSettings,
     /// A level is lowered when nothing has held it for this long, in seconds.
     pub clear_after_s: f64,
-    /// In the first seconds in the air no level is raised.
+    /// In the first seconds in the air only FAIL is raised.
     pub quiet_after_take_off_s: f64,
     /// What is raised in the last seconds before touching down is taken back.
     pub quiet_before_landing_s: f64,
-    /// Where the motors idle, as when touching down, the risk says little.
-    pub idle: Idle,
+    /// While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle
+    /// is on the ground, whatever the land detector says.
+    pub idle_below: f64,
+    /// What is told beside the risk.
+    pub notices: NoticeSettings,
 }
 
-/// How a risk counts while the motors idle: near their lower limit all at once, they hold nothing in the air.
-///
-/// # Example: a key of a profile
-/// ```
-/// use flagred::{profile::Profile, verdict::Idle};
-///
-/// let text = "flagred: 1\nname: p\nrules: my.yaml\ninputs: {margin: {mean: motor_margin}}
-/// verdict: {idle: {command_below: 0.2, risk_at_most: 50}}";
-/// let idle = Idle { command_below: 0.2, risk_at_most_pct: 50.0 };
-/// assert_eq!(text.parse::<Profile>()?.verdict.idle, idle);
-/// # Ok::<(), fuzzy::diagnostic::Findings>(())
-/// ```
+/// A limit that has to be passed for a while.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Idle {
-    /// The motors idle while their mean effective command is below this.
-    pub command_below: f64,
-    /// The risk then counts as this at most, in %.
-    pub risk_at_most_pct: f64,
+pub struct Limit {
+    /// The limit, on the effective range.
+    pub value: f64,
+    /// For how long, in seconds.
+    pub after_s: f64,
 }
 
-impl Default for VerdictSettings {
-    /// Calibrated on simulated flights.
-    fn default() -> Self {
-        let threshold = |risk, elevated| Threshold {
-            risk_pct: Some(risk),
-            elevated_risk_pct: Some(elevated),
-        };
+/// What is told beside the risk; `None` is not.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct NoticeSettings {
+    /// Noise of the commands above this: vibration, or gains too high.
+    pub noise: Option<Limit>,
+    /// A mean command that leaves less than this below the upper limit.
+    pub reserve: Option<Limit>,
+    /// A motor that moved farther than this from its own part of the thrust earlier in the flight.
+    pub imbalance: Option<Limit>,
+}
+
+impl VerdictSettings {
+    /// Calibrated on flights; see docs/validation.md.
+    pub const DEFAULT: VerdictSettings = {
+        const fn threshold(risk: f64, elevated: f64) -> Threshold {
+            Threshold {
+                risk_pct: Some(risk),
+                elevated_risk_pct: Some(elevated),
+            }
+        }
         VerdictSettings {
             warn: LevelSettings {
                 raise: threshold(67.0, 50.0),
@@ -165,34 +193,23 @@ impl Default for VerdictSettings {
             clear_after_s: 10.0,
             quiet_after_take_off_s: 5.0,
             quiet_before_landing_s: 1.0,
-            idle: Idle {
-                command_below: 0.1,
-                risk_at_most_pct: 60.0,
+            idle_below: 0.1,
+            notices: NoticeSettings {
+                noise: None,
+                reserve: None,
+                imbalance: None,
             },
         }
+    };
+}
+
+impl Default for VerdictSettings {
+    fn default() -> Self {
+        VerdictSettings::DEFAULT
     }
 }
 
-/// A time at or above a level: what is FAIL for a while is one finding of that while, within one of WARN.
-///
-/// # Example: ten seconds of motors at their limits
-/// ```
-/// # use flagred::{sample::Sample, estimator::Estimator, monitor::{Craft, Monitor}, shipped};
-/// # let estimator = shipped::flagred_paper();
-/// # let mut monitor = Monitor::new(&estimator, Craft::new(4))?;
-/// use flagred::{margin::Side, verdict::{Finding, Level, Measure, MotorFinding}};
-///
-/// for i in 0..500 {
-///     let t_s = f64::from(i) * 0.04;
-///     let motors = if t_s < 10.0 { [0.5; 4] } else { [0.0, 0.9, 1.0, 0.1] };
-///     monitor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
-/// }
-/// let Finding { level, from_s, raised_s, measure, motor, .. } = monitor.finish()[1].ok_or("nothing found")?;
-/// assert!(level == Level::Fail && from_s > 10.0 && raised_s >= from_s + 0.4 && measure == Measure::Risk);
-/// let MotorFinding { motor, side, least_margin, .. } = motor.ok_or("no motor")?;
-/// assert_eq!((motor, side, least_margin), (0, Side::Low, 0.0)); // the first of two without any margin
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// A time of trouble: from when a level was first reached until it was last reached, with the worst level of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Finding {
@@ -201,15 +218,17 @@ pub struct Finding {
     pub level: Level,
     /// Since when the level was reached, in seconds.
     pub from_s: f64,
-    /// When it was raised: its `after_s` later.
+    /// When it was first raised: `after_s` of that level later.
     pub raised_s: f64,
+    /// When it became FAIL; `None` where it did not.
+    pub failed_s: Option<f64>,
     /// When the level was last reached. It is held for a while longer.
     pub to_s: f64,
     /// What reached the level first.
     pub measure: Measure,
     /// The threshold of the level in %.
     pub threshold_pct: f64,
-    /// The largest value of the measure in that time, in %.
+    /// The worst value of the measure in that time, in %.
     #[cfg_attr(feature = "serde", serde(rename = "value_pct"))]
     pub peak_pct: f64,
     /// The motor with the least margin on average over that time; `None` where no motor is known.
@@ -242,5 +261,19 @@ fn from_one<S: serde::Serializer>(index: &usize, serializer: S) -> Result<S::Ok,
     serde::Serialize::serialize(&(index + 1), serializer)
 }
 
-/// The findings that end at one time: of WARN, of FAIL.
-pub type Ended = [Option<Finding>; 2];
+impl Finding {
+    pub(crate) const NONE: Finding = Finding {
+        level: Level::Good,
+        from_s: 0.0,
+        raised_s: 0.0,
+        failed_s: None,
+        to_s: 0.0,
+        measure: Measure::Risk,
+        threshold_pct: 0.0,
+        peak_pct: f64::NEG_INFINITY,
+        motor: None,
+    };
+}
+
+/// The findings that end at one time: of the risk, the noise, the reserve and the imbalance.
+pub type Ended = [Option<Finding>; 4];

@@ -159,8 +159,12 @@ impl Window {
     /// Lets time pass until `t_s`: what is older than the window leaves it.
     pub(crate) fn advance(&mut self, t_s: f64) {
         self.now_s = self.now_s.max(t_s);
-        let start_s = self.now_s - self.length_s;
-        while self.len > 0 && self.slots[self.oldest].end_s - start_s <= TIME_RESOLUTION_S {
+        self.forget_before(self.now_s - self.length_s);
+    }
+
+    /// Drops what ended before a time.
+    pub(crate) fn forget_before(&mut self, t_s: f64) {
+        while self.len > 0 && self.slots[self.oldest].end_s - t_s <= TIME_RESOLUTION_S {
             self.samples -= self.slots[self.oldest].samples;
             self.oldest = self.place(1);
             self.len -= 1;

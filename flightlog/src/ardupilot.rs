@@ -1,7 +1,8 @@
-//! What ArduPilot's parameters and messages say about the vehicle: its kind, its motors,
+//! The vehicle by ArduPilot's parameters and messages: its kind, its motors,
 //! the range of their commands.
 
 use crate::geometry::tables;
+use crate::outputs::LONGEST_PULSE_US;
 use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
 
@@ -112,7 +113,7 @@ pub(crate) fn air_from_commands(flight: &Flight) -> (Option<Intervals>, Option<I
     )
 }
 
-/// A flight mode as a log tells it.
+/// A flight mode as it is logged.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Mode {
     Number(i64),
@@ -181,17 +182,20 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     };
     let own = parameters
         .pair("MOT_PWM_MIN", "MOT_PWM_MAX")
-        .filter(|(low, _)| *low > 0.0);
+        .filter(|(low, high)| *low > 0.0 && *high <= LONGEST_PULSE_US);
     if let Some(own) = own {
         return Some(range(own, "MOT_PWM_MIN/MAX".into()));
     }
     let (channel, from) = match parameters.get("RCMAP_THROTTLE") {
-        Some(channel) => (channel as i64, "RCMAP_THROTTLE"),
-        None => (3, "no RCMAP_THROTTLE, so its default"),
+        Some(channel) => (channel as i64, "by RCMAP_THROTTLE"),
+        None => (3, "is 3 by default"),
     };
     let radio = parameters.pair(&format!("RC{channel}_MIN"), &format!("RC{channel}_MAX"))?;
+    if radio.0 < 0.0 || radio.1 > LONGEST_PULSE_US {
+        return None;
+    }
     let source =
-        format!("RC{channel}_MIN/MAX (MOT_PWM_MIN/MAX not set; throttle channel from {from})");
+        format!("RC{channel}_MIN/MAX: MOT_PWM_MIN/MAX are not set, the throttle channel {from}");
     Some(range(radio, source))
 }
 
@@ -205,7 +209,8 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
         unit: "1",
         source,
     };
-    if let Some((low, high)) = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
+    let spin = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX");
+    if let Some((low, high)) = spin.filter(|(low, high)| *low >= 0.0 && *high <= 1.0) {
         return range(low, high, "MOT_SPIN_MIN/MAX".into());
     }
     let low = parameters.get("THR_MIN").map(|value| value / 1000.0);
@@ -221,12 +226,12 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
     };
     match high > low && high <= 1.0 {
         true => range(low, high, source.into()),
-        false => range(low, 1.0, format!("THR_MIN; {source} makes no sense")),
+        false => range(low, 1.0, format!("THR_MIN; {source} is not a limit")),
     }
 }
 
-/// Share of the commands that may be above an upper limit that is in force, and how far above
-/// counts, as a fraction of the range: a failed sample is no proof.
+/// Share of the commands that may be above an upper limit that is in force, and from how far
+/// above they count, as a fraction of the range: single damaged samples do not count.
 const ABOVE: (f64, f64) = (1e-4, 0.006);
 
 /// The effective range of a flight. Before firmware 3.4 a limit may be set without being in

@@ -1,20 +1,20 @@
-//! The clock of a log: which time stamps to believe, and where it starts again.
+//! The clock of a log: which time stamps to accept, and where the autopilot booted again.
 
-/// Steps from one message to the next that are always believed, in seconds. Back must
-/// reach further than forward: the message before may be the damaged one.
+/// Steps from one message to the next that are always accepted, in seconds. The limit back is
+/// larger than forward: the message before may be the damaged one.
 const BACK_S: f64 = -2.5;
 const FORWARD_S: f64 = 2.0;
-/// The longest step from one message to the next that is believed in slow logs.
+/// The longest step from one message to the next that is accepted in slow logs.
 const SLOWEST_S: f64 = 60.0;
-/// A clock that goes back by more than this, in seconds, started anew.
+/// A clock that goes back by more than this, in seconds, was started again.
 const BOOT_STEP_S: f64 = -10.0;
 
-/// What to do with a message of some time.
+/// What to do with a message, by its time stamp.
 #[derive(Debug, PartialEq)]
-pub(crate) enum Placed {
+pub(crate) enum Checked {
     /// Take it, at this time.
     At(f64),
-    /// Its time jumps: keep it until the next message tells whether that was true.
+    /// Its time jumps: keep it until the next message confirms or refutes it.
     Wait,
     /// The message that waited was right: take it at the first time, this one at the second.
     Confirmed(f64, f64),
@@ -24,16 +24,16 @@ pub(crate) enum Placed {
     RefutedWait,
 }
 
-/// Sorts out damaged time stamps and boots. One message with a time that jumps is
+/// Detects damaged time stamps and boots. One message with a time that jumps is
 /// damage; two in a row that agree are a pause in the log or, when the time goes back,
-/// another boot: then the clock goes on from where the boot before ended.
+/// another boot: then the clock continues from the end of the boot before.
 #[derive(Debug)]
 pub(crate) struct Clock {
     offset_s: f64,
     first_s: Option<f64>,
     last_s: Option<f64>,
     waiting_s: Option<f64>,
-    /// The longest step that is believed now: some times the last one.
+    /// The longest step that is accepted now: a multiple of the last one.
     longest_s: f64,
     boot_hint: bool,
     boots_s: Vec<f64>,
@@ -63,17 +63,17 @@ impl Clock {
         &self.boots_s
     }
 
-    /// The first believed time.
+    /// The first accepted time.
     pub(crate) fn first_s(&self) -> Option<f64> {
         self.first_s
     }
 
-    /// The latest believed time, on the clock that goes on over boots.
+    /// The latest accepted time, on the clock that continues over boots.
     pub(crate) fn now_s(&self) -> Option<f64> {
         self.last_s.map(|last| last + self.offset_s)
     }
 
-    pub(crate) fn place(&mut self, t_s: f64) -> Placed {
+    pub(crate) fn check(&mut self, t_s: f64) -> Checked {
         let hint = std::mem::take(&mut self.boot_hint);
         let last_s = self.last_s;
         if let Some(last_s) = last_s {
@@ -81,34 +81,34 @@ impl Clock {
                 self.waiting_s = None;
                 self.boot(last_s);
                 self.last_s = Some(t_s);
-                return Placed::At(t_s + self.offset_s);
+                return Checked::At(t_s + self.offset_s);
             }
             if self.follows(last_s, t_s) {
                 let t_s = t_s + self.offset_s;
                 return match self.waiting_s.take() {
-                    Some(_) => Placed::Refuted(t_s),
-                    None => Placed::At(t_s),
+                    Some(_) => Checked::Refuted(t_s),
+                    None => Checked::At(t_s),
                 };
             }
         }
         match self.waiting_s.replace(t_s) {
-            None => Placed::Wait,
+            None => Checked::Wait,
             Some(first_s) if self.follows(first_s, t_s) => {
                 self.waiting_s = None;
                 self.first_s.get_or_insert(first_s);
                 if let Some(last_s) = last_s.filter(|last_s| first_s - last_s < BOOT_STEP_S) {
                     self.boot(last_s);
                 }
-                Placed::Confirmed(first_s + self.offset_s, t_s + self.offset_s)
+                Checked::Confirmed(first_s + self.offset_s, t_s + self.offset_s)
             }
             Some(_) => {
                 self.longest_s = (2.0 * self.longest_s).min(SLOWEST_S);
-                Placed::RefutedWait
+                Checked::RefutedWait
             }
         }
     }
 
-    /// Whether a message at `t_s` may follow one at `last_s`; if so, the clock goes on there.
+    /// Whether a message at `t_s` may follow one at `last_s`; if so, it becomes the last.
     fn follows(&mut self, last_s: f64, t_s: f64) -> bool {
         let step_s = t_s - last_s;
         let follows = (BACK_S..=self.longest_s).contains(&step_s);
@@ -146,7 +146,7 @@ impl Latest {
         self.latest_s
     }
 
-    /// Whether to believe a time: one too far ahead of all before is damage, unless the
+    /// Whether to accept a time: one too far after all before is damage, unless the
     /// next such one agrees with it.
     pub(crate) fn believe(&mut self, t_s: f64) -> bool {
         let latest_s = *self.latest_s.get_or_insert(t_s);
@@ -166,17 +166,17 @@ mod tests {
     use super::*;
 
     /// Times at which messages end up; `None` for those thrown away.
-    fn places(times: &[f64]) -> Vec<f64> {
+    fn times_kept(times: &[f64]) -> Vec<f64> {
         let mut clock = Clock::default();
-        let mut placed = Vec::new();
+        let mut kept = Vec::new();
         for &t in times {
-            match clock.place(t) {
-                Placed::At(t) | Placed::Refuted(t) => placed.push(t),
-                Placed::Confirmed(a, b) => placed.extend([a, b]),
-                Placed::Wait | Placed::RefutedWait => {}
+            match clock.check(t) {
+                Checked::At(t) | Checked::Refuted(t) => kept.push(t),
+                Checked::Confirmed(a, b) => kept.extend([a, b]),
+                Checked::Wait | Checked::RefutedWait => {}
             }
         }
-        placed
+        kept
     }
 
     #[test]
@@ -203,7 +203,7 @@ mod tests {
             ),
         ];
         for (name, times, expected) in cases {
-            assert_eq!(places(times), *expected, "{name}");
+            assert_eq!(times_kept(times), *expected, "{name}");
         }
     }
 
@@ -220,10 +220,10 @@ mod tests {
     #[test]
     fn a_repeated_definition_announces_a_boot() {
         let mut clock = Clock::default();
-        clock.place(6.0);
-        clock.place(6.5);
+        clock.check(6.0);
+        clock.check(6.5);
         clock.expect_boot();
-        assert_eq!(clock.place(2.0), Placed::At(8.5));
+        assert_eq!(clock.check(2.0), Checked::At(8.5));
         assert_eq!(clock.boots_s(), [6.5]);
         assert_eq!(clock.now_s(), Some(8.5));
     }

@@ -1,9 +1,9 @@
-//! Why a file could not be read at all.
+//! Errors of reading a log.
 
 use std::io::ErrorKind;
 
-/// A log that could not be read. A damaged log is no error: it gives what is there,
-/// and says in its [`Report`](crate::Report) what is missing.
+/// A log could not be read. A damaged log is not an error: its undamaged part is read,
+/// and its [`Report`](crate::Report) counts the damage.
 ///
 /// # Example
 /// ```
@@ -14,22 +14,23 @@ use std::io::ErrorKind;
 /// assert_eq!(error.to_string(), "`the log` is a PNG picture, not a flight log");
 /// ```
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file could not be opened, or reading it failed.
     #[error("`{path}` cannot be read: {source}")]
     Io {
         /// The path as the user gave it; `standard input`, or `the log` for a reader.
         path: String,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// There is nothing in it.
+    /// The file is empty.
     #[error("`{path}` is empty")]
     Empty {
         /// The path as the user gave it.
         path: String,
     },
-    /// It is something else than a flight log.
+    /// The file is not a flight log.
     #[error("`{path}` is {what}, not a flight log")]
     NotALog {
         /// The path as the user gave it.
@@ -37,7 +38,7 @@ pub enum ReadError {
         /// What it looks like, such as `a PNG picture`.
         what: String,
     },
-    /// It is a flight CSV, but its columns or values make no flight.
+    /// A flight CSV has columns or header values that cannot be used.
     #[error("`{path}`, line {line}: {problem}")]
     Csv {
         /// The path as the user gave it.
@@ -53,13 +54,6 @@ pub enum ReadError {
 
 impl ReadError {
     /// What to do about it, apart from the message.
-    ///
-    /// ```
-    /// let picture = b"\x89PNG\r\n\x1a\n and so on";
-    /// let error = flightlog::read(&picture[..], &flightlog::Options::default()).unwrap_err();
-    /// assert_eq!(error.to_string(), "`the log` is a PNG picture, not a flight log");
-    /// assert!(error.help().is_some());
-    /// ```
     pub fn help(&self) -> Option<&str> {
         match self {
             Self::Io { source, .. } => match source.kind() {
@@ -95,13 +89,13 @@ impl ReadError {
     }
 }
 
-/// What a log of PX4's first format is.
+/// Description of a log in PX4's first format.
 pub(crate) const SDLOG2: &str = "an sdlog2 log of PX4 1.6 or older (.px4log)";
 
-/// What a file is that is text and no log.
+/// Description of a text file that is not a log.
 pub(crate) const TEXT: &str = "a text file";
 
-/// What a log is called in an error until the caller names it.
+/// The path in an error until the caller sets it.
 pub(crate) const UNNAMED: &str = "the log";
 
 pub(crate) fn io_error(source: std::io::Error) -> ReadError {

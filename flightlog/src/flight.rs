@@ -1,19 +1,10 @@
-//! `Flight`: one shape for every log.
+//! `Flight`, the common type of all logs.
 
 use crate::{Geometry, Intervals, Report, Series, Signal};
 
 /// The kind of log a flight was read from.
-///
-/// # Example: told by the content, not by the name
-/// ```
-/// use flightlog::Format;
-///
-/// let log = "t_s,motor1\n0,0.5\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// assert_eq!((flight.format, flight.format.to_string()), (Format::Csv, "flight CSV".to_string()));
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// ArduPilot DataFlash, binary (`.bin`).
     DataFlash,
@@ -40,17 +31,8 @@ impl std::fmt::Display for Format {
 }
 
 /// What kind of vehicle flew.
-///
-/// # Example: a log that does not say
-/// ```
-/// use flightlog::VehicleKind;
-///
-/// let flight = flightlog::read("t_s,motor1\n0,0.5\n".as_bytes(), &flightlog::Options::default())?;
-/// assert_eq!(flight.vehicle.kind, VehicleKind::Unknown);
-/// assert_eq!(VehicleKind::Vtol.to_string(), "VTOL plane");
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum VehicleKind {
     /// A multirotor: quad, hexa, octa, X8, tri, Y6 ...
     Multirotor,
@@ -104,19 +86,10 @@ impl std::fmt::Display for VehicleKind {
     }
 }
 
-/// The vehicle, as far as the log names it.
-///
-/// # Example: what a flight CSV can say of it
-/// ```
-/// use flightlog::{Vehicle, VehicleKind};
-///
-/// let log = "# vehicle: my quad\n# vehicle_kind: multirotor\nt_s,motor1\n0,0.5\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// let Vehicle { kind, frame, firmware, .. } = flight.vehicle;
-/// assert_eq!((kind, frame.as_deref(), firmware), (VehicleKind::Multirotor, Some("my quad"), None));
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
+/// The vehicle, as far as the log describes it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Vehicle {
     /// What kind it is.
     pub kind: VehicleKind,
@@ -131,21 +104,13 @@ pub struct Vehicle {
 }
 
 /// One motor, and the output that drives it.
-///
-/// # Example: which output drives the second motor?
-/// ```
-/// use flightlog::Motor;
-///
-/// let flight = flightlog::read("t_s,motor1,motor2\n0,0.5,0.5\n".as_bytes(), &flightlog::Options::default())?;
-/// let Motor { number, output, .. } = &flight.motors[1];
-/// assert_eq!((*number, output.as_str()), (2, "motor2"));
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Motor {
     /// Motor number of the autopilot, from 1.
     pub number: u16,
-    /// The output in the log's own words, such as `C3` or `actuator_motors.control[2]`.
+    /// The output as the log names it, such as `C3` or `actuator_motors.control[2]`.
     pub output: String,
     /// Where the assignment came from, such as `SERVO3_FUNCTION = 35`.
     pub source: String,
@@ -153,6 +118,7 @@ pub struct Motor {
 
 /// A range of commands, and where it came from.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Range {
     /// Lower end.
     pub low: f64,
@@ -229,7 +195,7 @@ impl Commands {
     }
 }
 
-/// Something that was said or done at a time.
+/// A message or a change of mode at a time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event<T = String> {
     /// Time in microseconds on the log's clock.
@@ -247,12 +213,6 @@ impl<T> Event<T> {
     }
 
     /// Time in seconds on the log's clock.
-    ///
-    /// # Example
-    /// ```
-    /// let event = flightlog::Event { t_us: 12_500_000, what: "take-off".to_string() };
-    /// assert_eq!(event.t_s(), 12.5);
-    /// ```
     pub fn t_s(&self) -> f64 {
         self.t_us as f64 * 1e-6
     }
@@ -262,9 +222,11 @@ impl<T> Event<T> {
 ///
 /// Times are in seconds on the log's own clock and never decrease within a series:
 /// since boot for ArduPilot and PX4 logs, since the first packet for telemetry, as
-/// written for CSV. Where a log holds several boots of the autopilot, the clock goes on
-/// where the boot before ended; [`Flight::boots_s`] says where each began.
+/// written for CSV. Where a log holds several boots of the autopilot, the clock continues
+/// at the end of the boot before; [`Flight::boots_s`] has the start of each.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Flight {
     /// The kind of log.
     pub format: Format,
@@ -279,10 +241,11 @@ pub struct Flight {
     pub range: Option<Range>,
     /// The part of the range that is used in flight, as fractions of it: a motor at its
     /// upper end is saturated although the range goes further.
+    #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
     pub effective: Range,
     /// The motor commands.
     pub commands: Commands,
-    /// Everything else that was logged over time.
+    /// All other signals.
     pub series: Vec<Series>,
     /// Flight modes, from the time each was entered.
     pub modes: Vec<Event>,
@@ -297,9 +260,9 @@ pub struct Flight {
     pub utc_at_zero_s: Option<f64>,
     /// Times at which the autopilot booted again within the log; empty for one boot.
     pub boots_s: Vec<f64>,
-    /// Key and value lines that a CSV file carries on top, in their order.
+    /// Header lines of a CSV file as keys and values, in their order.
     pub header: Vec<(String, String)>,
-    /// How the reading went.
+    /// Amount of data and damage.
     pub report: Report,
 }
 

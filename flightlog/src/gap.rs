@@ -1,24 +1,15 @@
-//! What a log does not hold, so that a question about it has no answer.
+//! Information that a log lacks.
 
 use crate::{Flight, Format, VehicleKind};
 
-/// Rows a second below which a spread over a window means little.
+/// Rate in rows a second below which a spread over a window means little.
 const SLOWEST_HZ: f64 = 5.0;
 
-/// Something the log does not hold: the reason why a value is not available (NA).
-///
-/// # Example: a log too coarse for a spread
-/// ```
-/// let log = "t_s,motor1,motor2,motor3,motor4\n0,0.4,0.4,0.4,0.4\n1,0.4,0.5,0.4,0.4\n2,0.4,0.4,0.4,0.4\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// let gaps: Vec<String> = flight.gaps().iter().map(ToString::to_string).collect();
-/// assert!(gaps.contains(&"motor commands are logged at 1.0 Hz, too slow for a spread".into()), "{gaps:?}");
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
+/// Information that the log lacks: the reason why a value is not available (NA).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Gap {
-    /// The vehicle is known, and is no multirotor.
+    /// The vehicle is known and is not a multirotor.
     #[error("the vehicle is a {kind}, not a multirotor ({from})")]
     NotAMultirotor {
         /// What it is.
@@ -81,7 +72,7 @@ pub enum Gap {
 }
 
 impl Gap {
-    /// What the pilot can do so that the next log of this kind holds it.
+    /// What the pilot can do so that the next log of this kind has it.
     ///
     /// # Example
     /// ```
@@ -158,8 +149,8 @@ impl Gap {
 }
 
 impl Flight {
-    /// Everything this log does not hold, the gravest first; empty for a log that can
-    /// answer every question. For a vehicle that is no multirotor, that is the one answer.
+    /// Everything that this log lacks, most important first; empty for a complete log. For a
+    /// vehicle that is not a multirotor, that is the only gap.
     ///
     /// ```
     /// let log = "t_s,motor1\n0,0.5\n1,0.4\n2,0.4\n";
@@ -176,7 +167,7 @@ impl Flight {
             self.vehicle.kind,
             VehicleKind::Multirotor | VehicleKind::Unknown
         ) {
-            // The other questions are about multirotors.
+            // The other gaps concern multirotors only.
             return vec![Gap::NotAMultirotor {
                 kind: self.vehicle.kind,
                 from: self.vehicle.source.clone(),

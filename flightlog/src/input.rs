@@ -1,4 +1,4 @@
-//! A sliding view into a stream: the readers see slices, memory stays bounded.
+//! A sliding window over a stream: readers see slices, and memory is bounded.
 
 use std::io::{self, BufRead, Read};
 
@@ -42,8 +42,8 @@ impl<'r> Input<'r> {
         Ok((&self.buffer[..self.end], self.at_end))
     }
 
-    /// Shows window after window to `scan`, which says how many bytes of each it is done
-    /// with: some of every window, and at the end of the log (`true`) all that it can use.
+    /// Passes window after window to `scan`, which returns how many bytes of each are done:
+    /// some of every window, and at the end of the log (`true`) all that it can use.
     pub(crate) fn scan(&mut self, mut scan: impl FnMut(&[u8], bool) -> usize) -> io::Result<()> {
         loop {
             let (window, at_end) = self.window()?;

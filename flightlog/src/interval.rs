@@ -1,25 +1,19 @@
-//! Stretches of time in which something was the case: armed, in the air.
+//! Time intervals, such as those in the air.
 
-/// One stretch of time on the log's clock.
+/// A time interval on the log's clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Interval {
-    /// First time of the interval, seconds.
+    /// Start in seconds.
     pub start_s: f64,
-    /// Time at which it was over, seconds; the last time of the log when it never was.
+    /// End in seconds; the last time of the log where the interval was still open.
     pub end_s: f64,
-    /// The log ended while it still was the case.
+    /// The interval was still open at the end of the log.
     pub ends_with_log: bool,
 }
 
 impl Interval {
     /// Length in seconds.
-    ///
-    /// # Example
-    /// ```
-    /// use flightlog::Interval;
-    ///
-    /// assert_eq!(Interval { start_s: 10.0, end_s: 12.5, ends_with_log: false }.duration_s(), 2.5);
-    /// ```
     pub fn duration_s(&self) -> f64 {
         self.end_s - self.start_s
     }
@@ -32,7 +26,7 @@ impl Interval {
 /// Intervals in order of time, and the rule by which they were found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Intervals {
-    /// The intervals, in order of time and apart from each other.
+    /// The intervals, in order of time, without overlap.
     pub spans: Vec<Interval>,
     /// How they were found, such as `EV 28 (not landed) to EV 18 (land complete)`.
     pub rule: String,
@@ -58,7 +52,7 @@ impl Intervals {
             .is_some_and(|span| span.contains(t_s))
     }
 
-    /// Length of all intervals together, in seconds.
+    /// Sum of the lengths of all intervals, in seconds.
     pub fn duration_s(&self) -> f64 {
         self.spans.iter().map(Interval::duration_s).sum()
     }
@@ -76,7 +70,7 @@ impl Intervals {
         self
     }
 
-    /// From a state that is told again and again; its first value holds before it, too.
+    /// From a state that is reported repeatedly; the first value also holds before it.
     pub(crate) fn from_states(
         states: &[(f64, bool)],
         (first_s, last_s): (f64, f64),
@@ -91,7 +85,7 @@ impl Intervals {
     }
 
     /// From changes of state: each is the time from which the state holds.
-    /// `before` is the state ahead of the first change, from `first_s` on.
+    /// `before` is the state from `first_s` to the first change.
     pub(crate) fn from_changes(
         changes: &[(f64, bool)],
         before: bool,
@@ -131,7 +125,7 @@ impl Intervals {
     }
 }
 
-/// Where both states hold, from the changes of each; the first value of each holds before.
+/// The conjunction of two states, from the changes of each; the first value of each also holds before it.
 pub(crate) fn both_hold(a: &[(f64, bool)], b: &[(f64, bool)]) -> Vec<(f64, bool)> {
     let mut times: Vec<f64> = a.iter().chain(b).map(|(t_s, _)| *t_s).collect();
     times.sort_by(f64::total_cmp);

@@ -1,10 +1,10 @@
-//! One [`Flight`] out of every log that a multirotor pilot has.
+//! Reads the flight logs of multirotors into one type, [`Flight`].
 //!
-//! [`open`] and [`read`] tell the kind of log by its content, unpack gzip, and give the
-//! vehicle, its motors and where each of them is known from, the range of their commands,
-//! signals on their own time bases, and when it was in the air. What a log does not tell
-//! is `None` or a [`Gap`], never a number that means nothing. A damaged log gives what is
-//! left of it, and a [`Report`] of what is not.
+//! [`open`] and [`read`] detect the format by its content and unpack gzip. They give the
+//! vehicle, its motors with their geometry and the range of their commands (each with its
+//! source), signals on their own time bases, and the times in the air. Unknown values are
+//! `None` or a [`Gap`], never a number. The undamaged part of a damaged log is read, and a
+//! [`Report`] counts the damage.
 //!
 //! ```
 //! let log = "\
@@ -30,6 +30,7 @@ mod clock;
 mod csv;
 mod dataflash;
 mod error;
+mod field;
 mod flight;
 mod gap;
 mod geometry;
@@ -39,10 +40,11 @@ mod mav_type;
 pub mod mavlink;
 mod outputs;
 mod parameters;
-mod place;
 mod px4;
 mod read;
 mod report;
+#[cfg(feature = "serde")]
+mod serialize;
 mod signal;
 mod statistics;
 mod tlog;

@@ -1,4 +1,4 @@
-//! MAV_TYPE, by which MAVLink and PX4 say what a vehicle is
+//! MAV_TYPE, the type of a vehicle in MAVLink and PX4
 //! (<https://mavlink.io/en/messages/common.html#MAV_TYPE>).
 
 use crate::VehicleKind;
@@ -11,7 +11,7 @@ pub(crate) struct MavType {
     pub(crate) motors: Option<u16>,
 }
 
-/// What a MAV_TYPE stands for; `None` for a generic vehicle and for what does not fly or
+/// The meaning of a MAV_TYPE; `None` for a generic vehicle and for what does not fly or
 /// drive, such as a ground station or a gimbal.
 pub(crate) fn mav_type(number: i64) -> Option<MavType> {
     use VehicleKind::{Helicopter, Multirotor, Other, Plane, Rover, Submarine, Vtol};

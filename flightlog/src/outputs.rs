@@ -1,15 +1,15 @@
-//! Servo outputs as ArduPilot logs them, before it is known which of them drive motors.
+//! Servo outputs of ArduPilot, before it is known which of them drive motors.
 
 use crate::Commands;
 use crate::signal::Order;
 
-/// A pulse that is no pulse: the output was not logged in that row, or is damaged.
+/// Stands for an output that was not logged in a row, or is damaged.
 const MISSING: u16 = u16::MAX;
-/// No output has longer pulses, in us; what has is damaged.
-const LONGEST_PULSE_US: f64 = 3000.0;
+/// Pulses longer than this are damaged, in us.
+pub(crate) const LONGEST_PULSE_US: f64 = 3000.0;
 
-/// Outputs that are looked at for whether they move like motors; the standard deviation of one
-/// that moves, in us, and its correlation with the mean of the first four from which it is one.
+/// Outputs that may be motors where nothing else names them. A motor has at least this standard
+/// deviation, in us, and this correlation with the mean of the first four outputs.
 const MOST_LIKE: usize = 8;
 const LEAST_MOVE_US: f64 = 20.0;
 const TOGETHER: f64 = 0.6;
@@ -52,7 +52,7 @@ impl Outputs {
             let Some(column) = self.columns.get_mut(index) else {
                 continue;
             };
-            // Most outputs are 0 for ever: their columns stay empty.
+            // Most outputs are always 0: their columns stay empty.
             if value == 0.0 && column.is_empty() {
                 continue;
             }
@@ -66,8 +66,8 @@ impl Outputs {
         order != Order::Last
     }
 
-    /// How many motors the outputs drive, where nothing else tells: 4, 6 or 8 if the first so
-    /// many outputs, and not those after them, move together.
+    /// Number of motors, where nothing else gives it: 4, 6 or 8 if that many of the first outputs,
+    /// and not the next ones, move together.
     pub(crate) fn like_motors(&self) -> Option<u16> {
         let rows: Vec<[f64; MOST_LIKE]> = (0..self.t_s.len())
             .map(|row| {
@@ -119,7 +119,7 @@ impl Outputs {
             .map(|output| self.columns.get(usize::from(*output).checked_sub(1)?))
             .map(|column| column.filter(|column| !column.is_empty()))
             .collect();
-        // Outputs that were never logged are no commands.
+        // Outputs that were never logged give no commands.
         if columns.iter().all(Option::is_none) {
             return commands;
         }

@@ -1,9 +1,9 @@
-//! Parameters of an autopilot, as its log or its telemetry tells them.
+//! Parameters of an autopilot, from its log or its telemetry.
 
 use std::collections::BTreeMap;
 
-/// Parameters by name, each with the FIRST value that the log has of it: in flight,
-/// failure tests and learning change them.
+/// Parameters by name, each with the FIRST value in the log: failure tests and learning change
+/// parameters in flight.
 #[derive(Debug, Default)]
 pub(crate) struct Parameters(BTreeMap<String, f64>);
 
@@ -33,7 +33,7 @@ impl<'a> FromIterator<(&'a str, f64)> for Parameters {
     }
 }
 
-/// The name that stands for a number in a table with gaps; `what` and the number in a gap.
+/// The name of a number in a table with gaps; `what` and the number where the table has none.
 pub(crate) fn name_of(names: &[&str], number: i64, what: &str) -> String {
     let name = usize::try_from(number)
         .ok()

@@ -1,11 +1,11 @@
-//! What PX4's parameters say about the vehicle: its kind, its motors, the range of their
+//! The vehicle by PX4's parameters: its kind, its motors, the range of their
 //! commands.
 
 use crate::mav_type::{MavType, mav_type};
 use crate::parameters::Parameters;
 use crate::{Motor, Range, Vehicle};
 
-/// Raw commands above this are no pulse widths in us but counts of a bus.
+/// Raw commands above this are counts of a bus, not pulse widths in us.
 const LONGEST_PULSE_US: f64 = 2200.0;
 /// Full command of an ESC on DroneCAN (UAVCAN), 13 bits
 /// (<https://dronecan.github.io/Specification/7._List_of_standard_data_types/#rawcommand>).
@@ -124,8 +124,8 @@ pub(crate) fn actuator_outputs(
         .collect()
 }
 
-/// PX4 1.13 may still use the mixers of before: the parameters of single outputs are there,
-/// and mean nothing.
+/// Whether PX4 1.13 uses static mixers, as older versions do: the parameters of single outputs
+/// exist, but have no effect.
 fn has_static_mixer(parameters: &Parameters) -> bool {
     parameters.get("SYS_CTRL_ALLOC") == Some(0.0)
 }
@@ -174,6 +174,7 @@ pub(crate) fn output_range(
     if let (Some(low), Some(high)) = (of_output("MIN"), of_output("MAX"))
         && high > low
         && low > 0.0
+        && high <= crate::outputs::LONGEST_PULSE_US
     {
         let source = match has_static_mixer(parameters) {
             true => format!("PWM_{bank}_MIN/MAX or PWM_MIN/MAX (SYS_CTRL_ALLOC = 0)"),

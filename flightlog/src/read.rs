@@ -1,4 +1,4 @@
-//! The front door: what kind of log is it, and who reads it.
+//! Detects the format of a log by its content and calls the reader of that format.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{self, TEXT, UNNAMED, io_error};
 use crate::input::Input;
-use crate::{Flight, ReadError, csv, dataflash, tlog, ulog};
+use crate::{Flight, ReadError, csv, dataflash, geometry, tlog, ulog};
 
 /// What to read.
 ///
@@ -29,21 +29,36 @@ pub struct Options {
 }
 
 impl Options {
-    /// Whether the signal `name` is asked for.
-    pub(crate) fn wants(&self, name: &str) -> bool {
+    /// Whether the signal `name` is to be kept.
+    fn keeps(&self, name: &str) -> bool {
         self.signals
             .as_ref()
             .is_none_or(|names| names.iter().any(|wanted| wanted == name))
     }
+
+    /// Whether the signal `name` is to be read: to be kept, or for the geometry.
+    pub(crate) fn wants(&self, name: &str) -> bool {
+        self.keeps(name) || geometry::infer::SIGNALS.contains(&name)
+    }
 }
 
-/// Reads the log at `path`; `-` is standard input. The content tells its format, never
-/// the name, and it may be gzipped.
+/// Reads the log at `path`; `-` is standard input. The content decides the format, not the
+/// name, and it may be gzipped.
 ///
 /// # Errors
 ///
-/// When there is no such file, when it is empty, or when it is no flight log. A damaged
-/// log is no error: see [`Flight::report`].
+/// When there is no such file, when it is empty, or when it is not a flight log. A damaged
+/// log is not an error: see [`Flight::report`].
+///
+/// # Example
+/// ```no_run
+/// let flight = flightlog::open("flight.bin", &flightlog::Options::default())?;
+/// for motor in &flight.motors {
+///     println!("motor {}: output {} ({})", motor.number, motor.output, motor.source);
+/// }
+/// println!("in the air: {:?}", flight.in_air);
+/// # Ok::<(), flightlog::ReadError>(())
+/// ```
 pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Flight, ReadError> {
     let path = path.as_ref();
     if path == Path::new("-") {
@@ -109,6 +124,10 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
     flight.in_air = flight
         .in_air
         .map(|in_air| in_air.joined(SHORTEST_LANDING_S));
+    for series in &mut flight.series {
+        series.retain(|name| options.keeps(name));
+    }
+    flight.series.retain(|series| !series.is_empty());
     flight.report.bytes = input.taken();
     if let Some(failure) = input.failure() {
         flight.report.truncated = true;

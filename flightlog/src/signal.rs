@@ -1,18 +1,9 @@
 //! Signals: named values over time, each group of them on a time base of its own.
 
-/// What a signal is: its name, its unit and where in the log it came from.
-///
-/// # Example: the unit is in the name
-/// ```
-/// use flightlog::Label;
-///
-/// let log = "t_s,motor1,roll_deg\n0.0,0.4,1.5\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// let Label { name, unit, .. } = flight.signal("roll_deg").unwrap().label;
-/// assert_eq!((name.as_str(), unit.as_str()), ("roll_deg", "deg"));
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
+/// Name, unit and source of a signal.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Label {
     /// Name with the unit in it, such as `roll_deg`.
     pub name: String,
@@ -82,8 +73,13 @@ impl Series {
             })
     }
 
-    /// Keeps the signals of which `keep` says so by their name.
-    fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
+    /// Whether it has no signals.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.labels.is_empty()
+    }
+
+    /// Keeps the signals whose names satisfy `keep`.
+    pub(crate) fn retain(&mut self, mut keep: impl FnMut(&str) -> bool) {
         let labels = std::mem::take(&mut self.labels);
         let columns = std::mem::take(&mut self.columns);
         let kept = labels.into_iter().zip(columns);
@@ -99,23 +95,11 @@ pub(crate) fn preferred(mut series: Vec<Series>) -> Vec<Series> {
     for series in &mut series {
         series.retain(|name| names.insert(name.to_owned()));
     }
-    series.retain(|series| !series.labels.is_empty());
+    series.retain(|series| !series.is_empty());
     series
 }
 
 /// One signal: what it is, when, and its values.
-///
-/// # Example: a value that the log left out
-/// ```
-/// use flightlog::Signal;
-///
-/// let log = "t_s,motor1,roll_deg\n0.0,0.4,1.5\n0.1,0.5,\n";
-/// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-/// let Signal { t_s, values, .. } = flight.signal("roll_deg").unwrap();
-/// assert_eq!((t_s, values[0]), (&[0.0, 0.1][..], 1.5));
-/// assert!(values[1].is_nan());
-/// # Ok::<(), flightlog::ReadError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Signal<'a> {
     /// Name, unit and source.
@@ -176,15 +160,6 @@ pub struct Hold<'a> {
 
 impl Hold<'_> {
     /// The latest value at or before `t_s`; `t_s` must not be before that of the last call.
-    ///
-    /// # Example: before the first value, between two, and where it is not known
-    /// ```
-    /// let log = "t_s,motor1,roll_deg\n0.0,0.4,1.5\n0.1,0.5,2.5\n0.2,0.5,\n";
-    /// let flight = flightlog::read(log.as_bytes(), &flightlog::Options::default())?;
-    /// let mut roll = flight.signal("roll_deg").unwrap().hold();
-    /// assert_eq!([-1.0, 0.05, 0.1].map(|t_s| roll.at(t_s)), [None, Some(1.5), Some(2.5)]);
-    /// # Ok::<(), flightlog::ReadError>(())
-    /// ```
     pub fn at(&mut self, t_s: f64) -> Option<f64> {
         while self.t_s.get(self.after).is_some_and(|&t| t <= t_s) {
             self.after += 1;
@@ -194,15 +169,15 @@ impl Hold<'_> {
     }
 }
 
-/// How a row goes with the rows before it. Times never go back: where one does, either it
+/// The order of a row and the rows before it. Times never go back: where one does, either it
 /// or the last before it is damaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Order {
     /// It comes last.
     Last,
-    /// It fits if the last row goes, which was too far ahead.
+    /// It fits once the last row, which was too far ahead, is dropped.
     Replaces,
-    /// It goes back even so: it is to be dropped itself.
+    /// It goes back even then, and is dropped itself.
     Back,
 }
 

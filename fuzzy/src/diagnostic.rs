@@ -1,12 +1,11 @@
-//! One type for every finding: what is wrong, where, and what to do about it.
+//! Findings: what is wrong, where, and what to do about it.
 
 use alloc::{
+    format,
     string::{String, ToString},
     vec::Vec,
 };
 use core::{fmt, ops::Range};
-
-use serde::Serialize;
 
 /// A finding in a text an author wrote.
 ///
@@ -26,57 +25,43 @@ use serde::Serialize;
 /// );
 /// assert_eq!(finding.related[0].span, 0..3);
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
-    /// A short name that never changes, for programs and for looking it up: `unknown-term`.
+    /// A stable identifier: `unknown-term`.
     pub code: &'static str,
     /// What is wrong.
     pub message: String,
-    /// The bytes of the text it is about; `0..0` for models that were made by code.
+    /// The bytes of the text it is about; `0..0` for models made in code.
     pub span: Range<usize>,
     /// Line and column of the start of the span, where the text is at hand.
     pub position: Option<Position>,
     /// What to do about it.
     pub help: Option<String>,
-    /// Other places that explain it.
+    /// Other spans that explain it.
     pub related: Vec<Related>,
 }
 
 /// How bad a finding is.
-///
-/// # Example
-/// ```
-/// use fuzzy::diagnostic::Severity;
-///
-/// assert!(Severity::Error > Severity::Warning && Severity::Warning > Severity::Note);
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Severity {
-    /// Worth knowing.
+    /// Information.
     Note,
-    /// The model works, but hardly as its author means it.
+    /// The model works, but probably not as intended.
     Warning,
-    /// The text is no model.
+    /// The model cannot be used.
     Error,
 }
 
-/// Another place that explains a finding: where the first of two equal names stands.
-///
-/// # Example: a term defined twice
-/// ```
-/// use fuzzy::diagnostic::Related;
-///
-/// let text = "{speed: fast, speed: slow}";
-/// let mut findings = Vec::new();
-/// fuzzy::yaml::read(text)?.fields("the fan", &["speed"], &mut findings);
-/// let Related { span, message } = &findings[0].related[0];
-/// assert_eq!((&text[span.clone()], message.as_str()), ("speed", "the first one"));
-/// # Ok::<(), fuzzy::diagnostic::Findings>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// Another span that explains a finding, such as the first of two equal names.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Related {
     /// The bytes of the text.
     pub span: Range<usize>,
@@ -84,8 +69,9 @@ pub struct Related {
     pub message: String,
 }
 
-/// A place in a text, for people: both count from 1, the column in characters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+/// Line and column in a text; both count from 1, the column in characters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Position {
     /// The line.
     pub line: usize,
@@ -95,11 +81,6 @@ pub struct Position {
 
 impl Position {
     /// The position of a byte in a text; bytes behind its end count as its end.
-    ///
-    /// ```
-    /// use fuzzy::diagnostic::Position;
-    /// assert_eq!(Position::of("a: 1\nb: 2", 8), Position { line: 2, column: 4 });
-    /// ```
     #[must_use]
     pub fn of(text: &str, byte: usize) -> Self {
         let before = text.char_indices().take_while(|&(at, _)| at < byte);
@@ -121,14 +102,6 @@ impl Position {
 
 impl Diagnostic {
     /// An error.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::{Diagnostic, Severity};
-    ///
-    /// let finding = Diagnostic::error("not-a-number", 3..6, "`abc` is no number");
-    /// assert_eq!((finding.severity, finding.code, finding.span), (Severity::Error, "not-a-number", 3..6));
-    /// ```
     pub fn error(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Error,
@@ -142,14 +115,6 @@ impl Diagnostic {
     }
 
     /// A warning.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::Diagnostic;
-    ///
-    /// let finding = Diagnostic::warning("unused", 0..4, "`name` is used nowhere");
-    /// assert_eq!(finding.to_string(), "warning[unused]: `name` is used nowhere");
-    /// ```
     pub fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Warning,
@@ -158,14 +123,6 @@ impl Diagnostic {
     }
 
     /// A note.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::Diagnostic;
-    ///
-    /// let finding = Diagnostic::note("reach", 0..4, "`fan` stays below 90");
-    /// assert_eq!(finding.to_string(), "note[reach]: `fan` stays below 90");
-    /// ```
     pub fn note(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic {
             severity: Severity::Note,
@@ -173,30 +130,14 @@ impl Diagnostic {
         }
     }
 
-    /// The same with what to do about it.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::Diagnostic;
-    ///
-    /// let finding = Diagnostic::error("not-a-number", 3..6, "`abc` is no number").help("write digits");
-    /// assert_eq!(finding.help.as_deref(), Some("write digits"));
-    /// ```
+    /// Adds what to do about it.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// The same with another place that explains it.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::Diagnostic;
-    ///
-    /// let finding = Diagnostic::error("duplicate-key", 9..13, "`name` is given twice").related(0..4, "the first one");
-    /// assert_eq!(finding.related[0].message, "the first one");
-    /// ```
+    /// Adds another span that explains it.
     #[must_use]
     pub fn related(mut self, span: Range<usize>, message: impl Into<String>) -> Self {
         let message = message.into();
@@ -205,7 +146,7 @@ impl Diagnostic {
     }
 }
 
-/// `3:12: error[unknown-term]: ...`, the help behind it on a line of its own.
+/// `3:12: error[unknown-term]: ...`, then the help on a line of its own.
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(Position { line, column }) = self.position {
@@ -226,7 +167,7 @@ impl fmt::Display for Diagnostic {
 
 impl core::error::Error for Diagnostic {}
 
-/// All findings of one text, in the order of their places: the error of everything that reads text.
+/// All findings of one text or model, in the order of their spans; the error type of reading and compiling.
 ///
 /// # Example: all mistakes of a text at once
 /// ```
@@ -235,23 +176,13 @@ impl core::error::Error for Diagnostic {}
 /// assert!(codes.starts_with(&["missing-key", "missing-key"]) && codes.contains(&"unknown-key"), "{codes:?}");
 /// assert!(findings.has_errors());
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(transparent)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
 pub struct Findings(pub Vec<Diagnostic>);
 
 impl Findings {
-    /// Sorts findings by place and gives each its line and column in the text.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::{Diagnostic, Findings};
-    ///
-    /// let text = "first line\nsecond line";
-    /// let second = Diagnostic::note("here", 11..17, "the second");
-    /// let first = Diagnostic::note("here", 6..10, "the first");
-    /// let findings = Findings::locate(vec![second, first], text);
-    /// assert_eq!(findings.to_string(), "1:7: note[here]: the first\n2:1: note[here]: the second");
-    /// ```
+    /// Sorts findings by span and adds line and column.
     #[must_use]
     pub fn locate(mut findings: Vec<Diagnostic>, text: &str) -> Self {
         findings.sort_by_key(|finding| (finding.span.start, finding.span.end));
@@ -279,14 +210,6 @@ impl Findings {
     }
 
     /// Whether one of them is an error.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::diagnostic::{Diagnostic, Findings};
-    ///
-    /// let warning = Diagnostic::warning("unused", 0..4, "`name` is used nowhere");
-    /// assert!(!Findings(vec![warning]).has_errors());
-    /// ```
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|f| f.severity == Severity::Error)
@@ -312,12 +235,6 @@ impl core::error::Error for Findings {}
 /// Nearness is the number of letters to insert, delete, replace or swap (optimal string alignment), at most a third
 /// of the longer word's length; case does not count. Of equally near candidates the first one counts. Where none is near,
 /// one that begins with the word is what was meant: `min` is short for `minimum`.
-///
-/// ```
-/// use fuzzy::diagnostic::nearest;
-/// assert_eq!(nearest("mraginn", ["margin", "spread"]), Some("margin"));
-/// assert_eq!(nearest("wind", ["margin", "spread"]), None);
-/// ```
 pub fn nearest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str, IntoIter: Clone>,
@@ -375,27 +292,41 @@ fn edit_distance(a: &[char], b: &[char]) -> usize {
     last.last().copied().unwrap_or(0)
 }
 
-/// ``did you mean `margin`?``, or else what there is: ``there are `margin` and `spread` ``.
-///
-/// # Example
-/// ```
-/// use fuzzy::diagnostic::suggest;
-///
-/// let inputs = ["margin", "spread"];
-/// assert_eq!(suggest("marign", inputs).as_deref(), Some("did you mean `margin`?"));
-/// assert_eq!(suggest("battery", inputs).as_deref(), Some("there are `margin` and `spread`"));
-/// ```
+/// The finding for a repeated name.
+pub(crate) fn duplicate(
+    kind: &str,
+    name: &str,
+    what: &str,
+    span: Range<usize>,
+    first: Range<usize>,
+) -> Diagnostic {
+    let (code, help) = match kind {
+        "variable" => (
+            "duplicate-variable",
+            "inputs and outputs have different names; rename one of them",
+        ),
+        "term" => (
+            "duplicate-term",
+            "the terms of a variable have different names; rename one of them",
+        ),
+        _ => ("duplicate-key", "keep one of them"),
+    };
+    Diagnostic::error(code, span, format!("{what} has the {kind} `{name}` twice"))
+        .related(first, "the first one")
+        .help(help)
+}
+
+/// ``did you mean `heat`?``, or else the candidates: ``there are `heat` and `humidity` ``.
 pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     match nearest(word, candidates.iter().copied()) {
-        Some(candidate) => Some(alloc::format!("did you mean `{candidate}`?")),
+        Some(candidate) => Some(format!("did you mean `{candidate}`?")),
         None if candidates.is_empty() => None,
-        None if candidates.len() == 1 => Some(alloc::format!("there is {}", listed(&candidates))),
-        None => Some(alloc::format!("there are {}", listed(&candidates))),
+        None if candidates.len() == 1 => Some(format!("there is {}", listed(&candidates))),
+        None => Some(format!("there are {}", listed(&candidates))),
     }
 }
 
-/// ```a`, `b` and `c` ``, cut short where there are many.
 pub(crate) fn listed(words: &[&str]) -> String {
     const MOST: usize = 12;
     let mut list = String::new();

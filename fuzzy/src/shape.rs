@@ -1,6 +1,6 @@
 //! The shapes of membership functions. What a shape is stands in this file alone: its formula, which has a number and is
 //! all that a table in firmware knows of it; and, where there is an allocator, in three places that the compiler asks for,
-//! its variant in [`Shape`], its line in the table of spellings, and its outline.
+//! its variant in [`MembershipFunction`], its line in the table of spellings, and its outline.
 //!
 //! Formulas that several shapes share are in `straight` and `smooth`.
 
@@ -27,9 +27,9 @@ use smooth::{flank, gaussian_flank, sigmoid_flanks};
 use smooth::{gaussian, s_shape, sigmoid, z_shape};
 use straight::{along, falling, indicator, into_unit, rising, trapezoid};
 #[cfg(feature = "alloc")]
-pub use validate::ShapeError;
+pub use validate::MembershipError;
 
-/// The formula of a membership function. What it takes as its parameters is in the order of the fields of the `Shape` of
+/// The formula of a membership function. What it takes as its parameters is in the order of the fields of the `MembershipFunction` of
 /// that name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(transparent)]
@@ -114,15 +114,15 @@ fn concave(x: f64, inflection: f64, end: f64) -> f64 {
 ///
 /// # Example: a part of a range that people call warm
 /// ```
-/// use fuzzy::model::Shape;
+/// use fuzzy::model::MembershipFunction;
 ///
-/// let warm = Shape::Trapezoid { left: 15.0, left_top: 20.0, right_top: 25.0, right: 30.0 };
+/// let warm = MembershipFunction::Trapezoid { left: 15.0, left_top: 20.0, right_top: 25.0, right: 30.0 };
 /// assert_eq!(warm.membership(22.0), 1.0);
 /// assert_eq!(warm.membership(16.0), 0.2);
 /// ```
 #[cfg(feature = "alloc")]
 #[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
+pub enum MembershipFunction {
     /// 0 at `left`, 1 at `peak`, 0 at `right`, straight between; `left = peak` is a closed shoulder.
     /// MATLAB's `trimf`.
     Triangle {
@@ -313,23 +313,23 @@ pub enum Shape {
 // parameters are places, they may be written as a list. `piecewise` and `linear` are written in ways of their own.
 #[cfg(feature = "alloc")]
 form::forms! {
-    Triangle "triangle" TRIANGLE [left: Place, peak: Place, right: Place]
+    Triangle "triangle" TRIANGLE [left: Ascending, peak: Ascending, right: Ascending]
         "0 at left, 1 at peak, 0 at right";
-    Trapezoid "trapezoid" TRAPEZOID [left: Place, left_top: Place, right_top: Place, right: Place]
+    Trapezoid "trapezoid" TRAPEZOID [left: Ascending, left_top: Ascending, right_top: Ascending, right: Ascending]
         "1 from left_top to right_top, 0 outside left and right";
-    LeftShoulder "left_shoulder" LEFT_SHOULDER [top: Place, foot: Place]
+    LeftShoulder "left_shoulder" LEFT_SHOULDER [top: Ascending, foot: Ascending]
         "1 up to top, 0 from foot on";
-    RightShoulder "right_shoulder" RIGHT_SHOULDER [foot: Place, top: Place]
+    RightShoulder "right_shoulder" RIGHT_SHOULDER [foot: Ascending, top: Ascending]
         "0 up to foot, 1 from top on";
-    Rectangle "rectangle" RECTANGLE [left: Place, right: Place]
+    Rectangle "rectangle" RECTANGLE [left: Ascending, right: Ascending]
         "1 from left to right";
-    Singleton "singleton" SINGLETON [at: Place]
+    Singleton "singleton" SINGLETON [at: Ascending]
         "1 at one value alone";
-    Gaussian "gaussian" GAUSSIAN [mean: Place, sd: Positive]
+    Gaussian "gaussian" GAUSSIAN [mean: Ascending, sd: Positive]
         "exp(-(x - mean)^2 / (2 sd^2))";
-    Gaussian2 "gaussian2" GAUSSIAN2 [left_mean: Place, left_sd: Positive, right_mean: Place, right_sd: Positive]
+    Gaussian2 "gaussian2" GAUSSIAN2 [left_mean: Ascending, left_sd: Positive, right_mean: Ascending, right_sd: Positive]
         "Gaussian flanks around 1 from left_mean to right_mean";
-    Bell "bell" BELL [center: Place, width: Positive, slope: Positive]
+    Bell "bell" BELL [center: Ascending, width: Positive, slope: Positive]
         "1 / (1 + |(x - center) / width|^(2 slope))";
     Sigmoid "sigmoid" SIGMOID [inflection: Number, slope: Number]
         "1 / (1 + exp(-slope (x - inflection)))";
@@ -337,24 +337,24 @@ form::forms! {
         "The difference of two sigmoids, without its sign";
     SigmoidProduct "sigmoid_product" SIGMOID_PRODUCT [left_inflection: Number, left_slope: Number, right_inflection: Number, right_slope: Number]
         "The product of two sigmoids";
-    SShape "s_shape" S_SHAPE [foot: Place, top: Place]
+    SShape "s_shape" S_SHAPE [foot: Ascending, top: Ascending]
         "Two parabolas up from 0 at foot to 1 at top";
-    ZShape "z_shape" Z_SHAPE [top: Place, foot: Place]
+    ZShape "z_shape" Z_SHAPE [top: Ascending, foot: Ascending]
         "Two parabolas down from 1 at top to 0 at foot";
-    PiShape "pi_shape" PI_SHAPE [left: Place, left_top: Place, right_top: Place, right: Place]
+    PiShape "pi_shape" PI_SHAPE [left: Ascending, left_top: Ascending, right_top: Ascending, right: Ascending]
         "An S up to left_top, 1, a Z down from right_top";
-    Cosine "cosine" COSINE [center: Place, width: Positive]
+    Cosine "cosine" COSINE [center: Ascending, width: Positive]
         "A bump of a cosine, width wide";
-    Spike "spike" SPIKE [center: Place, width: Positive]
+    Spike "spike" SPIKE [center: Ascending, width: Positive]
         "exp(-|10 (x - center) / width|)";
     Concave "concave" CONCAVE [inflection: Number, end: Number]
         "(end - inflection) / (2 end - inflection - x) up to end, 1 beyond it";
-    Constant "constant" CONSTANT [value: Place]
+    Constant "constant" CONSTANT [value: Ascending]
         "The same degree everywhere; in a Takagi-Sugeno output, the value itself";
 }
 
 #[cfg(feature = "alloc")]
-impl Shape {
+impl MembershipFunction {
     /// The degree of membership of `x`, always in [0, 1] and never NaN.
     ///
     /// The formula of each shape stands at its variant. Everywhere:
@@ -367,21 +367,10 @@ impl Shape {
     /// Straight edges are divided out, `(x - foot) / (top - foot)`: exactly 0 at the foot, exactly 1 at the
     /// top, and near the foot exact to the last bit. `exp`, `pow` and `cos` are `libm`'s, so the same `x` has
     /// the same bits on every machine.
-    ///
-    /// # Example: a shoulder is 1 up to its top
-    /// ```
-    /// use fuzzy::model::Shape;
-    ///
-    /// let low = Shape::LeftShoulder { top: 0.1, foot: 0.3 };
-    /// assert_eq!(low.membership(0.0), 1.0);
-    /// assert_eq!(low.membership(0.1), 1.0);
-    /// assert!((low.membership(0.25) - 0.25).abs() < 1e-15);
-    /// assert_eq!(low.membership(f64::NAN), 0.0);
-    /// ```
     pub fn membership(&self, x: f64) -> f64 {
         match self {
-            Shape::Piecewise { .. } if x.is_nan() => 0.0,
-            Shape::Piecewise { points } => into_unit(along(points.iter().copied(), x)),
+            MembershipFunction::Piecewise { .. } if x.is_nan() => 0.0,
+            MembershipFunction::Piecewise { points } => into_unit(along(points.iter().copied(), x)),
             _ => {
                 let (kind, parameters) = self.kind();
                 kind.membership(&parameters, &[], x)
@@ -401,12 +390,12 @@ enum Outline {
 }
 
 #[cfg(feature = "alloc")]
-impl Shape {
-    /// Why finite places in order and numbers over 0 still make no shape: the parameter to blame, and the reason.
-    fn misfit(&self) -> Option<(&'static str, String)> {
+impl MembershipFunction {
+    /// Why parameters that are right one by one still make no shape.
+    fn misfit(&self) -> Option<String> {
         match *self {
-            Shape::Concave { inflection, end } if inflection == end => {
-                Some(("end", format!("`inflection` and `end` are both {end}")))
+            MembershipFunction::Concave { inflection, end } if inflection == end => {
+                Some(format!("`inflection` and `end` are both {end}"))
             }
             _ => None,
         }
@@ -415,10 +404,10 @@ impl Shape {
     fn outline(&self) -> Outline {
         use Outline::{Smooth, Straight};
         match *self {
-            Shape::Triangle { left, peak, right } => {
+            MembershipFunction::Triangle { left, peak, right } => {
                 Straight(vec![(left, 0.0), (peak, 1.0), (right, 0.0)])
             }
-            Shape::Trapezoid {
+            MembershipFunction::Trapezoid {
                 left,
                 left_top,
                 right_top,
@@ -429,17 +418,21 @@ impl Shape {
                 (right_top, 1.0),
                 (right, 0.0),
             ]),
-            Shape::LeftShoulder { top, foot } => Straight(vec![(top, 1.0), (foot, 0.0)]),
-            Shape::RightShoulder { foot, top } => Straight(vec![(foot, 0.0), (top, 1.0)]),
-            Shape::Rectangle { left, right } => {
+            MembershipFunction::LeftShoulder { top, foot } => {
+                Straight(vec![(top, 1.0), (foot, 0.0)])
+            }
+            MembershipFunction::RightShoulder { foot, top } => {
+                Straight(vec![(foot, 0.0), (top, 1.0)])
+            }
+            MembershipFunction::Rectangle { left, right } => {
                 Straight(vec![(left, 0.0), (left, 1.0), (right, 1.0), (right, 0.0)])
             }
-            Shape::Singleton { at } => Straight(vec![(at, 0.0), (at, 1.0), (at, 0.0)]),
-            Shape::Piecewise { ref points } => Straight(points.clone()),
-            Shape::Gaussian { mean, sd } => {
+            MembershipFunction::Singleton { at } => Straight(vec![(at, 0.0), (at, 1.0), (at, 0.0)]),
+            MembershipFunction::Piecewise { ref points } => Straight(points.clone()),
+            MembershipFunction::Gaussian { mean, sd } => {
                 Smooth([gaussian_flank(mean, -sd), gaussian_flank(mean, sd)].concat())
             }
-            Shape::Gaussian2 {
+            MembershipFunction::Gaussian2 {
                 left_mean,
                 left_sd,
                 right_mean,
@@ -451,7 +444,7 @@ impl Shape {
                 ]
                 .concat(),
             ),
-            Shape::Bell {
+            MembershipFunction::Bell {
                 center,
                 width,
                 slope,
@@ -469,14 +462,16 @@ impl Shape {
                     .concat(),
                 )
             }
-            Shape::Sigmoid { inflection, slope } => Smooth(sigmoid_flanks(inflection, slope)),
-            Shape::SigmoidDifference {
+            MembershipFunction::Sigmoid { inflection, slope } => {
+                Smooth(sigmoid_flanks(inflection, slope))
+            }
+            MembershipFunction::SigmoidDifference {
                 left_inflection,
                 left_slope,
                 right_inflection,
                 right_slope,
             }
-            | Shape::SigmoidProduct {
+            | MembershipFunction::SigmoidProduct {
                 left_inflection,
                 left_slope,
                 right_inflection,
@@ -494,10 +489,9 @@ impl Shape {
                     .concat(),
                 )
             }
-            Shape::SShape { foot: a, top: b } | Shape::ZShape { top: a, foot: b } => {
-                Smooth(vec![a, 0.5 * (a + b), b])
-            }
-            Shape::PiShape {
+            MembershipFunction::SShape { foot: a, top: b }
+            | MembershipFunction::ZShape { top: a, foot: b } => Smooth(vec![a, 0.5 * (a + b), b]),
+            MembershipFunction::PiShape {
                 left,
                 left_top,
                 right_top,
@@ -510,35 +504,26 @@ impl Shape {
                 0.5 * (right_top + right),
                 right,
             ]),
-            Shape::Cosine { center, width } => {
+            MembershipFunction::Cosine { center, width } => {
                 Smooth(vec![center - 0.5 * width, center, center + 0.5 * width])
             }
-            Shape::Spike { center, width } => {
+            MembershipFunction::Spike { center, width } => {
                 let reach = |level: f64| -0.1 * log(level);
                 Smooth([flank(center, -width, reach), flank(center, width, reach)].concat())
             }
-            Shape::Concave { inflection, end } => Smooth(vec![
+            MembershipFunction::Concave { inflection, end } => Smooth(vec![
                 inflection,
                 end,
                 end - 5.0 * (end - inflection),
                 end - 25.0 * (end - inflection),
             ]),
-            Shape::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
-            Shape::Linear { .. } => Smooth(vec![]),
+            MembershipFunction::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
+            MembershipFunction::Linear { .. } => Smooth(vec![]),
         }
     }
 
     /// The corners of a shape made of straight lines, `(x, degree)` with x never falling and the first
     /// and last degree held beyond them; `None` for a curved shape.
-    ///
-    /// # Example: a triangle has three corners
-    /// ```
-    /// use fuzzy::model::Shape;
-    ///
-    /// let low = Shape::Triangle { left: 0.0, peak: 1.0, right: 3.0 };
-    /// assert_eq!(low.corners().unwrap(), [(0.0, 0.0), (1.0, 1.0), (3.0, 0.0)]);
-    /// assert!(Shape::Gaussian { mean: 0.0, sd: 1.0 }.corners().is_none());
-    /// ```
     pub fn corners(&self) -> Option<Vec<(f64, f64)>> {
         match self.outline() {
             Outline::Straight(corners) => Some(corners),

@@ -1,6 +1,6 @@
-/* Follows flights with an exported profile and writes everything that is said, bit for bit.
- * PROFILE is the exported file, PLAN the name of its plan. Standard input: doubles, the first of which says what comes:
- * 0 a sample (t_s, in_air, motors, signals), 1 a point (inputs), 2 the end of a flight. */
+/* Assesses flights with an exported profile and writes the results bit for bit. PROFILE is the exported file, PLAN the name
+ * of its plan. Standard input has doubles: 0 and a sample (t_s, in_air, motors, signals), 1 and a point (inputs), or 2 at the
+ * end of a flight. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Everything that can be given wrongly is told, and nothing crashes. The line that fails is the exit code. */
+/* Invalid arguments return a status and do not crash. Prints the line of the first failure. */
 #include <stdio.h>
 
 #include PROFILE
@@ -70,10 +70,14 @@ int main(void) {
     damaged.channels_count = 0;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     damaged = *plan;
+    damaged.degrees = 1;
+    damaged.starts_count = 0;
+    CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+    damaged = *plan;
     damaged.order_count = 0;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     damaged = *plan;
-    damaged.heights = 0;
+    damaged.strengths = 0;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
 
     /* Samples. */

@@ -1,5 +1,5 @@
-// The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Not to be edited.
-// 19800 bytes of constants, of which 16332 fill gaps of the rules; 77968 bytes of memory for a monitor of 4 motors.
+// The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
+// 19800 bytes of constants, 16332 of them to fill gaps of the rules. A monitor of 4 motors takes 77968 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -16,7 +16,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
     #[allow(unused_imports)]
     use ::flagred::{
         accumulator::AccumulatorSettings,
-        board::{Plan, table::*},
+        board::{Plan, table::{*, Hedge::*}},
         channel,
         follower::Settings,
         gap::FilledKnots,
@@ -29,7 +29,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             and: Conjunction::Product,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Dense,
-            sizes: Sizes { degrees: 0, alive: 4, partial: 55, stack: 0, heights: 6 },
+            sizes: Sizes { degrees: 0, alive: 4, partial: 55, stack: 0, strengths: 6 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 2, first_start: 0, first_curve: 0, end_curve: 0 },
                 Input { low: 0.0, high: 0.5, first_literal: 3, first_cut: 2, end_cut: 4, first_start: 4, first_curve: 0, end_curve: 0 },
@@ -77,39 +77,39 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             nodes: &[],
             edges: &[],
             actions: &[
-                Action { weight: 1.0, place: 0, output: 0, rule: 1, sums: 1 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 2, sums: 1 },
-                Action { weight: 1.0, place: 1, output: 0, rule: 3, sums: 1 },
-                Action { weight: 1.0, place: 1, output: 0, rule: 4, sums: 1 },
-                Action { weight: 1.0, place: 2, output: 0, rule: 5, sums: 1 },
-                Action { weight: 1.0, place: 2, output: 0, rule: 6, sums: 1 },
-                Action { weight: 1.0, place: 1, output: 0, rule: 7, sums: 1 },
-                Action { weight: 1.0, place: 2, output: 0, rule: 8, sums: 1 },
-                Action { weight: 1.0, place: 2, output: 0, rule: 9, sums: 1 },
-                Action { weight: 1.0, place: 2, output: 0, rule: 10, sums: 1 },
-                Action { weight: 1.0, place: 3, output: 0, rule: 11, sums: 1 },
-                Action { weight: 1.0, place: 3, output: 0, rule: 12, sums: 1 },
-                Action { weight: 1.0, place: 2, output: 0, rule: 13, sums: 1 },
-                Action { weight: 1.0, place: 3, output: 0, rule: 14, sums: 1 },
-                Action { weight: 1.0, place: 3, output: 0, rule: 15, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 16, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 17, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 18, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 19, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 20, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 21, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 22, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 23, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 24, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 25, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 26, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 27, sums: 1 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 0, sums: 1 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 1, sums: 1 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 2, sums: 1 },
+                Action { weight: 1.0, strength: 1, output: 0, rule: 3, sums: 1 },
+                Action { weight: 1.0, strength: 1, output: 0, rule: 4, sums: 1 },
+                Action { weight: 1.0, strength: 2, output: 0, rule: 5, sums: 1 },
+                Action { weight: 1.0, strength: 2, output: 0, rule: 6, sums: 1 },
+                Action { weight: 1.0, strength: 1, output: 0, rule: 7, sums: 1 },
+                Action { weight: 1.0, strength: 2, output: 0, rule: 8, sums: 1 },
+                Action { weight: 1.0, strength: 2, output: 0, rule: 9, sums: 1 },
+                Action { weight: 1.0, strength: 2, output: 0, rule: 10, sums: 1 },
+                Action { weight: 1.0, strength: 3, output: 0, rule: 11, sums: 1 },
+                Action { weight: 1.0, strength: 3, output: 0, rule: 12, sums: 1 },
+                Action { weight: 1.0, strength: 2, output: 0, rule: 13, sums: 1 },
+                Action { weight: 1.0, strength: 3, output: 0, rule: 14, sums: 1 },
+                Action { weight: 1.0, strength: 3, output: 0, rule: 15, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 16, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 17, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 18, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 19, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 20, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 21, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 22, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 23, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 24, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 25, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 26, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 27, sums: 1 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 0, sums: 1 },
             ],
             programs: &[],
             steps: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, otherwise: NaN, set: Set(2), first: 0, end: 5, first_height: 0, end_height: 5 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5 },
             ],
             pairs: &[],
             moments: &[
@@ -117,7 +117,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 Moment { area: 5.0, moment: 8.881784197001252e-16 }, Moment { area: 5.0, moment: 125.0 },
                 Moment { area: 5.0, moment: 225.0 },
             ],
-            consequences: &[],
+            consequents: &[],
             coefficients: &[],
         },
         output: 0,
@@ -138,7 +138,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 1.0, longest_gap_s: 2.0 }, elevated_risk: AccumulatorSettings { window_s: 10.0, high_pct: 50.0, low_pct: 20.0, rise_pct_per_s: 1.5, fall_pct_per_s: 2.0 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(50.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(25.0), elevated_risk_pct: Some(30.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(85.0), elevated_risk_pct: Some(90.0) }, after_s: 0.4, until: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(70.0) } }, clear_after_s: 10.0, quiet_after_take_off_s: 5.0, quiet_before_landing_s: 1.0, idle: Idle { command_below: 0.1, risk_at_most_pct: 60.0 } } },
         coverage_below: 0.0625,
         filled: Some(FilledKnots {
-            places: &[
+            coordinates: &[
                 0.0, 0.0125, 0.025, 0.037500000000000006, 0.05, 0.5, 0.0, 0.0125, 0.025, 0.037500000000000006, 0.05,
                 0.5, 0.0, 0.3, 0.44999999999999996, 0.6, 0.75, 0.9, 1.0, 0.0, 0.25, 0.5, 1.0,
             ],

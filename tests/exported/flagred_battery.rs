@@ -1,6 +1,6 @@
-// The profile `flagred-battery` with the rule set `../flagred-battery.yaml`, written by `flagred export --rust` 0.1.0. Not to be edited.
-// 8600 bytes of constants, of which 5560 fill gaps of the rules; 62376 bytes of memory for a monitor of 4 motors.
-// Samples carry beside the motors, in this order: battery_remaining_pct.
+// The profile `flagred-battery` with the rule set `../flagred-battery.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
+// 8600 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 62376 bytes of memory.
+// Signals of a sample, in this order: battery_remaining_pct.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -17,7 +17,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
     #[allow(unused_imports)]
     use ::flagred::{
         accumulator::AccumulatorSettings,
-        board::{Plan, table::*},
+        board::{Plan, table::{*, Hedge::*}},
         channel,
         follower::Settings,
         gap::FilledKnots,
@@ -30,7 +30,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             and: Conjunction::Minimum,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Dense,
-            sizes: Sizes { degrees: 0, alive: 5, partial: 28, stack: 0, heights: 8 },
+            sizes: Sizes { degrees: 0, alive: 5, partial: 28, stack: 0, strengths: 8 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 3, first_start: 0, first_curve: 0, end_curve: 0 },
                 Input { low: 0.0, high: 0.5, first_literal: 4, first_cut: 3, end_cut: 5, first_start: 5, first_curve: 0, end_curve: 0 },
@@ -62,7 +62,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 Curve { parameters: [10.0, 25.0, 0.0, 0.0], height: 1.0, kind: Kind(1), literal: 1, first_point: 0, end_point: 0, first_hedge: 0, end_hedge: 1 },
             ],
             points: &[],
-            hedges: &[Hedge::Not],
+            hedges: &[Not],
             axes: &[],
             dimensions: &[
                 Dimension { input: 0, stride: 16, any: 4 }, Dimension { input: 1, stride: 4, any: 3 },
@@ -76,23 +76,23 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             nodes: &[],
             edges: &[],
             actions: &[
-                Action { weight: 1.0, place: 4, output: 0, rule: 9, sums: 0 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 8, sums: 0 },
-                Action { weight: 1.0, place: 2, output: 0, rule: 7, sums: 0 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 6, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 4, sums: 0 },
-                Action { weight: 1.0, place: 1, output: 0, rule: 5, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 3, sums: 0 },
-                Action { weight: 1.0, place: 2, output: 0, rule: 10, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 1, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 2, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 0, sums: 0 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 11, sums: 0 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 9, sums: 0 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 8, sums: 0 },
+                Action { weight: 1.0, strength: 2, output: 0, rule: 7, sums: 0 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 6, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 4, sums: 0 },
+                Action { weight: 1.0, strength: 1, output: 0, rule: 5, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 3, sums: 0 },
+                Action { weight: 1.0, strength: 2, output: 0, rule: 10, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 1, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 2, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 0, sums: 0 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 11, sums: 0 },
             ],
             programs: &[],
             steps: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, otherwise: NaN, set: Set(1), first: 0, end: 3, first_height: 0, end_height: 7 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 3, first_strength: 0, end_strength: 7 },
             ],
             pairs: &[
                 Pair { area: [[25.0, 50.0], [-12.5, -25.0]], moment: [[-937.5, -1250.0], [312.5, 625.0], [104.16666666666667, 0.0]], width: [25.0, 25.0], middle: [-37.5, -12.5] },
@@ -100,7 +100,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 Pair { area: [[25.0, 0.0], [-12.5, 0.0]], moment: [[937.5, 0.0], [-312.5, 0.0], [-104.16666666666667, 0.0]], width: [0.0, 0.0], middle: [0.0, 0.0] },
             ],
             moments: &[],
-            consequences: &[],
+            consequents: &[],
             coefficients: &[],
         },
         output: 0,
@@ -119,7 +119,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 1.0, longest_gap_s: 2.0 }, elevated_risk: AccumulatorSettings { window_s: 10.0, high_pct: 50.0, low_pct: 20.0, rise_pct_per_s: 1.5, fall_pct_per_s: 2.0 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(50.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(25.0), elevated_risk_pct: Some(30.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(85.0), elevated_risk_pct: Some(90.0) }, after_s: 0.4, until: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(70.0) } }, clear_after_s: 10.0, quiet_after_take_off_s: 5.0, quiet_before_landing_s: 1.0, idle: Idle { command_below: 0.1, risk_at_most_pct: 60.0 } } },
         coverage_below: 0.5,
         filled: Some(FilledKnots {
-            places: &[
+            coordinates: &[
                 0.0, 0.05, 0.1, 0.15000000000000002, 0.2, 0.25, 0.3, 0.5, 0.0, 0.05, 0.1, 0.15000000000000002, 0.2,
                 0.5, 0.0, 10.0, 17.5, 25.0, 32.5, 40.0, 100.0,
             ],

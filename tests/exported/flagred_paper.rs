@@ -1,5 +1,5 @@
-// The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Not to be edited.
-// 3220 bytes of constants, of which 892 fill gaps of the rules; 46832 bytes of memory for a monitor of 4 motors.
+// The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
+// 3220 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 46832 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -16,7 +16,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
     #[allow(unused_imports)]
     use ::flagred::{
         accumulator::AccumulatorSettings,
-        board::{Plan, table::*},
+        board::{Plan, table::{*, Hedge::*}},
         channel,
         follower::Settings,
         gap::FilledKnots,
@@ -29,13 +29,13 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             and: Conjunction::Minimum,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Uniform { actions_a_cell: 1, first_action: 0, sums: false },
-            sizes: Sizes { degrees: 0, alive: 4, partial: 4, stack: 0, heights: 8 },
+            sizes: Sizes { degrees: 0, alive: 4, partial: 4, stack: 0, strengths: 8 },
             inputs: &[
-                Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 0, first_start: 0, first_curve: 0, end_curve: 0 },
-                Input { low: 0.0, high: 0.5, first_literal: 4, first_cut: 0, end_cut: 0, first_start: 2, first_curve: 0, end_curve: 0 },
+                Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 8, end_cut: 8, first_start: 0, first_curve: 0, end_curve: 0 },
+                Input { low: 0.0, high: 0.5, first_literal: 4, first_cut: 8, end_cut: 8, first_start: 2, first_curve: 0, end_curve: 0 },
             ],
             cuts: &[0.1, 0.2, 0.3, inf, 0.1, 0.2, inf, inf],
-            starts: &[0, 0, 0, 0],
+            starts: &[14, 14, 14, 14],
             lines: &[
                 Line { foot: 0.1, run: -0.1, base: 0.0, rise: 1.0, literal: 0 },
                 Line { foot: 0.0, run: 0.1, base: 0.0, rise: 1.0, literal: 3 },
@@ -64,23 +64,23 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             nodes: &[],
             edges: &[],
             actions: &[
-                Action { weight: 0.0, place: 7, output: 0, rule: 4294967295, sums: 0 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 9, sums: 0 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 8, sums: 0 },
-                Action { weight: 0.0, place: 7, output: 0, rule: 4294967295, sums: 0 },
-                Action { weight: 1.0, place: 2, output: 0, rule: 7, sums: 0 },
-                Action { weight: 1.0, place: 4, output: 0, rule: 6, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 4, sums: 0 },
-                Action { weight: 1.0, place: 1, output: 0, rule: 5, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 3, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 1, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 2, sums: 0 },
-                Action { weight: 1.0, place: 0, output: 0, rule: 0, sums: 0 },
+                Action { weight: 0.0, strength: 7, output: 0, rule: 4294967295, sums: 0 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 9, sums: 0 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 8, sums: 0 },
+                Action { weight: 0.0, strength: 7, output: 0, rule: 4294967295, sums: 0 },
+                Action { weight: 1.0, strength: 2, output: 0, rule: 7, sums: 0 },
+                Action { weight: 1.0, strength: 4, output: 0, rule: 6, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 4, sums: 0 },
+                Action { weight: 1.0, strength: 1, output: 0, rule: 5, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 3, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 1, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 2, sums: 0 },
+                Action { weight: 1.0, strength: 0, output: 0, rule: 0, sums: 0 },
             ],
             programs: &[],
             steps: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, otherwise: NaN, set: Set(1), first: 0, end: 3, first_height: 0, end_height: 7 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 3, first_strength: 0, end_strength: 7 },
             ],
             pairs: &[
                 Pair { area: [[25.0, 50.0], [-12.5, -25.0]], moment: [[-937.5, -1250.0], [312.5, 625.0], [104.16666666666667, 0.0]], width: [25.0, 25.0], middle: [-37.5, -12.5] },
@@ -88,7 +88,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 Pair { area: [[25.0, 0.0], [-12.5, 0.0]], moment: [[937.5, 0.0], [-312.5, 0.0], [-104.16666666666667, 0.0]], width: [0.0, 0.0], middle: [0.0, 0.0] },
             ],
             moments: &[],
-            consequences: &[],
+            consequents: &[],
             coefficients: &[],
         },
         output: 0,
@@ -105,7 +105,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 1.0, longest_gap_s: 2.0 }, elevated_risk: AccumulatorSettings { window_s: 10.0, high_pct: 50.0, low_pct: 20.0, rise_pct_per_s: 2.0, fall_pct_per_s: 3.0 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(50.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(25.0), elevated_risk_pct: Some(30.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(85.0), elevated_risk_pct: Some(90.0) }, after_s: 0.4, until: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(70.0) } }, clear_after_s: 10.0, quiet_after_take_off_s: 5.0, quiet_before_landing_s: 1.0, idle: Idle { command_below: 0.1, risk_at_most_pct: 60.0 } } },
         coverage_below: 0.5,
         filled: Some(FilledKnots {
-            places: &[
+            coordinates: &[
                 0.0, 0.05, 0.1, 0.15000000000000002, 0.2, 0.25, 0.3, 0.5, 0.0, 0.05, 0.1, 0.15000000000000002, 0.2,
                 0.5,
             ],

@@ -1,4 +1,4 @@
-//! What flies on board, beside what it must agree with: profiles, flights, and everything an assessment says as text.
+//! Profiles, flights, and updates as text, to compare on-board monitors with.
 
 use std::{fmt::Write, path::PathBuf};
 
@@ -12,7 +12,7 @@ use flightlog::{Flight, Options};
 
 use crate::shared_data;
 
-/// The profiles that come with the project, by the argument that names each on the command line.
+/// The command-line arguments of the project's profiles.
 pub const PROFILES: [&str; 3] = [
     "flagred",
     "flagred-paper",
@@ -26,7 +26,7 @@ pub const PROFILES: [&str; 3] = [
 ///
 /// # Panics
 ///
-/// Where it does not compile.
+/// The profile does not compile.
 #[expect(
     clippy::unwrap_used,
     reason = "a profile of the project that does not compile fails the test"
@@ -47,21 +47,21 @@ pub fn estimator(profile: &str) -> Estimator {
     Estimator::new(&profile, &model).unwrap()
 }
 
-/// A sample that owns its numbers.
+/// A [`Sample`] that owns its numbers.
 #[derive(Debug, Clone)]
 pub struct Moment {
-    /// When, in seconds.
+    /// Its time in seconds.
     pub t_s: f64,
     /// Effective commands.
     pub motors: Vec<f64>,
     /// Whether in the air.
     pub in_air: bool,
-    /// The signals of a profile, in its order.
+    /// Signals, in the order of a profile.
     pub signals: Vec<f64>,
 }
 
 impl Moment {
-    /// As a monitor takes it.
+    /// The borrowed sample.
     pub fn sample(&self) -> Sample<'_> {
         Sample {
             t_s: self.t_s,
@@ -72,11 +72,11 @@ impl Moment {
     }
 }
 
-/// The flights that are there: the shipped one, and the reference flights where there are any.
+/// The shipped flight, and the reference flights where they are available.
 ///
 /// # Panics
 ///
-/// Where a folder cannot be read.
+/// A folder cannot be read.
 #[expect(
     clippy::unwrap_used,
     reason = "a flight that cannot be read fails the test"
@@ -97,12 +97,12 @@ pub fn logs() -> Vec<PathBuf> {
     logs
 }
 
-/// The samples of a flight, with the signals of a profile; what the log lacks is unknown. Then what logs do not hold: time
-/// stamps that repeat or jump, motors that are unknown or at their limits, all of them on the ground and in the air.
+/// The samples of a flight with the signals of a profile, followed by samples that no log has: time stamps that repeat or
+/// jump, and motors that are unknown or at their limits, on the ground and in the air.
 ///
 /// # Panics
 ///
-/// Where the log cannot be read.
+/// The log cannot be read.
 #[expect(
     clippy::unwrap_used,
     reason = "a flight that cannot be read fails the test"
@@ -164,14 +164,14 @@ fn samples(flight: &Flight, names: &[&str]) -> Vec<Moment> {
     flight.commands.rows().map(moment).collect()
 }
 
-/// Points over the ranges of the inputs of a profile, ends and a little beyond included: so many along each.
+/// A grid over the ranges of a profile's inputs and one step beyond, with `along` points on each axis.
 pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
     let plan_inputs = estimator.profile().inputs.len();
     let ranges: Vec<(f64, f64)> = match estimator.plan() {
         Ok(plan) => {
             let mut ranges = vec![(0.0, 1.0); plan_inputs];
-            for (input, place) in plan.table.inputs.iter().zip(plan.order) {
-                ranges[*place as usize] = (input.low, input.high);
+            for (input, index) in plan.table.inputs.iter().zip(plan.order) {
+                ranges[*index as usize] = (input.low, input.high);
             }
             ranges
         }
@@ -195,7 +195,7 @@ pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
     points
 }
 
-/// Everything an assessment says, bit for bit, as the harness in C writes it.
+/// An update as text, bit for bit, in the format of `tests/c/follow.c`.
 pub fn told(said: &Update) -> String {
     use flagred::sample::Unknown;
     let (unknown, input) = match said.risk {
@@ -215,7 +215,7 @@ pub fn told(said: &Update) -> String {
     text + &findings(&said.ended)
 }
 
-/// What is said of one moment.
+/// An estimate as text.
 pub fn moment(said: Option<&Estimate>) -> String {
     let known = |value: fn(&Estimate) -> f64| bits(said.map_or(f64::NAN, value));
     format!(
@@ -229,7 +229,7 @@ pub fn moment(said: Option<&Estimate>) -> String {
     )
 }
 
-/// Findings of WARN and of FAIL.
+/// Findings as text.
 pub fn findings(ended: &Ended) -> String {
     ended
         .iter()
@@ -239,6 +239,7 @@ pub fn findings(ended: &Ended) -> String {
                 level,
                 from_s,
                 raised_s,
+                failed_s,
                 to_s,
                 measure,
                 threshold_pct,
@@ -250,10 +251,11 @@ pub fn findings(ended: &Ended) -> String {
             };
             let high = motor.is_some_and(|motor| motor.side == flagred::margin::Side::High);
             format!(
-                " [{} {} {} {} {} {} {} {} {} {} {}]",
+                " [{} {} {} {} {} {} {} {} {} {} {} {}]",
                 *level as i32,
                 bits(*from_s),
                 bits(*raised_s),
+                bits(failed_s.unwrap_or(f64::NAN)),
                 bits(*to_s),
                 *measure as i32,
                 bits(*threshold_pct),
@@ -267,7 +269,7 @@ pub fn findings(ended: &Ended) -> String {
         .collect()
 }
 
-/// The bits of a number; all that are not a number are one.
+/// The bits of a number; every NaN is `nan`.
 fn bits(value: f64) -> String {
     if value.is_nan() {
         "nan".into()

@@ -4,6 +4,7 @@ pub mod board;
 mod folder;
 pub mod log_writer;
 pub mod reference;
+pub mod schema;
 pub mod simulated;
 pub mod tuning;
 pub mod vehicle;
@@ -20,17 +21,10 @@ pub const STEADY: &str = concat!(
     "/../examples/flights/steady.BIN"
 );
 
-/// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent.
-///
-/// Says so where it does not: the tests that need the data are skipped then.
+/// The folder of reference data, where the environment variable `FLAGRED_SHARED` names its parent: for tests that only look at
+/// more with it.
 pub fn shared_data() -> Option<PathBuf> {
-    match std::env::var_os("FLAGRED_SHARED") {
-        Some(folder) => Some(PathBuf::from(folder).join("data")),
-        None => {
-            eprintln!("skipped: FLAGRED_SHARED names no folder of reference data");
-            None
-        }
-    }
+    std::env::var_os("FLAGRED_SHARED").map(|folder| PathBuf::from(folder).join("data"))
 }
 
 /// The folder of reference data, for tests that are ignored without it.

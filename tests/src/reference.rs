@@ -4,8 +4,8 @@
 use std::f64::consts::PI;
 
 use fuzzy::model::{
-    Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, Model, NoRuleFires, Output,
-    Shape, Term,
+    Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, Model,
+    NoRuleFires, Output, Term,
 };
 use fuzzy::rule::{Condition, Hedge, Proposition};
 
@@ -207,10 +207,12 @@ fn number(
     }
 }
 
-fn consequent(model: &Model, shape: &Shape, values: &[f64]) -> f64 {
+fn consequent(model: &Model, shape: &MembershipFunction, values: &[f64]) -> f64 {
     match shape {
-        Shape::Constant { value } | Shape::Singleton { at: value } => *value,
-        Shape::Linear {
+        MembershipFunction::Constant { value } | MembershipFunction::Singleton { at: value } => {
+            *value
+        }
+        MembershipFunction::Linear {
             coefficients,
             constant,
         } => {
@@ -226,52 +228,60 @@ fn consequent(model: &Model, shape: &Shape, values: &[f64]) -> f64 {
 }
 
 /// The places at which a shape has a parameter.
-fn parameters(shape: &Shape) -> Vec<f64> {
+fn parameters(shape: &MembershipFunction) -> Vec<f64> {
     match *shape {
-        Shape::Triangle { left, peak, right } => vec![left, peak, right],
-        Shape::Trapezoid {
+        MembershipFunction::Triangle { left, peak, right } => vec![left, peak, right],
+        MembershipFunction::Trapezoid {
             left,
             left_top,
             right_top,
             right,
         }
-        | Shape::PiShape {
+        | MembershipFunction::PiShape {
             left,
             left_top,
             right_top,
             right,
         } => vec![left, left_top, right_top, right],
-        Shape::LeftShoulder { top, foot }
-        | Shape::RightShoulder { foot, top }
-        | Shape::SShape { foot, top }
-        | Shape::ZShape { top, foot } => vec![top, foot],
-        Shape::Rectangle { left, right } => vec![left, right],
-        Shape::Piecewise { ref points } => points.iter().map(|point| point.0).collect(),
-        Shape::Gaussian { mean, .. } => vec![mean],
-        Shape::Gaussian2 {
+        MembershipFunction::LeftShoulder { top, foot }
+        | MembershipFunction::RightShoulder { foot, top }
+        | MembershipFunction::SShape { foot, top }
+        | MembershipFunction::ZShape { top, foot } => vec![top, foot],
+        MembershipFunction::Rectangle { left, right } => vec![left, right],
+        MembershipFunction::Piecewise { ref points } => {
+            points.iter().map(|point| point.0).collect()
+        }
+        MembershipFunction::Gaussian { mean, .. } => vec![mean],
+        MembershipFunction::Gaussian2 {
             left_mean,
             right_mean,
             ..
         } => vec![left_mean, right_mean],
-        Shape::Bell { center, .. } | Shape::Spike { center, .. } => vec![center],
-        Shape::Cosine { center, width } => vec![center - width / 2.0, center, center + width / 2.0],
-        Shape::Concave { end, .. } => vec![end],
-        Shape::Sigmoid { inflection, .. } => vec![inflection],
-        Shape::SigmoidDifference {
+        MembershipFunction::Bell { center, .. } | MembershipFunction::Spike { center, .. } => {
+            vec![center]
+        }
+        MembershipFunction::Cosine { center, width } => {
+            vec![center - width / 2.0, center, center + width / 2.0]
+        }
+        MembershipFunction::Concave { end, .. } => vec![end],
+        MembershipFunction::Sigmoid { inflection, .. } => vec![inflection],
+        MembershipFunction::SigmoidDifference {
             left_inflection,
             right_inflection,
             ..
         }
-        | Shape::SigmoidProduct {
+        | MembershipFunction::SigmoidProduct {
             left_inflection,
             right_inflection,
             ..
         } => vec![left_inflection, right_inflection],
-        Shape::Singleton { .. } | Shape::Constant { .. } | Shape::Linear { .. } => vec![],
+        MembershipFunction::Singleton { .. }
+        | MembershipFunction::Constant { .. }
+        | MembershipFunction::Linear { .. } => vec![],
     }
 }
 
-fn membership(shape: &Shape, x: f64) -> f64 {
+fn membership(shape: &MembershipFunction, x: f64) -> f64 {
     let sigmoid = |inflection: f64, slope: f64| 1.0 / (1.0 + (-slope * (x - inflection)).exp());
     let gaussian = |mean: f64, sd: f64| (-(x - mean).powi(2) / (2.0 * sd.powi(2))).exp();
     // An S from a to b, by its two parabolas.
@@ -309,18 +319,18 @@ fn membership(shape: &Shape, x: f64) -> f64 {
         }
     };
     match *shape {
-        Shape::Triangle { left, peak, right } => trapezoid(left, peak, peak, right),
-        Shape::Trapezoid {
+        MembershipFunction::Triangle { left, peak, right } => trapezoid(left, peak, peak, right),
+        MembershipFunction::Trapezoid {
             left,
             left_top,
             right_top,
             right,
         } => trapezoid(left, left_top, right_top, right),
-        Shape::LeftShoulder { top, foot } => trapezoid(-1e9, -1e9, top, foot),
-        Shape::RightShoulder { foot, top } => trapezoid(foot, top, 1e9, 1e9),
-        Shape::Rectangle { left, right } => trapezoid(left, left, right, right),
-        Shape::Singleton { at } => f64::from(x == at),
-        Shape::Piecewise { ref points } => {
+        MembershipFunction::LeftShoulder { top, foot } => trapezoid(-1e9, -1e9, top, foot),
+        MembershipFunction::RightShoulder { foot, top } => trapezoid(foot, top, 1e9, 1e9),
+        MembershipFunction::Rectangle { left, right } => trapezoid(left, left, right, right),
+        MembershipFunction::Singleton { at } => f64::from(x == at),
+        MembershipFunction::Piecewise { ref points } => {
             let at = points
                 .iter()
                 .filter(|point| point.0 == x)
@@ -334,53 +344,55 @@ fn membership(shape: &Shape, x: f64) -> f64 {
                 (_, None, None) => 0.0,
             }
         }
-        Shape::Gaussian { mean, sd } => gaussian(mean, sd),
-        Shape::Gaussian2 {
+        MembershipFunction::Gaussian { mean, sd } => gaussian(mean, sd),
+        MembershipFunction::Gaussian2 {
             left_mean, left_sd, ..
         } if x < left_mean => gaussian(left_mean, left_sd),
-        Shape::Gaussian2 {
+        MembershipFunction::Gaussian2 {
             right_mean,
             right_sd,
             ..
         } if x > right_mean => gaussian(right_mean, right_sd),
-        Shape::Gaussian2 { .. } => 1.0,
-        Shape::Bell {
+        MembershipFunction::Gaussian2 { .. } => 1.0,
+        MembershipFunction::Bell {
             center,
             width,
             slope,
         } => 1.0 / (1.0 + ((x - center) / width).abs().powf(2.0 * slope)),
-        Shape::Sigmoid { inflection, slope } => sigmoid(inflection, slope),
-        Shape::SigmoidDifference {
+        MembershipFunction::Sigmoid { inflection, slope } => sigmoid(inflection, slope),
+        MembershipFunction::SigmoidDifference {
             left_inflection,
             left_slope,
             right_inflection,
             right_slope,
         } => (sigmoid(left_inflection, left_slope) - sigmoid(right_inflection, right_slope)).abs(),
-        Shape::SigmoidProduct {
+        MembershipFunction::SigmoidProduct {
             left_inflection,
             left_slope,
             right_inflection,
             right_slope,
         } => sigmoid(left_inflection, left_slope) * sigmoid(right_inflection, right_slope),
-        Shape::SShape { foot, top } => s(foot, top),
-        Shape::ZShape { top, foot } => z(top, foot),
-        Shape::PiShape {
+        MembershipFunction::SShape { foot, top } => s(foot, top),
+        MembershipFunction::ZShape { top, foot } => z(top, foot),
+        MembershipFunction::PiShape {
             left,
             left_top,
             right_top,
             right,
         } => s(left, left_top).min(z(right_top, right)),
-        Shape::Cosine { center, width } if (x - center).abs() > width / 2.0 => 0.0,
-        Shape::Cosine { center, width } => (1.0 + (2.0 / width * PI * (x - center)).cos()) / 2.0,
-        Shape::Spike { center, width } => (-(10.0 / width * (x - center)).abs()).exp(),
-        Shape::Concave { inflection, end } if inflection <= end && x < end => {
+        MembershipFunction::Cosine { center, width } if (x - center).abs() > width / 2.0 => 0.0,
+        MembershipFunction::Cosine { center, width } => {
+            (1.0 + (2.0 / width * PI * (x - center)).cos()) / 2.0
+        }
+        MembershipFunction::Spike { center, width } => (-(10.0 / width * (x - center)).abs()).exp(),
+        MembershipFunction::Concave { inflection, end } if inflection <= end && x < end => {
             (end - inflection) / (2.0 * end - inflection - x)
         }
-        Shape::Concave { inflection, end } if inflection > end && x > end => {
+        MembershipFunction::Concave { inflection, end } if inflection > end && x > end => {
             (inflection - end) / (inflection - 2.0 * end + x)
         }
-        Shape::Concave { .. } => 1.0,
-        Shape::Constant { value } => value,
-        Shape::Linear { .. } => 0.0,
+        MembershipFunction::Concave { .. } => 1.0,
+        MembershipFunction::Constant { value } => value,
+        MembershipFunction::Linear { .. } => 0.0,
     }
 }

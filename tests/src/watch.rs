@@ -64,11 +64,12 @@ impl Watch {
         assert_eq!(started["schema"], "flagred.watch/1");
         let endpoint = started["endpoint"].as_str().unwrap();
         let address = endpoint.strip_prefix("listening at ");
+        let address = address.map(|address| address.parse().unwrap());
         let progress = Arc::new(Progress::default());
         let made = Arc::clone(&progress);
         Watch {
             child,
-            address: address.map(|address| address.parse().unwrap()),
+            address,
             reader: std::thread::spawn(move || {
                 let events = lines.lines().map(|line| {
                     let event: Value = serde_json::from_str(&line.unwrap()).unwrap();
@@ -86,7 +87,10 @@ impl Watch {
                     }
                     event
                 });
-                events.filter(keep).collect()
+                std::iter::once(started)
+                    .chain(events)
+                    .filter(keep)
+                    .collect()
             }),
             progress,
         }

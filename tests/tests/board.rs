@@ -1,5 +1,5 @@
-//! What flies on board says, bit for bit, what the monitor says: as a table that is lent, as exported Rust and as
-//! exported C, over grids of inputs and over every flight there is.
+//! On-board monitors have the bits of the monitor, with a lent plan, with exported Rust and with exported C, over grids of
+//! inputs and over every flight.
 
 use std::{
     collections::BTreeMap,
@@ -10,12 +10,9 @@ use std::{
 };
 
 use flagred::{
-    board::{self, Memory, Parts, Plan, table},
-    channel::Seen,
+    board::{self, OwnedMemory, Plan, table},
     estimator::Estimator,
     monitor::{Craft, Monitor},
-    verdict::Motor,
-    window::Window,
 };
 use flagred_tests::{
     Folder, STEADY,
@@ -23,7 +20,7 @@ use flagred_tests::{
     flagred,
 };
 
-/// What `flagred export --rust` writes of each of the profiles.
+/// The output of `flagred export --rust` for each profile.
 mod exported {
     pub mod flagred {
         include!("../exported/flagred.rs");
@@ -44,27 +41,16 @@ fn exported() -> [(&'static str, &'static Plan<'static>); 3] {
     ]
 }
 
-/// Runs a board's monitor in memory of just the plan's sizes.
+/// Runs an on-board monitor.
 fn with_monitor<R>(
     plan: &Plan<'_>,
     motors: usize,
     run: impl FnOnce(&mut board::Monitor<'_>) -> R,
 ) -> R {
-    let sizes = plan.sizes();
-    let parts = Parts {
-        numbers: &mut vec![0.0; sizes.numbers],
-        partials: &mut vec![table::Partial::NONE; sizes.partials],
-        strongest: &mut vec![table::Strongest::NONE; sizes.outputs],
-        outcomes: &mut vec![table::Outcome::UNDEFINED; sizes.outputs],
-        seen: &mut vec![Seen::IDLE; sizes.channels],
-        risks: &mut Window::IDLE.clone(),
-        motors: &mut vec![Motor::UNKNOWN; motors],
-    };
-    let memory = Memory::of(plan, parts).unwrap();
-    run(&mut board::Monitor::new(plan, memory).unwrap())
+    run(&mut OwnedMemory::new(plan, motors).monitor(plan).unwrap())
 }
 
-/// What the monitor says of a flight, sample by sample, and at its end.
+/// The updates of the monitor for each sample of a flight, and the findings at its end.
 fn by_the_monitor(estimator: &Estimator, flight: &[Moment]) -> Vec<String> {
     let signals = estimator.profile().signals();
     let mut monitor = Monitor::new(
@@ -91,7 +77,7 @@ fn on_board(plan: &Plan<'_>, flight: &[Moment]) -> Vec<String> {
     })
 }
 
-/// The first difference, if any: a whole flight is too long to print.
+/// Shows the first difference only: a whole flight is too long to print.
 fn assert_same(expected: &[String], found: &[String], what: &str) {
     assert_eq!(expected.len(), found.len(), "{what}");
     for (i, (expected, found)) in expected.iter().zip(found).enumerate() {
@@ -99,7 +85,7 @@ fn assert_same(expected: &[String], found: &[String], what: &str) {
     }
 }
 
-/// As many points as make a dense grid that is soon done.
+/// The points on each axis of a grid that is dense and takes little time.
 fn along(estimator: &Estimator) -> usize {
     match estimator.profile().inputs.len() {
         0..=2 => 203,
@@ -135,7 +121,7 @@ fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs()
     for (profile, (name, plan)) in PROFILES.iter().zip(exported()) {
         let estimator = estimator(profile);
         let lent = estimator.plan().unwrap();
-        // As text, in which what is not a number is equal to itself.
+        // As text, in which NaN equals NaN.
         let table = |plan: &Plan<'_>| format!("{:?}", plan.table);
         assert!(table(plan) == table(&lent), "{name}");
         let (mut known, mut filled) = (0, 0);
@@ -158,7 +144,7 @@ fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs()
         });
         eprintln!("{name}: {known} points, {filled} of them filled");
         assert!(known > 30_000, "{name}: {known}");
-        // The rules to fly with leave no gap.
+        // The rules of `flagred` have no gap.
         assert_eq!(filled > 0, name != "flagred", "{name}: {filled}");
     }
 }
@@ -226,7 +212,7 @@ fn what_has_no_closed_form_is_refused_with_what_has() {
     );
 }
 
-/// The library for C, built with nothing but `core`, and the folder to build programs in.
+/// The folder of the C library, built with `core` only.
 fn library() -> Option<&'static Path> {
     static LIBRARY: OnceLock<Option<PathBuf>> = OnceLock::new();
     let built = LIBRARY.get_or_init(|| {
@@ -257,7 +243,7 @@ fn library() -> Option<&'static Path> {
     built.as_deref()
 }
 
-/// Compiles a program of C with the library; gives it, and the folder it is in.
+/// Compiles a C program with the library, and returns it and its folder.
 fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(Command, Folder)> {
     let library = library()?;
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -292,7 +278,30 @@ fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(
     Some((Command::new(binary), folder))
 }
 
-/// What a program writes of doubles.
+/// The C initialisers name their fields, so the compiler holds the structures equal.
+#[test]
+fn the_header_has_the_arrays_of_a_table() {
+    macro_rules! list {
+        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+            [$((stringify!($array), stringify!($item))),*]
+        };
+    }
+    let arrays = table::arrays!(list!).map(|(array, item)| match item {
+        "f64" => format!("FLAGRED_ARRAY(double, {array})"),
+        "u32" => format!("FLAGRED_ARRAY(uint32_t, {array})"),
+        item => format!("FLAGRED_ARRAY(flagred_{}, {array})", item.to_lowercase()),
+    });
+    let header = include_str!("../../bindings/c/include/flagred.h");
+    let listed: Vec<&str> = header
+        .lines()
+        .filter_map(|line| line.split(';').next()?.strip_prefix("    "))
+        .filter(|line| line.starts_with("FLAGRED_ARRAY("))
+        .take(arrays.len())
+        .collect();
+    assert_eq!(arrays[..], listed);
+}
+
+/// The output of a program for doubles as its input.
 fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
     let mut child = program
         .stdin(Stdio::piped())
@@ -361,7 +370,7 @@ fn the_example_in_c_runs() {
     insta::assert_snapshot!(text);
 }
 
-/// Time in us and risk of every row that has one.
+/// The time in us and the risk of every row with a risk.
 fn risks(csv: &[u8]) -> BTreeMap<u64, f64> {
     let text = std::str::from_utf8(csv).unwrap();
     let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
@@ -401,7 +410,7 @@ fn a_log_flown_again_in_c_has_the_risk_of_assess() {
     }
 }
 
-/// Rule sets that use every array of a table: those of `tests/onboard`, each input the latest value of a signal.
+/// The rule sets of `tests/onboard`, which use every array of a table. Each input is the last value of a signal.
 fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
     let rule_sets = Path::new(env!("CARGO_MANIFEST_DIR")).join("onboard");
     let mut profiles = Vec::new();
@@ -467,6 +476,41 @@ fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
 }
 
 #[test]
+fn a_damaged_table_is_refused_or_evaluates_in_c() {
+    macro_rules! list {
+        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+            [$(item_size(|table| table.$array)),*]
+        };
+    }
+    let sizes: [usize; _] = table::arrays!(list!);
+    let folder = Folder::new();
+    let of_every_kind = profiles_of_every_kind(&folder);
+    let of_every_kind = of_every_kind
+        .iter()
+        .map(|(name, _, file)| (&**name, &**file));
+    let shipped = exported().into_iter().zip(PROFILES);
+    let shipped = shipped.map(|((name, _), profile)| (name, profile));
+    for (name, profile) in of_every_kind.chain(shipped) {
+        let exported = Some((profile, name));
+        let Some((mut command, _folder)) = program("tests/c/damage.c", name, exported) else {
+            return;
+        };
+        let output = command.args(sizes.map(|size| size.to_string())).output();
+        let output = output.unwrap();
+        assert!(output.status.success(), "{name}: {output:?}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        let (accepted, tried) = text.trim().split_once(" of ").unwrap();
+        let [accepted, tried] = [accepted, tried].map(|count| count.parse::<u32>().unwrap());
+        assert!(accepted > 100 && tried > accepted + 100, "{name}: {text}");
+    }
+}
+
+/// The size of an item of an array of a table.
+fn item_size<T>(_: for<'a> fn(&table::Table<'a>) -> &'a [T]) -> usize {
+    size_of::<T>()
+}
+
+#[test]
 fn every_compiled_table_is_whole() {
     for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/conformance")).unwrap() {
         let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
@@ -477,7 +521,7 @@ fn every_compiled_table_is_whole() {
     }
 }
 
-/// The program of examples/09-on-board.md, as a reader would save it.
+/// The program of examples/09-on-board.md.
 #[test]
 fn the_page_in_c_runs() {
     let page = include_str!("../../examples/09-on-board.md");

@@ -2,7 +2,7 @@
 
 use std::{fmt::Write as _, fs, process::Output};
 
-use flagred_tests::{Folder, flagred, shared_data};
+use flagred_tests::{Folder, flagred, reference_data};
 use serde_json::Value;
 
 /// A minute of flight at 25 Hz: from 30 to 40 s the motors swing ever harder, from 34 to 40 s the attitude is off.
@@ -196,8 +196,9 @@ fn whole_flights_are_evaluated_from_a_table() {
 /// What the documentation says of the shipped rules: on the flights they were learned from; `leave_vehicles_out.rs` has
 /// the other half.
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn the_shipped_rules_on_the_simulated_flights() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     let rows = json(&evaluate(&[
         "--json",
         "--rows",

@@ -220,7 +220,7 @@ fn a_flight_becomes_rows() {
 }
 
 #[test]
-#[ignore = "needs the reference data: FLAGRED_SHARED"]
+#[ignore = "needs FLAGRED_SHARED"]
 fn the_shipped_rules_are_what_the_documented_command_learns() {
     let data = reference_data();
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -20,6 +20,14 @@ struct Vehicle {
     packets: Vec<(f64, Vec<u8>)>,
 }
 
+/// What a live link tells with a row of commands.
+struct Row {
+    t_s: f64,
+    commands: [f64; 4],
+    armed: bool,
+    in_air: bool,
+}
+
 impl Vehicle {
     fn send(&mut self, t_s: f64, message: Message, payload: &[u8]) {
         let from = self.log.bytes.len() + STAMP;
@@ -57,9 +65,8 @@ impl Vehicle {
         flightlog::read(&self.log.bytes[..], &Options::default()).unwrap()
     }
 
-    /// Live: the vehicle, and at each row of commands the time, the commands, whether it is
-    /// armed, and whether it is in the air.
-    fn live(&self) -> (Telemetry, Vec<(f64, [f64; 4], bool, bool)>) {
+    /// Live: the vehicle, and its rows of commands.
+    fn live(&self) -> (Telemetry, Vec<Row>) {
         let mut telemetry: Option<Telemetry> = None;
         let mut rows = Vec::new();
         for (_, bytes) in &self.packets {
@@ -74,7 +81,12 @@ impl Vehicle {
             if let News::Commands { t_s } = telemetry.receive(&packet) {
                 let mut commands = [0.0; 4];
                 telemetry.effective_commands(&telemetry.setup(), &mut commands);
-                rows.push((t_s, commands, telemetry.is_armed(), telemetry.is_in_air()));
+                rows.push(Row {
+                    t_s,
+                    commands,
+                    armed: telemetry.is_armed(),
+                    in_air: telemetry.is_in_air(),
+                });
             }
         }
         (telemetry.unwrap(), rows)
@@ -97,7 +109,13 @@ fn compare(vehicle: &Vehicle) -> Flight {
     // The clock of a link believes the first time stamp with the second.
     let recorded: Vec<_> = flight.commands.rows().skip(1).collect();
     assert_eq!(live.len(), recorded.len());
-    for ((t_s, commands, armed, in_air), (row_s, row)) in live.into_iter().zip(recorded) {
+    for (live, (row_s, row)) in live.into_iter().zip(recorded) {
+        let Row {
+            t_s,
+            commands,
+            armed,
+            in_air,
+        } = live;
         assert!((t_s - row_s).abs() < 1e-6);
         let effective: Vec<f64> = row
             .iter()

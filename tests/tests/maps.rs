@@ -128,7 +128,7 @@ fn pictures_are_well_formed_and_complete() {
                 "margin",
                 "spread",
                 "risk [%]",
-                "filled: no rule covers it (thin_plate)",
+                "interpolated where no rule applies (thin plate)",
                 "60",
             ],
         ),
@@ -138,7 +138,7 @@ fn pictures_are_well_formed_and_complete() {
                 "margin",
                 "spread",
                 "risk [%]",
-                "filled: no rule covers it (thin_plate)",
+                "interpolated where no rule applies (thin plate)",
             ],
         ),
         (
@@ -150,6 +150,7 @@ fn pictures_are_well_formed_and_complete() {
             vec![
                 "unsteady_lately",
                 "flagred: risk [%] at load = 0.5, at_limit = 0",
+                "at load = 0.5, at_limit = 0",
             ],
         ),
         (
@@ -189,12 +190,12 @@ fn pictures_are_well_formed_and_complete() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_told() {
+fn impossible_maps_are_refused() {
     for (arguments, expected) in [
         (vec![PAPER, "--fix", "wind=3"], "has no input `wind`"),
         (
             vec![PAPER, "--fix", "margin=3"],
-            "outside its range from 0 to 0.5",
+            "cannot be fixed at 3: its range is 0 to 0.5",
         ),
         (
             vec![PAPER, "--x", "margin", "--y", "margin"],
@@ -202,10 +203,11 @@ fn what_cannot_be_drawn_is_told() {
         ),
         (
             vec![PAPER, "--fix", "margin=0.1", "--fix", "spread=0.1"],
-            "nothing is left to draw",
+            "none is left for an axis",
         ),
         (vec![PAPER, "--output", "danger"], "has no output `danger`"),
         (vec![PAPER, "--x", "margin:3..1"], "INPUT:LOW..HIGH"),
+        (vec![PAPER, "--svg", "map.png"], "write `map.svg`"),
         (
             vec![PAPER, "--fix", "margin=0.1", "--surface", "--svg", "-"],
             "needs two inputs",
@@ -215,4 +217,54 @@ fn what_cannot_be_drawn_is_told() {
         assert_eq!(code, Some(2), "{arguments:?}: {said}");
         assert!(said.contains(expected), "{arguments:?}: {said}");
     }
+}
+
+/// A rule set of seven inputs with long names: five of them are held.
+#[test]
+fn long_headings_stay_within_the_picture() {
+    let folder = flagred_tests::Folder::new();
+    let inputs: String = (0..7)
+        .map(|i| format!("  quantity_number_{i}: {{range: [0, 1], partition: [low, high]}}\n"))
+        .collect();
+    let model = folder.file(
+        "long.yaml",
+        format!(
+            "fuzzy: 1\nname: a-rule-set-with-a-name-that-is-longer-than-any-picture-of-it-is-wide\ninputs:\n{inputs}\
+             outputs:\n  y: {{range: [0, 1], partition: [low, high]}}\n\
+             rules:\n  - IF quantity_number_0 IS low THEN y IS low\n"
+        ),
+    );
+    let (code, text, _) = map(&[&model, "--fill", "none", "--svg", "-"]);
+    assert_eq!(code, Some(0));
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let number = |node: roxmltree::Node<'_, '_>, name: &str| -> f64 {
+        node.attribute(name).unwrap().parse().unwrap()
+    };
+    let svg = document.root_element();
+    let view: Vec<f64> = svg
+        .attribute("viewBox")
+        .unwrap()
+        .split(' ')
+        .map(|x| x.parse().unwrap())
+        .collect();
+    let mut held = 0;
+    for node in document
+        .descendants()
+        .filter(|node| node.has_tag_name("text"))
+    {
+        if node.attribute("text-anchor") != Some("start") {
+            continue;
+        }
+        let words = node.text().unwrap();
+        held += words.matches("quantity_number_").count();
+        let letter = if node.attribute("class") == Some("heading") {
+            9.0
+        } else {
+            6.6
+        };
+        let right = number(node, "x") + letter * words.chars().count() as f64;
+        assert!(right <= view[2], "{words}: {right}");
+        assert!(number(node, "y") >= view[1] + 12.0, "{words}");
+    }
+    assert_eq!(held, 5, "every held input is named");
 }

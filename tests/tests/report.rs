@@ -61,7 +61,7 @@ fn the_curves_hold_the_values_of_the_json_document() {
         assert!((most - high).abs() <= 0.051, "{name}: {most} is not {high}");
     }
     let start_s = document["steps"][0]["t_s"].as_f64().unwrap();
-    assert!(html.contains("Nothing reached a threshold"));
+    assert!(html.contains("No threshold was reached"));
     assert!(
         html.contains("SERVO3_FUNCTION = 35"),
         "where motor 3 is known from"

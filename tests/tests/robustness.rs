@@ -1,6 +1,6 @@
 //! What becomes of the shipped rules where the log is coarse, the limits are wrong, or something breaks.
 //!
-//! `FLAGRED_SHARED=... cargo test -p flagred-tests --test robustness -- --nocapture` prints the figures.
+//! `FLAGRED_SHARED=... cargo test -p flagred-tests --test robustness -- --ignored --nocapture` prints the figures.
 
 use flagred::{
     accumulator::Accumulator,
@@ -9,7 +9,7 @@ use flagred::{
     shipped,
 };
 use flagred_tests::{
-    shared_data,
+    reference_data,
     simulated::{self, AS_FLOWN, Replay, Said, Simulated, on_all_cores},
 };
 
@@ -20,8 +20,9 @@ fn estimator() -> Estimator {
 }
 
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn coarse_logs_wrong_limits_and_faults() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     let flights = simulated::flights(&data);
     let estimator = estimator();
     let replay = |how: Replay| on_all_cores(&flights, |flight| flight.replay(&estimator, how));
@@ -188,8 +189,9 @@ fn faults(flights: &[Simulated], said: &[Said]) {
 }
 
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn the_elevated_risk_is_that_of_any_rate() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     let flights = simulated::flights(&data);
     let estimator = estimator();
     let differences = on_all_cores(&flights, |flight| {

@@ -6,7 +6,7 @@ use std::{
 };
 
 use flagred_tests::{
-    STEADY, shared_data,
+    STEADY, reference_data, shared_data,
     vehicle::{StandIn, flight},
     watch::{Said, Watch, assess, check_texts, compare, fly_udp},
     wire::{Link, Speed, Wire},
@@ -97,8 +97,9 @@ fn the_shipped_flight_gets_the_verdict_of_assess_over_every_link() {
 }
 
 #[test]
+#[ignore = "needs FLAGRED_SHARED"]
 fn reference_flights_get_the_verdict_of_assess_over_every_link() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     let names = [
         "hover_calm",
         "intermittent",
@@ -116,9 +117,9 @@ fn reference_flights_get_the_verdict_of_assess_over_every_link() {
 
 /// As slow as it was flown: two minutes a flight, so only where it is asked for (`--ignored`).
 #[test]
-#[ignore = "takes as long as the flights"]
+#[ignore = "needs FLAGRED_SHARED"]
 fn reference_flights_get_the_verdict_of_assess_in_real_time() {
-    let Some(data) = shared_data() else { return };
+    let data = reference_data();
     let mut logs: Vec<PathBuf> = std::fs::read_dir(data.join("flights"))
         .unwrap()
         .map(|entry| entry.unwrap().path())

@@ -10,10 +10,10 @@
 /* 50 times a second. */
 #define STEP_S 0.02
 
-/* The memory of the monitor: static, as a flight stack has it. */
+/* The memory of the monitor. */
 static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
 
-/* What the motors are told, in us: calm, or one corner up and the other down in turns. */
+/* The commands in us: calm, or neighbouring motors in turns at their limits. */
 static void commands_at(int step, double commands[4]) {
     int gust = step > 1500 && (step / 40) % 2 == 0;
     for (int motor = 0; motor < 4; motor++) {

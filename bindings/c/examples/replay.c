@@ -1,4 +1,4 @@
-/* Flies a log again on board: a flight CSV of a quadrotor in, the time and the risk out.
+/* Replays a flight CSV of a quadrotor, and writes the time and the risk.
  *
  *   flagred convert flight.BIN -o flight.csv
  *   flagred export --c --output profile.h
@@ -13,7 +13,7 @@
 static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
 
 int main(void) {
-    /* The whole range, as in the log at hand: MOT_SPIN_MIN 0, MOT_SPIN_MAX 1. */
+    /* The full range: MOT_SPIN_MIN 0, MOT_SPIN_MAX 1. */
     const flagred_limits limits[4] = {{1000, 2000}, {1000, 2000}, {1000, 2000}, {1000, 2000}};
     flagred_monitor *monitor;
     if (flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor) != FLAGRED_OK) {
@@ -26,14 +26,14 @@ int main(void) {
         flagred_sample sample = {.commands = commands, .motors = 4};
         if (sscanf(line, "%lf,%lf,%lf,%lf,%lf,%d", &sample.t_s, &commands[0], &commands[1], &commands[2], &commands[3],
                    &sample.in_air) != 6) {
-            continue; /* a comment, or the names of the columns */
+            continue; /* a comment or the header */
         }
         flagred_update said;
         if (flagred_push(monitor, &sample, &said) != FLAGRED_OK) {
             return 1;
         }
         if (isnan(said.risk_pct)) {
-            printf("%.6f,\n", said.t_s); /* unknown is no number */
+            printf("%.6f,\n", said.t_s); /* unknown */
         } else {
             printf("%.6f,%.6f\n", said.t_s, said.risk_pct);
         }

@@ -1,8 +1,8 @@
-/* FLAGRED on board: how close a multirotor is to losing control, told from its motor commands alone.
+/* FLAGRED on board: estimates a multirotor's risk of losing control from its motor commands.
  *
- * A profile and its rule set are written as constant data by `flagred export --c`. A monitor follows a flight with it,
- * in memory that the caller lends: nothing is allocated, and a sample costs the same whatever the lengths of the windows.
- * What it says has the bits of what the command `flagred` says of the same samples.
+ * `flagred export --c` writes a profile and its rule set as constant data. A monitor assesses a flight with this data in
+ * memory that the caller provides. It does not allocate, and the cost of a sample does not depend on the lengths of the
+ * windows. The results are bit for bit those of the command `flagred` for the same samples.
  *
  *     #include "profile.h"                                     // flagred export --c flagred
  *     static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
@@ -10,8 +10,8 @@
  *     flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor);
  *     flagred_push(monitor, &sample, &update);             // for every sample of the motors
  *
- * Functions do not block, lock or write anywhere but to what they are given. A monitor is for one thread at a time.
- * What is not known is NAN, or a reason; never a number that could be taken for a risk.
+ * Functions do not block or lock, and write only to their arguments. Only one thread at a time may use a monitor.
+ * An unknown value is NAN, with a reason.
  */
 #ifndef FLAGRED_H
 #define FLAGRED_H
@@ -23,23 +23,23 @@
 extern "C" {
 #endif
 
-/* The version of the data that `flagred export --c` writes. */
-#define FLAGRED_PLAN_FORMAT 1
+/* The format of the data that `flagred export --c` writes. */
+#define FLAGRED_PLAN_FORMAT 2
 
-/* ---- Following a flight ------------------------------------------------------------------------------------------- */
+/* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
 typedef enum flagred_status {
     FLAGRED_OK = 0,
-    FLAGRED_NULL_POINTER = 1,   /* a pointer that must not be null is */
-    FLAGRED_OTHER_FORMAT = 2,   /* the plan was exported by another version: export it again */
-    FLAGRED_DAMAGED_PLAN = 3,   /* the plan points beyond its own arrays */
+    FLAGRED_NULL_POINTER = 1,   /* a required pointer is NULL */
+    FLAGRED_OTHER_FORMAT = 2,   /* another version exported the plan: export it again */
+    FLAGRED_DAMAGED_PLAN = 3,   /* an index in the plan is out of bounds */
     FLAGRED_NO_MOTORS = 4,
-    FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size says, or not aligned to 16 bytes */
-    FLAGRED_BAD_LIMITS = 6      /* a motor's lower limit is not below its upper one */
+    FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size returns, or not aligned to 16 bytes */
+    FLAGRED_BAD_LIMITS = 6      /* the lower limit of a motor is not below its upper limit */
 } flagred_status;
 
 typedef enum flagred_level {
-    FLAGRED_LEVEL_NONE = -1,    /* on the ground, or unknown for long; as a change: none */
+    FLAGRED_LEVEL_NONE = -1,    /* on the ground, or unknown for a long time; as a change: no change */
     FLAGRED_GOOD = 0,
     FLAGRED_WARN = 1,
     FLAGRED_FAIL = 2
@@ -49,44 +49,44 @@ typedef enum flagred_level {
 typedef enum flagred_unknown {
     FLAGRED_KNOWN = 0,
     FLAGRED_ON_GROUND = 1,
-    FLAGRED_OUT_OF_ORDER = 2,   /* the time stamp is not after the one before; the sample was left out */
-    FLAGRED_WARMING_UP = 3,     /* the window of an input does not reach back far enough yet */
+    FLAGRED_OUT_OF_ORDER = 2,   /* the time stamp is not after the previous one; the sample is ignored */
+    FLAGRED_WARMING_UP = 3,     /* the window of an input is not full enough yet */
     FLAGRED_TOO_FEW_SAMPLES = 4,
-    FLAGRED_NO_VALUE = 5,       /* nothing is known of the signal of an input */
-    FLAGRED_NO_RULE = 6         /* no rule says anything about such inputs, and nothing fills the gap */
+    FLAGRED_NO_VALUE = 5,       /* the signal of an input is unknown */
+    FLAGRED_NO_RULE = 6         /* no rule covers the inputs, and nothing fills the gap */
 } flagred_unknown;
 
-/* The commands at which a motor can give no less and no more, in the unit of its commands. On an ArduPilot vehicle in us:
+/* The commands of a motor's least and most thrust, in the unit of its commands. On an ArduPilot vehicle, in us:
  * MOT_PWM_MIN + MOT_SPIN_MIN * (MOT_PWM_MAX - MOT_PWM_MIN), and the same with MOT_SPIN_MAX. */
 typedef struct flagred_limits {
     double low;
     double high;
 } flagred_limits;
 
-/* A moment of a flight. */
+/* A sample of a flight. */
 typedef struct flagred_sample {
-    double t_s;                 /* seconds; must not fall */
-    const double *commands;     /* the command of each motor, in the unit of its limits; NAN is unknown, and so must
-                                   be what a bus sends for it, such as 65535 */
-    size_t motors;              /* how many there are; those that are missing are unknown */
-    const double *signals;      /* the signals that the profile names, in its order; NAN is unknown; may be NULL */
+    double t_s;                 /* seconds; must increase */
+    const double *commands;     /* the command of each motor, in the unit of its limits; NAN where unknown (replace
+                                   codes such as 65535 by NAN) */
+    size_t motors;              /* the number of commands; missing ones are unknown */
+    const double *signals;      /* the signals of the profile, in its order; NAN where unknown; may be NULL */
     size_t signal_count;
     int32_t in_air;             /* 0 on the ground */
 } flagred_sample;
 
-/* What a level was raised for, once it is over. */
+/* The cause of a level. */
 typedef struct flagred_finding {
-    double from_s;              /* since when the level was reached */
-    double raised_s;            /* when it was raised */
-    double to_s;                /* when it was last reached */
+    double from_s;              /* when the threshold was first reached */
+    double raised_s;            /* when the level was raised */
+    double to_s;                /* when the threshold was last reached */
     double threshold_pct;
     double peak_pct;
     double mean_margin;         /* of the motor with the least margin; NAN where no motor is known */
     double least_margin;
     int32_t level;              /* flagred_level; FLAGRED_LEVEL_NONE where there is no finding */
-    int32_t of_elevated_risk;   /* 0: the risk reached the threshold; 1: the elevated risk did */
-    int32_t motor;              /* counted from 0; -1 where no motor is known */
-    int32_t at_high_limit;      /* 0: nearest to its lower limit; 1: to its upper one */
+    int32_t of_elevated_risk;   /* 0: the risk reached the threshold; 1: the elevated risk */
+    int32_t motor;              /* the index of the motor; -1 where no motor is known */
+    int32_t at_high_limit;      /* 0: nearer to the lower limit; 1: to the upper limit */
 } flagred_finding;
 
 /* What is known after a sample. */
@@ -94,15 +94,15 @@ typedef struct flagred_update {
     double t_s;
     double risk_pct;            /* NAN where unknown */
     double elevated_risk_pct;   /* NAN where unknown */
-    double coverage;            /* how well the rules know such inputs, 0 to 1; NAN where the risk is unknown */
-    double filled_from;         /* the distance to what rules cover, where the risk was filled in from there; else NAN */
+    double coverage;            /* the largest firing strength of a rule, 0 to 1; NAN where the risk is unknown */
+    double filled_from;         /* the distance to the nearest covered point, where the risk is interpolated; else NAN */
     flagred_finding ended[2];   /* the findings that ended with this sample: of WARN, of FAIL */
-    int32_t dominant_rule;      /* the rule that fired most strongly, counted from 0; -1 where none did */
-    int32_t clamped;            /* 1 where an input lay outside its range and was taken as its end */
+    int32_t dominant_rule;      /* the index of the rule with the largest firing strength; -1 where none fired */
+    int32_t clamped;            /* 1 where an input was outside its range and was clamped to it */
     int32_t level;              /* flagred_level */
-    int32_t change;             /* flagred_level: the new level where this sample changed it */
+    int32_t change;             /* flagred_level: the new level, where this sample changed it */
     int32_t unknown;            /* flagred_unknown */
-    int32_t unknown_input;      /* the input of the profile that is unknown, counted from 0; else -1 */
+    int32_t unknown_input;      /* the index of the unknown input of the profile; else -1 */
 } flagred_update;
 
 typedef struct flagred_plan flagred_plan;
@@ -111,30 +111,30 @@ typedef struct flagred_monitor flagred_monitor;
 /* The version of this library, as "0.1.0". */
 const char *flagred_version(void);
 
-/* A status in words. */
+/* The text of a status. */
 const char *flagred_status_text(int32_t status);
 
-/* How many bytes a monitor needs; 0 for a plan that cannot be used. Exported profiles have a macro that is at least as
- * much on every processor. */
+/* The size of a monitor's memory in bytes; 0 for an invalid plan. FLAGRED_MEMORY of an exported profile is at least as
+ * large on every processor. */
 size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 
-/* Starts to follow a flight, and gives the monitor, which lives in the memory: nothing has to be freed. Plan and memory
- * must outlive it; the limits, one a motor, are copied. Limits that are NULL say that commands are from 0 to 1, and that
- * others are unknown; with limits, commands beyond them are at them. */
+/* Makes a monitor of a new flight in `memory`; there is nothing to free. `plan` and `memory` must outlive it. `limits`,
+ * one for each motor, are copied, and commands are clamped to them. If `limits` is NULL, commands are from 0 to 1, and
+ * others are unknown. */
 int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
                       flagred_monitor **monitor);
 
-/* Takes a sample in and says what is known. */
+/* Takes the next sample and writes the update. */
 int32_t flagred_push(flagred_monitor *monitor, const flagred_sample *sample, flagred_update *update);
 
-/* The finding that the level rests on, as it stands; one of FLAGRED_LEVEL_NONE while the level is good. */
+/* The open finding of the current level; its level is FLAGRED_LEVEL_NONE while the level is good. */
 int32_t flagred_open_finding(const flagred_monitor *monitor, flagred_finding *finding);
 
-/* Ends the flight: the findings that were still open, of WARN and of FAIL. A next sample begins another flight. */
+/* Ends the flight and writes the open findings of WARN and of FAIL. The next sample begins a new flight. */
 int32_t flagred_finish(flagred_monitor *monitor, flagred_finding ended[2]);
 
-/* The risk at values of the profile's inputs, in its order, whatever was flown: for tests and for maps. Fills in what is
- * said of one moment: the risk, coverage, filled_from, dominant_rule, clamped. */
+/* The risk at values of the profile's inputs, in its order, independent of the flight. Writes risk_pct, coverage,
+ * filled_from, dominant_rule and clamped. */
 int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t count, flagred_update *update);
 
 /* ---- Exported data: written by `flagred export --c`, not by hand --------------------------------------------------- */
@@ -155,6 +155,13 @@ typedef struct flagred_curve {
     uint32_t kind, literal, first_point, end_point, first_hedge, end_hedge;
 } flagred_curve;
 
+typedef struct flagred_point {
+    double x, degree;
+} flagred_point;
+
+/* A hedge: NOT, very, somewhat, extremely, seldom, any, counted from 0. */
+typedef uint32_t flagred_hedge;
+
 typedef struct flagred_axis {
     uint32_t input, first_cut, end_cut, first_line;
 } flagred_axis;
@@ -173,7 +180,7 @@ typedef struct flagred_edge {
 
 typedef struct flagred_action {
     double weight;
-    uint32_t place, output, rule, sums;
+    uint32_t strength, output, rule, sums;
 } flagred_action;
 
 typedef struct flagred_program {
@@ -185,8 +192,8 @@ typedef struct flagred_step {
 } flagred_step;
 
 typedef struct flagred_output {
-    double low, high, otherwise;
-    uint32_t set, first, end, first_height, end_height;
+    double low, high, default_value;
+    uint32_t form, first, end, first_strength, end_strength;
 } flagred_output;
 
 typedef struct flagred_pair {
@@ -197,10 +204,10 @@ typedef struct flagred_moment {
     double area, moment;
 } flagred_moment;
 
-typedef struct flagred_consequence {
+typedef struct flagred_consequent {
     double constant;
     uint32_t first, end;
-} flagred_consequence;
+} flagred_consequent;
 
 typedef struct flagred_coefficient {
     double coefficient;
@@ -217,7 +224,7 @@ typedef struct flagred_source {
 } flagred_source;
 
 typedef struct flagred_threshold {
-    double risk_pct, elevated_risk_pct;   /* NAN where there is none */
+    double risk_pct, elevated_risk_pct;   /* NAN: none */
 } flagred_threshold;
 
 typedef struct flagred_level_settings {
@@ -244,7 +251,7 @@ struct flagred_plan {
     uint32_t format;
     uint32_t and_operator, or_operator;
     uint32_t conjunctions, actions_a_cell, first_action, sums;
-    uint32_t degrees, alive, partial, stack, heights;
+    uint32_t degrees, alive, partial, stack, strengths;
     uint32_t output, signals;
     double coverage_below;
     flagred_settings settings;
@@ -253,8 +260,8 @@ struct flagred_plan {
     FLAGRED_ARRAY(uint32_t, starts);
     FLAGRED_ARRAY(flagred_line, lines);
     FLAGRED_ARRAY(flagred_curve, curves);
-    FLAGRED_ARRAY(double, points);              /* x, degree, x, degree ... */
-    FLAGRED_ARRAY(uint32_t, hedges);
+    FLAGRED_ARRAY(flagred_point, points);
+    FLAGRED_ARRAY(flagred_hedge, hedges);
     FLAGRED_ARRAY(flagred_axis, axes);
     FLAGRED_ARRAY(flagred_dimension, dimensions);
     FLAGRED_ARRAY(uint32_t, cells);
@@ -266,13 +273,13 @@ struct flagred_plan {
     FLAGRED_ARRAY(flagred_output, outputs);
     FLAGRED_ARRAY(flagred_pair, pairs);
     FLAGRED_ARRAY(flagred_moment, moments);
-    FLAGRED_ARRAY(flagred_consequence, consequences);
+    FLAGRED_ARRAY(flagred_consequent, consequents);
     FLAGRED_ARRAY(flagred_coefficient, coefficients);
     FLAGRED_ARRAY(uint32_t, order);
     FLAGRED_ARRAY(flagred_channel, channels);
     FLAGRED_ARRAY(flagred_source, sources);
-    FLAGRED_ARRAY(double, places);              /* of the knots that fill gaps, input by input; none where nothing can */
-    FLAGRED_ARRAY(uint32_t, first_places);      /* where those of each input begin, and where the last one's end */
+    FLAGRED_ARRAY(double, coordinates);         /* of the knots that fill gaps, input by input; empty without filling */
+    FLAGRED_ARRAY(uint32_t, first_coordinates); /* the index of each input's first coordinate, and the end of the last's */
     FLAGRED_ARRAY(double, values);
     FLAGRED_ARRAY(double, distances);
 };

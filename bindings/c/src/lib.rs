@@ -1,7 +1,6 @@
-//! The C interface of FLAGRED on board; what each function does stands in `include/flagred.h`.
+//! The C interface of [`flagred::board`]. `include/flagred.h` documents the functions.
 //!
-//! Everything is done by [`flagred::board`]. Here foreign memory becomes references, and the other way round: the only
-//! `unsafe` of the workspace.
+//! It converts between pointers and references: the only `unsafe` code of the workspace.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 mod memory;
@@ -12,7 +11,10 @@ mod update;
 use core::ffi::{CStr, c_char};
 
 use flagred::{
-    board::{Memory, Monitor, Parts},
+    board::{
+        Memory, Monitor,
+        table::{Outcome, Partial, Strongest},
+    },
     channel::Seen,
     margin::Range,
     sample::Sample,
@@ -25,7 +27,7 @@ use plan::{Array, Plan};
 use status::Status;
 use update::{Finding, Update, findings};
 
-/// The limits of a motor.
+/// `struct flagred_limits`.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct Limits {
@@ -33,7 +35,7 @@ pub struct Limits {
     high: f64,
 }
 
-/// A moment of a flight.
+/// `struct flagred_sample`.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct CSample {
@@ -43,13 +45,13 @@ pub struct CSample {
     in_air: i32,
 }
 
-/// A monitor in the caller's memory.
+/// `struct flagred_monitor`.
 #[derive(Debug)]
 pub struct CMonitor {
     monitor: Monitor<'static>,
-    /// One a motor; none where commands are effective ones.
+    /// One for each motor; empty where commands are from 0 to 1.
     limits: &'static [Range],
-    /// The effective command of each motor in the sample at hand.
+    /// The effective command of each motor in the current sample.
     effective: &'static mut [f64],
 }
 
@@ -65,34 +67,34 @@ pub extern "C" fn flagred_version() -> *const c_char {
     VERSION.as_ptr()
 }
 
-/// A status in words.
+/// The text of a status.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "a name that C can call")]
 pub extern "C" fn flagred_status_text(status: i32) -> *const c_char {
     status::text(status).as_ptr()
 }
 
-/// How many bytes a monitor needs; 0 for a plan that cannot be used.
+/// The size of a monitor's memory in bytes; 0 for an invalid plan.
 ///
 /// # Safety
-/// `plan` is null or points to a plan whose arrays are as long as it says.
+/// `plan` is null or points to a plan whose arrays have the lengths it says.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_memory_size(plan: *const Plan, motors: usize) -> usize {
     // SAFETY: the caller's promise.
     let plan = unsafe { plan.as_ref() };
     let plan = plan.ok_or(Status::NullPointer);
-    // SAFETY: the caller's promise on the plan's arrays, which are read only here.
+    // SAFETY: the caller's promise on the plan's arrays, which are used in this call only.
     let sizes = plan.and_then(|plan| unsafe { plan.bytes(motors) });
     sizes.unwrap_or(0)
 }
 
-/// Starts to follow a flight.
+/// Makes a monitor of a new flight.
 ///
 /// # Safety
-/// `plan` is null or points to a plan whose arrays are as long as it says; `limits` is null or points to one for each
-/// motor; `memory` is null or points to `size` bytes that nothing else uses; `monitor` is null or can be written. Plan
-/// and memory stay where they are as long as the monitor is used.
+/// `plan` is null or points to a plan whose arrays have the lengths it says; `limits` is null or has one item for each motor;
+/// `memory` is null or has `size` bytes that nothing else uses; `monitor` is null or writable. The plan and the memory outlive
+/// the monitor.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_start(
@@ -112,7 +114,7 @@ pub unsafe extern "C" fn flagred_start(
         Ok(started) => (Status::Ok, started),
         Err(status) => (status, core::ptr::null_mut()),
     };
-    // SAFETY: not null, and the caller lets it be written.
+    // SAFETY: not null, and writable by the caller's promise.
     unsafe { monitor.write(started) };
     status as i32
 }
@@ -127,9 +129,9 @@ unsafe fn start(
     memory: *mut u8,
     size: usize,
 ) -> Result<*mut CMonitor, Status> {
-    // SAFETY: the caller's promise: it lives as long as the monitor.
+    // SAFETY: the caller's promise: it outlives the monitor.
     let plan: &'static Plan = unsafe { plan.as_ref() }.ok_or(Status::NullPointer)?;
-    // SAFETY: the caller's promise: nobody else uses the memory, as long as the monitor.
+    // SAFETY: the caller's promise: nothing else uses the memory, and it outlives the monitor.
     let mut block = unsafe { Block::new(memory, size) }?;
     if motors == 0 {
         return Err(Status::NoMotors);
@@ -142,7 +144,7 @@ unsafe fn start(
     let limits: &'static [Limits] = if limits.is_null() {
         &[]
     } else {
-        // SAFETY: not null, and by the caller's promise there is one for each motor; only read here.
+        // SAFETY: not null, and by the caller's promise there is one for each motor.
         unsafe { core::slice::from_raw_parts(limits, motors) }
     };
     let ranges = block.fill(limits.len(), Range::FULL)?;
@@ -150,16 +152,15 @@ unsafe fn start(
         *range = Range::new(*low, *high).ok_or(Status::BadLimits)?;
     }
     let sizes = plan.sizes();
-    let parts = Parts {
+    let memory = Memory {
         numbers: block.fill(sizes.numbers, 0.0)?,
-        partials: block.fill(sizes.partials, flagred::board::table::Partial::NONE)?,
-        strongest: block.fill(sizes.outputs, flagred::board::table::Strongest::NONE)?,
-        outcomes: block.fill(sizes.outputs, flagred::board::table::Outcome::UNDEFINED)?,
+        partials: block.fill(sizes.partials, Partial::NONE)?,
+        strongest: block.fill(sizes.outputs, Strongest::NONE)?,
+        outcomes: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
         seen: block.repeat(sizes.channels, |_| Ok(Seen::IDLE))?,
         risks: block.place(Window::IDLE)?,
         motors: block.fill(motors, Motor::UNKNOWN)?,
     };
-    let memory = Memory::of(plan, parts).ok_or(Status::MemorySize)?;
     let monitor = CMonitor {
         monitor: Monitor::new(plan, memory).map_err(|_| Status::DamagedPlan)?,
         limits: ranges,
@@ -168,11 +169,11 @@ unsafe fn start(
     block.place(monitor).map(core::ptr::from_mut)
 }
 
-/// Takes a sample in and says what is known.
+/// Takes the next sample and writes the update.
 ///
 /// # Safety
-/// `monitor` is null or came from [`flagred_start`]; `sample` is null or points to a sample whose arrays are as long as it
-/// says; `update` is null or can be written.
+/// `monitor` is null or from [`flagred_start`]; `sample` is null or points to a sample whose arrays have the lengths it says;
+/// `update` is null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_push(
@@ -185,7 +186,7 @@ pub unsafe extern "C" fn flagred_push(
     let (Some(monitor), Some(sample), false) = (monitor, sample, update.is_null()) else {
         return Status::NullPointer as i32;
     };
-    // SAFETY: the caller's promise on the sample's arrays, which are used in this call alone.
+    // SAFETY: the caller's promise on the sample's arrays, which are used in this call only.
     let arrays = unsafe { (sample.commands.read(), sample.signals.read()) };
     let (Ok(commands), Ok(signals)) = arrays else {
         return Status::NullPointer as i32;
@@ -198,21 +199,21 @@ pub unsafe extern "C" fn flagred_push(
             None => command,
         };
     }
-    let said = monitor.monitor.push(&Sample {
+    let result = monitor.monitor.push(&Sample {
         t_s: sample.t_s,
         motors: monitor.effective,
         in_air: sample.in_air != 0,
         signals,
     });
-    // SAFETY: not null, and the caller lets it be written.
-    unsafe { update.write(Update::of(&said)) };
+    // SAFETY: not null, and writable by the caller's promise.
+    unsafe { update.write(Update::of(&result)) };
     Status::Ok as i32
 }
 
-/// The finding that the level rests on, as it stands.
+/// The open finding of the current level.
 ///
 /// # Safety
-/// `monitor` is null or came from [`flagred_start`]; `finding` is null or can be written.
+/// `monitor` is null or from [`flagred_start`]; `finding` is null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_open_finding(
@@ -224,15 +225,15 @@ pub unsafe extern "C" fn flagred_open_finding(
     let (Some(monitor), false) = (monitor, finding.is_null()) else {
         return Status::NullPointer as i32;
     };
-    // SAFETY: not null, and the caller lets it be written.
+    // SAFETY: not null, and writable by the caller's promise.
     unsafe { finding.write(Finding::of(monitor.monitor.open_finding())) };
     Status::Ok as i32
 }
 
-/// Ends the flight: the findings that were still open.
+/// Ends the flight and writes the open findings.
 ///
 /// # Safety
-/// `monitor` is null or came from [`flagred_start`]; `ended` is null or two findings can be written there.
+/// `monitor` is null or from [`flagred_start`]; `ended` is null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_finish(monitor: *mut CMonitor, ended: *mut [Finding; 2]) -> i32 {
@@ -241,16 +242,15 @@ pub unsafe extern "C" fn flagred_finish(monitor: *mut CMonitor, ended: *mut [Fin
     let (Some(monitor), false) = (monitor, ended.is_null()) else {
         return Status::NullPointer as i32;
     };
-    // SAFETY: not null, and the caller lets it be written.
+    // SAFETY: not null, and writable by the caller's promise.
     unsafe { ended.write(findings(monitor.monitor.finish())) };
     Status::Ok as i32
 }
 
-/// The risk at values of the profile's inputs, whatever was flown.
+/// The risk at values of the profile's inputs, independent of the flight.
 ///
 /// # Safety
-/// `monitor` is null or came from [`flagred_start`]; `inputs` is null or points to `count` numbers; `update` is null
-/// or can be written.
+/// `monitor` is null or from [`flagred_start`]; `inputs` is null or has `count` items; `update` is null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_evaluate(
@@ -268,13 +268,13 @@ pub unsafe extern "C" fn flagred_evaluate(
     let (Some(monitor), Ok(inputs), false) = (monitor, inputs, update.is_null()) else {
         return Status::NullPointer as i32;
     };
-    let said = monitor.monitor.at(inputs);
-    // SAFETY: not null, and the caller lets it be written.
-    unsafe { update.write(Update::of_moment(said)) };
+    let estimate = monitor.monitor.at(inputs);
+    // SAFETY: not null, and writable by the caller's promise.
+    unsafe { update.write(Update::of_estimate(estimate)) };
     Status::Ok as i32
 }
 
-/// A panic would be an error of this library: its promise is to have none. The processor stops where it is.
+/// A panic is a bug of this library. The processor stops in place.
 #[cfg(not(feature = "std"))]
 #[panic_handler]
 fn stop(_: &core::panic::PanicInfo<'_>) -> ! {

@@ -1,13 +1,13 @@
-//! The caller's memory, given out piece by piece.
+//! Divides the caller's memory.
 
 use core::mem::{align_of, size_of};
 
 use crate::status::Status;
 
-/// What the memory must be aligned to.
+/// The alignment of the memory.
 const ALIGNMENT: usize = 16;
 
-/// What is left of the caller's memory.
+/// The rest of the caller's memory.
 pub(crate) struct Block {
     next: *mut u8,
     left: usize,
@@ -15,7 +15,7 @@ pub(crate) struct Block {
 
 impl Block {
     /// # Safety
-    /// `memory` is null or points to `size` bytes that nothing else uses as long as what is placed in them is used.
+    /// `memory` is null or points to `size` bytes that nothing else uses while the values placed there are used.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn new(memory: *mut u8, size: usize) -> Result<Block, Status> {
         if memory.is_null() {
@@ -30,18 +30,18 @@ impl Block {
         })
     }
 
-    /// Puts one value into the memory.
+    /// Places one value.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) fn place<T>(&mut self, value: T) -> Result<&'static mut T, Status> {
-        let place = self.reserve::<T>(1)?;
-        // SAFETY: reserved for one value; once it is written it is given out once, and by the promise on the block it stays.
+        let pointer = self.reserve::<T>(1)?;
+        // SAFETY: reserved for one value, which is written before its only reference is made.
         unsafe {
-            place.write(value);
-            Ok(&mut *place)
+            pointer.write(value);
+            Ok(&mut *pointer)
         }
     }
 
-    /// Puts the same value into the memory many times.
+    /// Places copies of a value.
     pub(crate) fn fill<T: Copy>(
         &mut self,
         count: usize,
@@ -50,7 +50,7 @@ impl Block {
         self.repeat(count, |_| Ok(value))
     }
 
-    /// Puts values into the memory, one after the other.
+    /// Places values.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) fn repeat<T>(
         &mut self,
@@ -60,14 +60,14 @@ impl Block {
         let first = self.reserve::<T>(count)?;
         for i in 0..count {
             let value = value(i)?;
-            // SAFETY: within what was reserved.
+            // SAFETY: within the reserved memory.
             unsafe { first.add(i).write(value) };
         }
-        // SAFETY: all were just written, they are given out once, and by the promise on the block they stay.
+        // SAFETY: reserved for `count` values, which are written before their only reference is made.
         Ok(unsafe { core::slice::from_raw_parts_mut(first, count) })
     }
 
-    /// Room for values that nothing else uses, aligned.
+    /// Reserves aligned memory for values.
     #[allow(unsafe_code, reason = "foreign memory")]
     fn reserve<T>(&mut self, count: usize) -> Result<*mut T, Status> {
         let skipped = self.next.align_offset(align_of::<T>());
@@ -75,7 +75,7 @@ impl Block {
         let needed = bytes.and_then(|bytes| bytes.checked_add(skipped));
         let needed = needed.filter(|needed| *needed <= self.left);
         let needed = needed.ok_or(Status::MemorySize)?;
-        // SAFETY: `needed`, of which `skipped` is a part, is no more than what is left of the block behind `next`.
+        // SAFETY: `skipped <= needed <= left`, so both pointers are within the block.
         let (first, next) = unsafe { (self.next.add(skipped), self.next.add(needed)) };
         self.next = next;
         self.left -= needed;

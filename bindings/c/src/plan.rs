@@ -1,13 +1,13 @@
-//! An exported plan, as C has it.
+//! The exported plan in C.
 
 use flagred::{
     accumulator::AccumulatorSettings,
     board::{
         self,
         table::{
-            Action, Axis, Coefficient, Conjunction, Conjunctions, Consequence, Curve, Dimension,
-            Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Program, Sizes,
-            Step, Table,
+            self, Action, Axis, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
+            Dimension, Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point,
+            Program, Sizes, Step, Table,
         },
     },
     channel::{self, Channel, Motors, Observed, Statistic},
@@ -19,8 +19,8 @@ use flagred::{
 
 use crate::{memory::Block, status::Status};
 
-/// The version of the data that is understood.
-const FORMAT: u32 = 1;
+/// The version of the data that this library reads.
+const FORMAT: u32 = 2;
 
 /// An array of C and its length.
 #[derive(Debug, Clone, Copy)]
@@ -31,10 +31,10 @@ pub(crate) struct Array<T> {
 }
 
 impl<T> Array<T> {
-    /// The array, in place.
+    /// The array as a slice.
     ///
     /// # Safety
-    /// It is null or as long as it says, and nothing changes it as long as the slice is used.
+    /// It is null or has `count` items, and does not change while the slice is used.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn read<'a>(&self) -> Result<&'a [T], Status> {
         if self.count == 0 {
@@ -101,74 +101,85 @@ struct CSettings {
     min_samples: u32,
 }
 
-/// `struct flagred_plan`.
-#[derive(Debug)]
-#[repr(C)]
-pub struct Plan {
-    format: u32,
-    and: u32,
-    or: u32,
-    conjunctions: u32,
-    actions_a_cell: u32,
-    first_action: u32,
-    sums: u32,
-    sizes: Sizes,
-    output: u32,
-    signals: u32,
-    coverage_below: f64,
-    settings: CSettings,
-    inputs: Array<Input>,
-    cuts: Array<f64>,
-    starts: Array<u32>,
-    lines: Array<Line>,
-    curves: Array<Curve>,
-    points: Array<f64>,
-    hedges: Array<u32>,
-    axes: Array<Axis>,
-    dimensions: Array<Dimension>,
-    cells: Array<u32>,
-    nodes: Array<Node>,
-    edges: Array<Edge>,
-    actions: Array<Action>,
-    programs: Array<Program>,
-    steps: Array<Step>,
-    outputs: Array<Output>,
-    pairs: Array<Pair>,
-    moments: Array<Moment>,
-    consequences: Array<Consequence>,
-    coefficients: Array<Coefficient>,
-    order: Array<u32>,
-    channels: Array<CChannel>,
-    sources: Array<CSource>,
-    places: Array<f64>,
-    first_places: Array<u32>,
-    values: Array<f64>,
-    distances: Array<f64>,
+macro_rules! define {
+    ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+        /// `struct flagred_plan`.
+        #[derive(Debug)]
+        #[repr(C)]
+        pub struct Plan {
+            format: u32,
+            and: u32,
+            or: u32,
+            conjunctions: u32,
+            actions_a_cell: u32,
+            first_action: u32,
+            sums: u32,
+            sizes: Sizes,
+            output: u32,
+            signals: u32,
+            coverage_below: f64,
+            settings: CSettings,
+            $($array: Array<define!(@item $item)>,)*
+            order: Array<u32>,
+            channels: Array<CChannel>,
+            sources: Array<CSource>,
+            coordinates: Array<f64>,
+            first_coordinates: Array<u32>,
+            values: Array<f64>,
+            distances: Array<f64>,
+        }
+
+        impl Plan {
+            /// # Safety
+            /// The arrays have the lengths they say, and do not change.
+            #[allow(unsafe_code, reason = "foreign memory")]
+            unsafe fn table<'a>(&self) -> Result<Table<'a>, Status> {
+                // SAFETY: the caller's promise, for all arrays.
+                unsafe {
+                    Ok(Table {
+                        and: conjunction(self.and)?,
+                        or: disjunction(self.or)?,
+                        conjunctions: self.conjunctions()?,
+                        sizes: self.sizes,
+                        $($array: define!(@read $item self.$array),)*
+                    })
+                }
+            }
+        }
+    };
+    // An enumeration, whose codes are verified before they become a reference. Of all other items every bit pattern is valid.
+    (@item Hedge) => { u32 };
+    (@item $item:ident) => { $item };
+    (@read Hedge $array:expr) => { hedges($array.read()?)? };
+    (@read $item:ident $array:expr) => { $array.read()? };
 }
+table::arrays!(define!);
 
 impl Plan {
-    /// How many bytes a monitor needs.
+    /// The size of a monitor's memory.
     ///
     /// # Safety
-    /// The arrays are as long as they say.
+    /// The arrays have the lengths they say.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn bytes(&self, motors: usize) -> Result<usize, Status> {
         // SAFETY: the caller's promise.
         let plan = unsafe { self.whole(&[], &[]) }?;
-        let mut bytes = plan.bytes(motors);
-        // Channels and inputs are read into the memory; without it there are none yet.
-        let (channel, input) = (
-            size_of::<Channel>() + size_of::<channel::Seen>(),
-            size_of::<channel::Input>() + size_of::<f64>(),
-        );
-        bytes += self.channels.count * channel + self.sources.count * input;
-        Ok(bytes)
+        // Plus the channels and inputs, which are converted into the memory.
+        let channel = size_of::<Channel>() + size_of::<channel::Seen>();
+        let input = size_of::<channel::Input>() + size_of::<f64>();
+        let channels = self.channels.count.checked_mul(channel);
+        let inputs = self.sources.count.checked_mul(input);
+        let bytes = plan
+            .bytes(motors)
+            .checked_add(channels.ok_or(Status::DamagedPlan)?);
+        let bytes = bytes.and_then(|bytes| bytes.checked_add(inputs?));
+        bytes.ok_or(Status::MemorySize)
     }
 
-    /// The plan, with what C has in another form read into the block.
+    /// The plan, with its channels and inputs converted into the block.
     ///
     /// # Safety
-    /// The arrays are as long as they say, and stay as they are.
+    /// The arrays have the lengths they say, and do not change.
     #[allow(unsafe_code, reason = "foreign memory")]
     pub(crate) unsafe fn read(&self, block: &mut Block) -> Result<board::Plan<'static>, Status> {
         // SAFETY: the caller's promise.
@@ -182,7 +193,7 @@ impl Plan {
     }
 
     /// # Safety
-    /// The arrays are as long as they say, and stay as they are.
+    /// The arrays have the lengths they say, and do not change.
     #[allow(unsafe_code, reason = "foreign memory")]
     unsafe fn whole<'a>(
         &self,
@@ -194,50 +205,15 @@ impl Plan {
         }
         // SAFETY: the caller's promise, for all arrays of the plan.
         unsafe {
-            let (points, _) = self.points.read()?.as_chunks::<2>();
             let knots = FilledKnots {
-                places: self.places.read()?,
-                starts: self.first_places.read()?,
+                coordinates: self.coordinates.read()?,
+                starts: self.first_coordinates.read()?,
                 values: self.values.read()?,
                 distances: self.distances.read()?,
             };
             Ok(board::Plan {
                 name: "",
-                table: Table {
-                    and: conjunction(self.and)?,
-                    or: disjunction(self.or)?,
-                    conjunctions: match self.conjunctions {
-                        0 => Conjunctions::Uniform {
-                            actions_a_cell: self.actions_a_cell,
-                            first_action: self.first_action,
-                            sums: self.sums != 0,
-                        },
-                        1 => Conjunctions::Dense,
-                        2 => Conjunctions::Trie,
-                        _ => return Err(Status::DamagedPlan),
-                    },
-                    sizes: self.sizes,
-                    inputs: self.inputs.read()?,
-                    cuts: self.cuts.read()?,
-                    starts: self.starts.read()?,
-                    lines: self.lines.read()?,
-                    curves: self.curves.read()?,
-                    points,
-                    hedges: hedges(self.hedges.read()?)?,
-                    axes: self.axes.read()?,
-                    dimensions: self.dimensions.read()?,
-                    cells: self.cells.read()?,
-                    nodes: self.nodes.read()?,
-                    edges: self.edges.read()?,
-                    actions: self.actions.read()?,
-                    programs: self.programs.read()?,
-                    steps: self.steps.read()?,
-                    outputs: self.outputs.read()?,
-                    pairs: self.pairs.read()?,
-                    moments: self.moments.read()?,
-                    consequences: self.consequences.read()?,
-                    coefficients: self.coefficients.read()?,
-                },
+                table: self.table()?,
                 output: self.output,
                 order: self.order.read()?,
                 channels,
@@ -251,13 +227,28 @@ impl Plan {
     }
 }
 
-/// Hedges in place, where all are known.
+impl Plan {
+    fn conjunctions(&self) -> Result<Conjunctions, Status> {
+        Ok(match self.conjunctions {
+            0 => Conjunctions::Uniform {
+                actions_a_cell: self.actions_a_cell,
+                first_action: self.first_action,
+                sums: self.sums != 0,
+            },
+            1 => Conjunctions::Dense,
+            2 => Conjunctions::Trie,
+            _ => return Err(Status::DamagedPlan),
+        })
+    }
+}
+
+/// Hedges from their codes, where all codes are valid.
 #[allow(unsafe_code, reason = "foreign memory")]
 fn hedges(codes: &[u32]) -> Result<&[Hedge], Status> {
     if codes.iter().any(|code| *code as usize >= Hedge::ALL.len()) {
         return Err(Status::DamagedPlan);
     }
-    // SAFETY: a hedge is a `u32` below the number of hedges, which all of these are.
+    // SAFETY: a hedge is a `u32` below the number of hedges, and all codes are.
     Ok(unsafe { core::slice::from_raw_parts(codes.as_ptr().cast(), codes.len()) })
 }
 
@@ -318,7 +309,7 @@ impl CChannel {
 }
 
 impl CSource {
-    /// The limit of a share of time is its channel's.
+    /// A share of time has the limit of its channel.
     fn read(&self, channels: &[Channel]) -> Result<channel::Input, Status> {
         let channel = channels.get(self.channel as usize);
         let limit = match channel.and_then(|channel| channel.threshold) {

@@ -1,8 +1,8 @@
-//! What functions return.
+//! Status codes.
 
 use core::ffi::CStr;
 
-/// Whether something went well, or why not.
+/// `enum flagred_status`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Status {
     Ok = 0,
@@ -14,16 +14,16 @@ pub(crate) enum Status {
     BadLimits = 6,
 }
 
-/// A status in words.
+/// The text of a status.
 pub(crate) fn text(status: i32) -> &'static CStr {
     match status {
-        0 => c"all is well",
-        1 => c"a pointer that must not be null is null",
-        2 => c"the plan was exported by another version: export it again",
-        3 => c"the plan is damaged: it points beyond its own arrays",
-        4 => c"there is no motor to watch",
+        0 => c"ok",
+        1 => c"a required pointer is NULL",
+        2 => c"another version exported the plan: export it again",
+        3 => c"damaged plan: an index is out of bounds",
+        4 => c"the number of motors is 0",
         5 => c"the memory is too small, or not aligned to 16 bytes",
-        6 => c"the lower limit of a motor is not below its upper one",
-        _ => c"no status of this library",
+        6 => c"the lower limit of a motor is not below its upper limit",
+        _ => c"unknown status",
     }
 }

@@ -1,4 +1,4 @@
-//! What is known, as C has it.
+//! Updates and findings in C.
 
 use flagred::{
     margin::Side,
@@ -6,7 +6,7 @@ use flagred::{
     verdict::{self, Ended, Level, Measure},
 };
 
-/// What a level was raised for.
+/// `struct flagred_finding`.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct Finding {
@@ -23,7 +23,7 @@ pub struct Finding {
     at_high_limit: i32,
 }
 
-/// What is known after a sample.
+/// `struct flagred_update`.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct Update {
@@ -82,8 +82,8 @@ pub(crate) fn findings(ended: Ended) -> [Finding; 2] {
 }
 
 impl Update {
-    pub(crate) fn of(said: &sample::Update) -> Update {
-        let (unknown, unknown_input) = match said.risk {
+    pub(crate) fn of(update: &sample::Update) -> Update {
+        let (unknown, unknown_input) = match update.risk {
             Ok(_) => (0, -1),
             Err(Unknown::OnGround) => (1, -1),
             Err(Unknown::OutOfOrder) => (2, -1),
@@ -93,32 +93,34 @@ impl Update {
             Err(Unknown::NoRule) => (6, -1),
         };
         Update {
-            t_s: said.t_s,
-            elevated_risk_pct: said.elevated_risk_pct.unwrap_or(f64::NAN),
-            ended: findings(said.ended),
-            level: level(said.level),
-            change: level(said.change),
+            t_s: update.t_s,
+            elevated_risk_pct: update.elevated_risk_pct.unwrap_or(f64::NAN),
+            ended: findings(update.ended),
+            level: level(update.level),
+            change: level(update.change),
             unknown,
             unknown_input,
-            ..Update::of_moment(said.risk.ok())
+            ..Update::of_estimate(update.risk.ok())
         }
     }
 
-    /// What is said of one moment, whatever came before.
-    pub(crate) fn of_moment(said: Option<Estimate>) -> Update {
-        let known = |value: fn(&Estimate) -> f64| said.as_ref().map_or(f64::NAN, value);
+    /// The fields of an estimate, independent of the flight.
+    pub(crate) fn of_estimate(estimate: Option<Estimate>) -> Update {
+        let known = |value: fn(&Estimate) -> f64| estimate.as_ref().map_or(f64::NAN, value);
         Update {
             t_s: f64::NAN,
-            risk_pct: known(|said| said.risk_pct),
+            risk_pct: known(|estimate| estimate.risk_pct),
             elevated_risk_pct: f64::NAN,
-            coverage: known(|said| said.coverage),
-            filled_from: known(|said| said.filled_from.unwrap_or(f64::NAN)),
+            coverage: known(|estimate| estimate.coverage),
+            filled_from: known(|estimate| estimate.filled_from.unwrap_or(f64::NAN)),
             ended: [Finding::NONE; 2],
-            dominant_rule: said.and_then(|said| said.dominant_rule).map_or(-1, index),
-            clamped: i32::from(said.is_some_and(|said| said.clamped)),
+            dominant_rule: estimate
+                .and_then(|estimate| estimate.dominant_rule)
+                .map_or(-1, index),
+            clamped: i32::from(estimate.is_some_and(|estimate| estimate.clamped)),
             level: -1,
             change: -1,
-            unknown: if said.is_some() { 0 } else { 6 },
+            unknown: if estimate.is_some() { 0 } else { 6 },
             unknown_input: -1,
         }
     }

@@ -7,11 +7,14 @@ use flagred::{
     flight::{Assessment, Step, Steps, Summary, Verdict},
     verdict::{Finding, VerdictSettings},
 };
-use flightlog::{Flight, Motor};
+use flightlog::Flight;
 use serde::Serialize;
 
 use super::words;
-use crate::failure::Failure;
+use crate::{
+    failure::Failure,
+    json::{Motor, Range, Read},
+};
 
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.assess/1";
@@ -42,71 +45,9 @@ struct Vehicle<'a> {
     kind: String,
     frame: Option<&'a str>,
     firmware: Option<&'a str>,
-    motors: Vec<MotorDocument<'a>>,
+    motors: Vec<Motor<'a>>,
     range: Option<Range<'a>>,
     effective_range: Range<'a>,
-}
-
-/// A motor and the output that drives it.
-#[derive(Serialize)]
-pub(crate) struct MotorDocument<'a> {
-    number: u16,
-    output: &'a str,
-    source: &'a str,
-}
-
-impl<'a> From<&'a Motor> for MotorDocument<'a> {
-    fn from(motor: &'a Motor) -> Self {
-        MotorDocument {
-            number: motor.number,
-            output: &motor.output,
-            source: &motor.source,
-        }
-    }
-}
-
-/// A range of commands.
-#[derive(Serialize)]
-pub(crate) struct Range<'a> {
-    low: f64,
-    high: f64,
-    unit: &'a str,
-    source: &'a str,
-}
-
-impl<'a> From<&'a flightlog::Range> for Range<'a> {
-    fn from(range: &'a flightlog::Range) -> Self {
-        Range {
-            low: range.low,
-            high: range.high,
-            unit: range.unit,
-            source: &range.source,
-        }
-    }
-}
-
-/// How the reading went.
-#[derive(Serialize)]
-pub(crate) struct Read<'a> {
-    bytes: u64,
-    messages: u64,
-    skipped_bytes: u64,
-    bad_messages: u64,
-    truncated: bool,
-    reason: Option<&'a str>,
-}
-
-impl<'a> From<&'a flightlog::Report> for Read<'a> {
-    fn from(report: &'a flightlog::Report) -> Self {
-        Read {
-            bytes: report.bytes,
-            messages: report.messages,
-            skipped_bytes: report.skipped_bytes,
-            bad_messages: report.bad_messages,
-            truncated: report.truncated,
-            reason: report.reason.as_deref(),
-        }
-    }
 }
 
 /// What the verdict rests on beside the flight.
@@ -127,7 +68,7 @@ pub(crate) struct FindingDocument<'a> {
 }
 
 impl<'a> FindingDocument<'a> {
-    pub(crate) fn new(finding: &'a Finding, motors: &'a [Motor]) -> Self {
+    pub(crate) fn new(finding: &'a Finding, motors: &'a [flightlog::Motor]) -> Self {
         FindingDocument {
             output: words::motor_of(finding, motors).map(|motor| motor.output.as_str()),
             text: words::describe(finding, motors),
@@ -155,7 +96,7 @@ pub(crate) fn document<'a>(
             kind: flight.vehicle.kind.to_string(),
             frame: flight.vehicle.frame.as_deref(),
             firmware: flight.vehicle.firmware.as_deref(),
-            motors: flight.motors.iter().map(MotorDocument::from).collect(),
+            motors: flight.motors.iter().map(Motor::from).collect(),
             range: flight.range.as_ref().map(Range::from),
             effective_range: Range::from(&flight.effective),
         },

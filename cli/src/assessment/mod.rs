@@ -1,5 +1,4 @@
-//! The assessment of a flight in words, as a document, and as a picture of characters.
+//! The assessment of a flight in words and as a document.
 
 pub(crate) mod document;
-mod picture;
 pub(crate) mod words;

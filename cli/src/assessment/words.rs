@@ -6,12 +6,10 @@ use anstyle::{AnsiColor, Style};
 use flagred::{
     flight::{Assessment, Peak, Summary, Verdict},
     margin::Side,
-    verdict::{Finding, Level, Measure},
+    verdict::{Finding, Level},
 };
 use flightlog::{Flight, Motor};
-
-use super::picture;
-use crate::drawing::text::number;
+use fuzzy::drawing::{number, over_time_text};
 
 /// Columns of the picture of risk over time.
 const PICTURE_COLUMNS: usize = 64;
@@ -74,7 +72,7 @@ pub(crate) fn write(
         .collect();
     if points.iter().any(|(_, risk)| risk.is_some()) {
         writeln!(out, "risk over time")?;
-        writeln!(out, "{}", picture::over_time(&points, PICTURE_COLUMNS))?;
+        writeln!(out, "{}", over_time_text(&points, PICTURE_COLUMNS))?;
     }
     Ok(())
 }
@@ -172,13 +170,9 @@ fn summary(summary: &Summary) -> String {
 
 /// A finding in words: when, what, against which threshold, and which motor.
 pub(crate) fn describe(finding: &Finding, motors: &[Motor]) -> String {
-    let what = match finding.measure {
-        Measure::Risk => "risk",
-        Measure::ElevatedRisk => "elevated risk",
-    };
     let mut text = format!(
-        "{:.1} to {:.1} s: {what} up to {:.0} % (threshold {:.0} %)",
-        finding.from_s, finding.to_s, finding.peak_pct, finding.threshold_pct
+        "{:.1} to {:.1} s: {} up to {:.0} % (threshold {:.0} %)",
+        finding.from_s, finding.to_s, finding.measure, finding.peak_pct, finding.threshold_pct
     );
     if let Some(weakest) = &finding.motor
         && let Some(motor) = motor_of(finding, motors)
@@ -218,6 +212,7 @@ fn style(verdict: &Verdict) -> Style {
 pub(crate) fn level_style(level: Level) -> Style {
     match level {
         Level::Good => AnsiColor::Green,
+        Level::Info => AnsiColor::Cyan,
         Level::Warn => AnsiColor::Yellow,
         Level::Fail => AnsiColor::Red,
     }

@@ -91,7 +91,7 @@ fn reliability(evaluated: &Evaluated) -> Value {
             "cases": band.predictions,
             "critical": band.critical,
             "critical_share": share,
-            "mean_risk_pct": band.mean_risk_pct,
+            "risk_mean_pct": band.mean_risk_pct,
         })
     });
     objects.collect()

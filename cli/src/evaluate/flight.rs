@@ -126,7 +126,7 @@ fn follow(
         .collect();
     let baselines = estimators.carried_baselines(&names);
     let sources = baselines.iter().flatten().map(|baseline| &baseline.source);
-    let mut observer = Observer::new(sources, &names).map_err(Failure::unreadable)?;
+    let mut observer = Observer::new(sources, log::craft(flight, &names)).map_err(Failure::unreadable)?;
 
     let mut steps = Vec::with_capacity(times.len());
     let mut last_s = None;
@@ -150,7 +150,7 @@ fn follow(
             };
             let update = monitor.push(sample);
             running.risk_pct = update.risk.map_or(f64::NAN, |risk| risk.risk_pct);
-            let warns = update.level > Some(Level::Good);
+            let warns = update.level >= Some(Level::Warn);
             Span::follow(
                 &mut running.warnings,
                 &mut running.is_warning,

@@ -26,28 +26,28 @@ use warnings::Warnings;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Flight logs with attitude (ArduPilot, PX4, flight CSV; plain or gzipped), and folders of them
+    /// Flight logs with attitude, or folders of them: ArduPilot, PX4 or flight CSV, plain or gzipped
     #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
     flights: Vec<PathBuf>,
 
-    /// Whole flights instead: a table with a row for each (`att_rmse_deg`, `c_mean`, `c_std`, ...), or of `flagred dataset`
+    /// Evaluate a table with a row for each flight instead: `att_rmse_deg`, `c_mean`, `c_std`, ..., or from `flagred dataset`
     #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
     rows: Option<PathBuf>,
 
-    /// Another profile to compare: a file; may be given several times
+    /// Another profile to compare, a file; may be repeated
     #[arg(long = "profile", value_name = "NAME|FILE")]
     profiles: Vec<String>,
 
-    /// How far ahead a risk should tell, in seconds
+    /// How many seconds ahead the risk should predict
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = horizon)]
     horizon: f64,
 
-    /// One JSON document instead of words
+    /// Print a JSON document instead of text
     #[arg(long)]
     json: bool,
 
-    /// Draw the receiver operating characteristic and the reliability into a file
-    #[arg(long, value_name = "FILE")]
+    /// Write an SVG picture of the ROC curves and the reliability to this file; `-` is standard output
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 }
 

@@ -1,7 +1,8 @@
-//! A plan as C. Numbers are written so that they read back bit for bit; the codes are those of `flagred-c`.
+//! A plan as C. Numbers read back bit for bit. The codes are those of `flagred-c`.
 
 use std::fmt::Write;
 
+use super::Array;
 use flagred::{
     board::{
         Plan,
@@ -9,6 +10,7 @@ use flagred::{
     },
     channel::{Channel, Input, Motors, Observed, Statistic, Threshold},
     follower::Settings,
+    gap::FilledKnots,
     verdict::{self, LevelSettings},
 };
 
@@ -41,7 +43,9 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str]) -> String {
         prefix: format!("flagred_{name}"),
         fields: Vec::new(),
     };
-    arrays.table(plan);
+    for array in super::arrays(&plan.table) {
+        arrays.add_array(array.field, &array);
+    }
     arrays.profile(plan);
     let Arrays {
         mut out, fields, ..
@@ -72,7 +76,7 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str]) -> String {
         ("alive", sizes.alive.to_string()),
         ("partial", sizes.partial.to_string()),
         ("stack", sizes.stack.to_string()),
-        ("heights", sizes.heights.to_string()),
+        ("strengths", sizes.strengths.to_string()),
         ("output", plan.output.to_string()),
         ("signals", plan.signals.to_string()),
         ("coverage_below", number(plan.coverage_below)),
@@ -90,7 +94,7 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str]) -> String {
     out
 }
 
-/// Arrays that are written, and the fields that point to them.
+/// The arrays written so far, and the fields that point to them.
 struct Arrays {
     out: String,
     prefix: String,
@@ -98,7 +102,7 @@ struct Arrays {
 }
 
 impl Arrays {
-    /// Writes an array; C has none that are empty.
+    /// Writes an array of C initialisers. C has no empty arrays.
     fn add(&mut self, kind: &str, field: &'static str, items: Vec<String>) {
         let array = format!("{}_{field}", self.prefix);
         let count = items.len();
@@ -117,199 +121,77 @@ impl Arrays {
         self.fields.push((field, array, count));
     }
 
-    fn numbers(&mut self, field: &'static str, values: impl IntoIterator<Item = f64>) {
-        self.add("double", field, values.into_iter().map(number).collect());
-    }
-
-    fn counts(&mut self, field: &'static str, values: impl IntoIterator<Item = u32>) {
-        let values = values.into_iter().map(|value| value.to_string());
-        self.add("uint32_t", field, values.collect());
-    }
-
-    /// Structures of numbers followed by counts, as all of these are.
-    fn records(
-        &mut self,
-        kind: &str,
-        field: &'static str,
-        records: impl IntoIterator<Item = (Vec<f64>, Vec<u32>)>,
-    ) {
-        let record = |(numbers, counts): (Vec<f64>, Vec<u32>)| {
-            let numbers = numbers.into_iter().map(number);
-            let counts = counts.into_iter().map(|count| count.to_string());
-            let all: Vec<String> = numbers.chain(counts).collect();
-            format!("{{{}}}", all.join(", "))
+    fn add_array(&mut self, field: &'static str, array: &Array) {
+        let kind = match array.item {
+            "f64" => "double".to_owned(),
+            "u32" => "uint32_t".to_owned(),
+            item => format!("flagred_{}", item.to_lowercase()),
         };
-        self.add(kind, field, records.into_iter().map(record).collect());
-    }
-
-    fn table(&mut self, plan: &Plan<'_>) {
-        let table = &plan.table;
-        self.records(
-            "flagred_input",
-            "inputs",
-            table.inputs.iter().map(|i| {
-                let counts = [
-                    i.first_literal,
-                    i.first_cut,
-                    i.end_cut,
-                    i.first_start,
-                    i.first_curve,
-                    i.end_curve,
-                ];
-                (vec![i.low, i.high], counts.to_vec())
-            }),
-        );
-        self.numbers("cuts", table.cuts.iter().copied());
-        self.counts("starts", table.starts.iter().copied());
-        self.records(
-            "flagred_line",
-            "lines",
-            table
-                .lines
-                .iter()
-                .map(|l| (vec![l.foot, l.run, l.base, l.rise], vec![l.literal])),
-        );
-        let curves = table.curves.iter().map(|c| {
-            let parameters = c.parameters.map(number).join(", ");
-            format!(
-                "{{{{{parameters}}}, {}, {}, {}, {}, {}, {}, {}}}",
-                number(c.height),
-                c.kind.0,
-                c.literal,
-                c.first_point,
-                c.end_point,
-                c.first_hedge,
-                c.end_hedge
-            )
-        });
-        self.add("flagred_curve", "curves", curves.collect());
-        let points = table.points.iter().flatten().copied().collect::<Vec<f64>>();
-        self.numbers("points", points);
-        self.counts(
-            "hedges",
-            table.hedges.iter().map(|hedge: &Hedge| *hedge as u32),
-        );
-        self.records(
-            "flagred_axis",
-            "axes",
-            table
-                .axes
-                .iter()
-                .map(|a| (vec![], vec![a.input, a.first_cut, a.end_cut, a.first_line])),
-        );
-        self.records(
-            "flagred_dimension",
-            "dimensions",
-            table
-                .dimensions
-                .iter()
-                .map(|d| (vec![], vec![d.input, d.stride, d.any])),
-        );
-        self.counts("cells", table.cells.iter().copied());
-        self.records(
-            "flagred_node",
-            "nodes",
-            table.nodes.iter().map(|n| {
-                let counts = [n.first_edge, n.end_edge, n.first_action, n.end_action];
-                (vec![], counts.to_vec())
-            }),
-        );
-        let edges = table
-            .edges
-            .iter()
-            .map(|e| (vec![], vec![e.literal, e.node]));
-        self.records("flagred_edge", "edges", edges);
-        self.records(
-            "flagred_action",
-            "actions",
-            table
-                .actions
-                .iter()
-                .map(|a| (vec![a.weight], vec![a.place, a.output, a.rule, a.sums])),
-        );
-        self.records(
-            "flagred_program",
-            "programs",
-            table.programs.iter().map(|p| {
-                let counts = [p.first_step, p.end_step, p.first_action, p.end_action];
-                (vec![], counts.to_vec())
-            }),
-        );
-        let steps = table
-            .steps
-            .iter()
-            .map(|s| (vec![], vec![s.op.0, s.literal]));
-        self.records("flagred_step", "steps", steps);
-        self.records(
-            "flagred_output",
-            "outputs",
-            table.outputs.iter().map(|o| {
-                let counts = [o.set.0, o.first, o.end, o.first_height, o.end_height];
-                (vec![o.low, o.high, o.otherwise], counts.to_vec())
-            }),
-        );
-        let pairs = table.pairs.iter().map(|p| {
-            let two = |[a, b]: [f64; 2]| format!("{{{}, {}}}", number(a), number(b));
-            format!(
-                "{{{{{}}}, {{{}}}, {}, {}}}",
-                p.area.map(two).join(", "),
-                p.moment.map(two).join(", "),
-                two(p.width),
-                two(p.middle)
-            )
-        });
-        self.add("flagred_pair", "pairs", pairs.collect());
-        let moments = table
-            .moments
-            .iter()
-            .map(|m| (vec![m.area, m.moment], vec![]));
-        self.records("flagred_moment", "moments", moments);
-        self.records(
-            "flagred_consequence",
-            "consequences",
-            table
-                .consequences
-                .iter()
-                .map(|c| (vec![c.constant], vec![c.first, c.end])),
-        );
-        self.records(
-            "flagred_coefficient",
-            "coefficients",
-            table
-                .coefficients
-                .iter()
-                .map(|c| (vec![c.coefficient], vec![c.input])),
-        );
+        let items = array.items.iter().map(|item| initialiser(item));
+        self.add(&kind, field, items.collect());
     }
 
     fn profile(&mut self, plan: &Plan<'_>) {
-        self.counts("order", plan.order.iter().copied());
-        self.records(
-            "flagred_channel",
-            "channels",
-            plan.channels.iter().map(channel),
-        );
-        self.records("flagred_source", "sources", plan.inputs.iter().map(source));
-        let Some(filled) = plan.filled else {
-            for field in ["places", "first_places", "values", "distances"] {
-                self.fields.push((field, "NULL".to_owned(), 0));
-            }
-            return;
+        self.add_array("order", &Array::new("order", "u32", plan.order));
+        let channels = plan.channels.iter().map(channel).collect();
+        self.add("flagred_channel", "channels", channels);
+        let sources = plan.inputs.iter().map(source).collect();
+        self.add("flagred_source", "sources", sources);
+        let none = FilledKnots {
+            coordinates: &[],
+            starts: &[],
+            values: &[],
+            distances: &[],
         };
-        self.numbers("places", filled.places.iter().copied());
-        self.counts("first_places", filled.starts.iter().copied());
-        self.numbers("values", filled.values.iter().copied());
-        self.numbers("distances", filled.distances.iter().copied());
+        for array in super::filling(plan.filled.as_ref().unwrap_or(&none)) {
+            let field = match array.field {
+                "starts" => "first_coordinates",
+                field => field,
+            };
+            self.add_array(field, &array);
+        }
     }
 }
 
-fn channel(channel: &Channel) -> (Vec<f64>, Vec<u32>) {
+/// The C initialiser of plain data from its debug form: of `Edge { literal: 1, node: 2 }`, `{.literal = 1, .node = 2}`.
+fn initialiser(debug: &str) -> String {
+    let words: Vec<&str> = debug.split(' ').collect();
+    let mut text = String::new();
+    for (i, word) in words.iter().enumerate() {
+        if words.get(i + 1) == Some(&"{") {
+            continue; // the name of a structure
+        }
+        match word.strip_suffix(':') {
+            Some(field) => text += &format!(".{field} = "),
+            None => text += &format!("{} ", value(word)),
+        }
+    }
+    text.trim_end().replace("{ ", "{").replace(" }", "}")
+}
+
+/// A word of a debug form: a number, a code such as `Kind(3)`, or a hedge.
+fn value(word: &str) -> String {
+    if let Some(code) = Hedge::ALL
+        .iter()
+        .position(|hedge| format!("{hedge:?}") == word)
+    {
+        return code.to_string();
+    }
+    let word = word.rsplit('(').next().unwrap_or(word).replace(')', "");
+    let word = word.replace('[', "{").replace(']', "}");
+    word.replace("NaN", "NAN").replace("inf", "INFINITY")
+}
+
+fn channel(channel: &Channel) -> String {
     let (observed, signal) = match channel.observed {
         Observed::Command => (0, 0),
         Observed::Margin => (1, 0),
         Observed::LowSide => (2, 0),
         Observed::HighSide => (3, 0),
         Observed::Named(signal) => (4, signal as u32),
+        Observed::CommandLessYaw => (5, 0),
+        Observed::Effort(axis) => (6, axis as u32),
+        Observed::CommandNoise => (7, 0),
     };
     let motors = match channel.motors {
         Motors::Pooled => 0,
@@ -323,11 +205,14 @@ fn channel(channel: &Channel) -> (Vec<f64>, Vec<u32>) {
         Some(Threshold::Below(limit)) => (1, limit),
         Some(Threshold::Above(limit)) => (2, limit),
     };
-    let codes = vec![observed, signal, motors, threshold];
-    (vec![channel.window_s, limit], codes)
+    format!(
+        "{{{}, {}, {observed}, {signal}, {motors}, {threshold}}}",
+        number(channel.window_s),
+        number(limit)
+    )
 }
 
-fn source(input: &Input) -> (Vec<f64>, Vec<u32>) {
+fn source(input: &Input) -> String {
     let statistic = match input.statistic {
         Statistic::Mean => 0,
         Statistic::Std => 1,
@@ -337,8 +222,10 @@ fn source(input: &Input) -> (Vec<f64>, Vec<u32>) {
         Statistic::Last => 5,
         Statistic::ShareBelow(_) => 6,
         Statistic::ShareAbove(_) => 7,
+        Statistic::StdLessNoise => 8,
+        Statistic::Noise => 9,
     };
-    (vec![], vec![input.channel as u32, statistic])
+    format!("{{{}, {statistic}}}", input.channel)
 }
 
 fn settings(settings: &Settings) -> String {
@@ -368,27 +255,18 @@ fn settings(settings: &Settings) -> String {
         number(verdict.clear_after_s),
         number(verdict.quiet_after_take_off_s),
         number(verdict.quiet_before_landing_s),
-        number(verdict.idle.command_below),
-        number(verdict.idle.risk_at_most_pct),
+        number(verdict.idle_below),
         sampling.min_samples.to_string(),
     ];
     format!("{{{}}}", values.join(", "))
 }
 
 /// The shortest decimal that reads back as the same bits.
-fn number(value: f64) -> String {
-    if value.is_nan() {
-        "NAN".to_owned()
-    } else if value == f64::INFINITY {
-        "INFINITY".to_owned()
-    } else if value == f64::NEG_INFINITY {
-        "-INFINITY".to_owned()
-    } else {
-        format!("{value:?}")
-    }
+fn number(number: f64) -> String {
+    value(&format!("{number:?}"))
 }
 
-/// A name that C takes.
+/// A name with the characters of a C identifier.
 fn identifier(name: &str) -> String {
     let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     name.chars().map(letter).collect()

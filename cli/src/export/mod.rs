@@ -1,8 +1,14 @@
-//! `flagred export`: a profile and its rule set as constant data, to fly on board.
+//! `flagred export`: a profile and its rule set as constant data for on-board use.
 
-use std::path::PathBuf;
+use std::{fmt::Debug, path::PathBuf};
 
-use flagred::board::Plan;
+use flagred::{
+    board::{
+        Plan,
+        table::{self, Table},
+    },
+    gap::FilledKnots,
+};
 
 use crate::{
     failure::{Exit, Failure},
@@ -15,13 +21,13 @@ mod rust;
 #[derive(clap::Args)]
 #[command(group = clap::ArgGroup::new("language").required(true))]
 pub(crate) struct Arguments {
-    /// Write Rust, for the crate `flagred` without its default features
+    /// Write Rust for the crate `flagred` with `default-features = false`
     #[arg(long, group = "language")]
     rust: bool,
-    /// Write C, for `flagred.h` and the library of `flagred-c`
+    /// Write C for `flagred.h` and the library of `flagred-c`
     #[arg(long, group = "language")]
     c: bool,
-    /// A shipped profile by its name, or a file
+    /// Profile: a built-in name or a file
     #[arg(value_name = "PROFILE", default_value = profile::DEFAULT)]
     profile: String,
     /// The file to write; `-` is standard output
@@ -46,16 +52,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// What stands above the data, in words.
+/// The comment above the data.
 fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<String> {
     let mut lines = vec![
         format!(
-            "The profile `{}` with the rule set `{rules}`, written by `flagred export {option}` {}. Not to be edited.",
+            "The profile `{}` with the rule set `{rules}`, written by `flagred export {option}` {}. Do not edit.",
             plan.name,
             env!("CARGO_PKG_VERSION")
         ),
         format!(
-            "{} bytes of constants, of which {} fill gaps of the rules; {} bytes of memory for a monitor of 4 motors.",
+            "{} bytes of constants, {} of them to fill gaps of the rules. A monitor of 4 motors takes {} bytes of memory.",
             bytes(plan),
             bytes_of_filling(plan),
             plan.bytes(4)
@@ -63,58 +69,68 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
     ];
     if !signals.is_empty() {
         lines.push(format!(
-            "Samples carry beside the motors, in this order: {}.",
+            "Signals of a sample, in this order: {}.",
             signals.join(", ")
         ));
     }
     lines
 }
 
-/// What fills gaps weighs.
-fn bytes_of_filling(plan: &Plan<'_>) -> usize {
-    plan.filled.map_or(0, |filled| {
-        size_of_val(filled.places)
-            + size_of_val(filled.starts)
-            + size_of_val(filled.values)
-            + size_of_val(filled.distances)
-    })
+/// An array of a plan, as text.
+struct Array {
+    field: &'static str,
+    /// The type of its items.
+    item: &'static str,
+    bytes: usize,
+    /// The debug form of each item.
+    items: Vec<String>,
 }
 
-/// All arrays of a plan weigh.
-fn bytes(plan: &Plan<'_>) -> usize {
-    let table = &plan.table;
+impl Array {
+    fn new<T: Debug>(field: &'static str, item: &'static str, items: &[T]) -> Self {
+        Array {
+            field,
+            item,
+            bytes: size_of_val(items),
+            items: items.iter().map(|item| format!("{item:?}")).collect(),
+        }
+    }
+}
+
+/// The arrays of a table.
+fn arrays(table: &Table<'_>) -> Vec<Array> {
+    macro_rules! list {
+        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+            vec![$(Array::new(stringify!($array), stringify!($item), table.$array)),*]
+        };
+    }
+    table::arrays!(list!)
+}
+
+/// The arrays of a filling.
+fn filling(knots: &FilledKnots<'_>) -> [Array; 4] {
     [
-        size_of_val(plan),
-        size_of_val(table.inputs),
-        size_of_val(table.cuts),
-        size_of_val(table.starts),
-        size_of_val(table.lines),
-        size_of_val(table.curves),
-        size_of_val(table.points),
-        size_of_val(table.hedges),
-        size_of_val(table.axes),
-        size_of_val(table.dimensions),
-        size_of_val(table.cells),
-        size_of_val(table.nodes),
-        size_of_val(table.edges),
-        size_of_val(table.actions),
-        size_of_val(table.programs),
-        size_of_val(table.steps),
-        size_of_val(table.outputs),
-        size_of_val(table.pairs),
-        size_of_val(table.moments),
-        size_of_val(table.consequences),
-        size_of_val(table.coefficients),
-        size_of_val(plan.order),
-        size_of_val(plan.channels),
-        size_of_val(plan.inputs),
-        bytes_of_filling(plan),
+        Array::new("coordinates", "f64", knots.coordinates),
+        Array::new("starts", "u32", knots.starts),
+        Array::new("values", "f64", knots.values),
+        Array::new("distances", "f64", knots.distances),
     ]
-    .iter()
-    .sum()
 }
 
-/// Items in lines of no more than about a hundred characters.
+/// The size of the constants that fill gaps.
+fn bytes_of_filling(plan: &Plan<'_>) -> usize {
+    let arrays = plan.filled.as_ref().map(filling);
+    arrays.iter().flatten().map(|array| array.bytes).sum()
+}
+
+/// The size of all constants.
+fn bytes(plan: &Plan<'_>) -> usize {
+    let table: usize = arrays(&plan.table).iter().map(|array| array.bytes).sum();
+    let profile = size_of_val(plan.order) + size_of_val(plan.channels) + size_of_val(plan.inputs);
+    size_of_val(plan) + table + profile + bytes_of_filling(plan)
+}
+
+/// Items in lines of about a hundred characters.
 fn rows(items: &[String]) -> Vec<String> {
     let (mut row, mut rows) = (String::new(), Vec::new());
     for item in items {

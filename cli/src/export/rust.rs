@@ -1,9 +1,9 @@
 //! A plan as Rust.
 //!
-//! The debug form of plain data is its Rust expression, but for enumerations, whose names are added here, and for numbers
-//! that are not finite, for which the file names `inf` and `NaN`. Numbers are written so that they read back bit for bit.
+//! The debug form of plain data is a Rust expression, once the names of enumerations are added, and the constants `inf` and
+//! `NaN` are defined. Numbers read back bit for bit.
 
-use std::fmt::{Debug, Write};
+use std::fmt::Write;
 
 use flagred::{
     board::Plan,
@@ -36,7 +36,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
     #[allow(unused_imports)]
     use ::flagred::{{
         accumulator::AccumulatorSettings,
-        board::{{Plan, table::*}},
+        board::{{Plan, table::{{*, Hedge::*}}}},
         channel,
         follower::Settings,
         gap::FilledKnots,
@@ -61,38 +61,16 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
             plan.table.sizes,
         ),
     );
-    let table = &plan.table;
-    let hedges: Vec<String> = table
-        .hedges
-        .iter()
-        .map(|hedge| format!("Hedge::{hedge:?}"))
-        .collect();
     let out = &mut out;
-    array(out, 3, "inputs", table.inputs);
-    array(out, 3, "cuts", table.cuts);
-    array(out, 3, "starts", table.starts);
-    array(out, 3, "lines", table.lines);
-    array(out, 3, "curves", table.curves);
-    array(out, 3, "points", table.points);
-    items(out, 3, "hedges", &hedges);
-    array(out, 3, "axes", table.axes);
-    array(out, 3, "dimensions", table.dimensions);
-    array(out, 3, "cells", table.cells);
-    array(out, 3, "nodes", table.nodes);
-    array(out, 3, "edges", table.edges);
-    array(out, 3, "actions", table.actions);
-    array(out, 3, "programs", table.programs);
-    array(out, 3, "steps", table.steps);
-    array(out, 3, "outputs", table.outputs);
-    array(out, 3, "pairs", table.pairs);
-    array(out, 3, "moments", table.moments);
-    array(out, 3, "consequences", table.consequences);
-    array(out, 3, "coefficients", table.coefficients);
+    for array in super::arrays(&plan.table) {
+        items(out, 3, array.field, &array.items);
+    }
     line_of(
         out,
         format_args!("        }},\n        output: {},", plan.output),
     );
-    array(out, 2, "order", plan.order);
+    let order: Vec<String> = plan.order.iter().map(u32::to_string).collect();
+    items(out, 2, "order", &order);
     let channels: Vec<String> = plan.channels.iter().map(channel).collect();
     items(out, 2, "channels", &channels);
     let inputs: Vec<String> = plan.inputs.iter().map(input).collect();
@@ -107,10 +85,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
         None => line_of(out, format_args!("        filled: None,")),
         Some(filled) => {
             line_of(out, format_args!("        filled: Some(FilledKnots {{"));
-            array(out, 3, "places", filled.places);
-            array(out, 3, "starts", filled.starts);
-            array(out, 3, "values", filled.values);
-            array(out, 3, "distances", filled.distances);
+            for array in super::filling(&filled) {
+                items(out, 3, array.field, &array.items);
+            }
             line_of(out, format_args!("        }}),"));
         }
     }
@@ -123,10 +100,12 @@ fn channel(channel: &Channel) -> String {
         observed,
         motors,
         threshold,
+        in_bins,
         window_s,
     } = channel;
     let observed = match observed {
         Observed::Named(signal) => format!("Named({signal})"),
+        Observed::Effort(axis) => format!("Effort({axis})"),
         observed => format!("{observed:?}"),
     };
     let threshold = match threshold {
@@ -136,7 +115,7 @@ fn channel(channel: &Channel) -> String {
     };
     format!(
         "channel::Channel {{ observed: channel::Observed::{observed}, motors: channel::Motors::{motors:?}, \
-         threshold: {threshold}, window_s: {window_s:?} }}"
+         threshold: {threshold}, in_bins: {in_bins}, window_s: {window_s:?} }}"
     )
 }
 
@@ -146,12 +125,7 @@ fn input(input: &Input) -> String {
     format!("channel::Input {{ channel: {channel}, statistic: channel::Statistic::{statistic:?} }}")
 }
 
-fn array<T: Debug>(out: &mut String, depth: usize, name: &str, values: &[T]) {
-    let values: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
-    items(out, depth, name, &values);
-}
-
-/// An array, in as many lines as it takes.
+/// An array, on one line where it fits.
 fn items(out: &mut String, depth: usize, name: &str, items: &[String]) {
     let indent = "    ".repeat(depth);
     let together = items.join(", ");

@@ -1,6 +1,8 @@
-//! The JSON document of `inspect`.
+//! The JSON document of `inspect`: the flight without its samples.
 
-use flightlog::{Flight, Intervals};
+use flightlog::{
+    Event, Flight, Format, Gap, Geometry, Intervals, Motor, Range, Report, Statistics, Vehicle,
+};
 use serde::Serialize;
 
 /// Version of this document's form.
@@ -10,56 +12,23 @@ const SCHEMA: &str = "flagred.inspect/1";
 pub(super) struct Document<'a> {
     schema: &'static str,
     log: &'a str,
-    format: String,
-    vehicle: Vehicle<'a>,
-    motors: Vec<Motor<'a>>,
-    geometry: Option<Geometry<'a>>,
-    range: Option<Range<'a>>,
-    effective: Range<'a>,
+    format: Format,
+    vehicle: &'a Vehicle,
+    motors: &'a [Motor],
+    geometry: Option<&'a Geometry>,
+    range: Option<&'a Range>,
+    effective_range: &'a Range,
     clock: Clock<'a>,
     commands: Commands,
     statistics: Option<Statistics>,
-    armed: Option<Spans<'a>>,
-    in_air: Option<Spans<'a>>,
+    armed: Option<&'a Intervals>,
+    in_air: Option<&'a Intervals>,
     signals: Vec<Signal<'a>>,
-    modes: Vec<Event<'a>>,
-    messages: Vec<Event<'a>>,
-    header: Vec<(&'a str, &'a str)>,
-    not_available: Vec<Missing>,
-    read: Read<'a>,
-}
-
-#[derive(Serialize)]
-struct Vehicle<'a> {
-    kind: String,
-    frame: Option<&'a str>,
-    firmware: Option<&'a str>,
-    source: &'a str,
-}
-
-#[derive(Serialize)]
-struct Motor<'a> {
-    number: u16,
-    output: &'a str,
-    source: &'a str,
-}
-
-#[derive(Serialize)]
-struct Geometry<'a> {
-    frame: Option<&'a str>,
-    basis: String,
-    source: &'a str,
-    doubt: Option<&'a str>,
-    /// Roll, pitch and yaw of each motor, in the order of `motors`.
-    factors: &'a [[f64; 3]],
-}
-
-#[derive(Serialize)]
-struct Range<'a> {
-    low: f64,
-    high: f64,
-    unit: &'static str,
-    source: &'a str,
+    modes: &'a [Event],
+    messages: &'a [Event],
+    header: &'a [(String, String)],
+    not_available: Vec<Gap>,
+    read: &'a Report,
 }
 
 #[derive(Serialize)]
@@ -77,25 +46,6 @@ struct Commands {
 }
 
 #[derive(Serialize)]
-struct Statistics {
-    samples: usize,
-    margin_mean: f64,
-    margin_min: f64,
-    margin_std: f64,
-    margin_mean_of_min: f64,
-    command_mean: f64,
-    command_std: f64,
-}
-
-#[derive(Serialize)]
-struct Spans<'a> {
-    duration_s: f64,
-    rule: &'a str,
-    spans_s: Vec<(f64, f64)>,
-    ends_with_log: bool,
-}
-
-#[derive(Serialize)]
 struct Signal<'a> {
     name: &'a str,
     unit: &'a str,
@@ -104,51 +54,18 @@ struct Signal<'a> {
     rate_hz: Option<f64>,
 }
 
-#[derive(Serialize)]
-struct Event<'a> {
-    t_s: f64,
-    what: &'a str,
-}
-
-#[derive(Serialize)]
-struct Missing {
-    reason: String,
-    help: Option<&'static str>,
-}
-
-#[derive(Serialize)]
-struct Read<'a> {
-    bytes: u64,
-    messages: u64,
-    skipped_bytes: u64,
-    bad_messages: u64,
-    truncated: bool,
-    reason: Option<&'a str>,
-}
-
 impl<'a> Document<'a> {
     pub(super) fn new(log: &'a str, flight: &'a Flight) -> Self {
         let span_s = flight.time_span_s();
         Self {
             schema: SCHEMA,
             log,
-            format: flight.format.to_string(),
-            vehicle: Vehicle {
-                kind: flight.vehicle.kind.to_string(),
-                frame: flight.vehicle.frame.as_deref(),
-                firmware: flight.vehicle.firmware.as_deref(),
-                source: &flight.vehicle.source,
-            },
-            motors: flight.motors.iter().map(motor).collect(),
-            geometry: flight.geometry.as_ref().map(|geometry| Geometry {
-                frame: geometry.frame.as_deref(),
-                basis: geometry.basis.to_string(),
-                source: &geometry.source,
-                doubt: geometry.doubt.as_deref(),
-                factors: &geometry.factors,
-            }),
-            range: flight.range.as_ref().map(range),
-            effective: range(&flight.effective),
+            format: flight.format,
+            vehicle: &flight.vehicle,
+            motors: &flight.motors,
+            geometry: flight.geometry.as_ref(),
+            range: flight.range.as_ref(),
+            effective_range: &flight.effective,
             clock: Clock {
                 first_s: span_s.map(|span| span.0),
                 last_s: span_s.map(|span| span.1),
@@ -159,79 +76,16 @@ impl<'a> Document<'a> {
                 rows: flight.commands.len(),
                 rate_hz: flight.command_rate_hz(),
             },
-            statistics: flight.statistics().ok().map(statistics),
-            armed: flight.armed.as_ref().map(spans),
-            in_air: flight.in_air.as_ref().map(spans),
+            statistics: flight.statistics().ok(),
+            armed: flight.armed.as_ref(),
+            in_air: flight.in_air.as_ref(),
             signals: flight.signals().map(signal).collect(),
-            modes: flight.modes.iter().map(event).collect(),
-            messages: flight.messages.iter().map(event).collect(),
-            header: flight
-                .header
-                .iter()
-                .map(|(key, value)| (key.as_str(), value.as_str()))
-                .collect(),
-            not_available: flight
-                .gaps()
-                .iter()
-                .map(|gap| Missing {
-                    reason: gap.to_string(),
-                    help: gap.help(),
-                })
-                .collect(),
-            read: Read {
-                bytes: flight.report.bytes,
-                messages: flight.report.messages,
-                skipped_bytes: flight.report.skipped_bytes,
-                bad_messages: flight.report.bad_messages,
-                truncated: flight.report.truncated,
-                reason: flight.report.reason.as_deref(),
-            },
+            modes: &flight.modes,
+            messages: &flight.messages,
+            header: &flight.header,
+            not_available: flight.gaps(),
+            read: &flight.report,
         }
-    }
-}
-
-fn motor(motor: &flightlog::Motor) -> Motor<'_> {
-    Motor {
-        number: motor.number,
-        output: &motor.output,
-        source: &motor.source,
-    }
-}
-
-fn range(range: &flightlog::Range) -> Range<'_> {
-    Range {
-        low: range.low,
-        high: range.high,
-        unit: range.unit,
-        source: &range.source,
-    }
-}
-
-fn statistics(of: flightlog::Statistics) -> Statistics {
-    Statistics {
-        samples: of.samples,
-        margin_mean: of.margin_mean,
-        margin_min: of.margin_min,
-        margin_std: of.margin_std,
-        margin_mean_of_min: of.margin_mean_of_min,
-        command_mean: of.command_mean,
-        command_std: of.command_std,
-    }
-}
-
-fn spans(intervals: &Intervals) -> Spans<'_> {
-    Spans {
-        duration_s: intervals.duration_s(),
-        rule: &intervals.rule,
-        spans_s: intervals
-            .spans
-            .iter()
-            .map(|span| (span.start_s, span.end_s))
-            .collect(),
-        ends_with_log: intervals
-            .spans
-            .last()
-            .is_some_and(|span| span.ends_with_log),
     }
 }
 
@@ -242,12 +96,5 @@ fn signal(signal: flightlog::Signal<'_>) -> Signal<'_> {
         source: &signal.label.source,
         samples: signal.values.len(),
         rate_hz: signal.rate_hz(),
-    }
-}
-
-fn event(event: &flightlog::Event) -> Event<'_> {
-    Event {
-        t_s: event.t_s(),
-        what: &event.what,
     }
 }

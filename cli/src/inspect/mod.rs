@@ -15,7 +15,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
 
-    /// One JSON document a log
+    /// Print a JSON document for each log
     #[arg(long)]
     json: bool,
 }

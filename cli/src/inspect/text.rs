@@ -32,6 +32,10 @@ pub(super) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Re
 }
 
 fn line(out: &mut impl Write, key: &str, value: &str) -> io::Result<()> {
+    // Texts of a log may hold terminal commands and turn the direction of writing.
+    let is_harmful =
+        |c: char| c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let value = value.replace(is_harmful, "\u{fffd}");
     writeln!(out, "  {key:<11}{value}")
 }
 
@@ -76,10 +80,16 @@ fn motors(flight: &Flight) -> Vec<String> {
         "{}; {rows} rows of commands, {rate}",
         flight.motors.len()
     )];
+    let factors = flight.geometry.iter().flat_map(|g| &g.factors);
+    let mut factors = factors
+        .map(|[roll, pitch, yaw]| format!(", roll {roll:+.2}, pitch {pitch:+.2}, yaw {yaw:+.2}"));
     lines.extend(flight.motors.iter().map(|motor| {
         format!(
-            "motor {}, output {} ({})",
-            motor.number, motor.output, motor.source
+            "motor {}, output {} ({}){}",
+            motor.number,
+            motor.output,
+            motor.source,
+            factors.next().unwrap_or_default()
         )
     }));
     lines
@@ -91,19 +101,8 @@ fn geometry(flight: &Flight) -> Vec<String> {
     };
     let frame = geometry.frame.as_deref().unwrap_or("motor positions");
     let mut lines = vec![format!("{frame}, {} ({})", geometry.basis, geometry.source)];
-    let motors = flight.motors.iter().zip(&geometry.factors);
-    lines.extend(motors.map(|(motor, [roll, pitch, yaw])| {
-        format!(
-            "motor {}: roll {roll:+.2}, pitch {pitch:+.2}, yaw {yaw:+.2}",
-            motor.number
-        )
-    }));
-    lines.extend(
-        geometry
-            .doubt
-            .iter()
-            .map(|doubt| format!("doubtful: {doubt}")),
-    );
+    let doubt = geometry.doubt.iter();
+    lines.extend(doubt.map(|doubt| format!("doubtful: {doubt}")));
     lines
 }
 
@@ -263,12 +262,12 @@ fn report(flight: &Flight) -> Vec<String> {
     )];
     if report.skipped_bytes > 0 || report.bad_messages > 0 {
         lines.push(format!(
-            "{} bytes skipped, {} messages thrown away",
+            "{} bytes skipped, {} bad messages",
             report.skipped_bytes, report.bad_messages
         ));
     }
     if report.truncated {
-        lines.push("cut off at the end".into());
+        lines.push("the log is cut off at its end".into());
     }
     lines.extend(
         report

@@ -27,31 +27,31 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set whose variables are learned with; its rules are replaced
+    /// The rule set with the variables and terms; its rules are replaced
     #[arg(value_name = "MODEL")]
     model: PathBuf,
 
-    /// Tables with a column for each input and for the output, as `flagred dataset` makes them
+    /// Tables with a column for each input and the output, as `flagred dataset` writes them
     #[arg(required = true, value_name = "DATA.csv")]
     data: Vec<PathBuf>,
 
-    /// Where the learned rule set goes; `-` is standard output
+    /// The file for the learned rule set; `-` is standard output
     #[arg(short, long, value_name = "OUT.yaml")]
     output: PathBuf,
 
-    /// What decides where rows with the same terms disagree
+    /// How to choose the consequent of rows with the same terms
     #[arg(long, value_enum, default_value = "strongest", value_name = "HOW")]
     resolve: Resolve,
 
-    /// Fewer rows than this make no rule
+    /// The fewest rows that make a rule
     #[arg(long, default_value_t = 1, value_name = "ROWS")]
     min_support: u64,
 
-    /// A rule with a lower confidence is left out
+    /// The lowest confidence of a rule
     #[arg(long, default_value_t = 0.0, value_name = "DEGREE")]
     min_degree: f64,
 
-    /// Give terms that no row has the rule of the nearest ones that have
+    /// Add rules for combinations of terms without rows, each from the nearest combination with rows
     #[arg(long)]
     complete: bool,
 
@@ -63,43 +63,43 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "INPUT")]
     falling: Vec<String>,
 
-    /// A condition that every learned rule has besides: `at_limit IS none`
+    /// A condition added to every learned rule: `at_limit IS none`
     #[arg(long, value_name = "CONDITION")]
     given: Option<String>,
 
-    /// Keep the rules that MODEL has, and add the learned ones
+    /// Add the learned rules to those of MODEL
     #[arg(long)]
     keep_rules: bool,
 
-    /// Every file counts the same, however many rows it has
+    /// Give every file the same weight
     #[arg(long)]
     balance: bool,
 
-    /// A column that does not have the name of its variable: `margin=margin_mean`
+    /// Read a variable from a column of another name: `margin=margin_mean`
     #[arg(long, value_name = "NAME=COLUMN", value_parser = super::dataset::pair)]
     column: Vec<(String, String)>,
 
-    /// The column that says how much a row counts
+    /// The column with the weights of the rows
     #[arg(long, value_name = "COLUMN")]
     weight: Option<String>,
 
-    /// Cross-validation leaves out all rows with one value of this column together: `vehicle`
+    /// In cross-validation, leave out all rows with one value of this column together: `vehicle`
     #[arg(long, value_name = "COLUMN")]
     group_by: Option<String>,
 
-    /// Learn once only: do not estimate the error on rows left out
+    /// Skip cross-validation
     #[arg(long, conflicts_with = "group_by")]
     no_validation: bool,
 
-    /// Go on without rows that cannot be learned from
+    /// Skip unusable rows
     #[arg(long)]
     skip_bad_rows: bool,
 
-    /// Compare the methods of filling gaps: leave out rules one by one and look at the rows there
+    /// Compare the methods of interpolation on rows whose rule is left out
     #[arg(long)]
     compare_gaps: bool,
 
-    /// The report as one JSON document
+    /// Print the report as a JSON document
     #[arg(long)]
     json: bool,
 }
@@ -135,7 +135,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .help("name another file"));
     }
     let name = arguments.model.display().to_string();
-    let (mut model, text) = rule_set::read(&arguments.model)?;
+    let (document, text) = rule_set::read(&arguments.model)?;
+    let mut model = document.model;
     if !arguments.keep_rules {
         model.rules.clear();
     }

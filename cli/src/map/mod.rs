@@ -1,31 +1,25 @@
-//! `flagred map`: what a rule set decides, over all its inputs.
+//! `flagred map`: the output of a rule set over its inputs, as a picture or a table.
 
-mod activations;
-mod contour;
-mod heat;
 mod slice;
-mod surface;
-mod svg;
-mod text;
 mod view;
 
 use std::{io::Write, path::PathBuf};
 
+use anstyle::{RgbColor, Style};
 use clap::ValueEnum;
 use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
 use fuzzy::{
     Engine, Model,
+    drawing::{Colour, Slice, map_svg, map_text, rules_svg, rules_text, short, surface_svg},
     map::{DecisionMap, Grid},
 };
 
 use crate::{
-    drawing::text::number,
     failure::{Exit, Failure},
     output, rule_set,
 };
-use slice::Slice;
 
-/// Points along each axis where nothing else is asked for.
+/// The default number of points along each axis.
 const POINTS: usize = 51;
 
 #[derive(clap::Args)]
@@ -34,64 +28,64 @@ pub(crate) struct Arguments {
     #[arg(value_name = "MODEL")]
     model: PathBuf,
 
-    /// Points along each axis; more inputs than two have fewer by default
+    /// Points along each axis [default: 51; fewer with `--csv` and more than two inputs]
     #[arg(long, value_name = "POINTS", value_parser = clap::value_parser!(u16).range(2..=1001))]
     points: Option<u16>,
 
-    /// Hold an input at a value, so that it is no axis: `battery=0.8`. Inputs that are neither fixed nor an axis are
-    /// held in the middle of their range, or at the terms where the picture shows more
+    /// Hold an input at a value: `battery=0.8`. An input that is neither fixed nor an axis is held at the middle of its
+    /// range, or at the peak of a term where the output varies more
     #[arg(long, value_name = "INPUT=VALUE", value_parser = fix)]
     fix: Vec<(String, f64)>,
 
-    /// The input along the horizontal axis, the first one that is not fixed; or a part of it: `spread:0..0.2`. Where all
-    /// terms lie in less than a quarter of the range, only twice that part is shown
+    /// The input along the horizontal axis [default: the first that is not fixed], or a part of its range:
+    /// `spread:0..0.2`. Where all terms lie in less than a quarter of the range, the picture shows twice that part
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     x: Option<AxisChoice>,
 
-    /// The input along the vertical axis; the next one that is not fixed
+    /// The input along the vertical axis, as `--x` [default: the next that is not fixed]
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     y: Option<AxisChoice>,
 
-    /// The output, where there are several
+    /// The output to show [default: the first]
     #[arg(long, value_name = "OUTPUT")]
     output: Option<String>,
 
-    /// How cells that no rule covers are filled
+    /// How to interpolate cells where no rule applies
     #[arg(long, value_enum, value_name = "METHOD", default_value = "thin-plate")]
     fill: Fill,
 
-    /// Cells are filled where no rule fires at least this strongly; 0.5 where AND is the minimum
+    /// No rule applies where all firing strengths are below this [default: 0.5 where AND is the minimum]
     #[arg(long, value_name = "DEGREE")]
     coverage_below: Option<f64>,
 
-    /// Draw a picture into this file; `-` is standard output
-    #[arg(long, value_name = "FILE")]
+    /// Write an SVG picture to this file; `-` is standard output
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 
-    /// Draw the map as a surface in three dimensions
+    /// Draw a surface in three dimensions
     #[arg(long, requires = "svg")]
     surface: bool,
 
-    /// Show which rule dominates where, instead of the value
+    /// Show the rule with the largest firing strength of each cell instead of the value
     #[arg(long, conflicts_with = "surface")]
     activations: bool,
 
-    /// A table of all cells instead of a picture
+    /// Print a table of all cells instead of a picture
     #[arg(long, conflicts_with_all = ["svg", "activations"])]
     csv: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Fill {
-    /// Leave gaps as they are
+    /// Show no value there
     None,
     /// The value of the nearest covered cell
     Nearest,
-    /// The mean of the nearest covered cells, near ones counting more
+    /// The mean of the nearest covered cells, weighted by inverse distance
     InverseDistance,
     /// The thin-plate spline through the nearest covered cells
     ThinPlate,
-    /// Laplace's equation: smooth, cannot overshoot
+    /// Laplace's equation: smooth, without overshoot
     Harmonic,
 }
 
@@ -107,7 +101,7 @@ impl Fill {
     }
 }
 
-/// An input for an axis, and the part of its range that is shown.
+/// The input of an axis, and the part of its range that is shown.
 #[derive(Debug, Clone)]
 struct AxisChoice {
     name: String,
@@ -141,11 +135,11 @@ fn fix(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write `INPUT=VALUE`")?;
     match value.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok((name.trim().to_owned(), value)),
-        _ => Err(format!("`{value}` is no finite number")),
+        _ => Err(format!("`{value}` is not a finite number")),
     }
 }
 
-/// A rule set that can be asked anywhere: the engine, and what fills its gaps where that was asked for.
+/// A rule set, compiled, and what fills its gaps.
 struct Evaluated {
     model: Model,
     engine: Engine,
@@ -153,18 +147,18 @@ struct Evaluated {
     filling: Option<Filling>,
 }
 
-/// The most cells of a whole map, where nothing else is asked for.
+/// The most cells of a whole map by default.
 const MAP_CELLS: f64 = 100_000.0;
 
-/// How many points a whole map has along each of so many inputs: 51, or fewer so that there are not more than 100,000 in
-/// all, but at least 3.
+/// The default number of points of a whole map along each of so many inputs: 51, fewer where there would be more than
+/// 100,000 cells, at least 3.
 pub(crate) fn points_along(inputs: usize) -> usize {
     let most = MAP_CELLS.powf(1.0 / inputs.max(1) as f64);
     (most as usize).clamp(3, POINTS)
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let (model, _) = rule_set::read(&arguments.model)?;
+    let (model, _) = rule_set::load(&arguments.model)?;
     let evaluated = evaluate(arguments, model)?;
     let mut out = anstream::stdout().lock();
     let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();
@@ -172,41 +166,52 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         write_whole(&mut out, arguments, evaluated)?;
         return Ok(Exit::Clean);
     }
-    let slice = slice::cut(arguments, &evaluated)?;
-    for note in &slice.notes {
+    let (slice, notes) = slice::cut(arguments, &evaluated)?;
+    for note in notes {
         // Nothing is left to tell a user whose standard error is closed.
         let _ = writeln!(anstream::stderr(), "note: {note}");
     }
-    if arguments.csv {
-        write_slice(&mut out, &slice)?;
-        return Ok(Exit::Clean);
-    }
-    let Some(file) = &arguments.svg else {
-        if arguments.activations {
-            text::write_activations(&mut out, &slice, &evaluated.model)?;
-        } else {
-            text::write(&mut out, &slice)?;
+    let model = &evaluated.model;
+    match &arguments.svg {
+        _ if arguments.csv => write_slice(&mut out, &slice)?,
+        None if arguments.activations => {
+            write!(out, "{}", rules_text(&slice, model, painted))?;
         }
-        return Ok(Exit::Clean);
-    };
-    let drawn = if arguments.surface {
-        surface::draw(&slice)?
-    } else if arguments.activations {
-        activations::draw(&slice, &evaluated.model)
-    } else {
-        heat::draw(&slice)
-    };
-    output::write(file, &drawn)?;
+        None => write!(out, "{}", map_text(&slice, painted))?,
+        Some(file) if arguments.surface => {
+            let drawn = surface_svg(&slice).ok_or_else(|| {
+                Failure::usage("`--surface` needs two inputs, and one is left")
+                    .help("without `--surface`, the picture of one input is a curve")
+            })?;
+            output::write(file, &drawn)?;
+        }
+        Some(file) if arguments.activations => output::write(file, &rules_svg(&slice, model))?,
+        Some(file) => output::write(file, &map_svg(&slice))?,
+    }
     Ok(Exit::Clean)
+}
+
+/// A cell of a map on a terminal, in its colour.
+fn painted(cell: char, colour: Option<Colour>) -> String {
+    let rgb = |colour: Colour| Some(RgbColor(colour.0, colour.1, colour.2).into());
+    match colour {
+        None => cell.to_string(),
+        Some(colour) => {
+            let style = Style::new()
+                .bg_color(rgb(colour))
+                .fg_color(rgb(colour.ink()));
+            format!("{style}{cell}{style:#}")
+        }
+    }
 }
 
 fn evaluate(arguments: &Arguments, model: Model) -> Result<Evaluated, Failure> {
     let name = arguments.model.display();
     let unusable = |error: &dyn std::fmt::Display| {
-        Failure::unreadable(format!("`{name}` has no map: {error}"))
+        Failure::unreadable(format!("`{name}` cannot be mapped: {error}"))
     };
-    let engine =
-        Engine::new(&model).map_err(|error| unusable(&error).help("`flagred check` says where"))?;
+    let engine = Engine::new(&model)
+        .map_err(|error| unusable(&error).help("`flagred check` shows where"))?;
     let output = match &arguments.output {
         None => 0,
         Some(wanted) => engine.output(wanted).ok_or_else(|| {
@@ -242,8 +247,8 @@ fn write_whole(
 ) -> Result<(), Failure> {
     let Some(filling) = evaluated.filling else {
         return Err(
-            Failure::usage("the whole map of more than two inputs is filled")
-                .help("fix inputs with `--fix`, or name the axes with `--x` and `--y`"),
+            Failure::usage("`--fill none` is for maps of one or two inputs")
+                .help("fix the other inputs with `--fix`, or name two axes with `--x` and `--y`"),
         );
     };
     let points = match arguments.points {
@@ -252,12 +257,12 @@ fn write_whole(
     };
     let no_map = |error: &dyn std::fmt::Display| {
         Failure::unreadable(format!(
-            "`{}` has no map: {error}",
+            "`{}` cannot be mapped: {error}",
             arguments.model.display()
         ))
     };
     let grid = Grid::new(&evaluated.engine, points)
-        .map_err(|error| no_map(&error).help("ask for fewer `--points`"))?;
+        .map_err(|error| no_map(&error).help("use fewer `--points`"))?;
     let map = DecisionMap::new(&evaluated.engine, grid, evaluated.output)
         .map_err(|error| no_map(&error))?;
     let filled = FilledMap::new(map, filling);
@@ -301,11 +306,10 @@ fn write_slice(out: &mut impl Write, slice: &Slice) -> std::io::Result<()> {
         write!(out, "{},", y.name)?;
     }
     writeln!(out, "{},coverage,rule,filled,distance", slice.output)?;
-    for (i, x) in slice.x.places.iter().enumerate() {
-        let rows = slice.y.as_ref().map_or(1, |y| y.places.len());
-        for j in 0..rows {
+    for (i, x) in slice.x.points.iter().enumerate() {
+        for j in 0..slice.rows() {
             write!(out, "{},", short(*x))?;
-            if let Some(y) = slice.y.as_ref().and_then(|y| y.places.get(j)) {
+            if let Some(y) = slice.y.as_ref().and_then(|y| y.points.get(j)) {
                 write!(out, "{},", short(*y))?;
             }
             let cell = slice.cell(i, j);
@@ -323,16 +327,7 @@ fn write_slice(out: &mut impl Write, slice: &Slice) -> std::io::Result<()> {
     out.flush()
 }
 
-/// Rules are counted from 1, as in the messages about them; nothing where none fired.
+/// The number of a rule, counted from 1; empty where no rule fired.
 fn rule_number(rule: Option<usize>) -> String {
     rule.map(|rule| (rule + 1).to_string()).unwrap_or_default()
-}
-
-/// At most 6 decimals, without zeros behind; nothing for what is infinite.
-fn short(x: f64) -> String {
-    if x.is_finite() {
-        number(x, 6)
-    } else {
-        String::new()
-    }
 }

@@ -1,35 +1,36 @@
-//! What a picture shows where its user did not say: the part of each axis, and where the other inputs are held.
+//! Defaults of a picture: the part of each axis that is shown, and the values at which the other inputs are held.
 
-use fuzzy::{engine::Outcome, model::Variable};
+use fuzzy::{drawing::Scale, engine::Outcome, model::Variable};
 
 use super::Evaluated;
 
 /// Combinations of held values that are tried.
 const MOST_TRIED: usize = 1000;
 
-/// A picture that shows more by less than this share of the output's range is no reason to leave the middle.
+/// An input is held off its middle only where the output then varies more by this share of its range.
 const NOTICEABLE: f64 = 0.01;
 
-/// The part of an input's range that is shown: all of it, but where the terms change in less than a quarter of it, that
-/// part and as much again.
-pub(super) fn shown(variable: &Variable) -> (f64, f64) {
+/// The part of an input's range that is shown: the whole range, or twice the part where the terms change if that is less
+/// than a quarter of the range.
+pub(super) fn shown(variable: &Variable) -> Scale {
     let (low, high) = (variable.low, variable.high);
     let (first, last) = flagred::gap::changing(variable);
     let width = last - first;
     if width <= 0.0 || width >= (high - low) / 4.0 {
-        return (low, high);
+        return Scale::new(low, high);
     }
-    match (first > low, last < high) {
+    let (low, high) = match (first > low, last < high) {
         (true, false) => (first - width, high),
         (false, true) => (low, last + width),
         _ => (
             (first - width / 2.0).max(low),
             (last + width / 2.0).min(high),
         ),
-    }
+    };
+    Scale::new(low, high)
 }
 
-/// A value for each input: the fixed one, the middle of its range, or at the peaks of terms where the output varies more
+/// A value for each input: the fixed one, the middle of its range, or the peak of a term where the output varies more
 /// over the two axes.
 pub(super) fn held(
     evaluated: &Evaluated,
@@ -42,11 +43,11 @@ pub(super) fn held(
         .iter()
         .zip(fixed)
         .enumerate()
-        .map(|(place, (input, fixed))| {
+        .map(|(index, (input, fixed))| {
             let middle = middle(input);
             match fixed {
                 Some(value) => vec![*value],
-                None if place == x || Some(place) == y => vec![middle],
+                None if index == x || Some(index) == y => vec![middle],
                 None => {
                     let mut peaks = flagred::gap::peaks(input);
                     peaks.sort_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
@@ -77,7 +78,7 @@ pub(super) fn held(
     best
 }
 
-/// Every choice of one value from each list, the last running fastest.
+/// Every choice of one value from each list; the last list varies fastest.
 fn combinations(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
     lists.iter().fold(vec![Vec::new()], |all, list| {
         let with = |so_far: Vec<f64>| {
@@ -97,10 +98,10 @@ fn variation(evaluated: &Evaluated, point: &[f64], axes: &[(usize, Vec<f64>)]) -
     let mut outcomes = vec![Outcome::default(); evaluated.engine.output_names().len()];
     let mut point = point.to_vec();
     let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-    for places in combinations(&lists) {
-        for ((input, _), place) in axes.iter().zip(places) {
+    for values in combinations(&lists) {
+        for ((input, _), axis_value) in axes.iter().zip(values) {
             if let Some(value) = point.get_mut(*input) {
-                *value = place;
+                *value = axis_value;
             }
         }
         let engine = &evaluated.engine;

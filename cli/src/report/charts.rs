@@ -1,4 +1,4 @@
-//! Which curves tell a flight, and from what they are drawn.
+//! The curves of a report, and the data they are drawn from.
 
 use flagred::{
     attitude::Attitude,
@@ -7,15 +7,12 @@ use flagred::{
     verdict::{Level, Threshold},
 };
 use flightlog::{Flight, Signal};
-use fuzzy::Model;
-
-use super::{
-    curve::{Stretch, path},
-    panel::{Line, Mark, Panel, Size, Timeline},
+use fuzzy::{
+    Model,
+    drawing::{Line, Mark, Panel, Phase, Scale, Size, Stretch, Timeline, number, path},
 };
-use crate::drawing::text::number;
 
-/// Signals beside those of the profile that a report draws.
+/// The signals that a report draws besides those of the profile.
 pub(crate) const SIGNALS: [&str; 6] = [
     "roll_des_deg",
     "roll_deg",
@@ -25,10 +22,13 @@ pub(crate) const SIGNALS: [&str; 6] = [
     "battery_remaining_pct",
 ];
 
-/// More events than this are a carpet; the rest is said to be left out.
+/// The scale of a percentage.
+const PERCENT: (Scale, &str) = (Scale::new(0.0, 100.0), "%");
+
+/// The most events that are drawn; the last one counts the others.
 const MOST_EVENTS: usize = 200;
 
-/// The stretch that is drawn: from the first time in the air to the last, or all of the log where there is none.
+/// The stretch that is drawn: from the first take-off to the last landing, or the whole log where there is none.
 fn stretch(flight: &Flight) -> Stretch {
     let air = flight.in_air.iter().flat_map(|air| &air.spans);
     let hull = air
@@ -41,13 +41,13 @@ fn stretch(flight: &Flight) -> Stretch {
     }
 }
 
-/// What stands behind and over all curves of a flight.
+/// The flight modes, findings and events of a flight, for all its curves.
 pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
     let stretch = stretch(flight);
     let ends = flight.modes.iter().skip(1).map(|next| next.t_s());
     let ends = ends.chain([f64::INFINITY]);
     let mut kinds: Vec<&str> = Vec::new();
-    let mut modes = Vec::new();
+    let mut phases = Vec::new();
     for (mode, end_s) in flight.modes.iter().zip(ends) {
         let span = Stretch {
             start_s: mode.t_s().max(stretch.start_s),
@@ -59,10 +59,14 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
                 kinds.push(&mode.what);
                 kinds.len() - 1
             });
-            modes.push((span, mode.what.clone(), kind));
+            phases.push(Phase {
+                stretch: span,
+                name: mode.what.clone(),
+                kind,
+            });
         }
     }
-    // The gravest come first; drawn last, they are not hidden by what goes on about them.
+    // The gravest finding comes first; it is drawn last, on top of the others.
     let findings = assessed.findings.iter().rev().map(|finding| {
         let span = Stretch {
             start_s: finding.from_s,
@@ -75,7 +79,7 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
         .iter()
         .map(|message| (message.t_s(), message.what.clone()));
     let boots = flight.boots_s.iter();
-    let boots = boots.map(|t_s| (*t_s, "the autopilot booted again".to_owned()));
+    let boots = boots.map(|t_s| (*t_s, "the autopilot rebooted".to_owned()));
     let mut events: Vec<(f64, String)> = said
         .chain(boots)
         .filter(|(t_s, _)| stretch.contains(*t_s))
@@ -90,21 +94,21 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
     }
     Timeline {
         stretch,
-        modes,
-        findings: findings.collect(),
+        phases,
+        alerts: findings.collect(),
         events,
     }
 }
 
 pub(crate) fn level_class(level: Level) -> &'static str {
     match level {
-        Level::Good => "good",
+        Level::Good | Level::Info => "good",
         Level::Warn => "warn",
         Level::Fail => "fail",
     }
 }
 
-/// The curves of one value of the steps.
+/// The curve of one value of the steps.
 fn of_steps(
     steps: &[Step],
     stretch: Stretch,
@@ -118,13 +122,13 @@ fn of_steps(
     path(points, stretch, gap_s, decimals)
 }
 
-/// Without a sample for this long, a curve is broken: a few samples, and what the profile calls a gap.
+/// A curve is broken where there is no sample for this long: five samples, at least the profile's longest gap.
 fn gap_s(estimator: &Estimator, rate_hz: Option<f64>) -> f64 {
     let longest_gap_s = estimator.profile().sampling.longest_gap_s;
     rate_hz.map_or(longest_gap_s, |rate_hz| longest_gap_s.max(5.0 / rate_hz))
 }
 
-/// Risk and elevated risk; `None` where no moment of the flight could be assessed.
+/// Risk and elevated risk; `None` where no risk is known.
 pub(crate) fn risk(
     assessed: &Assessment,
     estimator: &Estimator,
@@ -149,31 +153,18 @@ pub(crate) fn risk(
         mark(&verdict.warn.raise, Level::Warn),
         mark(&verdict.fail.raise, Level::Fail),
     ];
+    let elevated = draw(&|step| step.elevated_risk_pct);
+    let lines = vec![
+        Line::new("elevated", "elevated risk", elevated),
+        Line::new("risk", "risk", risk),
+    ];
     Some(Panel {
-        title: "Risk".into(),
-        unit: "%",
-        low: 0.0,
-        high: 100.0,
-        size: Size::Large,
-        lines: vec![
-            Line {
-                class: "elevated",
-                name: "elevated risk".into(),
-                data: draw(&|step| step.elevated_risk_pct),
-            },
-            Line {
-                class: "risk",
-                name: "risk".into(),
-                data: risk,
-            },
-        ],
         marks: marks.into_iter().flatten().collect(),
-        zones: Vec::new(),
-        input: None,
+        ..Panel::new("Risk", PERCENT, Size::Large, lines)
     })
 }
 
-/// How far the nearest motor is from its lower and from its upper limit, and the mean margin.
+/// The smallest distance of a motor from its lower and from its upper limit, and the mean margin.
 pub(crate) fn margins(
     flight: &Flight,
     assessed: &Assessment,
@@ -192,30 +183,22 @@ pub(crate) fn margins(
     if low.is_empty() {
         return None;
     }
-    let line = |class, name: &str, data| Line {
-        class,
-        name: name.into(),
-        data,
-    };
     let mean = of_steps(&assessed.steps, stretch, gap_s, 3, |step| step.margin);
-    Some(Panel {
-        title: "Margin of the nearest motor".into(),
-        unit: "",
-        low: 0.0,
-        high: 1.0,
-        size: Size::Medium,
-        lines: vec![
-            line("mean", "mean margin", mean),
-            line("low", "to its lower limit", low),
-            line("high", "to its upper limit", least(&|e| 1.0 - e)),
-        ],
-        marks: Vec::new(),
-        zones: Vec::new(),
-        input: None,
-    })
+    let lines = vec![
+        Line::new("mean", "mean margin", mean),
+        Line::new("low", "to its lower limit", low),
+        Line::new("high", "to its upper limit", least(&|e| 1.0 - e)),
+    ];
+    let scale = (Scale::new(0.0, 1.0), "");
+    Some(Panel::new(
+        "Margin of the nearest motor",
+        scale,
+        Size::Medium,
+        lines,
+    ))
 }
 
-/// The command of each motor on its full range, with what lies beyond the effective limits shaded.
+/// The command of each motor on its full range; the parts outside the effective range are shaded.
 pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
     let gap_s = gap_s(estimator, flight.command_rate_hz());
     let limits = &flight.effective;
@@ -229,59 +212,47 @@ pub(crate) fn motors(flight: &Flight, estimator: &Estimator, stretch: Stretch) -
             let command = row.get(i).and_then(|raw| flight.command(*raw));
             (t_s, command.unwrap_or(f64::NAN) * 100.0)
         });
+        let data = path(rows, stretch, gap_s, 1);
+        let lines = vec![Line::new("motor", motor.output.as_str(), data)];
         Panel {
-            title: format!("Motor {}", motor.number),
-            unit: "%",
-            low: 0.0,
-            high: 100.0,
-            size: Size::Small,
-            lines: vec![Line {
-                class: "motor",
-                name: motor.output.clone(),
-                data: path(rows, stretch, gap_s, 1),
-            }],
             marks: [limits.low, limits.high].map(limit).into(),
-            zones: vec![(0.0, limits.low * 100.0), (limits.high * 100.0, 100.0)],
-            input: None,
+            zones: vec![
+                Scale::new(0.0, limits.low * 100.0),
+                Scale::new(limits.high * 100.0, 100.0),
+            ],
+            ..Panel::new(
+                format!("Motor {}", motor.number),
+                PERCENT,
+                Size::Small,
+                lines,
+            )
         }
     };
     let panels = flight.motors.iter().enumerate().map(panel);
-    panels.filter(has_data).collect()
+    panels.filter(Panel::has_data).collect()
 }
 
-/// What the rules saw: each of their inputs.
+/// The inputs of the rules, each with its index.
 pub(crate) fn inputs(
     assessed: &Assessment,
     estimator: &Estimator,
     model: &Model,
     stretch: Stretch,
-) -> Vec<Panel> {
+) -> Vec<(usize, Panel)> {
     let gap_s = gap_s(estimator, None);
     let panel = |(i, input): (usize, &flagred::profile::ProfileInput)| {
-        let (low, high) = super::decision::focus(model, &input.name, i, &assessed.steps);
+        let scale = super::decision::focus(model, &input.name, i, &assessed.steps);
         let unit = model.inputs.iter().find(|known| known.name == input.name);
         let unit = unit.and_then(|known| known.unit.as_deref());
         let data = of_steps(&assessed.steps, stretch, gap_s, 4, |step| {
             step.inputs.get(i).copied()
         });
-        Panel {
-            title: input.name.clone(),
-            unit: "",
-            low,
-            high,
-            size: Size::Small,
-            lines: vec![Line {
-                class: "value",
-                name: unit.unwrap_or_default().to_owned(),
-                data,
-            }],
-            marks: Vec::new(),
-            zones: Vec::new(),
-            input: Some(i),
-        }
+        let lines = vec![Line::new("value", unit.unwrap_or_default(), data)];
+        let panel = Panel::new(input.name.as_str(), (scale, ""), Size::Small, lines);
+        panel.has_data().then_some((i, panel))
     };
     let inputs = estimator.profile().inputs.iter().enumerate();
-    inputs.map(panel).filter(has_data).collect()
+    inputs.filter_map(panel).collect()
 }
 
 /// The attitude error in degrees: `sqrt((roll_des - roll)^2 + (pitch_des - pitch)^2)`.
@@ -313,7 +284,7 @@ pub(crate) fn attitude_error(
             (*t_s, attitude.squared_error_deg2().sqrt())
         })
         .collect();
-    // Up to the critical error at least, so that a calm flight looks calm.
+    // The scale reaches the critical error at least, so that a calm flight looks calm.
     let critical_deg = flagred::attitude::CRITICAL_ERROR_DEG;
     let largest = errors
         .iter()
@@ -321,54 +292,30 @@ pub(crate) fn attitude_error(
         .map(|(_, error)| *error)
         .fold(critical_deg * 1.1, f64::max);
     let gap_s = gap_s(estimator, roll.rate_hz());
+    let data = path(errors.into_iter(), stretch, gap_s, 2);
+    let name = "roll and pitch against their set points";
+    let lines = vec![Line::new("value", name, data)];
+    let scale = (Scale::new(0.0, largest), "°");
     let panel = Panel {
-        title: "Attitude error".into(),
-        unit: "°",
-        low: 0.0,
-        high: largest,
-        size: Size::Medium,
-        lines: vec![Line {
-            class: "value",
-            name: "roll and pitch against their set points".into(),
-            data: path(errors.into_iter(), stretch, gap_s, 2),
-        }],
         marks: vec![Mark {
             value: critical_deg,
             class: "limit",
             name: "critical".into(),
         }],
-        zones: Vec::new(),
-        input: None,
+        ..Panel::new("Attitude error", scale, Size::Medium, lines)
     };
-    has_data(&panel).then_some(panel)
+    panel.has_data().then_some(panel)
 }
 
-/// Battery voltage and what remains, as far as the log has them.
+/// Battery voltage and remaining charge, where the log has them.
 pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) -> Vec<Panel> {
-    let curve = |signal: &Signal<'_>, decimals| {
+    let panel = |title: &str, scale, signal: Signal<'_>, decimals| {
         let points = signal.t_s.iter().copied();
         let points = points.zip(signal.values.iter().copied());
-        path(
-            points,
-            stretch,
-            gap_s(estimator, signal.rate_hz()),
-            decimals,
-        )
-    };
-    let panel = |title: &str, unit, (low, high), signal: Signal<'_>, decimals| Panel {
-        title: title.into(),
-        unit,
-        low,
-        high,
-        size: Size::Medium,
-        lines: vec![Line {
-            class: "value",
-            name: signal.label.source.clone(),
-            data: curve(&signal, decimals),
-        }],
-        marks: Vec::new(),
-        zones: Vec::new(),
-        input: None,
+        let gap_s = gap_s(estimator, signal.rate_hz());
+        let data = path(points, stretch, gap_s, decimals);
+        let lines = vec![Line::new("value", signal.label.source.as_str(), data)];
+        Panel::new(title, scale, Size::Medium, lines)
     };
     let voltage = flight.signal("battery_v").and_then(|signal| {
         let seen = signal.t_s.iter().zip(signal.values);
@@ -377,16 +324,12 @@ pub(crate) fn battery(flight: &Flight, estimator: &Estimator, stretch: Stretch) 
             .map(|(_, value)| (*value, *value))
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
         let room = ((high - low) * 0.1).max(0.1);
-        let span = ((low - room).max(0.0), high + room);
-        Some(panel("Battery voltage", "V", span, signal, 2))
+        let scale = Scale::new((low - room).max(0.0), high + room);
+        Some(panel("Battery voltage", (scale, "V"), signal, 2))
     });
     let remaining = flight
         .signal("battery_remaining_pct")
-        .map(|signal| panel("Battery remaining", "%", (0.0, 100.0), signal, 1));
+        .map(|signal| panel("Battery remaining", PERCENT, signal, 1));
     let panels = voltage.into_iter().chain(remaining);
-    panels.filter(has_data).collect()
-}
-
-fn has_data(panel: &Panel) -> bool {
-    panel.lines.iter().any(|line| !line.data.is_empty())
+    panels.filter(Panel::has_data).collect()
 }

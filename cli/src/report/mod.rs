@@ -1,7 +1,6 @@
-//! Reports to look at: one HTML file that opens offline, and the picture of risk over time as SVG.
+//! Reports: one HTML file that opens offline, and the picture of risk over time as SVG.
 
 mod charts;
-mod curve;
 mod decision;
 mod page;
 mod panel;

@@ -16,7 +16,7 @@ const panels = [...document.querySelectorAll(".panel")].map((box) => ({
     }
     return points;
   }),
-  modes: [...box.querySelectorAll(".mode")],
+  phases: [...box.querySelectorAll(".phase")],
   events: [...box.querySelectorAll(".event")].map((mark) => [
     +mark.getAttribute("d").match(/M([-\d.]+)/)[1],
     mark.textContent,
@@ -52,8 +52,8 @@ function show(of) {
   const x = share * of.length, main = panels[0];
   const words = [(of.start + x).toFixed(1) + " s"];
   if (main.start === of.start) {
-    const mode = main.modes.find((m) => parseFloat(m.style.left) <= share * 100 && share * 100 <= parseFloat(m.style.left) + parseFloat(m.style.width));
-    if (mode) words.push(mode.textContent);
+    const phase = main.phases.find((p) => parseFloat(p.style.left) <= share * 100 && share * 100 <= parseFloat(p.style.left) + parseFloat(p.style.width));
+    if (phase) words.push(phase.textContent);
     const near = main.events.filter(([t]) => Math.abs(t - x) < of.length * 0.01).map(([, text]) => text);
     words.push(...near.slice(0, 3));
   }

@@ -1,24 +1,21 @@
 //! The report of one flight, or a comparison of several, as one HTML file that needs nothing beside it.
 
-use std::fmt::Write as _;
-
-use fuzzy::Model;
-
-use super::{
-    charts, decision,
-    panel::{Panel, Timeline},
-};
-use crate::{
-    assessment::words,
-    drawing::text::{Escaped, number},
-    profile::Loaded,
-};
 use flagred::flight::{Assessment, Peak, Verdict};
 use flightlog::Flight;
+use fuzzy::{
+    Model,
+    drawing::{CSS, Escaped, Frame, Panel, Sheet, Timeline, number},
+};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::{charts, decision, panel::panel};
+use crate::{assessment::words, profile::Loaded};
 
 const CHART_CSS: &str = include_str!("chart.css");
 const PAGE_CSS: &str = include_str!("page.css");
 const PAGE_JS: &str = include_str!("page.js");
+/// The page may load nothing: all that it shows is within it.
+const POLICY: &str = "default-src 'none';style-src 'unsafe-inline';script-src 'unsafe-inline'";
 
 /// One flight that was assessed.
 pub(crate) struct Subject {
@@ -28,7 +25,7 @@ pub(crate) struct Subject {
 }
 
 impl Subject {
-    /// The file without its folders: what a heading has room for.
+    /// The file name without its folders.
     fn title(&self) -> &str {
         let file = std::path::Path::new(&self.name).file_name();
         file.and_then(|file| file.to_str()).unwrap_or(&self.name)
@@ -44,130 +41,161 @@ pub(crate) fn report(subject: &Subject, loaded: &Loaded) -> String {
     let Subject {
         flight, assessed, ..
     } = subject;
-    let estimator = &loaded.estimator;
+    let (estimator, model) = (&loaded.estimator, &loaded.model);
     let timeline = charts::timeline(flight, assessed);
     let stretch = timeline.stretch;
-
-    let mut body = head(subject);
-    body += &findings(subject);
-    body += &figures(subject);
     let risk = charts::risk(assessed, estimator, stretch);
-    let risk: Vec<Panel> = risk.into_iter().collect();
-    section(&mut body, "Risk over time", "", risk, &timeline);
-    if let Some(map) = decision::html(estimator, &loaded.model, &assessed.steps) {
-        let _ = write!(body, "<h2>Why: the rules and their inputs</h2>{map}");
-    }
-    for panel in charts::inputs(assessed, estimator, &loaded.model, stretch) {
-        body += &panel.html(&timeline);
-    }
-    body += &rules(&loaded.model, assessed);
     let margins = charts::margins(flight, assessed, estimator, stretch);
-    let mut motors: Vec<Panel> = margins.into_iter().collect();
-    motors.extend(charts::motors(flight, estimator, stretch));
-    let limits = "Each command on its full range; it flies between the dashed limits.";
-    section(&mut body, "Motors", limits, motors, &timeline);
-    let mut vehicle: Vec<Panel> = charts::attitude_error(flight, estimator, stretch)
-        .into_iter()
-        .collect();
-    vehicle.extend(charts::battery(flight, estimator, stretch));
-    section(&mut body, "Attitude and battery", "", vehicle, &timeline);
-    body += &events(&timeline);
-    body += &read(subject, loaded);
-    body += &texts(loaded);
+    let motors = margins.into_iter();
+    let motors = motors.chain(charts::motors(flight, estimator, stretch));
+    let attitude = charts::attitude_error(flight, estimator, stretch).into_iter();
+    let attitude = attitude.chain(charts::battery(flight, estimator, stretch));
+    let limits = "The command of each motor on its full range. The dashed lines are the limits.";
+    let body = html! {
+        h1 { (badge(&assessed.verdict)) " " (subject.title()) }
+        p.soft { (words::vehicle(flight)) }
+        @if !flight.report.is_clean() {
+            p.soft { (words::damage(&flight.report)) }
+        }
+        (findings(subject))
+        (figures(subject))
+        (section("Risk over time", "", risk, &timeline))
+        @if let Some(map) = decision::map(estimator, model, &assessed.steps) {
+            h2 { "The rules and their inputs" }
+            (map)
+        }
+        @for (i, input) in charts::inputs(assessed, estimator, model, stretch) {
+            (panel(&input, &timeline, Some(i)))
+        }
+        (rules(model, assessed))
+        (section("Motors", limits, motors, &timeline))
+        (section("Attitude and battery", "", attitude, &timeline))
+        (events(&timeline))
+        (sources(subject, loaded))
+        (texts(loaded))
+    };
     page(subject.title(), &body)
 }
 
-/// A heading with its panels, and what has to be said of all of them; nothing where there is none.
-fn section(body: &mut String, title: &str, note: &str, panels: Vec<Panel>, timeline: &Timeline) {
-    if panels.is_empty() {
-        return;
-    }
-    let _ = write!(body, "<h2>{title}</h2>");
-    if !note.is_empty() {
-        let _ = write!(body, r#"<p class="soft">{note}</p>"#);
-    }
-    for panel in panels {
-        *body += &panel.html(timeline);
+/// A heading with a note and panels; nothing without panels.
+fn section(
+    title: &str,
+    note: &str,
+    panels: impl IntoIterator<Item = Panel>,
+    timeline: &Timeline,
+) -> Markup {
+    let panels: Vec<Panel> = panels.into_iter().collect();
+    html! {
+        @if !panels.is_empty() {
+            h2 { (title) }
+            @if !note.is_empty() { p.soft { (note) } }
+            @for one in panels { (panel(&one, timeline, None)) }
+        }
     }
 }
 
 /// A comparison of several flights on one scale of time.
 pub(crate) fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
-    let longest_s = subjects
+    let timelines = subjects
         .iter()
-        .map(|s| charts::timeline(&s.flight, &s.assessed).stretch.length_s())
-        .fold(0.0, f64::max);
-    let mut rows = String::new();
-    let mut flights = String::new();
-    for (i, subject) in subjects.iter().enumerate() {
-        let summary = &subject.assessed.summary;
-        let peak = |peak: Option<Peak>| percent(peak.map(|peak| peak.value_pct));
-        let _ = write!(
-            rows,
-            r##"<tr><td>{}</td><td class="name"><a href="#flight{i}">{}</a></td><td class="n">{} s</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td><td class="n">{}</td></tr>"##,
-            badge(&subject.assessed.verdict),
-            Escaped(subject.title()),
-            number(subject.in_air_s(), 0),
-            percent(summary.risk_mean_pct),
-            peak(summary.risk_max),
-            peak(summary.elevated_risk_max),
-            percent(summary.saturated_share.map(|share| share * 100.0)),
-            subject.assessed.findings.len(),
-        );
-        let _ = write!(
-            flights,
-            r#"<section id="flight{i}"><h2>{} {}</h2><p class="soft">{}</p>"#,
-            badge(&subject.assessed.verdict),
-            Escaped(subject.title()),
-            Escaped(&words::vehicle(&subject.flight)),
-        );
-        flights += &findings(subject);
-        let mut timeline = charts::timeline(&subject.flight, &subject.assessed);
-        timeline.stretch.end_s = timeline.stretch.start_s + longest_s;
-        let risk = charts::risk(&subject.assessed, &loaded.estimator, timeline.stretch);
-        flights += &risk.map_or_else(String::new, |panel| panel.html(&timeline));
-        flights += "</section>";
+        .map(|s| charts::timeline(&s.flight, &s.assessed));
+    let mut timelines: Vec<Timeline> = timelines.collect();
+    let lengths = timelines.iter().map(|timeline| timeline.stretch.length_s());
+    let longest_s = lengths.fold(0.0, f64::max);
+    for Timeline { stretch, .. } in &mut timelines {
+        stretch.end_s = stretch.start_s + longest_s;
     }
     let title = format!("{} flights compared", subjects.len());
-    let body = format!(
-        r#"<h1>{title}</h1><p class="soft">All pictures have the same length, {} s, so that they can be compared. `flagred assess LOG --html FILE` gives the whole report of one flight.</p><div class="scroll"><table><thead><tr><th>Verdict</th><th>Flight</th><th class="n">In the air</th><th class="n">Mean risk</th><th class="n">Highest</th><th class="n">Elevated</th><th class="n">At a limit</th><th class="n">Findings</th></tr></thead><tbody>{rows}</tbody></table></div>{flights}{}"#,
-        number(longest_s, 0),
-        texts(loaded)
-    );
+    let peak = |peak: Option<Peak>| percent(peak.map(|peak| peak.value_pct));
+    let body = html! {
+        h1 { (title) }
+        p.soft {
+            "All curves have the same scale of time, " (number(longest_s, 0)) " s. "
+            code { "flagred assess LOG --html FILE" } " writes the whole report of one flight."
+        }
+        .scroll { table {
+            thead { tr {
+                th { "Verdict" } th { "Flight" } th.n { "In the air" } th.n { "Mean risk" }
+                th.n { "Highest" } th.n { "Elevated" } th.n { "At a limit" } th.n { "Findings" }
+            } }
+            tbody {
+                @for (i, subject) in subjects.iter().enumerate() {
+                    @let summary = &subject.assessed.summary;
+                    tr {
+                        td { (badge(&subject.assessed.verdict)) }
+                        td.name { a href={ "#flight" (i) } { (subject.title()) } }
+                        td.n { (number(subject.in_air_s(), 0)) " s" }
+                        td.n { (percent(summary.risk_mean_pct)) }
+                        td.n { (peak(summary.risk_max)) }
+                        td.n { (peak(summary.elevated_risk_max)) }
+                        td.n { (share(summary.saturated_share)) }
+                        td.n { (subject.assessed.findings.len()) }
+                    }
+                }
+            }
+        } }
+        @for (i, (subject, timeline)) in subjects.iter().zip(&timelines).enumerate() {
+            section id={ "flight" (i) } {
+                h2 { (badge(&subject.assessed.verdict)) " " (subject.title()) }
+                p.soft { (words::vehicle(&subject.flight)) }
+                (findings(subject))
+                @if let Some(risk) = charts::risk(&subject.assessed, &loaded.estimator, timeline.stretch) {
+                    (panel(&risk, timeline, None))
+                }
+            }
+        }
+        (texts(loaded))
+    };
     page(&title, &body)
 }
 
-/// The picture of risk over time, as an SVG file of its own.
+/// The risk over time as an SVG file; `None` where no risk is known.
 pub(crate) fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
-    let timeline = charts::timeline(&subject.flight, &subject.assessed);
-    let panel = charts::risk(&subject.assessed, &loaded.estimator, timeline.stretch)?;
-    let style = "text{font:12px system-ui,sans-serif;fill:var(--soft)}.y{text-anchor:end}.x{text-anchor:middle}\
+    const STYLE: &str = "text{font:12px system-ui,sans-serif;fill:var(--soft)}.y{text-anchor:end}.x{text-anchor:middle}\
         .key{fill:var(--c)}.title{font-size:16px;font-weight:700;fill:var(--ink)}.verdict{font-size:16px;font-weight:700;fill:var(--c)}";
+    let timeline = charts::timeline(&subject.flight, &subject.assessed);
+    let risk = charts::risk(&subject.assessed, &loaded.estimator, timeline.stretch)?;
     let verdict = &subject.assessed.verdict;
-    Some(format!(
-        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 960 380" width="960" height="380"><style>{CHART_CSS}{style}</style><rect width="960" height="380" fill="var(--paper)"/><text class="verdict {}" x="48" y="30">{}</text><text class="title" x="108" y="30">{}</text>{}</svg>
-"#,
+    let frame = Frame {
+        left: 48.0,
+        top: 70.0,
+        width: 896.0,
+        height: 276.0,
+    };
+    let mut sheet = Sheet::styled(960.0, 380.0, [CSS, CHART_CSS, STYLE].concat());
+    sheet.push(format_args!(
+        r#"<text class="verdict {}" x="48" y="30">{}</text><text class="title" x="108" y="30">{}</text>{}"#,
         verdict_class(verdict),
         verdict,
         Escaped(subject.title()),
-        panel.svg(&timeline, [48.0, 70.0, 896.0, 276.0]),
-    ))
+        risk.svg(&timeline, frame),
+    ));
+    Some(sheet.finish(&format!("{verdict} {}", subject.title())))
 }
 
-fn page(title: &str, body: &str) -> String {
-    format!(
-        r#"<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width,initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none';style-src 'unsafe-inline';script-src 'unsafe-inline'">
-<meta name="color-scheme" content="light dark"><title>{} - flagred</title>
-<style>{CHART_CSS}{PAGE_CSS}</style></head><body>
-{body}
-<p class="soft">Written by flagred {}.</p><div id="now"></div>
-<script>{PAGE_JS}</script></body></html>
-"#,
-        Escaped(title),
-        env!("CARGO_PKG_VERSION"),
-    )
+fn page(title: &str, body: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width,initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="color-scheme" content="light dark";
+                title { (title) " - flagred" }
+                style { (PreEscaped(CSS)) (PreEscaped(CHART_CSS)) (PreEscaped(PAGE_CSS)) }
+            }
+            body {
+                (body)
+                p.soft { "Written by flagred " (env!("CARGO_PKG_VERSION")) "." }
+                #now {}
+                script { (PreEscaped(PAGE_JS)) }
+            }
+        }
+    };
+    // HTML has no control characters; a log may.
+    let is_control = |c: char| c.is_control() && c != '\n' && c != '\t';
+    page.into_string().replace(is_control, "\u{fffd}")
 }
 
 fn verdict_class(verdict: &Verdict) -> &'static str {
@@ -177,176 +205,147 @@ fn verdict_class(verdict: &Verdict) -> &'static str {
     }
 }
 
-fn badge(verdict: &Verdict) -> String {
-    let class = verdict_class(verdict);
-    format!(r#"<span class="badge {class}">{}</span>"#, verdict)
+fn badge(verdict: &Verdict) -> Markup {
+    html! { span.badge.(verdict_class(verdict)) { (verdict) } }
 }
 
 fn percent(value: Option<f64>) -> String {
     value.map_or("unknown".into(), |value| format!("{value:.0} %"))
 }
 
-fn head(subject: &Subject) -> String {
-    let mut html = format!(
-        "<h1>{} {}</h1><p class=\"soft\">{}</p>",
-        badge(&subject.assessed.verdict),
-        Escaped(subject.title()),
-        Escaped(&words::vehicle(&subject.flight)),
-    );
-    if !subject.flight.report.is_clean() {
-        let damage = words::damage(&subject.flight.report);
-        let _ = write!(html, "<p class=\"soft\">{}</p>", Escaped(&damage));
-    }
-    html
+fn share(value: Option<f64>) -> String {
+    percent(value.map(|share| 100.0 * share))
 }
 
-fn findings(subject: &Subject) -> String {
+fn findings(subject: &Subject) -> Markup {
     let assessed = &subject.assessed;
-    let mut items = String::new();
-    if let Verdict::NotAvailable(reason) = &assessed.verdict {
-        let text = reason.to_string();
-        let _ = write!(items, r#"<li class="na">No verdict: {}"#, Escaped(&text));
-        if let Some(help) = reason.help() {
-            let _ = write!(items, "<br><span class=\"soft\">{}</span>", Escaped(help));
+    let unknown = match &assessed.verdict {
+        Verdict::NotAvailable(reason) => Some(reason),
+        Verdict::Known(_) => None,
+    };
+    html! {
+        ul.findings {
+            @if let Some(reason) = unknown {
+                li.na {
+                    "No verdict: " (reason)
+                    @if let Some(help) = reason.help() { br; span.soft { (help) } }
+                }
+            }
+            @for finding in &assessed.findings {
+                li.(charts::level_class(finding.level)) {
+                    b { (finding.level) } " " (words::describe(finding, &subject.flight.motors))
+                }
+            }
+            @if unknown.is_none() && assessed.findings.is_empty() {
+                li.good { "No threshold was reached." }
+            }
         }
-        items += "</li>";
     }
-    for finding in &assessed.findings {
-        let _ = write!(
-            items,
-            r#"<li class="{}"><b>{}</b> {}</li>"#,
-            charts::level_class(finding.level),
-            finding.level,
-            Escaped(&words::describe(finding, &subject.flight.motors)),
-        );
-    }
-    if items.is_empty() {
-        items += r#"<li class="good">Nothing reached a threshold.</li>"#;
-    }
-    format!("<ul class=\"findings\">{items}</ul>")
 }
 
-fn figures(subject: &Subject) -> String {
+fn figures(subject: &Subject) -> Markup {
     let summary = &subject.assessed.summary;
     let at = |peak: Option<Peak>| {
         peak.map_or("unknown".into(), |peak| {
             format!("{:.0} % at {:.1} s", peak.value_pct, peak.t_s)
         })
     };
-    let share =
-        |part_s: f64| percent((summary.in_air_s > 0.0).then(|| 100.0 * part_s / summary.in_air_s));
+    let of_air = |part_s: f64| share((summary.in_air_s > 0.0).then(|| part_s / summary.in_air_s));
     let figures = [
         ("Highest risk", at(summary.risk_max)),
         ("Mean risk", percent(summary.risk_mean_pct)),
         ("Highest elevated risk", at(summary.elevated_risk_max)),
         ("In the air", format!("{:.1} s", subject.in_air_s())),
-        ("Risk known", share(summary.assessed_s)),
-        ("Filled in beside the rules", share(summary.filled_s)),
-        (
-            "Motors at a limit",
-            percent(summary.saturated_share.map(|share| share * 100.0)),
-        ),
+        ("Risk known", of_air(summary.assessed_s)),
+        ("Risk interpolated", of_air(summary.filled_s)),
+        ("Motors at a limit", share(summary.saturated_share)),
     ];
-    let items: String = figures
-        .iter()
-        .map(|(name, value)| format!("<div><dt>{name}</dt><dd>{value}</dd></div>"))
-        .collect();
-    let quiet = "Highest and mean values leave the seconds around take-off and landing out.";
-    format!("<dl class=\"figures\">{items}</dl><p class=\"soft\">{quiet}</p>")
+    html! {
+        dl.figures {
+            @for (name, value) in figures { div { dt { (name) } dd { (value) } } }
+        }
+        p.soft { "The highest and mean values are without the seconds around take-off and landing." }
+    }
 }
 
-/// The rules that said most at some time, those that did so longest first; all of them stand in the rule set below.
-fn rules(model: &Model, assessed: &Assessment) -> String {
+/// The rules that were dominant at some point, and how much of the time; all rules are in the rule set below.
+fn rules(model: &Model, assessed: &Assessment) -> Markup {
     let known = assessed.steps.iter().filter_map(|step| step.estimate);
     let total = known.clone().count();
-    if total == 0 {
-        return String::new();
-    }
     let mut steps = vec![0usize; model.rules.len()];
     for rule in known.filter_map(|estimate| estimate.dominant_rule) {
         if let Some(steps) = steps.get_mut(rule) {
             *steps += 1;
         }
     }
-    let mut said: Vec<_> = model.rules.iter().zip(steps).enumerate().collect();
-    said.retain(|(_, (_, steps))| *steps > 0);
-    said.sort_by_key(|(_, (_, steps))| std::cmp::Reverse(*steps));
-    let mut rows = String::new();
-    for (i, (rule, steps)) in &said {
-        let share = 100.0 * *steps as f64 / total as f64;
-        let shown = if share < 0.5 {
-            "&lt; 1".into()
-        } else {
-            format!("{share:.0}")
-        };
-        let support = rule.support.map(|n| n.to_string()).unwrap_or_default();
-        let _ = write!(
-            rows,
-            r#"<tr><td class="n">{}</td><td>{}</td><td class="n">{support}</td><td class="n">{shown} % <span class="bar" style="width:{}rem"></span></td></tr>"#,
-            i + 1,
-            Escaped(&rule.rule.to_string()),
-            number(share / 25.0, 2),
-        );
-    }
-    format!(
-        r#"<div class="scroll"><table class="rules"><thead><tr><th class="n">#</th><th>Rule</th><th class="n">Support</th><th class="n">Said most</th></tr></thead><tbody>{rows}</tbody></table></div><p class="soft">{} of {} rules said most at some time.</p>"#,
-        said.len(),
-        model.rules.len(),
-    )
-}
-
-fn events(timeline: &Timeline) -> String {
-    let modes = timeline
-        .modes
-        .iter()
-        .map(|(stretch, name, _)| (stretch.start_s, format!("flight mode {name}")));
-    let mut all: Vec<(f64, String)> = modes.chain(timeline.events.iter().cloned()).collect();
-    if all.is_empty() {
-        return String::new();
-    }
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let rows: String = all
-        .iter()
-        .map(|(t_s, what)| {
-            format!(
-                r#"<tr><td class="n">{t_s:.1} s</td><td>{}</td></tr>"#,
-                Escaped(what)
-            )
-        })
-        .collect();
-    format!("<h2>Events</h2><table class=\"events\"><tbody>{rows}</tbody></table>")
-}
-
-/// What was read, and from where.
-fn read(subject: &Subject, loaded: &Loaded) -> String {
-    let flight = &subject.flight;
-    let mut facts: Vec<(String, String)> = vec![
-        ("file".into(), subject.name.clone()),
-        ("format".into(), flight.format.to_string()),
-        (
-            "read".into(),
-            format!(
-                "{} bytes, {} messages; {} bytes skipped, {} messages thrown away{}",
-                flight.report.bytes,
-                flight.report.messages,
-                flight.report.skipped_bytes,
-                flight.report.bad_messages,
-                if flight.report.truncated {
-                    "; cut off at the end"
-                } else {
-                    ""
+    let mut dominant: Vec<_> = model.rules.iter().zip(steps).enumerate().collect();
+    dominant.retain(|(_, (_, steps))| *steps > 0);
+    dominant.sort_by_key(|(_, (_, steps))| std::cmp::Reverse(*steps));
+    let percent = |steps: usize| 100.0 * steps as f64 / total as f64;
+    html! {
+        @if total > 0 {
+            .scroll { table.rules {
+                thead { tr { th.n { "#" } th { "Rule" } th.n { "Support" } th.n { "Dominant" } } }
+                tbody {
+                    @for (i, (rule, steps)) in &dominant {
+                        tr {
+                            td.n { (i + 1) }
+                            td { (rule.rule.to_string()) }
+                            td.n { @if let Some(support) = rule.support { (support) } }
+                            td.n {
+                                @if percent(*steps) < 0.5 { "< 1 % " } @else { (format!("{:.0} % ", percent(*steps))) }
+                                span.bar style={ "width:" (number(percent(*steps) / 25.0, 2)) "rem" } {}
+                            }
+                        }
+                    }
                 }
-            ),
-        ),
-        (
-            "vehicle".into(),
-            format!("{} ({})", flight.vehicle.kind, flight.vehicle.source),
-        ),
+            } }
+            p.soft { (dominant.len()) " of " (model.rules.len()) " rules were dominant at some point." }
+        }
+    }
+}
+
+fn events(timeline: &Timeline) -> Markup {
+    let phases = timeline.phases.iter();
+    let phases = phases.map(|phase| (phase.stretch.start_s, format!("flight mode {}", phase.name)));
+    let mut all: Vec<(f64, String)> = phases.chain(timeline.events.iter().cloned()).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    html! {
+        @if !all.is_empty() {
+            h2 { "Events" }
+            table.events { tbody {
+                @for (t_s, what) in all {
+                    tr { td.n { (format!("{t_s:.1} s")) } td { (what) } }
+                }
+            } }
+        }
+    }
+}
+
+/// What was read from the log, and from which message or parameter.
+fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
+    let flight = &subject.flight;
+    let report = &flight.report;
+    let end = if report.truncated {
+        "; cut off at the end"
+    } else {
+        ""
+    };
+    let read = format!(
+        "{} bytes, {} messages; {} bytes and {} messages skipped{end}",
+        report.bytes, report.messages, report.skipped_bytes, report.bad_messages,
+    );
+    let vehicle = format!("{} ({})", flight.vehicle.kind, flight.vehicle.source);
+    let mut facts = vec![
+        ("file".to_owned(), subject.name.clone()),
+        ("format".into(), flight.format.to_string()),
+        ("read".into(), read),
+        ("vehicle".into(), vehicle),
     ];
     let mut add = |name: &str, value: Option<String>| {
         facts.extend(value.map(|value| (name.to_owned(), value)));
     };
-    add("damage", flight.report.reason.clone());
+    add("damage", report.reason.clone());
     add("frame", flight.vehicle.frame.clone());
     add("firmware", flight.vehicle.firmware.clone());
     for motor in &flight.motors {
@@ -354,65 +353,43 @@ fn read(subject: &Subject, loaded: &Loaded) -> String {
         add(&format!("motor {}", motor.number), Some(value));
     }
     let rate = flight.command_rate_hz();
-    add(
-        "motor commands",
-        rate.map(|hz| format!("{} rows, {hz:.1} Hz", flight.commands.len())),
-    );
+    let rate = rate.map(|hz| format!("{} rows, {hz:.1} Hz", flight.commands.len()));
+    add("motor commands", rate);
     let range = |range: &flightlog::Range| {
         let unit = if range.unit == "1" { "" } else { range.unit };
-        format!(
-            "{} to {} {unit} ({})",
-            number(range.low, 3),
-            number(range.high, 3),
-            range.source
-        )
+        let (low, high) = (number(range.low, 3), number(range.high, 3));
+        format!("{low} to {high} {unit} ({})", range.source)
     };
     add("range", flight.range.as_ref().map(range));
     add("effective range", Some(range(&flight.effective)));
     for (name, spans) in [("armed", &flight.armed), ("in the air", &flight.in_air)] {
-        let value = spans
-            .as_ref()
-            .map(|spans| format!("{:.1} s ({})", spans.duration_s(), spans.rule));
+        let value = spans.as_ref();
+        let value = value.map(|spans| format!("{:.1} s ({})", spans.duration_s(), spans.rule));
         add(
             name,
-            Some(value.unwrap_or("unknown: the log does not tell".into())),
+            Some(value.unwrap_or("unknown: not in the log".into())),
         );
     }
-    for name in loaded
-        .estimator
-        .profile()
-        .signals()
-        .into_iter()
-        .chain(charts::SIGNALS)
-    {
+    let signals = loaded.estimator.profile().signals();
+    for name in signals.into_iter().chain(charts::SIGNALS) {
         let value = flight.signal(name).map(|signal| {
-            let rate = signal
-                .rate_hz()
-                .map_or(String::new(), |hz| format!(", {hz:.1} Hz"));
-            format!("{}{rate}", signal.label.source)
+            let rate = signal.rate_hz().map(|hz| format!(", {hz:.1} Hz"));
+            format!("{}{}", signal.label.source, rate.unwrap_or_default())
         });
         add(name, Some(value.unwrap_or("not in the log".into())));
     }
-    let rows: String = facts
-        .iter()
-        .map(|(name, value)| {
-            format!(
-                "<tr><th>{}</th><td>{}</td></tr>",
-                Escaped(name),
-                Escaped(value)
-            )
-        })
-        .collect();
-    format!(
-        "<h2>What was read, and from where</h2><table class=\"facts\"><tbody>{rows}</tbody></table>"
-    )
+    html! {
+        h2 { "What was read from the log" }
+        table.facts { tbody {
+            @for (name, value) in facts { tr { th { (name) } td { (value) } } }
+        } }
+    }
 }
 
-/// The profile and the rule set as they were written.
-fn texts(loaded: &Loaded) -> String {
-    format!(
-        "<h2>Profile</h2><pre>{}</pre><h2>Rule set</h2><pre>{}</pre>",
-        Escaped(&loaded.profile_text),
-        Escaped(&loaded.rules_text)
-    )
+/// The profile and the rule set as they are written.
+fn texts(loaded: &Loaded) -> Markup {
+    html! {
+        h2 { "Profile" } pre { (loaded.profile_text) }
+        h2 { "Rule set" } pre { (loaded.rules_text) }
+    }
 }

@@ -6,15 +6,15 @@ use flagred::{
     estimator::Estimator,
     flight::Verdict,
     monitor::Update,
-    verdict::{Level, Measure},
+    verdict::Level,
 };
 use flightlog::{Vehicle, mavlink::Setup};
 use serde::Serialize;
 
 use super::session::{Event, Session, Silent, View};
-use crate::assessment::{
-    document::{FindingDocument, MotorDocument, Range},
-    words::effective_range,
+use crate::{
+    assessment::{document::FindingDocument, words::effective_range},
+    json::{Motor, Range},
 };
 
 /// Seconds of the vehicle's clock between two lines of risk in words.
@@ -96,10 +96,7 @@ pub(crate) fn describe(event: &Event) -> String {
             finding.level,
             finding.from_s,
             finding.to_s,
-            match finding.measure {
-                Measure::Risk => "risk",
-                Measure::ElevatedRisk => "elevated risk",
-            },
+            finding.measure,
             finding.peak_pct
         ),
         Event::Landed { verdict } => match verdict {
@@ -179,7 +176,7 @@ pub(crate) enum EventLine<'a> {
     },
     NotAMultirotor(About<'a>),
     Ready {
-        motors: Vec<MotorDocument<'a>>,
+        motors: Vec<Motor<'a>>,
         range: Range<'a>,
         effective_range: Range<'a>,
         assumed: &'a [String],
@@ -261,7 +258,7 @@ pub(crate) fn json(
             EventLine::NotAMultirotor(About::new(*system, vehicle))
         }
         Event::Ready { setup } => EventLine::Ready {
-            motors: setup.motors.iter().map(MotorDocument::from).collect(),
+            motors: setup.motors.iter().map(Motor::from).collect(),
             range: Range::from(&setup.range),
             effective_range: Range::from(&setup.effective),
             assumed: &setup.assumed,

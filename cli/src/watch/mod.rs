@@ -47,27 +47,27 @@ const LINES: usize = 50_000;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Where the vehicle is: udpin:0.0.0.0:14550, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:0.0.0.0:PORT or /dev/ttyACM0:57600
+    /// Address of the vehicle: udpin:0.0.0.0:14550, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:0.0.0.0:PORT or /dev/ttyACM0:57600
     #[arg(value_name = "ENDPOINT")]
     endpoint: Endpoint,
 
-    /// What the motors mean to the rules and the risk to the pilot: a shipped profile's name, or a file
+    /// Profile: inputs, rule set and thresholds. A built-in name or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
-    /// One JSON object a line instead of words
+    /// Print one JSON object per line instead of text
     #[arg(long)]
     jsonl: bool,
 
-    /// Only listen: ask the vehicle for nothing, and tell it nothing
+    /// Only listen: send neither requests nor warnings
     #[arg(long)]
     no_send: bool,
 
-    /// Speak as this component of the vehicle's system
+    /// Send as this component of the vehicle's system
     #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
     component: u8,
 
-    /// Keep what is received in a telemetry log, a new file
+    /// Record received packets to this telemetry log, a new file
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
 }

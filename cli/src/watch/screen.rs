@@ -1,8 +1,9 @@
-//! The full screen: how things stand now, and what happened last.
+//! The full screen: the present state and the latest events.
 
 use std::collections::VecDeque;
 
 use flagred::{estimator::Estimator, verdict::Level};
+use fuzzy::drawing::bar;
 
 use super::{
     lines,
@@ -10,7 +11,7 @@ use super::{
 };
 use crate::assessment::words::level_style;
 
-/// The other screen of the terminal, without a cursor; and back.
+/// Enter and leave the alternate screen, without a cursor.
 pub(crate) const ENTER: &str = "\x1b[?1049h\x1b[?25l";
 pub(crate) const LEAVE: &str = "\x1b[?25h\x1b[?1049l";
 const HOME: &str = "\x1b[H";
@@ -18,12 +19,12 @@ const CLEAR_LINE: &str = "\x1b[K";
 const CLEAR_REST: &str = "\x1b[J";
 /// Columns of a bar.
 const BAR: usize = 40;
-/// Events kept in sight.
+/// Events shown.
 const LATEST: usize = 8;
-/// Where the words of an event begin.
+/// The column where the words of an event begin.
 const INDENT: usize = 12;
 
-/// What happened last, for a picture of how things stand.
+/// The latest events, for the screen.
 pub(crate) struct Screen {
     title: String,
     latest: VecDeque<String>,
@@ -37,7 +38,7 @@ impl Screen {
         }
     }
 
-    /// Keeps an event in sight.
+    /// Adds an event to the latest ones.
     pub(crate) fn add(&mut self, at_s: f64, event: &Event) {
         if matches!(event, Event::Risk { .. }) {
             return;
@@ -49,8 +50,8 @@ impl Screen {
         }
     }
 
-    /// All of a screen of so many columns and rows, to be written over what it showed before. How things stand comes
-    /// first; what happened last takes the rows that are left.
+    /// The text of a screen of so many columns and rows, which replaces the one before. The present state comes first;
+    /// the latest events take the remaining rows.
     pub(crate) fn frame(
         &self,
         view: Option<&View<'_>>,
@@ -59,12 +60,12 @@ impl Screen {
     ) -> String {
         let now = match view {
             None => "waiting for a vehicle\n".to_owned(),
-            Some(view) => standing(view, estimator),
+            Some(view) => state(view, estimator),
         };
         let title = format!("FLAGRED  {}", self.title);
         let mut lines = wrapped([title.as_str(), ""].into_iter().chain(now.lines()), columns);
         let latest = wrapped(self.latest.iter().map(String::as_str), columns);
-        // A line end in the last row would move the first out of sight.
+        // A line end in the last row would scroll the first row away.
         let room = rows.saturating_sub(1);
         let left = room.saturating_sub(lines.len() + 3);
         lines.push(String::new());
@@ -73,7 +74,7 @@ impl Screen {
                 .get(latest.len().saturating_sub(left)..)
                 .unwrap_or(&[]),
         );
-        lines.extend([String::new(), "Ctrl-C ends the watch".to_owned()]);
+        lines.extend([String::new(), "Ctrl-C quits".to_owned()]);
         lines.truncate(room);
         let mut frame = HOME.to_owned();
         for line in lines {
@@ -85,15 +86,15 @@ impl Screen {
     }
 }
 
-/// Columns and rows of the terminal; the usual ones where it does not say.
+/// Columns and rows of the terminal; 80 and 24 where they are unknown.
 pub(crate) fn size() -> (usize, usize) {
     terminal_size::terminal_size().map_or((80, 24), |(width, height)| {
         (width.0.into(), height.0.into())
     })
 }
 
-/// Lines that leave the last column free, where a terminal is about to go on below; broken between words where there are
-/// any. Those with a style are short.
+/// Breaks lines between words, one column short of the width: a full line would wrap. Lines with a style are short and
+/// stay whole.
 fn wrapped<'a>(lines: impl Iterator<Item = &'a str>, columns: usize) -> Vec<String> {
     let width = columns.saturating_sub(1).max(1);
     let mut all = Vec::new();
@@ -122,21 +123,21 @@ fn wrapped<'a>(lines: impl Iterator<Item = &'a str>, columns: usize) -> Vec<Stri
     all
 }
 
-fn standing(view: &View<'_>, estimator: &Estimator) -> String {
-    let state = match (view.is_armed, view.is_in_air) {
+fn state(view: &View<'_>, estimator: &Estimator) -> String {
+    let activity = match (view.is_armed, view.is_in_air) {
         _ if view.link_lost => "LINK LOST",
         (_, true) => "in the air",
         (true, false) => "armed, on the ground",
         (false, false) => "disarmed",
     };
     let mut text = format!(
-        "vehicle {}: {}; {state}; {:.0} % of its packets lost\n\n",
+        "vehicle {}: {}; {activity}; {:.0} % of packets lost\n\n",
         view.system,
         lines::name(view.vehicle),
         100.0 * view.lost_share
     );
     let Some(setup) = view.setup else {
-        text += "asking for its parameters\n";
+        text += "requesting parameters\n";
         return text;
     };
     let known = view
@@ -160,10 +161,10 @@ fn standing(view: &View<'_>, estimator: &Estimator) -> String {
         }
         None => {
             let why = match view.latest.and_then(|now| now.risk.err()) {
-                _ if view.link_lost => "nothing comes from the vehicle".to_owned(),
-                _ if view.motors_lost => "no motor commands come".to_owned(),
+                _ if view.link_lost => "no packets from the vehicle".to_owned(),
+                _ if view.motors_lost => "no motor commands".to_owned(),
                 Some(unknown) => unknown.explain(estimator.profile()),
-                None => "no motor command came yet".to_owned(),
+                None => "no motor command yet".to_owned(),
             };
             text += &format!("risk      unknown: {why}\n\n\n");
         }
@@ -190,9 +191,7 @@ fn standing(view: &View<'_>, estimator: &Estimator) -> String {
 
 /// A name, a bar for a share of 0 to 1, and the value.
 fn row(name: &str, share: f64, value: &str) -> String {
-    let full = (share.clamp(0.0, 1.0) * BAR as f64).round() as usize;
-    let bar = "█".repeat(full) + &"·".repeat(BAR - full);
-    format!("{name:<9} {bar} {value}\n")
+    format!("{name:<9} {} {value}\n", bar(share, BAR))
 }
 
 #[cfg(test)]
@@ -208,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn the_risk_stays_in_sight_however_small_the_terminal() {
+    fn the_risk_is_shown_on_the_smallest_terminal() {
         let estimator = estimator();
         let mut bench = Bench::new(&estimator, Some(191));
         bench.beat(false);
@@ -248,7 +247,7 @@ mod tests {
                     shown.iter().any(|row| row.starts_with("motor 4")),
                     "{shown:#?}"
                 );
-                assert_eq!(shown.last().unwrap(), "Ctrl-C ends the watch");
+                assert_eq!(shown.last().unwrap(), "Ctrl-C quits");
             }
         }
         let shown = rows(&screen.frame(view.as_ref(), &estimator, (200, 50)));

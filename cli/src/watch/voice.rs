@@ -1,4 +1,4 @@
-//! What is said to the vehicle and its ground station.
+//! The messages to the vehicle and its ground station.
 
 use flagred::{
     margin::Side,
@@ -16,12 +16,12 @@ use flightlog::mavlink::{
 /// The names of the values that are sent.
 pub(crate) const RISK: &str = "FR_RISK";
 pub(crate) const ELEVATED: &str = "FR_ELEV";
-/// The system that is spoken as until a vehicle is found: a ground station's.
+/// The system id of the sender until a vehicle is found: that of a ground station.
 pub(crate) const NOBODY: u8 = 255;
 /// The longest text of a STATUSTEXT.
 const TEXT: usize = 50;
 
-/// This component is there, and well.
+/// The heartbeat of an onboard computer.
 pub(crate) fn heartbeat() -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
         custom_mode: 0,
@@ -42,7 +42,7 @@ pub(crate) fn value(t_s: f64, name: &str, value: f64) -> MavMessage {
     })
 }
 
-/// A text that ground stations show and speak.
+/// A text that ground stations show and read aloud.
 pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     let mut bytes = [0; TEXT];
     for (byte, letter) in bytes.iter_mut().zip(text.bytes()) {
@@ -50,7 +50,7 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     }
     MavMessage::STATUSTEXT(STATUSTEXT_DATA {
         severity: match level {
-            Level::Good => MavSeverity::MAV_SEVERITY_INFO,
+            Level::Good | Level::Info => MavSeverity::MAV_SEVERITY_INFO,
             Level::Warn => MavSeverity::MAV_SEVERITY_WARNING,
             Level::Fail => MavSeverity::MAV_SEVERITY_CRITICAL,
         },
@@ -60,7 +60,7 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
 }
 
 /// A change of level in at most 50 characters: `FLAGRED: WARN risk 78 %, motor 3 upper limit`. A level that ends
-/// because the risk became unknown is not GOOD.
+/// because the risk became unknown is not reported as GOOD.
 pub(crate) fn say(
     level: Level,
     update: &Update,
@@ -75,6 +75,9 @@ pub(crate) fn say(
     let (name, value) = match measure {
         Measure::Risk => ("risk", update.risk.ok().map(|estimate| estimate.risk_pct)),
         Measure::ElevatedRisk => ("elevated", update.elevated_risk_pct),
+        Measure::Reserve => ("little reserve", finding.map(|finding| finding.peak_pct)),
+        Measure::Imbalance => ("imbalance", finding.map(|finding| finding.peak_pct)),
+        Measure::CommandNoise => ("noise", finding.map(|finding| finding.peak_pct)),
     };
     if let Some(value) = value {
         text += &format!(" {name} {value:.0} %");

@@ -1,47 +1,31 @@
-//! What flies on board: a monitor in fixed memory that the caller lends, without an allocator or a standard library.
+//! A monitor on board, in memory that the caller lends. It needs neither an allocator nor a standard library.
 //!
-//! `flagred export --rust` writes a profile and its rule set as a [`Plan`] of plain data, and the type of the [`Storage`]
-//! that a [`Monitor`] of it lives in; [`Estimator::plan`](crate::estimator::Estimator::plan) makes one where there is the
-//! standard library. A monitor says, bit for bit, what [`flagred::monitor::Monitor`](crate::monitor::Monitor) says.
+//! `flagred export --rust` writes a profile and its rule set as a [`Plan`] of plain data, and the type of the [`Storage`] that
+//! its [`Monitor`] needs. On a computer, [`Estimator::plan`](crate::estimator::Estimator::plan) makes the plan and
+//! `OwnedMemory` allocates. The results are bit for bit those of
+//! [`flagred::monitor::Monitor`](crate::monitor::Monitor).
 //!
-//! # Example: a monitor in memory of one's own
+//! # Example: a flight with a plan made on a computer
 //!
 //! ```
-//! use flagred::{
-//!     sample::Sample, board::{Memory, Monitor, Parts, table::{Outcome, Partial, Strongest}},
-//!     channel::Seen, estimator::Estimator, shipped, verdict::Motor, window::Window,
-//! };
+//! use flagred::{board::OwnedMemory, sample::Sample, shipped};
 //!
 //! let estimator = shipped::flagred();
 //! let plan = estimator.plan()?;
 //!
-//! let sizes = plan.sizes();
-//! let (mut numbers, mut partials) = (vec![0.0; sizes.numbers], vec![Partial::NONE; sizes.partials]);
-//! let mut strongest = vec![Strongest::NONE; sizes.outputs];
-//! let mut outcomes = vec![Outcome::UNDEFINED; sizes.outputs];
-//! let (mut seen, mut risks) = (vec![Seen::IDLE; sizes.channels], Window::IDLE);
-//! let mut motors = [Motor::UNKNOWN; 4];
-//! let memory = Memory::of(&plan, Parts {
-//!     numbers: &mut numbers,
-//!     partials: &mut partials,
-//!     strongest: &mut strongest,
-//!     outcomes: &mut outcomes,
-//!     seen: &mut seen,
-//!     risks: &mut risks,
-//!     motors: &mut motors,
-//! }).ok_or("another plan's memory")?;
-//! let mut monitor = Monitor::new(&plan, memory)?;
+//! let mut memory = OwnedMemory::new(&plan, 4);
+//! let mut monitor = memory.monitor(&plan)?;
 //! let mut risk_pct = None;
 //! for i in 0..2000 {
 //!     let t_s = f64::from(i) * 0.02;
-//!     let said = monitor.push(&Sample { t_s, motors: &[0.4, 0.5, 0.5, 0.4], in_air: true, signals: &[] });
-//!     risk_pct = said.risk.ok().map(|estimate| estimate.risk_pct);
+//!     let update = monitor.push(&Sample { t_s, motors: &[0.4, 0.5, 0.5, 0.4], in_air: true, signals: &[] });
+//!     risk_pct = update.risk.ok().map(|estimate| estimate.risk_pct);
 //! }
 //! assert!(risk_pct < Some(25.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use fuzzy::table::{Broken, Outcome, Scratch, Table};
+use fuzzy::table::{Damaged, Outcome, Scratch, Table};
 
 use crate::{
     channel::{Channel, Input, Observed, Seen},
@@ -57,108 +41,91 @@ pub use fuzzy::table;
 
 mod storage;
 
-pub use storage::{Parts, Sizes, Storage};
+#[cfg(feature = "std")]
+pub use storage::OwnedMemory;
+pub use storage::{Memory, Sizes, Storage};
 
-/// A profile and its rule set, compiled, as plain data.
+/// A compiled profile and rule set, as plain data.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan<'a> {
     /// The name of the profile.
     pub name: &'a str,
     /// The rule set.
     pub table: Table<'a>,
-    /// Which of its outputs is the risk.
+    /// The index of the output that is the risk.
     pub output: u32,
-    /// Which input of the profile each input of the rule set is.
+    /// The index among the profile's inputs of each input of the rule set.
     pub order: &'a [u32],
-    /// What is observed.
+    /// The observed channels.
     pub channels: &'a [Channel],
     /// The inputs of the profile.
     pub inputs: &'a [Input],
-    /// How many signals samples carry beside the motors.
+    /// The number of signals that samples carry.
     pub signals: u32,
-    /// What the profile says about time.
+    /// The time constants and thresholds of the profile.
     pub settings: Settings,
-    /// The coverage below which rules do not apply.
+    /// The coverage below which the rules do not apply.
     pub coverage_below: f64,
-    /// What fills the gaps of the rules; `None` where there is nothing to fill them from.
+    /// The values that fill gaps of the rules; `None` where the rules cover nothing.
     pub filled: Option<FilledKnots<'a>>,
 }
 
-/// Why there is no monitor.
+/// Why a monitor cannot be made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Refused {
-    /// The memory is not of the sizes that the plan needs.
+    /// The memory does not have the sizes of the plan.
     Memory,
-    /// There is no motor to watch.
+    /// The number of motors is 0.
     NoMotors,
     /// The plan is damaged.
-    Plan(Broken),
+    Plan(Damaged),
 }
 
 impl core::fmt::Display for Refused {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Refused::Memory => f.write_str("the memory is not of the sizes that the plan needs"),
-            Refused::NoMotors => f.write_str("there is no motor to watch"),
-            Refused::Plan(broken) => broken.fmt(f),
+            Refused::Memory => f.write_str("the memory does not have the sizes of the plan"),
+            Refused::NoMotors => f.write_str("the number of motors is 0"),
+            Refused::Plan(damaged) => damaged.fmt(f),
         }
     }
 }
 
 impl core::error::Error for Refused {}
 
-/// Memory for a monitor, of the sizes that its plan needs. [`Storage`] has it as a value of its own.
-#[derive(Debug)]
-pub struct Memory<'m> {
-    /// For evaluations of the rule set.
-    pub scratch: Scratch<'m>,
-    /// One for each output of the rule set.
-    pub outcomes: &'m mut [Outcome],
-    /// One for each input of the rule set.
-    pub point: &'m mut [f64],
-    /// One for each input of the profile.
-    pub inputs: &'m mut [f64],
-    /// One for each channel.
-    pub seen: &'m mut [Seen],
-    /// For the risks of the last seconds.
-    pub risks: &'m mut Window,
-    /// One for each motor.
-    pub motors: &'m mut [Motor],
-}
-
 impl Plan<'_> {
-    /// Whether the plan is whole: then no sample makes a monitor panic. Exported plans are.
+    /// Verifies every index of the plan, so that no sample can make a monitor panic. Exported plans pass.
     ///
     /// # Errors
-    /// What points beyond what it points into.
-    pub fn check(&self) -> Result<(), Broken> {
+    /// The first array with an index out of bounds.
+    pub fn check(&self) -> Result<(), Damaged> {
         self.table.check()?;
-        let holds = |holds: bool, array| holds.then_some(()).ok_or(Broken(array));
+        let require = |holds: bool, array| holds.then_some(()).ok_or(Damaged(array));
         let inputs = self.inputs.len();
-        holds((self.output as usize) < self.table.outputs.len(), "output")?;
-        holds(
+        require((self.output as usize) < self.table.outputs.len(), "output")?;
+        require(
             self.order.len() == self.table.inputs.len()
                 && self.order.iter().all(|input| (*input as usize) < inputs),
-            "order of inputs",
+            "order",
         )?;
-        holds(
+        require(
             self.inputs
                 .iter()
                 .all(|input| input.channel < self.channels.len()),
             "inputs of the profile",
         )?;
-        holds(
+        require(
             self.channels.iter().all(|channel| match channel.observed {
                 Observed::Named(signal) => signal < self.signals as usize,
                 _ => true,
             }),
             "channels",
         )?;
-        holds(
+        require(
             self.filled
                 .is_none_or(|filled| filled.is_whole(self.table.inputs.len())),
-            "filling",
+            "filled",
         )
     }
 
@@ -178,115 +145,135 @@ impl Plan<'_> {
             outcomes.get(self.output as usize).copied()
         })
     }
-
-    /// Whether memory has the sizes of the plan.
-    fn fits(&self, memory: &Memory<'_>) -> bool {
-        let inputs = self.table.inputs.len();
-        self.table.fits(&memory.scratch)
-            && memory.outcomes.len() == self.table.outputs.len()
-            && memory.point.len() == inputs
-            && memory.inputs.len() == self.inputs.len()
-            && memory.seen.len() == self.channels.len()
-    }
 }
 
-/// Follows one flight, sample by sample, in memory that is lent to it.
+/// Assesses one flight, sample by sample, in lent memory.
 ///
-/// It allocates nothing, and a sample costs the same whatever the lengths of the windows. A flight stack that has no
-/// static place for a monitor can keep one as a local variable: it is a few hundred bytes, the rest is in the memory.
+/// It does not allocate, and the cost of a sample does not depend on the lengths of the windows. The monitor itself is a few
+/// hundred bytes and can be a local variable.
 #[derive(Debug)]
 pub struct Monitor<'a> {
     plan: &'a Plan<'a>,
-    memory: Memory<'a>,
     follower: Follower,
+    scratch: Scratch<'a>,
+    outcomes: &'a mut [Outcome],
+    /// One for each input of the rule set.
+    point: &'a mut [f64],
+    /// One for each input of the profile.
+    inputs: &'a mut [f64],
+    seen: &'a mut [Seen],
+    risks: &'a mut Window,
+    motors: &'a mut [Motor],
 }
 
 impl<'a> Monitor<'a> {
-    /// A monitor of a new flight, of as many motors as the memory has places for. [`Storage::monitor`] is the short way.
+    /// A monitor of a new flight, with as many motors as the memory holds.
     ///
     /// # Errors
-    /// The memory is not of the plan's sizes, there is no motor, or the plan is damaged.
+    /// The memory does not have the sizes of the plan, the number of motors is 0, or the plan is damaged.
+    #[doc(hidden)] // For the C interface. Rust uses `Storage::monitor` or `OwnedMemory::monitor`.
     pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, Refused> {
         plan.check().map_err(Refused::Plan)?;
-        if !plan.fits(&memory) {
-            return Err(Refused::Memory);
-        }
         if memory.motors.is_empty() {
             return Err(Refused::NoMotors);
         }
-        for (seen, channel) in memory.seen.iter_mut().zip(plan.channels) {
+        let monitor = Monitor::divide(plan, memory).ok_or(Refused::Memory)?;
+        for (seen, channel) in monitor.seen.iter_mut().zip(plan.channels) {
             seen.restart(channel.window_s);
         }
-        memory.risks.restart(plan.settings.elevated_risk.window_s);
-        memory.motors.fill(Motor::UNKNOWN);
-        memory.inputs.fill(f64::NAN);
-        Ok(Monitor {
-            plan,
-            memory,
-            follower: Follower::new(plan.settings),
-        })
+        let window_s = plan.settings.elevated_risk.window_s;
+        monitor.risks.restart(window_s);
+        monitor.motors.fill(Motor::UNKNOWN);
+        monitor.inputs.fill(f64::NAN);
+        Ok(monitor)
     }
 
-    /// Takes a sample in.
-    pub fn push(&mut self, sample: &Sample<'_>) -> Update {
+    /// `None` where the memory does not have the sizes of the plan.
+    fn divide(plan: &'a Plan<'a>, memory: Memory<'a>) -> Option<Monitor<'a>> {
         let Memory {
-            scratch,
+            mut numbers,
+            mut partials,
+            strongest,
             outcomes,
-            point,
-            inputs,
             seen,
             risks,
             motors,
-        } = &mut self.memory;
-        let plan = self.plan;
-        let mut room = Room {
-            risks,
+        } = memory;
+        let sizes = plan.table.sizes;
+        let inputs = plan.table.inputs.len();
+        let outputs = plan.table.outputs.len();
+        let fits = strongest.len() == outputs
+            && outcomes.len() == outputs
+            && seen.len() == plan.channels.len();
+        let monitor = Monitor {
+            plan,
+            follower: Follower::new(plan.settings),
+            scratch: Scratch {
+                values: take(&mut numbers, inputs)?,
+                degrees: take(&mut numbers, sizes.degrees as usize)?,
+                stack: take(&mut numbers, sizes.stack as usize)?,
+                strengths: take(&mut numbers, sizes.strengths as usize)?,
+                alive: take(&mut partials, sizes.alive as usize)?,
+                partial: take(&mut partials, sizes.partial as usize)?,
+                next: take(&mut partials, sizes.partial as usize)?,
+                strongest,
+            },
+            point: take(&mut numbers, inputs)?,
+            inputs: take(&mut numbers, plan.inputs.len())?,
+            outcomes,
             seen,
-            inputs,
+            risks,
             motors,
         };
-        self.follower
-            .push((plan.channels, plan.inputs), &mut room, sample, |inputs| {
-                plan.estimate(inputs, point, (scratch, outcomes))
-            })
+        (fits && numbers.is_empty() && partials.is_empty()).then_some(monitor)
     }
 
-    /// The risk at values of the inputs, in the order of the profile, whatever was flown: what it says at such a moment.
-    /// `None` where rules say nothing and there is nothing to fill from, or a value is not finite.
+    /// Takes the next sample of the flight.
+    pub fn push(&mut self, sample: &Sample<'_>) -> Update {
+        let plan = self.plan;
+        let mut room = Room {
+            risks: self.risks,
+            seen: self.seen,
+            inputs: self.inputs,
+            motors: self.motors,
+        };
+        let (point, rules) = (&mut *self.point, (&mut self.scratch, &mut *self.outcomes));
+        let estimate = |inputs: &[f64]| plan.estimate(inputs, point, rules);
+        let channels = (plan.channels, plan.inputs);
+        self.follower.push(channels, &mut room, sample, estimate)
+    }
+
+    /// The risk at values of the inputs, in the order of the profile, independent of the flight. `None` where no rule fires
+    /// and nothing fills the gap, or where a value is not finite.
     pub fn at(&mut self, inputs: &[f64]) -> Option<Estimate> {
-        let Memory {
-            scratch,
-            outcomes,
-            point,
-            ..
-        } = &mut self.memory;
-        self.plan.estimate(inputs, point, (scratch, outcomes))
+        let rules = (&mut self.scratch, &mut *self.outcomes);
+        self.plan.estimate(inputs, self.point, rules)
     }
 
-    /// The values of the inputs after the latest sample, in the order of the profile; NaN is unknown.
+    /// The values of the inputs after the last sample, in the order of the profile; NaN is unknown.
     pub fn inputs(&self) -> &[f64] {
-        self.memory.inputs
+        self.inputs
     }
 
-    /// The finding that the level rests on, as it stands so far; `None` while the level is good.
+    /// The open finding of the current level; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
-        self.follower.open_finding(self.memory.motors)
+        self.follower.open_finding(self.motors)
     }
 
-    /// Ends the flight: the findings that were still open.
+    /// Ends the flight, and returns the findings that were still open.
     pub fn finish(&mut self) -> Ended {
-        let Memory {
-            inputs,
-            seen,
-            risks,
-            motors,
-            ..
-        } = &mut self.memory;
         self.follower.finish(&mut Room {
-            risks,
-            seen,
-            inputs,
-            motors,
+            risks: self.risks,
+            seen: self.seen,
+            inputs: self.inputs,
+            motors: self.motors,
         })
     }
+}
+
+/// Takes the first items off a slice.
+fn take<'m, T>(rest: &mut &'m mut [T], count: usize) -> Option<&'m mut [T]> {
+    let (taken, left) = core::mem::take(rest).split_at_mut_checked(count)?;
+    *rest = left;
+    Some(taken)
 }

@@ -1,31 +1,19 @@
-//! What warnings are worth: which episodes they announce, how long before, and which cry for nothing.
+//! Which episodes warnings announce, how long before, and which warnings are false.
 
 use alloc::vec::Vec;
 
 use super::Span;
 
-/// A warning is no false alarm when an episode starts within so many seconds after its end.
+/// A warning is not false when an episode starts within so many seconds after its end.
 const FOLLOWS_S: f64 = 10.0;
 
-/// Nor when it begins so shortly after an episode that it still means that one.
+/// A warning is not false when it begins within so many seconds after an episode.
 const ECHO_S: f64 = 1.0;
 
 /// Time stamps are in microseconds.
 const ROUNDING_S: f64 = 1e-6;
 
-/// An episode, and the warning on it.
-///
-/// # Example: a warning that comes late, and none
-/// ```
-/// use flagred::evaluation::{Answer, Span, judge};
-///
-/// let span = |from_s, to_s| Span { from_s, to_s };
-/// let episodes = [span(10.0, 15.0), span(30.0, 33.0)];
-/// let judged = judge(&[span(11.0, 20.0)], &episodes, &[span(0.0, 60.0)], None);
-/// let late = Answer { episode: episodes[0], warned_s: Some(11.0) };
-/// assert_eq!(judged.answers, [late, Answer { episode: episodes[1], warned_s: None }]);
-/// assert_eq!((late.lead_s(), late.is_announced()), (Some(-1.0), false));
-/// ```
+/// An episode and its warning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
     /// The episode.
@@ -46,34 +34,16 @@ impl Answer {
     }
 }
 
-/// A time of warnings.
-///
-/// # Example: a warning for nothing
-/// ```
-/// use flagred::evaluation::{Span, Warning, judge};
-///
-/// let span = Span { from_s: 5.0, to_s: 8.0 };
-/// let judged = judge(&[span], &[], &[Span { from_s: 0.0, to_s: 60.0 }], None);
-/// assert_eq!(judged.warnings, [Warning { span, is_false: true }]);
-/// ```
+/// A time during which a profile warned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Warning {
     /// When, within the judged times.
     pub span: Span,
-    /// Whether it was for nothing.
+    /// Whether no episode followed.
     pub is_false: bool,
 }
 
-/// What the warnings of a flight come to.
-///
-/// # Example: a flight that nobody warned of
-/// ```
-/// use flagred::evaluation::{Judged, Span, judge};
-///
-/// let crash = Span { from_s: 30.0, to_s: 33.0 };
-/// let Judged { answers, warnings } = judge(&[], &[crash], &[Span { from_s: 0.0, to_s: 60.0 }], None);
-/// assert!(warnings.is_empty() && answers[0].warned_s.is_none());
-/// ```
+/// The episodes and warnings of a flight, matched.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Judged {
     /// The episodes that start within the judged times.
@@ -82,21 +52,21 @@ pub struct Judged {
     pub warnings: Vec<Warning>,
 }
 
-/// Holds the warnings of a flight against its episodes, within the judged times of the flight.
+/// Matches the warnings of a flight with its episodes, within the judged time of the flight.
 ///
 /// A warning is false unless an episode starts while it is on or within 10 s after it, or it begins during an episode or
-/// within 1 s after one. `lost_s` is when the flight ended in the air: what would have come is not known, so a warning
-/// that is on then or ended up to 10 s before is not called false.
+/// within 1 s after one. `lost_s` is when the log ended in the air: what followed is unknown, so a warning
+/// that is on then or ended up to 10 s before is not false.
 ///
-/// # Example: one warning for nothing, one four seconds ahead
+/// # Example: a false warning, and one four seconds ahead
 /// ```
 /// use flagred::evaluation::{Span, judge};
 ///
 /// let span = |from_s, to_s| Span { from_s, to_s };
 /// let (warnings, episodes) = ([span(5.0, 8.0), span(26.0, 40.0)], [span(30.0, 33.0)]);
 /// let judged = judge(&warnings, &episodes, &[span(0.0, 60.0)], None);
-/// let cried: Vec<bool> = judged.warnings.iter().map(|warning| warning.is_false).collect();
-/// assert_eq!(cried, [true, false]);
+/// let is_false: Vec<bool> = judged.warnings.iter().map(|warning| warning.is_false).collect();
+/// assert_eq!(is_false, [true, false]);
 /// ```
 pub fn judge(warnings: &[Span], episodes: &[Span], judged: &[Span], lost_s: Option<f64>) -> Judged {
     let mut found = Judged::default();

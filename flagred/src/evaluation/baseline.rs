@@ -1,4 +1,4 @@
-//! Predictors that need no rules: what a risk must do better than to be worth anything.
+//! Baselines: predictors without rules that a risk must beat.
 
 use crate::source::{Motors, Signal, Source, Statistic};
 
@@ -29,7 +29,7 @@ pub struct Baseline {
 const WINDOW_S: f64 = 5.0;
 
 impl Baseline {
-    /// All of them.
+    /// All baselines.
     pub fn all() -> [Baseline; 6] {
         let of_motors = |name, description, statistic, motors, signal, rises| Baseline {
             name,

@@ -1,4 +1,4 @@
-//! When a flight was critical: the attitude error over a second, and how long it stayed over the limit.
+//! The attitude error of a flight over time, and its critical episodes.
 
 use alloc::vec::Vec;
 
@@ -9,7 +9,7 @@ use crate::{
     window::Window,
 };
 
-/// The attitude error counts as its root mean square over so many seconds: a shorter one is a twitch.
+/// The attitude error is its root mean square over so many seconds.
 const ERROR_WINDOW_S: f64 = 1.0;
 
 /// An episode is over the limit for at least so many seconds.
@@ -20,7 +20,7 @@ const ROUNDING_S: f64 = 1e-6;
 
 /// The attitude error of a flight over time, and when it was critical.
 ///
-/// # Example: three seconds of a lost attitude
+/// # Example: three seconds with an error of 20 degrees
 ///
 /// ```
 /// use flagred::{attitude::Attitude, evaluation::ErrorRecord};
@@ -46,7 +46,7 @@ pub struct ErrorRecord {
 }
 
 impl ErrorRecord {
-    /// Takes in the attitudes of a flight with their times in seconds, in order; one that is not finite is unknown.
+    /// From the attitudes of a flight with their times in seconds, in order; one that is not finite is unknown.
     pub fn new(attitudes: impl IntoIterator<Item = (f64, Attitude)>) -> ErrorRecord {
         let mut record = ErrorRecord::default();
         let mut second = Window::new(ERROR_WINDOW_S);
@@ -92,7 +92,7 @@ impl ErrorRecord {
         record
     }
 
-    /// The largest error after `t_s` and within `horizon_s`, in degrees; `None` where nothing is known of it then.
+    /// The largest error after `t_s` and within `horizon_s`, in degrees; `None` where it is unknown.
     pub fn largest_within(&self, t_s: f64, horizon_s: f64) -> Option<f64> {
         let after = |t_s: f64| {
             self.errors
@@ -105,7 +105,7 @@ impl ErrorRecord {
             .reduce(f64::max)
     }
 
-    /// Whether the error becomes critical after `t_s` and within `horizon_s`; `None` where nothing is known of it then.
+    /// Whether the error becomes critical after `t_s` and within `horizon_s`; `None` where it is unknown.
     pub fn critical_within(&self, t_s: f64, horizon_s: f64) -> Option<bool> {
         let largest_deg = self.largest_within(t_s, horizon_s)?;
         Some(largest_deg > CRITICAL_ERROR_DEG)

@@ -1,9 +1,9 @@
-//! How good is a risk? Scores held against what became of the flight.
+//! How well risks and other scores predict critical attitude errors.
 //!
-//! A *step* is a moment of a flight with the scores of the estimators; it is critical where the attitude error goes over
-//! [`CRITICAL_ERROR_DEG`](crate::attitude::CRITICAL_ERROR_DEG), root mean square over a second, within a horizon after it
-//! ([`ErrorRecord`]). An estimator is worth what it ranks critical steps above the others ([`Ranking`]), what its
-//! percentages come to ([`reliability`]), and what its warnings announce ([`judge`]).
+//! A *step* is a time of a flight with the scores of the estimators. It is critical where the attitude error, root mean square
+//! over a second, exceeds [`CRITICAL_ERROR_DEG`](crate::attitude::CRITICAL_ERROR_DEG) within a horizon after it
+//! ([`ErrorRecord`]). An estimator is measured by how well it ranks critical steps above the others ([`Ranking`]), how often
+//! a risk of so many percent became critical ([`reliability`]), and which episodes its warnings announce ([`judge`]).
 
 mod announced;
 mod baseline;
@@ -40,14 +40,14 @@ impl Span {
         self.to_s - self.from_s
     }
 
-    /// Whether it holds a time.
+    /// Whether a time lies in it.
     pub fn contains(&self, t_s: f64) -> bool {
         (self.from_s..=self.to_s).contains(&t_s)
     }
 
-    /// Takes in whether something is the case at `t_s`: the last of `spans` grows, ends, or is followed by a new one.
+    /// Adds a time at which something is the case or not: the last of `spans` grows or ends, or a new one begins.
     ///
-    /// `open` remembers whether it is still the case.
+    /// `open` keeps whether it was the case the time before.
     pub fn follow(spans: &mut Vec<Span>, open: &mut bool, t_s: f64, is_so: bool) {
         match spans.last_mut().filter(|_| *open && is_so) {
             Some(span) => span.to_s = t_s,

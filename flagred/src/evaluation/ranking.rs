@@ -1,23 +1,23 @@
-//! How well scores rank what became critical above what did not.
+//! How well scores rank critical cases above the others.
 
 use alloc::{collections::BTreeMap, vec, vec::Vec};
 
 use super::random::Random;
 
-/// A score and what became of it.
+/// A score and the outcome.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
     /// The score; the higher, the more critical. Finite.
     pub score: f64,
-    /// Whether it was.
+    /// Whether the case became critical.
     pub critical: bool,
-    /// What it belongs to, such as a flight: predictions of a group are not independent of each other.
+    /// Its group, such as a flight. Predictions of a group are not independent.
     pub group: u32,
 }
 
 /// Predictions in order of their scores.
 ///
-/// # Example: a score that gets one pair of four wrong
+/// # Example: one pair of four is ranked wrong
 ///
 /// ```
 /// use flagred::evaluation::{Prediction, Ranking};
@@ -46,15 +46,6 @@ struct Place {
 }
 
 /// The areas under the two curves.
-///
-/// # Example: scores that say nothing
-/// ```
-/// use flagred::evaluation::{Areas, Prediction, Ranking};
-///
-/// let guessed = [true, false, false, false].map(|critical| Prediction { score: 0.5, critical, group: 0 });
-/// // Half of the pairs, and the share of critical ones: what a risk must do better than.
-/// assert_eq!(Ranking::new(guessed).areas(), Some(Areas { roc: 0.5, precision_recall: 0.25 }));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Areas {
     /// Under the receiver operating characteristic: the share of pairs of a critical prediction and another in which the
@@ -75,17 +66,6 @@ pub struct Interval {
 }
 
 /// The intervals of [`Areas`].
-///
-/// # Example: one flight tells nothing of others
-/// ```
-/// use flagred::evaluation::{Interval, Intervals, Prediction, Ranking};
-///
-/// let told = [(0.9, true), (0.8, false), (0.7, true), (0.1, false)];
-/// let one_flight = Ranking::new(told.map(|(score, critical)| Prediction { score, critical, group: 0 }));
-/// let Intervals { roc, .. } = one_flight.bootstrap(100, 7).ok_or("needs both kinds")?;
-/// assert_eq!(roc, Interval { low: 0.75, high: 0.75 }); // every resample is that flight again
-/// # Ok::<(), &str>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intervals {
     /// Of the area under the receiver operating characteristic.
@@ -95,22 +75,11 @@ pub struct Intervals {
 }
 
 /// A point of the receiver operating characteristic.
-///
-/// # Example: from no warning at all to a warning always
-/// ```
-/// use flagred::evaluation::{Prediction, Ranking, RocPoint};
-///
-/// let told = [(0.9, true), (0.1, false)];
-/// let curve = Ranking::new(told.map(|(score, critical)| Prediction { score, critical, group: 0 })).roc(10);
-/// let at = |false_positive_rate, true_positive_rate| RocPoint { false_positive_rate, true_positive_rate };
-/// assert_eq!((curve.first(), curve.last()), (Some(&at(0.0, 0.0)), Some(&at(1.0, 1.0))));
-/// assert!(curve.contains(&at(0.0, 1.0)), "one threshold tells them apart");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RocPoint {
     /// The share of the others that are at or above a score.
     pub false_positive_rate: f64,
-    /// The share of the critical predictions that are.
+    /// The share of the critical predictions that are at or above it.
     pub true_positive_rate: f64,
 }
 
@@ -161,7 +130,7 @@ impl Ranking {
         self.weighted_areas(&vec![1; self.groups])
     }
 
-    /// How sure the areas are: 95 % intervals over resamples that draw whole groups, with replacement.
+    /// 95 % intervals of the areas, over resamples that draw whole groups with replacement.
     ///
     /// The same seed gives the same intervals. `None` as for [`Ranking::areas`]; resamples without critical predictions,
     /// or without others, are left out.
@@ -261,17 +230,7 @@ fn interval(values: &mut [f64]) -> Option<Interval> {
     })
 }
 
-/// What became of the predictions of a band of risk.
-///
-/// # Example: what became of risks from 90 % on
-/// ```
-/// use flagred::evaluation::{Band, Prediction, reliability};
-///
-/// let bands = reliability([(95.0, true), (100.0, false)].map(|(score, critical)| Prediction { score, critical, group: 0 }));
-/// let Band { from_pct, predictions, critical, .. } = bands[9];
-/// assert_eq!((from_pct, predictions, critical), (90.0, 2, 1));
-/// assert_eq!(bands[0].mean_risk_pct, None);
-/// ```
+/// How many predictions of a band of risk became critical.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
     /// The lower end of the band in %; it belongs to it.
@@ -286,7 +245,7 @@ pub struct Band {
     pub mean_risk_pct: Option<f64>,
 }
 
-/// The share that became critical in each tenth of the risk from 0 to 100 %: what a percentage came to.
+/// The share of predictions that became critical, for each tenth of the risk from 0 to 100 %.
 ///
 /// # Example
 /// ```

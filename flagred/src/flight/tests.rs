@@ -129,3 +129,26 @@ fn judged_time_leaves_out_take_off_and_landing() {
     };
     assert_eq!(judged_span(hop, false, &settings), None);
 }
+
+#[cfg(feature = "serde")]
+#[test]
+fn an_assessment_is_serde_data() {
+    let flown = fly(&[(20.0, true, HOVER), (3.0, true, LIMIT)]);
+    let json = serde_json::to_value(&flown).unwrap();
+    assert_eq!(json["verdict"], "FAIL");
+    assert!(json.get("reason").is_none());
+    let finding = &json["findings"][0];
+    assert_eq!(finding["severity"], "FAIL");
+    assert_eq!(finding["motor"]["number"], 1);
+    assert_eq!(finding["motor"]["side"], "lower");
+    let first = &json["steps"][0];
+    assert!(first["risk"].is_null() && first["inputs"]["margin"].is_null());
+    let hovering = &json["steps"][100];
+    assert_eq!(hovering["inputs"]["margin"], 0.5);
+    assert!(hovering["risk"].is_number() && hovering["elevated_risk"].is_number());
+    assert!(hovering["dominant_rule"].as_u64() >= Some(1));
+
+    let unknown = serde_json::to_value(fly(&[(20.0, true, [f64::NAN; 4])])).unwrap();
+    assert_eq!(unknown["verdict"], "NA");
+    assert!(unknown["reason"].is_string() && unknown["help"].is_null());
+}

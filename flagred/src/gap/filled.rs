@@ -1,15 +1,15 @@
-//! What of a filling has to be kept to answer where no rule applies: a grid of knots with their values.
+//! The grid of knots and values that fills gaps of the rules.
 
-/// Knots with what is said there, read linearly along each input between them.
+/// Knots with their values. Between knots, values are interpolated linearly along each input.
 #[derive(Debug, Clone, Copy)]
 pub struct FilledKnots<'a> {
-    /// The places along each input, rising: those of the first, then those of the second, and so on.
-    pub places: &'a [f64],
-    /// Where, in these, those of each input begin, and where the last one's end.
+    /// The coordinates of knots along each input, ascending: those of the first input, then of the second, and so on.
+    pub coordinates: &'a [f64],
+    /// The index in `coordinates` of each input's first, and the end of the last input's.
     pub starts: &'a [u32],
     /// The value at each knot, the last input running fastest.
     pub values: &'a [f64],
-    /// How far each knot is from the nearest that rules cover, in shares of the inputs' ranges.
+    /// The distance of each knot from the nearest covered knot, in shares of the inputs' ranges.
     pub distances: &'a [f64],
 }
 
@@ -29,7 +29,7 @@ impl FilledKnots<'_> {
         let axes = self.starts.len().checked_sub(1)?;
         let axis = |axis: usize| {
             let (start, end) = (self.starts.get(axis)?, self.starts.get(axis + 1)?);
-            self.places.get(*start as usize..*end as usize)
+            self.coordinates.get(*start as usize..*end as usize)
         };
         Some(Reading {
             value: read(axes, &axis, self.values, point)?,
@@ -47,7 +47,7 @@ impl FilledKnots<'_> {
         let rises = |pair: &[u32]| pair.is_sorted();
         self.starts.len() == inputs + 1
             && self.starts.windows(2).all(rises)
-            && self.starts.last().map(|end| *end as usize) == Some(self.places.len())
+            && self.starts.last().map(|end| *end as usize) == Some(self.coordinates.len())
             && knots > 0
             && self.values.len() == knots
             && self.distances.len() == knots

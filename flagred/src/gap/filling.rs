@@ -112,7 +112,7 @@ impl Filling {
     /// What is read; `None` where there is nothing to fill from.
     pub(crate) fn lend(&self) -> Option<FilledKnots<'_>> {
         (!self.values.is_empty()).then_some(FilledKnots {
-            places: &self.places,
+            coordinates: &self.places,
             starts: &self.starts,
             values: &self.values,
             distances: &self.distances,

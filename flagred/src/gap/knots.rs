@@ -4,7 +4,7 @@ use alloc::{vec, vec::Vec};
 
 use fuzzy::{
     Model,
-    model::{Shape, Variable},
+    model::{MembershipFunction, Variable},
 };
 
 use super::filled::read;
@@ -169,7 +169,8 @@ pub fn peaks(variable: &Variable) -> Vec<f64> {
 pub fn changing(variable: &Variable) -> (f64, f64) {
     let peaks = peaks(variable);
     let changes = |pair: &&[f64]| {
-        let differ = |shape: &Shape| shape.membership(pair[0]) != shape.membership(pair[1]);
+        let differ =
+            |shape: &MembershipFunction| shape.membership(pair[0]) != shape.membership(pair[1]);
         variable.terms.iter().any(|term| differ(&term.shape))
     };
     let first = peaks.windows(2).find(changes);
@@ -189,7 +190,7 @@ fn with_middles(places: &[f64]) -> Vec<f64> {
 }
 
 /// Where a shape is highest within a range, from and to.
-fn top(shape: &Shape, low: f64, high: f64) -> (f64, f64) {
+fn top(shape: &MembershipFunction, low: f64, high: f64) -> (f64, f64) {
     const STEPS: u32 = 2000;
     let corners = shape.corners().filter(|corners| corners.len() > 1);
     let xs: Vec<f64> = match corners {

@@ -1,6 +1,6 @@
 use fuzzy::{
     Model,
-    model::{NoRuleFires, Output, Shape, Variable},
+    model::{MembershipFunction, NoRuleFires, Output, Variable},
     rule::{Condition, Rule},
 };
 
@@ -18,14 +18,14 @@ fn rules(without_low: bool) -> Model {
     let margin = Variable::new("margin", 0.0, 0.5)
         .term(
             "low",
-            Shape::LeftShoulder {
+            MembershipFunction::LeftShoulder {
                 top: 0.1,
                 foot: 0.4,
             },
         )
         .term(
             "high",
-            Shape::RightShoulder {
+            MembershipFunction::RightShoulder {
                 foot: 0.1,
                 top: 0.4,
             },
@@ -33,7 +33,7 @@ fn rules(without_low: bool) -> Model {
     let risk = Variable::new("risk", 0.0, 100.0)
         .term(
             "small",
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 0.0,
                 peak: 10.0,
                 right: 20.0,
@@ -41,7 +41,7 @@ fn rules(without_low: bool) -> Model {
         )
         .term(
             "large",
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 80.0,
                 peak: 90.0,
                 right: 100.0,

@@ -14,7 +14,7 @@ use crate::{
     accumulator::AccumulatorSettings,
     gap::{GapMethod, GapSettings},
     source::{Motors, Signal, Source, Statistic},
-    verdict::{Idle, LevelSettings, Threshold, VerdictSettings},
+    verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings},
 };
 
 /// The version of the format.
@@ -23,13 +23,15 @@ const VERSION: u64 = 1;
 /// The window of an input whose profile names none, in seconds.
 const WINDOW_S: f64 = 2.0;
 
-const STATISTICS: [(&str, Statistic); 6] = [
+const STATISTICS: [(&str, Statistic); 8] = [
     ("mean", Statistic::Mean),
     ("std", Statistic::Std),
     ("rms", Statistic::Rms),
     ("min", Statistic::Min),
     ("max", Statistic::Max),
     ("last", Statistic::Last),
+    ("std_less_noise", Statistic::StdLessNoise),
+    ("noise", Statistic::Noise),
 ];
 
 type Share = fn(f64) -> Statistic;
@@ -73,6 +75,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         "min_samples",
         "warm_up_s",
         "longest_gap_s",
+        "take_off_s",
         "inputs",
         "gap",
         "elevated_risk",
@@ -144,6 +147,7 @@ fn sampling(fields: &Fields, found: &mut Found) -> Sampling {
             Least::Above0,
             found,
         ),
+        take_off_s: number(fields, "take_off_s", default.take_off_s, Least::From0, found),
     }
 }
 
@@ -214,6 +218,14 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
         }
     };
     let (motors, signal) = signal(observed, &what, found)?;
+    if statistic.is_of_bins() && motors == Motors::Pooled && signal.is_of_motors() {
+        let message = format!("`{key}` needs one value for all motors");
+        found.push(
+            Diagnostic::error("statistic", behind.span.clone(), message)
+                .help(format!("write for example `{{{key}: {{std: motor_command}}}}`")),
+        );
+        return None;
+    }
     Some(Source {
         statistic,
         motors,
@@ -248,9 +260,8 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
     let signal = Signal::named(name);
     if !signal.is_of_motors() {
         let message = format!("`{name}` has one value, not one for each motor");
-        let known: Vec<String> = Signal::MOTORS
-            .iter()
-            .map(|s| format!("`{}`", s.0))
+        let known: Vec<String> = Signal::names_of_motors()
+            .map(|name| format!("`{name}`"))
             .collect();
         found.push(
             Diagnostic::error("signal", node.span.clone(), message).help(format!(
@@ -352,7 +363,10 @@ fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
         "clear_after_s",
         "quiet_after_take_off_s",
         "quiet_before_landing_s",
-        "idle",
+        "idle_below",
+        "noise",
+        "reserve",
+        "imbalance",
     ];
     let Some(fields) = fields
         .get("verdict")
@@ -365,12 +379,17 @@ fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
         clear_after_s: seconds("clear_after_s", default.clear_after_s),
         quiet_after_take_off_s: seconds("quiet_after_take_off_s", default.quiet_after_take_off_s),
         quiet_before_landing_s: seconds("quiet_before_landing_s", default.quiet_before_landing_s),
+        idle_below: seconds("idle_below", default.idle_below),
         ..default
     };
     VerdictSettings {
         warn: level(&fields, "warn", default.warn, found),
         fail: level(&fields, "fail", default.fail, found),
-        idle: idle(&fields, default.idle, found),
+        notices: NoticeSettings {
+            noise: limit(&fields, "noise", "above", found),
+            reserve: limit(&fields, "reserve", "below", found),
+            imbalance: limit(&fields, "imbalance", "above", found),
+        },
         ..settings
     }
 }
@@ -439,19 +458,14 @@ fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {
     }
 }
 
-fn idle(fields: &Fields, default: Idle, found: &mut Found) -> Idle {
-    let keys = ["command_below", "risk_at_most"];
-    let Some(fields) = fields
-        .get("idle")
-        .and_then(|node| node.fields("`idle`", &keys, found))
-    else {
-        return default;
-    };
-    let mut value = |key, default| number(&fields, key, default, Least::From0, found);
-    Idle {
-        command_below: value("command_below", default.command_below),
-        risk_at_most_pct: value("risk_at_most", default.risk_at_most_pct),
-    }
+/// A limit of a notice: `{above: 0.04, after_s: 10}`.
+fn limit(fields: &Fields, key: &str, side: &str, found: &mut Found) -> Option<Limit> {
+    let what = format!("`{key}`");
+    let fields = fields.get(key)?.fields(&what, &[side, "after_s"], found)?;
+    let help = format!("write `{key}: {{{side}: 0.1, after_s: 3}}`");
+    let value = fields.require(side, &help, found)?.finite(&format!("`{side}`"), found)?;
+    let after_s = number(&fields, "after_s", 0.0, Least::From0, found);
+    Some(Limit { value, after_s })
 }
 
 /// The least that a number may be.

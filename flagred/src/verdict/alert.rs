@@ -1,31 +1,38 @@
-//! The level over time: raised, held, lowered.
+//! The level over time: raised, held, lowered. One time of trouble is one finding.
 
-use super::{
-    Ended, Finding, Idle, Level, VerdictSettings,
-    watch::{Motor, Watch},
-};
+use super::{Finding, Level, Measure, MotorFinding, VerdictSettings};
+use crate::motor::{Motor, MotorRecord};
 
-/// Sums of time steps are off by less than this.
+/// Time stamps are sums of steps: a duration this much shorter, in seconds, is long enough.
 pub(super) const ROUNDING_S: f64 = 1e-6;
 
-/// Keeps the level over time.
+/// The level of a risk.
 #[derive(Debug, Clone)]
 pub(crate) struct Alert {
     settings: VerdictSettings,
     level: Level,
-    /// When the level was last held.
+    /// When something last held the level.
     last_held_s: f64,
-    /// Of WARN, of FAIL.
-    watches: [Watch; 2],
+    /// Since when the thresholds of WARN and FAIL are reached.
+    reached_since_s: [Option<f64>; 2],
+    finding: Option<Finding>,
 }
 
-/// What a sample did to the level.
+/// What a sample changed.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Step {
-    /// The new level, where it changed.
     pub(crate) change: Option<Level>,
-    /// The findings that ended.
-    pub(crate) ended: Ended,
+    pub(crate) ended: Option<Finding>,
+}
+
+/// A risk at a time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Now {
+    pub(crate) t_s: f64,
+    pub(crate) risk_pct: f64,
+    pub(crate) elevated_pct: f64,
+    /// Just after take-off, when only FAIL is raised.
+    pub(crate) takes_off: bool,
 }
 
 impl Alert {
@@ -34,7 +41,8 @@ impl Alert {
             settings,
             level: Level::Good,
             last_held_s: 0.0,
-            watches: [Watch::of(Level::Warn), Watch::of(Level::Fail)],
+            reached_since_s: [None; 2],
+            finding: None,
         }
     }
 
@@ -42,75 +50,138 @@ impl Alert {
         self.level
     }
 
-    /// The finding that the level rests on, as it stands; `None` while there is nothing to say.
+    /// The open finding as it stands.
     pub(crate) fn open(&self, motors: &[Motor]) -> Option<Finding> {
-        let watch = self
-            .watches
-            .iter()
-            .find(|watch| watch.level() == self.level)?;
-        watch.open(motors)
+        let motor = weakest(motors);
+        self.finding.map(|finding| Finding { motor, ..finding })
     }
 
-    /// Adds a moment of known risk.
-    pub(crate) fn push(
-        &mut self,
-        t_s: f64,
-        risk_pct: f64,
-        elevated_pct: f64,
-        motors: &mut [Motor],
-    ) -> Step {
-        let settings = self.settings;
-        let risk_pct = if idles(motors, &settings.idle) {
-            risk_pct.min(settings.idle.risk_at_most_pct)
-        } else {
-            risk_pct
-        };
+    pub(crate) fn push(&mut self, now: Now, motors: &mut [Motor]) -> Step {
+        let Now {
+            t_s,
+            risk_pct,
+            elevated_pct,
+            takes_off,
+        } = now;
         let mut step = Step::default();
         let mut held = Level::Good;
-        for (watch, settings) in self.watches.iter_mut().zip([settings.warn, settings.fail]) {
-            let reached = settings.raise.reached(risk_pct, elevated_pct);
-            if let Some(raised) = watch.push(t_s, reached, settings.after_s, self.level, motors) {
-                self.level = raised;
-                step.change = Some(raised);
+        let levels = [
+            (Level::Warn, self.settings.warn),
+            (Level::Fail, self.settings.fail),
+        ];
+        if self.reached_since_s == [None; 2] && self.finding.is_none() {
+            for motor in motors.iter_mut() {
+                motor.record = MotorRecord::NONE;
             }
-            watch.follow(t_s, risk_pct, elevated_pct, reached.is_some());
+        }
+        for (i, (level, settings)) in levels.into_iter().enumerate() {
+            let reached = match takes_off && level == Level::Warn {
+                true => None,
+                false => settings.raise.reached(risk_pct, elevated_pct),
+            };
             if reached.is_some() || settings.until.reached(risk_pct, elevated_pct).is_some() {
-                held = watch.level().min(self.level);
+                held = level.min(self.level);
             }
+            let Some((measure, threshold_pct)) = reached else {
+                self.reached_since_s[i] = None;
+                continue;
+            };
+            if let Some(finding) = &mut self.finding {
+                finding.to_s = t_s;
+            }
+            let since_s = *self.reached_since_s[i].get_or_insert(t_s);
+            if level > self.level && t_s - since_s >= settings.after_s - ROUNDING_S {
+                self.raise(t_s, since_s, level, (measure, threshold_pct));
+                step.change = Some(level);
+                held = level;
+            }
+        }
+        if self.reached_since_s != [None; 2] {
+            for motor in motors.iter_mut() {
+                motor.record.add(motor.command);
+            }
+        }
+        if let Some(finding) = &mut self.finding {
+            let value = match finding.measure {
+                Measure::ElevatedRisk => elevated_pct,
+                _ => risk_pct,
+            };
+            finding.peak_pct = finding.peak_pct.max(value);
         }
         if held >= self.level {
             self.last_held_s = t_s;
-        } else if t_s - self.last_held_s >= settings.clear_after_s - ROUNDING_S {
+        } else if t_s - self.last_held_s >= self.settings.clear_after_s - ROUNDING_S {
             self.level = held;
             self.last_held_s = t_s;
             step.change = Some(held);
-            step.ended = self.watches.each_mut().map(|watch| {
-                let is_over = watch.level() > held;
-                is_over.then(|| watch.end(motors)).flatten()
-            });
+            if held == Level::Good {
+                step.ended = self.end_finding(motors);
+            }
         }
         step
     }
 
-    /// Ends it all: the flight, or the knowledge of it, is over. What was raised too shortly before a landing
-    /// is taken back.
+    /// Opens the finding, or makes it a FAIL.
+    fn raise(&mut self, t_s: f64, since_s: f64, level: Level, by: (Measure, f64)) {
+        self.level = level;
+        let (measure, threshold_pct) = by;
+        let failed_s = (level == Level::Fail).then_some(t_s);
+        let opened = self.finding.unwrap_or(Finding {
+            from_s: since_s,
+            raised_s: t_s,
+            ..Finding::NONE
+        });
+        // The span of an earlier FAIL goes on.
+        let failed_s = opened.failed_s.or(failed_s);
+        let same = opened.level == level;
+        self.finding = Some(Finding {
+            level: level.max(opened.level),
+            failed_s,
+            to_s: t_s,
+            measure: if same { opened.measure } else { measure },
+            threshold_pct: if same {
+                opened.threshold_pct
+            } else {
+                threshold_pct
+            },
+            peak_pct: if same {
+                opened.peak_pct
+            } else {
+                f64::NEG_INFINITY
+            },
+            ..opened
+        });
+    }
+
+    /// Ends the flight, or what was seen of it. A landing takes back what was raised just before it.
     pub(crate) fn end(&mut self, t_s: f64, landed: bool, motors: &[Motor]) -> Step {
         let change = (self.level > Level::Good).then_some(Level::Good);
         self.level = Level::Good;
+        self.reached_since_s = [None; 2];
         let quiet_s = self.settings.quiet_before_landing_s;
-        let ended = self.watches.each_mut().map(|watch| {
-            let finding = watch.stop(motors);
-            finding.filter(|finding| !landed || t_s - finding.raised_s >= quiet_s)
-        });
+        let finding = self.end_finding(motors);
+        let ended = finding.filter(|finding| !landed || t_s - finding.raised_s >= quiet_s);
         Step { change, ended }
+    }
+
+    fn end_finding(&mut self, motors: &[Motor]) -> Option<Finding> {
+        let ended = self.open(motors);
+        self.finding = None;
+        ended
     }
 }
 
-fn idles(motors: &[Motor], idle: &Idle) -> bool {
-    let commands = motors.iter().map(|motor| motor.command);
-    let known = commands.filter(|e| e.is_finite());
-    let (sum, count) = known.fold((0.0, 0.0), |(sum, count), e| (sum + e, count + 1.0));
-    count > 0.0 && sum < idle.command_below * count
+/// The motor with the least mean margin while the level was reached.
+fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
+    let records = motors.iter().map(|motor| motor.record).enumerate();
+    let known = records.filter(|(_, record)| record.samples > 0);
+    let weakest = known.min_by(|(_, a), (_, b)| a.mean_margin.total_cmp(&b.mean_margin));
+    weakest.map(|(motor, record)| MotorFinding {
+        motor,
+        side: record.side,
+        mean_margin: record.mean_margin,
+        least_margin: record.least_margin,
+    })
 }
 
 #[cfg(test)]
@@ -118,7 +189,7 @@ mod tests {
     use super::*;
     use crate::{
         margin::Side,
-        verdict::{LevelSettings, Measure, Threshold},
+        verdict::{LevelSettings, Threshold},
     };
     use alloc::{vec, vec::Vec};
 
@@ -143,13 +214,9 @@ mod tests {
         clear_after_s: 2.0,
         quiet_after_take_off_s: 0.0,
         quiet_before_landing_s: 2.0,
-        idle: Idle {
-            command_below: 0.1,
-            risk_at_most_pct: 60.0,
-        },
+        ..VerdictSettings::DEFAULT
     };
 
-    /// An alert, and the motors it watched.
     #[derive(Clone)]
     struct Flown {
         alert: Alert,
@@ -164,21 +231,31 @@ mod tests {
             }
         }
 
+        fn push(&mut self, t_s: f64, risk_pct: f64, elevated_pct: f64) -> Step {
+            let now = Now {
+                t_s,
+                risk_pct,
+                elevated_pct,
+                takes_off: false,
+            };
+            self.alert.push(now, &mut self.motors)
+        }
+
         fn end(&mut self, t_s: f64, landed: bool) -> Step {
             self.alert.end(t_s, landed, &self.motors)
         }
     }
 
-    /// Runs (seconds, risk, elevated risk) at 10 Hz; gives what changed when, and the findings.
+    /// Ten samples a second of phases of (seconds, risk, elevated risk), with a motor near its upper limit.
     fn run(phases: &[(f64, f64, f64)]) -> (Vec<(f64, Level)>, Vec<Finding>, Flown) {
         let mut flown = Flown::new([0.4, 0.95]);
         let (mut changes, mut findings, mut i) = (vec![], vec![], 0);
         for (seconds, risk, elevated) in phases {
             for _ in 0..(seconds * 10.0) as usize {
                 let t_s = f64::from(i) / 10.0;
-                let step = flown.alert.push(t_s, *risk, *elevated, &mut flown.motors);
+                let step = flown.push(t_s, *risk, *elevated);
                 changes.extend(step.change.map(|level| (t_s, level)));
-                findings.extend(step.ended.into_iter().flatten());
+                findings.extend(step.ended);
                 i += 1;
             }
         }
@@ -186,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spike_shorter_than_the_minimum_says_nothing() {
+    fn a_spike_shorter_than_the_minimum_raises_nothing() {
         let (changes, findings, flown) = run(&[
             (1.0, 0.0, 0.0),
             (0.4, 0.0, 60.0),
@@ -199,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn one_episode_is_one_finding_of_each_level_whatever_its_ups_and_downs() {
+    fn one_time_of_trouble_is_one_finding_of_its_worst_level() {
         let (changes, findings, _) = run(&[
             (1.0, 0.0, 0.0),
             (2.0, 0.0, 60.0),
@@ -213,15 +290,18 @@ mod tests {
             changes,
             [(1.5, Level::Warn), (9.5, Level::Fail), (11.9, Level::Good)]
         );
-        let [warn, fail] = findings.as_slice() else {
+        let [finding] = findings.as_slice() else {
             panic!("{findings:?}")
         };
-        assert_eq!((warn.level, fail.level), (Level::Warn, Level::Fail));
-        assert_eq!((warn.from_s, warn.raised_s, warn.to_s), (1.0, 1.5, 9.9));
-        assert_eq!((fail.from_s, fail.raised_s, fail.to_s), (9.0, 9.5, 9.9));
-        assert_eq!(fail.measure, Measure::ElevatedRisk);
-        assert_eq!((fail.threshold_pct, fail.peak_pct), (80.0, 90.0));
-        let motor = fail.motor.unwrap();
+        assert_eq!(finding.level, Level::Fail);
+        assert_eq!(
+            (finding.from_s, finding.raised_s, finding.failed_s),
+            (1.0, 1.5, Some(9.5))
+        );
+        assert_eq!(finding.to_s, 9.9);
+        assert_eq!(finding.measure, Measure::ElevatedRisk);
+        assert_eq!((finding.threshold_pct, finding.peak_pct), (80.0, 90.0));
+        let motor = finding.motor.unwrap();
         assert_eq!((motor.motor, motor.side), (1, Side::High));
         approx::assert_abs_diff_eq!(motor.mean_margin, 0.05, epsilon = 1e-12);
     }
@@ -230,48 +310,49 @@ mod tests {
     fn either_quantity_is_enough() {
         let (changes, _, mut flown) = run(&[(2.0, 99.0, 0.0)]);
         assert_eq!(changes, [(0.5, Level::Fail)]);
-        let [warn, fail] = flown.end(2.0, false).ended;
-        assert_eq!(warn, None);
-        assert_eq!(fail.map(|f| f.measure), Some(Measure::Risk));
+        let finding = flown.end(2.0, false).ended.unwrap();
+        assert_eq!(
+            (finding.level, finding.measure),
+            (Level::Fail, Measure::Risk)
+        );
     }
 
     #[test]
-    fn a_risk_at_idle_counts_for_less() {
-        for (e, level) in [
-            (0.05, Level::Good),
-            (0.15, Level::Fail),
-            (f64::NAN, Level::Fail),
-        ] {
-            let Flown {
-                mut alert,
-                mut motors,
-            } = Flown::new([e, e]);
+    fn just_after_take_off_only_fail_is_raised() {
+        for (risk_pct, elevated_pct, level) in
+            [(0.0, 60.0, Level::Good), (99.0, 60.0, Level::Fail)]
+        {
+            let mut flown = Flown::new([0.4, 0.95]);
             for i in 0..10 {
-                alert.push(f64::from(i) / 10.0, 100.0, 0.0, &mut motors);
+                let now = Now {
+                    t_s: f64::from(i) / 10.0,
+                    risk_pct,
+                    elevated_pct,
+                    takes_off: true,
+                };
+                flown.alert.push(now, &mut flown.motors);
             }
-            assert_eq!(alert.level(), level, "{e}");
+            assert_eq!(flown.alert.level(), level);
         }
     }
 
     #[test]
-    fn what_is_raised_just_before_landing_is_taken_back() {
+    fn a_landing_takes_back_what_was_raised_just_before_it() {
         let (_, _, mut flown) = run(&[(2.0, 0.0, 90.0)]);
         let mut later = flown.clone();
-        assert_eq!(flown.end(2.0, true).ended, [None; 2]);
-        assert!(later.end(3.0, true).ended.iter().all(Option::is_some));
+        assert_eq!(flown.end(2.0, true).ended, None);
+        assert!(later.end(3.0, true).ended.is_some());
         // A link that is lost is no landing.
         let (_, _, mut flown) = run(&[(2.0, 0.0, 90.0)]);
-        assert!(flown.end(2.0, false).ended.iter().all(Option::is_some));
+        assert!(flown.end(2.0, false).ended.is_some());
     }
 
     #[test]
-    fn falling_from_fail_to_warn_ends_the_one_finding_and_keeps_the_other_open() {
+    fn a_fail_that_becomes_a_warn_stays_one_finding() {
         let (changes, findings, mut flown) = run(&[(2.0, 0.0, 90.0), (4.0, 0.0, 60.0)]);
         assert_eq!(changes, [(0.5, Level::Fail), (3.9, Level::Warn)]);
-        let levels: Vec<Level> = findings.iter().map(|f| f.level).collect();
-        assert_eq!(levels, [Level::Fail]);
-        let [warn, fail] = flown.end(6.0, false).ended;
-        assert_eq!(warn.map(|f| f.to_s), Some(5.9));
-        assert_eq!(fail, None);
+        assert_eq!(findings, []);
+        let finding = flown.end(6.0, false).ended.unwrap();
+        assert_eq!((finding.level, finding.to_s), (Level::Fail, 5.9));
     }
 }

@@ -107,7 +107,7 @@ impl Flight {
             if let Some(frame) = &geometry.frame {
                 line(out, "frame", frame)?;
             }
-            // The columns are numbered anew, so a frame with gaps in its numbers is not told by its name.
+            // The columns are numbered from 1, so the name of a frame with gaps in its numbers does not suffice.
             let in_turn = (1..).zip(&self.motors).all(|(n, motor)| n == motor.number);
             if geometry.frame.is_none() || !in_turn {
                 for (number, [roll, pitch, yaw]) in (1..).zip(&geometry.factors) {

@@ -6,11 +6,11 @@ use super::plan::{Kind, MOTORS, Part, Role};
 use super::signals::SPECS;
 use super::untimed::{Kept, Untimed};
 use crate::ardupilot::{self, Mode};
-use crate::clock::{Clock, Placed};
+use crate::clock::{Checked, Clock};
+use crate::field::vector_length;
 use crate::geometry::{self, Declared};
 use crate::outputs::Outputs;
 use crate::parameters::Parameters;
-use crate::place::vector_length;
 use crate::signal::{Label, preferred};
 use crate::{Event, Flight, Options, Report, Series, VehicleKind, utc};
 
@@ -79,7 +79,7 @@ impl<'o> Collector<'o> {
         };
         let wanted = !matches!(kind.role, Role::Nothing);
         if wanted && !columns.iter().zip(cells).all(is_number) {
-            return Err("with a field that is no number");
+            return Err("with a field that is not a number");
         }
         Ok(())
     }
@@ -158,21 +158,21 @@ impl<'o> Collector<'o> {
         let Some(t_s) = cells.number(&kind.format, column).map(|time| time * unit) else {
             return self.report.bad("a message without a time");
         };
-        match self.clock.place(t_s) {
-            Placed::At(t_s) => self.take_timed(type_id, cells, t_s),
-            Placed::Wait => self.wait(type_id, cells),
-            Placed::Confirmed(first_s, t_s) => {
+        match self.clock.check(t_s) {
+            Checked::At(t_s) => self.take_timed(type_id, cells, t_s),
+            Checked::Wait => self.wait(type_id, cells),
+            Checked::Confirmed(first_s, t_s) => {
                 self.untimed.confirm_first(first_s);
                 if let Some(waiting) = self.waiting.take() {
                     waiting.give(|type_id, cells| self.take(type_id, cells, first_s));
                 }
                 self.take_timed(type_id, cells, t_s);
             }
-            Placed::Refuted(t_s) => {
+            Checked::Refuted(t_s) => {
                 self.refute();
                 self.take_timed(type_id, cells, t_s);
             }
-            Placed::RefutedWait => {
+            Checked::RefutedWait => {
                 self.refute();
                 self.wait(type_id, cells);
             }
@@ -188,7 +188,7 @@ impl<'o> Collector<'o> {
 
     /// Takes a message whose time is its own, and those before it that had none.
     fn take_timed(&mut self, type_id: u8, cells: Cells<'_>, t_s: f64) {
-        for (t_s, kept) in self.untimed.placed_before(t_s) {
+        for (t_s, kept) in self.untimed.timed_before(t_s) {
             kept.give(|type_id, cells| self.take(type_id, cells, t_s));
         }
         self.take(type_id, cells, t_s);
@@ -196,7 +196,7 @@ impl<'o> Collector<'o> {
 
     fn refute(&mut self) {
         self.waiting = None;
-        self.report.bad("a time that no other agrees with");
+        self.report.bad("a time stamp that does not fit the others");
     }
 
     fn take(&mut self, type_id: u8, cells: Cells<'_>, t_s: f64) {
@@ -273,7 +273,7 @@ impl<'o> Collector<'o> {
         if self.clock.now_s().is_none() && !self.untimed.is_empty() {
             self.report.because(|| "no message has a time".into());
         }
-        for (t_s, kept) in self.untimed.placed_at_end() {
+        for (t_s, kept) in self.untimed.timed_at_end() {
             kept.give(|type_id, cells| self.take(type_id, cells, t_s));
         }
         let said = self.texts.iter().map(|text| &text.what);

@@ -1,8 +1,8 @@
-//! DataFlash is self-describing: FMT records say what the others hold.
+//! DataFlash is self-describing: FMT records define the other messages.
 
 use std::borrow::Cow;
 
-use crate::place::{Kind, Place};
+use crate::field::{Kind, NumericField};
 
 /// Type of the FMT records themselves.
 pub(crate) const FMT: u8 = 128;
@@ -13,8 +13,8 @@ pub(crate) struct Column {
     pub(crate) label: String,
     /// The letter that stands for its type.
     pub(crate) kind: u8,
-    /// Where its number is in the payload of a binary record.
-    place: Place,
+    /// Its number in the payload of a binary record.
+    field: NumericField,
 }
 
 /// A kind of message, as its FMT record describes it.
@@ -25,7 +25,7 @@ pub(crate) struct Format {
     pub(crate) length: usize,
     pub(crate) name: String,
     pub(crate) columns: Vec<Column>,
-    /// The fields do not fill the record, so some of them are not where they seem to be.
+    /// The fields do not fill the record, so their offsets may be wrong.
     pub(crate) damaged: bool,
 }
 
@@ -34,14 +34,14 @@ impl Format {
         let mut offset = 0;
         let columns = kinds
             .bytes()
-            // What stands behind a field of unknown type cannot be found.
+            // The offsets after a field of unknown type are unknown.
             .take_while(|kind| width(*kind) > 0)
             .zip(labels.split(','))
             .map(|(kind, label)| {
                 let column = Column {
                     label: label.trim().into(),
                     kind,
-                    place: Place {
+                    field: NumericField {
                         offset,
                         kind: number_of(kind).0,
                     },
@@ -130,7 +130,7 @@ impl Cells<'_> {
         match self {
             Self::Binary(payload) => {
                 let is_number = !matches!(described.kind, b'n' | b'N' | b'Z' | b'a' | b'g');
-                let number = described.place.number(payload).filter(|_| is_number)?;
+                let number = described.field.number(payload).filter(|_| is_number)?;
                 Some(number * number_of(described.kind).1)
             }
             Self::Text(cells) => cells.get(column)?.parse().ok(),
@@ -145,8 +145,8 @@ impl Cells<'_> {
                 if !matches!(described.kind, b'n' | b'N' | b'Z') {
                     return None;
                 }
-                let end = described.place.offset + width(described.kind);
-                let bytes = payload.get(described.place.offset..end)?;
+                let end = described.field.offset + width(described.kind);
+                let bytes = payload.get(described.field.offset..end)?;
                 let text = bytes.split(|&byte| byte == 0).next()?;
                 Some(String::from_utf8_lossy(text).trim().to_owned())
             }

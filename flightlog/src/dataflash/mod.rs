@@ -1,7 +1,7 @@
 //! ArduPilot DataFlash logs, binary here and as text in [`text`].
 //!
 //! A binary log is a row of records: `A3 95`, a type, and as many bytes as the FMT record
-//! of that type said. Nothing protects a record, so it is only believed when another one
+//! of that type says. Records have no checksum, so one is accepted only when another one
 //! follows it; see <https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html>.
 
 mod collect;
@@ -61,10 +61,10 @@ impl<'o> Scanner<'o> {
         }
     }
 
-    /// Reads the records of a window and says how many bytes it is done with: all but a
-    /// record that may go on behind the window, or really all at the end of the log.
+    /// Reads the records of a window and returns how many bytes are done: all but a
+    /// record that may continue after the window, or all at the end of the log.
     fn scan(&mut self, window: &[u8], at_end: bool) -> usize {
-        // Two records and the next head are in sight of each other, but at the end.
+        // Except at the end, the window holds two whole records and the head of the next.
         let sure = match at_end {
             true => window.len(),
             false => window.len().saturating_sub(2 * LONGEST + HEAD.len()),
@@ -80,7 +80,7 @@ impl<'o> Scanner<'o> {
                 length = self.length(window.get(at..).unwrap_or_default());
                 continue;
             }
-            // Almost all of a log is this: a record, and another one behind it.
+            // The usual case: a record, and another one after it.
             messages += 1;
             length = next;
             let type_id = window[at + 2];
@@ -96,9 +96,9 @@ impl<'o> Scanner<'o> {
         at.min(window.len())
     }
 
-    /// Deals with what is at the start of `bytes` and not followed by a record, or no
-    /// record at all; gives its length. `sure` is how far damage can be told from a record
-    /// that goes on behind the window.
+    /// Handles what is at the start of `bytes` where no record follows, or where there is no
+    /// record; returns its length. Up to `sure`, damage can be told from a record
+    /// that continues after the window.
     fn step(&mut self, bytes: &[u8], sure: usize, at_end: bool) -> usize {
         let found = self.record(bytes);
         let report = &mut self.collector.report;
@@ -130,10 +130,7 @@ impl<'o> Scanner<'o> {
             return self.collector.message(type_id, Cells::Binary(payload));
         }
         let Some(format) = Format::from_payload(payload) else {
-            return self
-                .collector
-                .report
-                .bad("a definition that makes no sense");
+            return self.collector.report.bad("a definition that is not valid");
         };
         let (type_id, length) = (format.type_id, format.length);
         if self.collector.define(format) && type_id != FMT {
@@ -159,7 +156,7 @@ impl<'o> Scanner<'o> {
         if bytes.len() == length || self.starts(&bytes[length..]) {
             return Found::Record { type_id, payload };
         }
-        // Nothing follows where something should. If a record starts inside of this one
+        // No record follows. If a record starts inside of this one
         // and is itself followed by another, then this one lost bytes; else the next did.
         let inner = self.next_head(bytes, 1, length);
         if inner < length && self.starts(&bytes[inner + self.length(&bytes[inner..])..]) {

@@ -1,11 +1,11 @@
-//! What is read from each kind of DataFlash message.
+//! The use of each kind of DataFlash message.
 
 use super::format::Format;
 use super::signals::{From, INSTANCE, SPECS, Spec};
 use crate::Options;
 use crate::signal::Label;
 
-/// What a kind of message is read for. Numbers are columns.
+/// The use of a kind of message. Numbers are columns.
 #[derive(Debug)]
 pub(super) enum Role {
     Nothing,

@@ -40,6 +40,14 @@ pub(crate) const SPECS: &[Spec] = &[
         ],
     },
     Spec {
+        message: "RATE",
+        signals: &[
+            (Field(&["ROut"]), "roll_output", "1"),
+            (Field(&["POut"]), "pitch_output", "1"),
+            (Field(&["YOut"]), "yaw_output", "1"),
+        ],
+    },
+    Spec {
         message: "BAT",
         signals: &[
             (Field(&["Volt"]), "battery_v", "V"),

@@ -8,7 +8,7 @@ use super::format::{Cells, FMT, Format};
 use crate::input::Input;
 use crate::{Flight, Options};
 
-/// No line of a log is longer; what is, is no log.
+/// Longer lines are damaged.
 const LONGEST_LINE: u64 = 4096;
 
 /// Lines above the definitions that are kept: the firmware's name is among them.
@@ -69,7 +69,7 @@ impl Lines<'_> {
         let Some(&type_id) = self.types.get(name) else {
             self.collector.report.skipped_bytes += bytes.len() as u64;
             let report = &mut self.collector.report;
-            report.because(|| "a line that no definition describes".into());
+            report.because(|| "a line without a definition".into());
             return;
         };
         if let Err(why) = self.collector.check(type_id, &cells) {
@@ -97,10 +97,7 @@ impl Lines<'_> {
         };
         let Some(format) = format else {
             self.collector.report.skipped_bytes += bytes as u64;
-            return self
-                .collector
-                .report
-                .bad("a definition that makes no sense");
+            return self.collector.report.bad("a definition that is not valid");
         };
         self.collector.report.messages += 1;
         let (type_id, name) = (format.type_id, format.name.clone());

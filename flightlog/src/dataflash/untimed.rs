@@ -2,10 +2,10 @@
 
 use super::format::Cells;
 
-/// Messages kept at most: a log in which none has a time must not fill the memory.
+/// Most messages kept: a log without any time must not fill the memory.
 const MOST: usize = 1 << 16;
 
-/// A message set aside until more is known of its time.
+/// A message that is kept until its time is known.
 pub(super) enum Kept {
     Binary(u8, Vec<u8>),
     Text(u8, Vec<String>),
@@ -32,8 +32,8 @@ impl Kept {
     }
 }
 
-/// Gives messages without a time one between those of the messages around them that have
-/// one (most often GPS, five times a second), evenly spread.
+/// Spreads messages without a time evenly between the messages around them that have
+/// one (most often GPS, five times a second).
 #[derive(Default)]
 pub(super) struct Untimed {
     kept: Vec<Kept>,
@@ -41,7 +41,7 @@ pub(super) struct Untimed {
     before_first: usize,
     /// Time of the last message that had one.
     last_s: Option<f64>,
-    /// Time from one message to the next when last there were any to place.
+    /// Time from one message to the next the last time that messages were spread.
     step_s: f64,
 }
 
@@ -59,7 +59,7 @@ impl Untimed {
         self.kept.is_empty()
     }
 
-    /// The first message with a time has come, but still waits for a witness.
+    /// The first message with a time has come, but is not confirmed yet.
     pub(super) fn mark_first(&mut self) {
         self.before_first = self.kept.len();
     }
@@ -71,7 +71,7 @@ impl Untimed {
 
     /// The messages set aside, with their times, now that one at `t_s` follows them. Those
     /// before the first message with a time are spread as those after it.
-    pub(super) fn placed_before(&mut self, t_s: f64) -> impl Iterator<Item = (f64, Kept)> + use<> {
+    pub(super) fn timed_before(&mut self, t_s: f64) -> impl Iterator<Item = (f64, Kept)> + use<> {
         let from_s = self.last_s.replace(t_s).unwrap_or(t_s).min(t_s);
         let before = std::mem::take(&mut self.before_first);
         let after = self.kept.len().saturating_sub(before);
@@ -82,7 +82,7 @@ impl Untimed {
     }
 
     /// The messages after the last one that had a time; none when no message had one.
-    pub(super) fn placed_at_end(&mut self) -> impl Iterator<Item = (f64, Kept)> + use<> {
+    pub(super) fn timed_at_end(&mut self) -> impl Iterator<Item = (f64, Kept)> + use<> {
         if self.last_s.is_none() {
             self.kept.clear();
         }
@@ -115,8 +115,8 @@ mod tests {
         }
     }
 
-    fn times(placed: impl Iterator<Item = (f64, Kept)>) -> Vec<f64> {
-        placed.map(|(t_s, _)| t_s).collect()
+    fn times(timed: impl Iterator<Item = (f64, Kept)>) -> Vec<f64> {
+        timed.map(|(t_s, _)| t_s).collect()
     }
 
     #[test]
@@ -126,17 +126,17 @@ mod tests {
         untimed.mark_first();
         keep(&mut untimed, 1);
         untimed.confirm_first(10.0);
-        assert_eq!(times(untimed.placed_before(12.0)), [8.0, 9.0, 11.0]);
+        assert_eq!(times(untimed.timed_before(12.0)), [8.0, 9.0, 11.0]);
         keep(&mut untimed, 3);
-        assert_eq!(times(untimed.placed_before(14.0)), [12.5, 13.0, 13.5]);
+        assert_eq!(times(untimed.timed_before(14.0)), [12.5, 13.0, 13.5]);
         keep(&mut untimed, 2);
-        assert_eq!(times(untimed.placed_at_end()), [14.5, 15.0]);
+        assert_eq!(times(untimed.timed_at_end()), [14.5, 15.0]);
     }
 
     #[test]
-    fn without_any_time_nothing_is_placed() {
+    fn without_any_time_nothing_has_a_time() {
         let mut untimed = Untimed::default();
         keep(&mut untimed, 2);
-        assert!(times(untimed.placed_at_end()).is_empty());
+        assert!(times(untimed.timed_at_end()).is_empty());
     }
 }

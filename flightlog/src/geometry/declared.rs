@@ -1,4 +1,4 @@
-//! What parameters, messages and headers say of the motor layout.
+//! The motor layout that parameters, messages and headers declare.
 
 use super::tables;
 use crate::Vehicle;
@@ -7,7 +7,7 @@ use crate::parameters::Parameters;
 /// Most rotors that PX4 describes.
 const PX4_ROTORS: u16 = 12;
 
-/// What a log or a live vehicle says of its motor layout.
+/// The motor layout that a log or a live vehicle declares.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) enum Declared {
     #[default]

@@ -1,4 +1,4 @@
-//! The motor layout by the commands of a flight.
+//! Infers the motor layout from the commands of a flight.
 //!
 //! A mixer adds thrust, roll, pitch and yaw, so the commands of `n` motors lie in a space of
 //! four dimensions (thrust curves and limits bend it a little). A layout fits when little of
@@ -7,21 +7,37 @@
 use super::{Basis, Geometry, in_order, tables};
 use crate::Flight;
 
-/// Rows in the air under which nothing is said.
+/// Least number of rows in the air.
 const FEWEST_ROWS: usize = 100;
 /// A layout fits when at most this share of the variance is outside of its space. Calm and
 /// gusty flights have 0 to 0.02; failed motors and motors at a limit raise it.
 const FITS: f64 = 0.05;
-/// A layout does not fit, by itself, from this share on.
+/// From this share on a layout does not fit.
 const FITS_NOT: f64 = 0.2;
-/// A share is clearly larger than another one from so many times of it, and this, on.
+/// A share is clearly larger than another one times the first plus the second of these.
 const CLEARLY: (f64, f64) = (5.0, 0.01);
-/// Correlation of effort and attitude error up to which they do not go with each other. Right
+/// Correlation of effort and output of the rate controller from which a layout is right, and how far
+/// it must be above that of others. Right layouts have 0.44 to 1, and more than any other.
+const FOLLOWS: f64 = 0.4;
+const FOLLOWS_ABOVE: f64 = 0.2;
+/// Correlation of effort and attitude error up to which a layout may be wrong. Right
 /// layouts have 0.0 to 0.9: well-tuned and slow flights little.
 const GOES_WITHOUT: f64 = 0.1;
-/// Correlations from which another layout fits: by itself, and where it is so far above.
+/// Correlation from which another layout fits; and a lower one, if it is above that of the
+/// declared layout by the second number.
 const GOES_WITH: f64 = 0.4;
 const GOES_WITH_RATHER: (f64, f64) = (0.25, 0.6);
+
+/// The signals that tell whether a layout is right: outputs of the rate controllers, attitude.
+pub(crate) const SIGNALS: [&str; 7] = [
+    "roll_output",
+    "pitch_output",
+    "yaw_output",
+    "roll_des_deg",
+    "roll_deg",
+    "pitch_des_deg",
+    "pitch_deg",
+];
 
 /// The common layout that fits the commands, if only one does. Layouts with the same space
 /// count as one, for which the most common stands.
@@ -43,9 +59,13 @@ pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> 
     {
         return None;
     }
-    let mut alike = alike.into_iter().map(|(_, name, factors)| (name, factors));
-    let (name, factors) = alike.next()?;
-    let same: Vec<String> = alike.map(|(name, _)| name).collect();
+    if let Some(geometry) = by_outputs(&variance, &alike) {
+        return Some(geometry);
+    }
+    // Any four motors span the same space.
+    let mut alike = alike.into_iter().filter(|_| flight.motors.len() > 4);
+    let (_, name, factors) = alike.next()?;
+    let same: Vec<String> = alike.map(|(_, name, _)| name).collect();
     let same = match same.is_empty() {
         true => String::new(),
         false => format!(
@@ -58,6 +78,29 @@ pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> 
         frame: Some(name),
         basis: Basis::Inferred,
         source: format!("the only common layout that fits the commands{same}"),
+        doubt: None,
+    })
+}
+
+/// The layout whose efforts follow the outputs of the rate controllers, if those that follow
+/// them nearly as well have the same yaw.
+fn by_outputs(variance: &Variance, layouts: &[(f64, String, Vec<[f64; 3]>)]) -> Option<Geometry> {
+    let correlation = |factors: &[[f64; 3]]| variance.with_outputs(factors).unwrap_or(-1.0);
+    let (_, name, factors) = layouts
+        .iter()
+        .max_by(|(.., a), (.., b)| correlation(a).total_cmp(&correlation(b)))?;
+    let best = correlation(factors);
+    let yaw = |factors: &[[f64; 3]]| factors.iter().map(|f| f[2]).collect::<Vec<f64>>();
+    let near = |factors: &[[f64; 3]]| correlation(factors) > best - FOLLOWS_ABOVE;
+    let mut rivals = layouts.iter().filter(|(.., other)| near(other));
+    let same_yaw = rivals.all(|(.., other)| yaw(other) == yaw(factors));
+    (best > FOLLOWS && same_yaw).then(|| Geometry {
+        factors: factors.clone(),
+        frame: Some(name.clone()),
+        basis: Basis::Inferred,
+        source: format!(
+            "the commands follow the outputs of the rate controllers (correlation {best:.2})"
+        ),
         doubt: None,
     })
 }
@@ -86,21 +129,26 @@ pub(super) fn contradiction(flight: &Flight, geometry: &Geometry) -> Option<Stri
             ));
         }
     }
-    let [roll, pitch] = variance.goes_with_error(&geometry.factors)?;
-    if roll.min(pitch) > GOES_WITHOUT {
-        return None;
+    let best = |correlation: &dyn Fn(&[[f64; 3]]) -> Option<f64>| {
+        others()
+            .filter_map(|(_, name, factors)| Some((correlation(&factors)?, name)))
+            .max_by(|(a, _), (b, _)| a.total_cmp(b))
+    };
+    if let Some(own) = variance.with_outputs(&geometry.factors) {
+        let (least, name) = best(&|factors| variance.with_outputs(factors))?;
+        return (least > FOLLOWS && least > own + FOLLOWS_ABOVE).then(|| {
+            format!(
+                "its roll, pitch and yaw do not follow the outputs of the controllers (correlation {own:.2}), those of {name} do ({least:.2})"
+            )
+        });
     }
-    let (least, name) = others()
-        .filter_map(|(_, name, factors)| {
-            let [roll, pitch] = variance.goes_with_error(&factors)?;
-            Some((roll.min(pitch), name))
-        })
-        .max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    let own = variance.with_errors(&geometry.factors)?;
+    let (least, name) = best(&|factors| variance.with_errors(factors))?;
     let (from, above) = GOES_WITH_RATHER;
-    let fits = least > GOES_WITH || least > from && least > roll.min(pitch) + above;
-    fits.then(|| {
+    let fits = least > GOES_WITH || least > from && least > own + above;
+    (own < GOES_WITHOUT && fits).then(|| {
         format!(
-            "its roll and pitch commands do not go with the attitude error (correlations {roll:.2} and {pitch:.2}), those of {name} do ({least:.2} or more)"
+            "its roll and pitch do not go with the attitude error (correlation {own:.2}), those of {name} do ({least:.2})"
         )
     })
 }
@@ -114,20 +162,23 @@ fn layouts(flight: &Flight) -> impl Iterator<Item = (i64, String, Vec<[f64; 3]>)
     })
 }
 
-/// Variances and covariances of the commands in the air, and of these with the attitude error.
+/// Variances and covariances of the commands in the air, and of these with what they serve.
 struct Variance {
     commands: Covariance,
-    /// The last two are the errors of roll and pitch, set point less angle.
-    with_error: Covariance,
+    /// The last columns are the outputs of the rate controllers of roll, pitch and yaw.
+    with_outputs: Covariance,
+    /// The last columns are the errors of roll and pitch: set point minus angle.
+    with_errors: Covariance,
 }
 
 impl Variance {
     fn of_commands(flight: &Flight) -> Option<Self> {
         let motors = flight.motors.len();
         let mut commands = Covariance::new(motors);
-        let mut with_error = Covariance::new(motors + 2);
+        let mut with_outputs = Covariance::new(motors + 3);
+        let mut with_errors = Covariance::new(motors + 2);
         let hold = |name| flight.signal(name).map(|signal| signal.hold());
-        let mut attitude = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"].map(hold);
+        let mut holds = SIGNALS.map(hold);
         let mut row = Vec::new();
         for (t_s, raw) in flight.commands.rows() {
             if flight.is_in_air(t_s) != Some(true) {
@@ -139,19 +190,26 @@ impl Variance {
                 continue;
             }
             commands.add(&row);
-            let [roll_des, roll, pitch_des, pitch] = attitude.each_mut().map(|hold| {
-                hold.as_mut()
-                    .and_then(|hold| hold.at(t_s))
-                    .unwrap_or(f64::NAN)
+            let [
+                roll_out,
+                pitch_out,
+                yaw_out,
+                roll_des,
+                roll,
+                pitch_des,
+                pitch,
+            ] = holds.each_mut().map(|hold| {
+                let held = hold.as_mut().and_then(|hold| hold.at(t_s));
+                held.unwrap_or(f64::NAN)
             });
-            row.extend([roll_des - roll, pitch_des - pitch]);
-            if row.iter().all(|value| value.is_finite()) {
-                with_error.add(&row);
-            }
+            let errors = [roll_des - roll, pitch_des - pitch];
+            with_outputs.add_known(&mut row, &[roll_out, pitch_out, yaw_out]);
+            with_errors.add_known(&mut row, &errors);
         }
         (commands.count >= FEWEST_ROWS).then_some(Self {
             commands,
-            with_error,
+            with_outputs,
+            with_errors,
         })
     }
 
@@ -167,28 +225,23 @@ impl Variance {
         ((total - inside) / total.max(1e-12)).max(0.0)
     }
 
-    /// How the effort of roll and of pitch goes with its attitude error, as correlations.
-    fn goes_with_error(&self, factors: &[[f64; 3]]) -> Option<[f64; 2]> {
-        if self.with_error.count < FEWEST_ROWS {
-            return None;
-        }
-        let motors = factors.len();
-        let column = |axis: usize| factors.iter().map(|f| f[axis]).collect::<Vec<f64>>();
-        let correlation = |axis: usize| {
-            // The least-squares effort of an axis is along what of its column is outside of the others.
-            let others = (0..3).filter(|&other| other != axis).map(column);
-            let mut direction = column(axis);
-            for other in orthonormal(std::iter::once(vec![1.0; motors]).chain(others)) {
-                reject(&mut direction, &other);
-            }
-            let with = |i: usize| self.with_error.of(i, motors + axis);
-            let covariance: f64 = direction.iter().enumerate().map(|(i, d)| d * with(i)).sum();
-            let square = self.with_error.along(&direction)
-                * self.with_error.of(motors + axis, motors + axis);
-            (square > 0.0).then(|| covariance / square.sqrt())
-        };
-        Some([correlation(0)?, correlation(1)?])
+    /// The least of the correlations of the roll, pitch and yaw efforts with the outputs of the rate controllers.
+    fn with_outputs(&self, factors: &[[f64; 3]]) -> Option<f64> {
+        // A tricopter has no yaw effort.
+        let axes = (0..3).filter(|&axis| factors.iter().any(|f| f[axis] != 0.0));
+        least(axes.map(|axis| self.with_outputs.with_effort(factors, axis)))
     }
+
+    /// The least of the correlations of the roll and pitch efforts with the attitude errors.
+    fn with_errors(&self, factors: &[[f64; 3]]) -> Option<f64> {
+        least((0..2).map(|axis| self.with_errors.with_effort(factors, axis)))
+    }
+}
+
+/// The least of some numbers; `None` where one is unknown.
+fn least(numbers: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    let numbers = numbers.collect::<Option<Vec<f64>>>()?;
+    numbers.into_iter().reduce(f64::min)
 }
 
 /// Covariances of rows of values, in one pass (Welford 1962).
@@ -227,6 +280,38 @@ impl Covariance {
         }
     }
 
+    /// Adds commands and further values, if all of these are known.
+    fn add_known(&mut self, commands: &mut Vec<f64>, values: &[f64]) {
+        if values.iter().all(|value| value.is_finite()) {
+            let motors = commands.len();
+            commands.extend_from_slice(values);
+            self.add(commands);
+            commands.truncate(motors);
+        }
+    }
+
+    /// Correlation of the effort of an axis with the value of that axis, which is in a column after
+    /// the commands.
+    fn with_effort(&self, factors: &[[f64; 3]], axis: usize) -> Option<f64> {
+        if self.count < FEWEST_ROWS {
+            return None;
+        }
+        let motors = factors.len();
+        let column = |axis: usize| factors.iter().map(|f| f[axis]).collect::<Vec<f64>>();
+        // The least-squares effort of an axis is along the part of its column that is orthogonal to the others.
+        let others = (0..3).filter(|&other| other != axis).map(column);
+        let mut direction = column(axis);
+        for other in orthonormal(std::iter::once(vec![1.0; motors]).chain(others)) {
+            reject(&mut direction, &other);
+        }
+        let value = motors + axis;
+        let covariance: f64 = (direction.iter().enumerate())
+            .map(|(motor, part)| part * self.of(motor, value))
+            .sum();
+        let square = self.along(&direction) * self.of(value, value);
+        (square > 1e-18).then(|| covariance / square.sqrt())
+    }
+
     fn of(&self, i: usize, j: usize) -> f64 {
         let product = self.products.get(i * self.size + j);
         product.copied().unwrap_or_default() / self.count.max(1) as f64
@@ -261,7 +346,7 @@ fn orthonormal(vectors: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     basis
 }
 
-/// Takes the part along a unit vector out of a vector.
+/// Makes a vector orthogonal to a unit vector.
 fn reject(vector: &mut [f64], unit: &[f64]) {
     let along = dot(vector, unit);
     for (x, u) in vector.iter_mut().zip(unit) {

@@ -1,7 +1,7 @@
-//! Motor geometry: how much each motor rolls, pitches and yaws the vehicle, and how that is known.
+//! Motor geometry: how much each motor rolls, pitches and yaws the vehicle, with its source.
 
 mod declared;
-mod infer;
+pub(crate) mod infer;
 pub(crate) mod tables;
 
 pub(crate) use declared::Declared;
@@ -23,6 +23,7 @@ use crate::{Flight, Motor, VehicleKind};
 /// # Ok::<(), flightlog::ReadError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Geometry {
     /// `[roll, pitch, yaw]` of each motor, in the order of [`Flight::motors`]; the largest of
@@ -35,7 +36,7 @@ pub struct Geometry {
     /// Frame class and type in ArduPilot's words, such as `QUAD/X`; `None` for motor positions
     /// without a name.
     pub frame: Option<String>,
-    /// How well it is known.
+    /// Declared, inferred or assumed.
     pub basis: Basis,
     /// Where it came from, such as `FRAME_CLASS = 1, FRAME_TYPE = 1`.
     pub source: String,
@@ -43,13 +44,13 @@ pub struct Geometry {
     pub doubt: Option<String>,
 }
 
-/// How well a [`Geometry`] is known.
+/// How a [`Geometry`] is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Basis {
-    /// The log says so.
+    /// By parameters, messages or a header.
     Declared,
-    /// The log does not say, but only one of the common layouts fits the motor commands.
+    /// By the motor commands, which only one of the common layouts fits.
     Inferred,
     /// The most common layout for that number of motors. The yaw pattern is the same in
     /// ArduPilot's and PX4's usual orders; roll and pitch may be turned.
@@ -110,13 +111,11 @@ pub(crate) fn find(flight: &Flight, declared: &Declared) -> Option<Geometry> {
         return None;
     }
     match of(&flight.motors, declared) {
-        Some(mut geometry) => {
-            if geometry.basis == Basis::Declared {
-                geometry.doubt = infer::contradiction(flight, &geometry);
-            }
+        Some(mut geometry) if geometry.basis == Basis::Declared => {
+            geometry.doubt = infer::contradiction(flight, &geometry);
             Some(geometry)
         }
-        None => infer::geometry(flight, declared.class()),
+        assumed => infer::geometry(flight, declared.class()).or(assumed),
     }
 }
 

@@ -3,11 +3,21 @@ use crate::{Basis, Flight, Options};
 /// A flight CSV with commands out of a mixer, and the attitude error that its roll and pitch
 /// efforts follow.
 fn flight(header: &str, mixer: &[[f64; 3]]) -> Flight {
+    read(header, mixer, false)
+}
+
+/// The same, with the outputs of the rate controllers or without.
+fn read(header: &str, mixer: &[[f64; 3]], with_outputs: bool) -> Flight {
     let mut log = format!("{header}t_s");
     for motor in 1..=mixer.len() {
         log += &format!(",motor{motor}");
     }
-    log += ",roll_des_deg,roll_deg,pitch_des_deg,pitch_deg\n";
+    log += ",roll_des_deg,roll_deg,pitch_des_deg,pitch_deg";
+    log += if with_outputs {
+        ",roll_output,pitch_output,yaw_output\n"
+    } else {
+        "\n"
+    };
     let mut state = 1_u64;
     let mut random = || {
         state = state
@@ -23,7 +33,11 @@ fn flight(header: &str, mixer: &[[f64; 3]]) -> Flight {
             log += &format!(",{command}");
         }
         let error = |effort: f64| 3.0 * effort + noise;
-        log += &format!(",{},0,{},0\n", error(roll), error(pitch));
+        log += &format!(",{},0,{},0", error(roll), error(pitch));
+        if with_outputs {
+            log += &format!(",{roll},{pitch},{}", yaw + 0.3 * noise);
+        }
+        log += "\n";
     }
     crate::read(log.as_bytes(), &Options::default()).unwrap()
 }
@@ -59,6 +73,55 @@ fn the_layout_of_six_and_eight_motors_is_found_by_their_commands() {
     odd.swap(0, 3);
     odd.swap(1, 6);
     assert_eq!(flight("", &odd).geometry, None);
+}
+
+/// The outputs of the rate controllers tell apart what the commands alone do not.
+#[test]
+fn the_outputs_of_the_controllers_name_the_layout() {
+    for frame in [
+        "QUAD/X",
+        "QUAD/PLUS",
+        "QUAD/H",
+        "QUAD/BF_X",
+        "QUAD/CW_X",
+        "HEXA/PLUS",
+        "OCTAQUAD/H",
+        "OCTAQUAD/BF_X",
+    ] {
+        let found = read("", &mixer(frame), true).geometry.unwrap();
+        assert_eq!(found.basis, Basis::Inferred, "{frame}");
+        assert_eq!(found.frame.as_deref(), Some(frame));
+        let header = format!("# frame: {frame}\n");
+        let declared = read(&header, &mixer(frame), true).geometry.unwrap();
+        assert_eq!((declared.doubt, declared.factors), (None, found.factors));
+    }
+    for (declared, flown) in [
+        ("QUAD/X", "QUAD/PLUS"),
+        ("QUAD/X", "QUAD/H"),
+        ("HEXA/X", "HEXA/PLUS"),
+    ] {
+        let header = format!("# frame: {declared}\n");
+        let doubt = read(&header, &mixer(flown), true)
+            .geometry
+            .unwrap()
+            .doubt
+            .unwrap();
+        assert!(doubt.contains(flown), "{doubt}");
+    }
+    // Which signals are kept makes no difference.
+    let log = {
+        let mut csv = Vec::new();
+        read("", &mixer("QUAD/H"), true)
+            .write_csv(&mut csv)
+            .unwrap();
+        csv
+    };
+    let none = Options {
+        signals: Some(Vec::new()),
+    };
+    let few = crate::read(&log[..], &none).unwrap();
+    assert_eq!(few.signals().count(), 0);
+    assert_eq!(few.geometry.unwrap().frame.as_deref(), Some("QUAD/H"));
 }
 
 #[test]

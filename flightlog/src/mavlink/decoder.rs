@@ -1,10 +1,11 @@
-//! What the messages of one vehicle tell: armed, in the air, parameters, outputs. Telemetry logs
-//! and live links share it.
+//! The state of one vehicle by its messages: armed, in the air, parameters, outputs. Telemetry logs
+//! and live links use the same decoder.
 
+use crate::field::{Kind, NumericField};
 use crate::geometry::Declared;
 use crate::mav_type::{MavType, mav_type};
+use crate::outputs::LONGEST_PULSE_US;
 use crate::parameters::Parameters;
-use crate::place::{Kind, Place};
 use crate::{Motor, Range, Vehicle, ardupilot, px4};
 
 use super::Packet;
@@ -28,8 +29,6 @@ const STATUSTEXT: u32 = 253;
 
 /// Parameters that wait for the first heartbeat, at most: any vehicle has fewer.
 const MOST_WAITING: usize = 1 << 12;
-/// No limit of an output is longer, in us; what is longer is damaged.
-pub(crate) const LONGEST_PULSE_US: f64 = 3000.0;
 
 /// A payload with the zeros that version 2 leaves out at its end.
 pub(crate) type Payload = [u8; 255];
@@ -42,7 +41,7 @@ pub(crate) fn filled(packet: &Packet<'_>) -> Payload {
 }
 
 pub(crate) fn number(payload: &Payload, offset: usize, kind: Kind) -> Option<f64> {
-    Place { offset, kind }.number(payload)
+    NumericField { offset, kind }.number(payload)
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -51,10 +50,10 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(text).trim().to_owned()
 }
 
-/// What a message told.
+/// What a message changed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Told {
-    /// Nothing that is kept here.
+    /// Nothing that the decoder keeps.
     Nothing,
     /// Armed, in the air or the mode: [`Decoder`] has them.
     State,
@@ -115,7 +114,7 @@ impl Decoder {
         self.version.filter(|_| self.is_px4()).map(px4::firmware)
     }
 
-    /// Whether the vehicle is in the air; `None` while it has not told.
+    /// Whether the vehicle is in the air; `None` while that is unknown.
     ///
     /// EXTENDED_SYS_STATE says so. Without it the heartbeat of ArduPilot does, which is on standby
     /// while landed and active while not; during a failsafe it is critical either way, which
@@ -199,7 +198,7 @@ impl Decoder {
     }
 
     fn learn(&mut self, name: String, value: [u8; 4], kind: u8) -> Told {
-        // PX4 sends the bytes of an integer in the place of the number, ArduPilot every number as
+        // PX4 sends the bytes of an integer instead of a float, ArduPilot every number as
         // a float (<https://mavlink.io/en/services/parameter.html#parameter_encoding>).
         let kind = match kind {
             _ if !self.is_px4() => Kind::F32,
@@ -211,7 +210,7 @@ impl Decoder {
             6 => Kind::I32,
             _ => Kind::F32,
         };
-        let value = Place { offset: 0, kind }.number(&value);
+        let value = NumericField { offset: 0, kind }.number(&value);
         match value.filter(|value| is_plausible(&name, *value)) {
             Some(value) if self.parameters.get(&name).is_none() => {
                 self.parameters.insert(&name, value);
@@ -229,6 +228,7 @@ impl Decoder {
     }
 
     /// Forgets what may have changed while the vehicle booted again; what it is stays.
+    #[cfg(feature = "mavlink")]
     pub(crate) fn boot(&mut self) {
         *self = Self {
             autopilot: self.autopilot,
@@ -267,6 +267,10 @@ pub(crate) struct KnownOutputs {
     /// The motors in order of their number, and the output of each, from 1.
     pub(crate) motors: Vec<(Motor, u16)>,
     /// They are on the first outputs because nothing else is known.
+    #[cfg_attr(
+        not(feature = "mavlink"),
+        expect(dead_code, reason = "recordings do not assume")
+    )]
     pub(crate) first_outputs: bool,
     pub(crate) range: Option<Range>,
     pub(crate) effective: Range,
@@ -319,7 +323,7 @@ fn servo_outputs(payload: &Payload) -> ServoOutputs {
     }
 }
 
-/// Damaged limits would make every command look like one at a limit.
+/// Rejects damaged limits, with which every command would seem to be at a limit.
 fn is_plausible(name: &str, value: f64) -> bool {
     let most = if name.starts_with("MOT_SPIN_") {
         1.0

@@ -1,7 +1,7 @@
-//! MAVLink as a vehicle speaks it, live or in a telemetry log: packets out of bytes, and what a vehicle's packets
-//! tell about its motors.
+//! MAVLink, live and in telemetry logs: packets out of bytes, and the state of a vehicle out of its
+//! packets.
 //!
-//! Nothing here opens a port: bytes come in, packets and bytes to send go out, and time is passed in.
+//! Nothing here opens a port: bytes and the time come in, packets and bytes to send go out.
 
 mod checksum;
 pub(crate) mod decoder;

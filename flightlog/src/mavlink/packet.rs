@@ -34,13 +34,13 @@ pub struct Packet<'a> {
     pub component: u8,
     /// Which message it carries.
     pub id: u32,
-    /// It carries a signature. Without the sender's secret key nobody can tell whether it is genuine.
+    /// It carries a signature, which cannot be verified without the sender's key.
     pub is_signed: bool,
     /// The message as bytes; version 2 leaves zeros off at the end.
     pub payload: &'a [u8],
     /// All of the packet.
     pub bytes: &'a [u8],
-    /// Whether the checksum holds; `None` where it cannot be told, as that of messages of other dialects.
+    /// Whether the checksum holds; `None` where it cannot be verified, as for messages of other dialects.
     pub sound: Option<bool>,
 }
 
@@ -120,31 +120,31 @@ fn start(bytes: &[u8]) -> Start<'_> {
     })
 }
 
-/// What stands at the start of some bytes.
+/// What is at the start of some bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Next<'a> {
-    /// A packet; the next one begins behind [`Packet::bytes`].
+    /// A packet; the next one begins after [`Packet::bytes`].
     Packet(Packet<'a>),
-    /// So many bytes are not one.
+    /// This many bytes are not a packet.
     Skip(usize, Why),
     /// Perhaps the beginning of a packet; more bytes will tell.
     More,
 }
 
-/// Why bytes are passed over.
+/// Why bytes are skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Why {
     /// They do not begin like a packet.
     NoPacket,
     /// The checksum is wrong.
     Checksum,
-    /// The message is none that the dialect knows, so its checksum cannot be told.
+    /// The dialect does not have the message, so the checksum cannot be verified.
     UnknownMessage(u32),
     /// The packet asks for a feature of the protocol that this reader does not have.
     UnknownFlags(u8),
 }
 
-/// Finds what stands at the start of `bytes`: a packet of MAVLink 1 or 2, or bytes to skip.
+/// Finds what is at the start of `bytes`: a packet of MAVLink 1 or 2, or bytes to skip.
 ///
 /// ```
 /// use flightlog::mavlink::{Next, Why, next_packet};

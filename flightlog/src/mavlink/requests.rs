@@ -26,16 +26,16 @@ const STREAMS: [(MavDataStream, u16); 3] = [
     (MavDataStream::MAV_DATA_STREAM_EXTRA1, 4),
     (MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, 4),
 ];
-/// Seconds in which the wanted rate is waited for.
+/// Seconds to wait for the wanted rate.
 const RATE_WAIT_S: f64 = 2.0;
-/// The same once asking has not helped a few times: the link may be as slow as that.
+/// Seconds to wait after a few requests without effect: the link may be slow.
 const RATE_PATIENCE_S: f64 = 15.0;
-/// Seconds until a parameter is asked for again, and how often that is done: on a link that loses 3 packets of 10 each
+/// Seconds until a parameter is requested again, and the number of requests: on a link that loses 3 of 10 packets each
 /// way, one in a million stays unknown.
 const PARAMETER_WAIT_S: f64 = 0.5;
 const PARAMETER_TRIES: u32 = 20;
 
-/// Keeps what was asked for and when.
+/// Decides what to request, and when to request it again.
 #[derive(Debug, Default)]
 pub struct Requests {
     rate_tries: u32,
@@ -47,12 +47,7 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Asks for everything anew.
-    ///
-    /// # Example
-    /// ```
-    /// assert!(!flightlog::mavlink::Requests::new().parameters_done());
-    /// ```
+    /// Nothing was requested yet.
     pub fn new() -> Requests {
         Requests::default()
     }
@@ -62,7 +57,7 @@ impl Requests {
         self.parameters_done
     }
 
-    /// Adds what is to be sent now. The time is the receiver's own, in seconds.
+    /// Adds the messages to send now to `out`. The time is that of the receiver's clock, in seconds.
     pub fn due(&mut self, now_s: f64, telemetry: &Telemetry, out: &mut Vec<MavMessage>) {
         self.ask_rates(now_s, telemetry, out);
         if !self.parameters_done {
@@ -70,7 +65,7 @@ impl Requests {
         }
     }
 
-    /// Judges by what comes, not by what was promised: acknowledgements get lost.
+    /// Goes by the rate of the messages received: acknowledgements get lost.
     fn ask_rates(&mut self, now_s: f64, telemetry: &Telemetry, out: &mut Vec<MavMessage>) {
         let wait_s = if self.rate_tries < 4 {
             RATE_WAIT_S
@@ -89,7 +84,7 @@ impl Requests {
         if enough && !refused {
             return;
         }
-        // The first two times in the new way, then in turn.
+        // The first two requests use the new command, the next ones alternate.
         let old_way = telemetry.interval_refused()
             || self.rate_tries >= 2 && self.rate_tries.is_multiple_of(2);
         self.rate_tries += 1;

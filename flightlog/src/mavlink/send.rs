@@ -24,14 +24,6 @@ pub struct Sender {
 
 impl Sender {
     /// A sender that is this component of whatever system it speaks for.
-    ///
-    /// # Example
-    /// ```
-    /// use flightlog::mavlink::{Sender, Version, dialect::{HEARTBEAT_DATA, MavMessage}};
-    ///
-    /// let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA::default());
-    /// assert_eq!(Sender::new(191).packet(Version::V1, 1, &heartbeat)[0], 0xfe);
-    /// ```
     pub fn new(component: u8) -> Sender {
         Sender {
             component,

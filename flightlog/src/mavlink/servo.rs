@@ -1,4 +1,4 @@
-//! The outputs of SERVO_OUTPUT_RAW: those of its port 1 count on from those of port 0.
+//! The outputs of SERVO_OUTPUT_RAW: 1 to 16 are those of port 0, 17 to 32 those of port 1.
 
 use crate::{Motor, parameters::Parameters, px4};
 
@@ -12,7 +12,7 @@ pub(crate) fn bank(output: u16) -> (u8, usize) {
     (port, index % OUTPUTS_A_PORT)
 }
 
-/// The field that an output is.
+/// The name of the field of an output.
 pub(crate) fn field(output: u16) -> String {
     match bank(output) {
         (0, index) => format!("servo{}_raw", index + 1),

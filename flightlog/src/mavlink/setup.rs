@@ -10,6 +10,8 @@ const AUX_OUTPUTS: usize = 8;
 
 /// Motors and the range of their commands, with where each is known from.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Setup {
     /// The motors in order of their number.
     pub motors: Vec<Motor>,
@@ -18,10 +20,12 @@ pub struct Setup {
     /// Range of the commands, 0 % to 100 %.
     pub range: Range,
     /// The part of the range that is used in flight, as fractions of it.
+    #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
     pub effective: Range,
-    /// What is assumed because the vehicle did not tell, in words; empty where it told everything.
+    /// What is assumed because the vehicle did not report it, in words; empty where nothing is.
     pub assumed: Vec<String>,
     /// The output of each motor, from 1.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) outputs: Vec<usize>,
 }
 
@@ -41,7 +45,7 @@ impl Setup {
             && usize::from(expected) != motors.len()
         {
             assumed.push(format!(
-                "the {} motors whose outputs are known are all that matter, of {expected}",
+                "outputs are known for {} of the {expected} motors",
                 motors.len()
             ));
         }
@@ -126,7 +130,7 @@ fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String
     names
 }
 
-/// PX4 does not answer for parameters that it does not have, so as soon as all motors are found no more is asked for.
+/// PX4 does not answer requests for parameters that it does not have, so functions are requested until all motors are found.
 fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     let motors = px4_motors(parameters);
     let all = vehicle.motors.map_or(usize::MAX, usize::from);

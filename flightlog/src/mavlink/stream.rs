@@ -1,8 +1,8 @@
-//! Packets out of bytes that come in pieces.
+//! Splits a stream of bytes into packets.
 
 use super::{Next, Packet, Why, next_packet};
 
-/// What was passed over.
+/// What was skipped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Skipped {
     /// Bytes that belong to no packet that could be read.
@@ -11,12 +11,12 @@ pub struct Skipped {
     pub checksums: u64,
     /// Packets with a message or a feature that is not known here.
     pub unknown: u64,
-    /// Signed packets: without the key nobody can tell whether they are genuine.
+    /// Signed packets, which cannot be verified without the key.
     pub signed: u64,
 }
 
 impl Skipped {
-    /// Nothing was passed over.
+    /// Whether nothing was skipped.
     pub fn is_empty(&self) -> bool {
         *self == Skipped::default()
     }
@@ -25,6 +25,18 @@ impl Skipped {
 /// Bytes as they arrive, and the packets in them.
 ///
 /// Its memory is bounded by the largest piece that was pushed and one packet.
+///
+/// # Example: a packet that arrives in pieces
+/// ```
+/// let heartbeat = [0xfe, 9, 0, 1, 1, 0, 0, 0, 0, 0, 2, 3, 81, 3, 3, 0x78, 0x51];
+/// let mut stream = flightlog::mavlink::Stream::new();
+/// stream.push(b"noise");
+/// stream.push(&heartbeat[..8]);
+/// assert!(stream.packet().is_none());
+/// stream.push(&heartbeat[8..]);
+/// assert_eq!(stream.packet().map(|packet| packet.id), Some(0));
+/// assert_eq!(stream.skipped().bytes, 5);
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Stream {
     buffer: Vec<u8>,
@@ -34,13 +46,6 @@ pub struct Stream {
 
 impl Stream {
     /// A stream that starts here.
-    ///
-    /// # Example
-    /// ```
-    /// use flightlog::mavlink::Stream;
-    ///
-    /// assert!(Stream::new().packet().is_none());
-    /// ```
     pub fn new() -> Stream {
         Stream::default()
     }
@@ -52,7 +57,7 @@ impl Stream {
         self.buffer.extend_from_slice(bytes);
     }
 
-    /// The next packet; `None` until more bytes arrive. Signed packets are counted and passed over.
+    /// The next packet; `None` until more bytes arrive. Signed packets are counted and skipped.
     pub fn packet(&mut self) -> Option<Packet<'_>> {
         let length = loop {
             match next_packet(self.buffer.get(self.taken..)?) {
@@ -84,14 +89,14 @@ impl Stream {
         }
     }
 
-    /// The bytes end here, as at the end of a datagram: the beginning of a packet that is left is none.
+    /// Ends a datagram: discards a partial packet.
     pub fn end(&mut self) {
         self.skipped.bytes += self.buffer.len().saturating_sub(self.taken) as u64;
         self.buffer.clear();
         self.taken = 0;
     }
 
-    /// What was passed over since the stream began.
+    /// What was skipped since the stream began.
     pub fn skipped(&self) -> Skipped {
         self.skipped
     }

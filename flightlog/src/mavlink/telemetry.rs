@@ -2,14 +2,15 @@
 
 use super::{
     Packet, Setup, Version,
-    decoder::{AUTOPILOT, Decoder, LONGEST_PULSE_US, Payload, ServoOutputs, Told, filled, number},
+    decoder::{AUTOPILOT, Decoder, Payload, ServoOutputs, Told, filled, number},
     servo::OUTPUTS_A_PORT,
     setup::missing,
 };
 use crate::{
     Vehicle, VehicleKind,
-    clock::{Clock, Placed},
-    place::Kind,
+    clock::{Checked, Clock},
+    field::Kind,
+    outputs::LONGEST_PULSE_US,
 };
 
 const ATTITUDE: u32 = 30;
@@ -212,7 +213,7 @@ impl Telemetry {
         if self.stamps[1].replace(boot_ms) == Some(boot_ms) {
             return News::Nothing;
         }
-        self.boot_clock.place(f64::from(boot_ms) * 1e-3);
+        self.boot_clock.check(f64::from(boot_ms) * 1e-3);
         match self.boot_clock.boots_s() {
             [] => News::Nothing,
             _ => self.forget(),
@@ -235,10 +236,10 @@ impl Telemetry {
         }
         let t_s = match self
             .clock
-            .place(seconds(outputs.time_us, self.clock.now_s()))
+            .check(seconds(outputs.time_us, self.clock.now_s()))
         {
-            Placed::At(t_s) | Placed::Refuted(t_s) | Placed::Confirmed(_, t_s) => t_s,
-            Placed::Wait | Placed::RefutedWait => return News::Nothing,
+            Checked::At(t_s) | Checked::Refuted(t_s) | Checked::Confirmed(_, t_s) => t_s,
+            Checked::Wait | Checked::RefutedWait => return News::Nothing,
         };
         if !self.clock.boots_s().is_empty() {
             return self.forget();

@@ -55,7 +55,7 @@ impl<'o> Collector<'o> {
         let zero_us = *self.zero_us.get_or_insert(stamp_us);
         let t_s = (stamp_us as f64 - zero_us as f64) * 1e-6;
         if !self.latest.believe(t_s) {
-            return self.report.bad("a time that no other agrees with");
+            return self.report.bad("a time stamp that does not fit the others");
         }
         let known = (self.systems.iter()).position(|(system, _)| *system == packet.system);
         let index = known.unwrap_or_else(|| {
@@ -73,8 +73,8 @@ impl<'o> Collector<'o> {
         let mut flight = Flight::empty(Format::Tlog);
         flight.report = self.report;
         flight.utc_at_zero_s = self.zero_us.map(|zero_us| zero_us as f64 * 1e-6);
-        // The vehicle is the first system that says of itself to be one; where none does,
-        // the first that sends anything as an autopilot.
+        // The vehicle is the first system whose heartbeat is that of a vehicle; without any,
+        // the first system that sends anything as an autopilot.
         let is_vehicle = |(_, heard): &(u8, Heard)| heard.decoder.mav_type().is_some();
         let mut systems = self.systems;
         let chosen = systems.iter().position(is_vehicle).unwrap_or(0);
@@ -195,15 +195,16 @@ impl Heard {
         if self.decoder.is_px4() {
             vehicle.firmware = self.decoder.px4_firmware();
         }
-        let Some((number, told)) = self.decoder.mav_type() else {
+        if self.decoder.mav_type().is_none() {
             return;
-        };
+        }
+        let told = self.decoder.vehicle();
         // What sends the heartbeat of a quadplane may call itself a plane, not the reverse.
         if !(vehicle.kind == VehicleKind::Vtol && told.kind == VehicleKind::Plane) {
             vehicle.kind = told.kind;
-            vehicle.source = format!("HEARTBEAT.type = {number}");
+            vehicle.source = told.source;
         }
-        vehicle.frame.get_or_insert_with(|| told.name.into());
+        vehicle.frame = vehicle.frame.take().or(told.frame);
         vehicle.motors = vehicle.motors.or(told.motors);
     }
 }

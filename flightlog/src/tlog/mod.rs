@@ -33,9 +33,9 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Fligh
     Ok(collector.finish())
 }
 
-/// Reads the packets of a window and says how many bytes it is done with.
+/// Reads the packets of a window and returns how many bytes are done.
 fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
-    // A packet and the start of the next are in sight of each other, but at the end.
+    // Except at the end, the window holds a whole packet and the start of the next.
     let sure = match at_end {
         true => window.len(),
         false => window.len().saturating_sub(2 * LONGEST),
@@ -65,7 +65,9 @@ fn scan(collector: &mut Collector<'_>, window: &[u8], at_end: bool) -> usize {
                     report.truncated = true;
                     report.because(|| "the log ends inside a message".into());
                 } else {
-                    report.because(|| "packets with a wrong checksum, or no packets".into());
+                    report.because(|| {
+                        "packets with a wrong checksum, or bytes that are not packets".into()
+                    });
                 }
                 at += skip;
             }
@@ -81,7 +83,7 @@ fn record(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
 }
 
 /// The record at the start of `bytes`, if its checksum holds. One of another dialect
-/// cannot be checked: it is believed if its stamp is a date and a packet follows.
+/// cannot be verified: it is accepted if its stamp is a date and a packet follows.
 fn believed(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
     let (stamp_us, packet) = record(bytes)?;
     let believed = packet.sound.unwrap_or_else(|| {
@@ -94,7 +96,7 @@ fn believed(bytes: &[u8]) -> Option<(u64, Packet<'_>)> {
     believed.then_some((stamp_us, packet))
 }
 
-/// Where the next record starts that is sure to be one.
+/// Offset of the next record that is certainly one.
 fn next(bytes: &[u8]) -> usize {
     let starts = |at: &usize| {
         bytes

@@ -2,14 +2,14 @@
 //! (<https://mavlink.io/en/messages/common.html>; fields lie in the order of their width).
 
 use crate::angle::Angle;
-use crate::place::{Kind, Place};
+use crate::field::{Kind, NumericField};
 
 /// How a signal is made from the payload of a message.
 pub(super) enum From {
-    /// A number times a factor; the second number stands for "not known".
-    Number(Place, f64, Option<f64>),
+    /// A number times a factor; the second number means "not known".
+    Number(NumericField, f64, Option<f64>),
     /// Length of the vector of these.
-    Length(&'static [Place]),
+    Length(&'static [NumericField]),
     /// An angle of the quaternion that starts there.
     Angle(Angle, usize),
 }
@@ -21,8 +21,8 @@ pub(super) struct Spec {
     pub(super) signals: &'static [(From, &'static str, &'static str)],
 }
 
-const fn at(offset: usize, kind: Kind) -> Place {
-    Place { offset, kind }
+const fn at(offset: usize, kind: Kind) -> NumericField {
+    NumericField { offset, kind }
 }
 
 const fn plain(offset: usize, kind: Kind) -> From {
@@ -203,12 +203,12 @@ impl From {
     /// The value in a payload that was filled up with zeros.
     pub(super) fn value(&self, payload: &[u8]) -> Option<f64> {
         match self {
-            Self::Number(place, factor, unknown) => {
-                let number = place.number(payload)?;
+            Self::Number(field, factor, unknown) => {
+                let number = field.number(payload)?;
                 (Some(number) != *unknown).then_some(number * factor)
             }
-            Self::Length(places) => {
-                crate::place::vector_length(places.iter().map(|place| place.number(payload)))
+            Self::Length(fields) => {
+                crate::field::vector_length(fields.iter().map(|field| field.number(payload)))
             }
             Self::Angle(angle, offset) => {
                 let element = |index: usize| at(offset + 4 * index, Kind::F32).number(payload);

@@ -6,14 +6,14 @@ use super::plan::{Role, parts};
 use super::signals::SPECS;
 use super::topics::{Topics, key};
 use crate::clock::Latest;
+use crate::field::NumericField;
 use crate::geometry::{self, Declared};
 use crate::interval::both_hold;
 use crate::parameters::Parameters;
-use crate::place::Place;
 use crate::signal::preferred;
 use crate::{Event, Flight, Format, Intervals, Options, Report, Series, px4};
 
-/// A time this far ahead of all before it is damage, unless the next one agrees.
+/// A time this far after all times before it is damage, unless the next one agrees.
 const LONGEST_PAUSE_S: f64 = 60.0;
 /// Logged values of an outputs message.
 const OUTPUTS: usize = 16;
@@ -22,7 +22,7 @@ pub(super) struct Collector<'o> {
     options: &'o Options,
     pub(super) report: Report,
     pub(super) topics: Topics,
-    roles: Vec<Option<(Place, Role)>>,
+    roles: Vec<Option<(NumericField, Role)>>,
     latest: Latest,
     parameters: Parameters,
     outputs: Vec<Outputs>,
@@ -71,7 +71,7 @@ impl<'o> Collector<'o> {
             b'F' => {
                 let text = String::from_utf8_lossy(body);
                 if self.topics.formats.define(&text).is_none() {
-                    self.report.bad("a definition that makes no sense");
+                    self.report.bad("a definition that is not valid");
                 }
             }
             b'A' => self.announce(body),
@@ -130,7 +130,7 @@ impl<'o> Collector<'o> {
         if self.roles.len() <= index {
             self.roles.resize_with(index + 1, || None);
         }
-        let time = self.topics.formats.place(&name, "timestamp");
+        let time = self.topics.formats.field(&name, "timestamp");
         let role = self.role(&name, instance);
         if let Some(slot) = self.roles.get_mut(index) {
             *slot = time.zip(Some(role));
@@ -139,30 +139,30 @@ impl<'o> Collector<'o> {
 
     fn role(&mut self, name: &str, instance: u8) -> Role {
         let formats = &self.topics.formats;
-        let place = |field: &str| formats.place(name, field);
+        let find = |field: &str| formats.field(name, field);
         let commands = |topic: &'static str, field: &str| {
-            let fields = (0..OUTPUTS).map_while(|index| place(&format!("{field}[{index}]")));
-            (topic, fields.collect::<Vec<Place>>())
+            let fields = (0..OUTPUTS).map_while(|index| find(&format!("{field}[{index}]")));
+            (topic, fields.collect::<Vec<NumericField>>())
         };
-        let (topic, places) = match name {
+        let (topic, fields) = match name {
             "actuator_motors" => commands("actuator_motors", "control"),
             "actuator_outputs" => commands("actuator_outputs", "output"),
             "vehicle_status" if instance == 0 => {
                 return Role::Status {
-                    arming: place("arming_state"),
-                    mode: place("nav_state"),
-                    system_type: place("system_type"),
+                    arming: find("arming_state"),
+                    mode: find("nav_state"),
+                    system_type: find("system_type"),
                 };
             }
             "vehicle_land_detected" if instance == 0 => {
-                return place("landed").map_or(Role::Nothing, Role::Land);
+                return find("landed").map_or(Role::Nothing, Role::Land);
             }
             _ if instance == 0 => {
                 let Some(spec) = SPECS.iter().find(|spec| spec.topic == name) else {
                     return Role::Nothing;
                 };
-                let utc = place("time_utc_usec");
-                let parts = parts(spec, &place, self.options);
+                let utc = find("time_utc_usec");
+                let parts = parts(spec, &find, self.options);
                 let (parts, labels): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
                 self.series.push((spec.topic, Series::new(labels)));
                 return Role::Series(self.series.len() - 1, parts, utc);
@@ -171,11 +171,11 @@ impl<'o> Collector<'o> {
         };
         let known = |outputs: &Outputs| outputs.topic == topic && outputs.instance == instance;
         let index = self.outputs.iter().position(known).unwrap_or_else(|| {
-            let width = places.len();
+            let width = fields.len();
             self.outputs.push(Outputs::new(topic, instance, width));
             self.outputs.len() - 1
         });
-        Role::Outputs(index, places)
+        Role::Outputs(index, fields)
     }
 
     /// `D`: number of the topic, then its fields.
@@ -194,15 +194,15 @@ impl<'o> Collector<'o> {
             return self.report.bad("a message without a time");
         };
         if !self.latest.believe(t_s) {
-            return self.report.bad("a time that no other agrees with");
+            return self.report.bad("a time stamp that does not fit the others");
         }
-        let flag = |place: &Place, yes: f64| Some((t_s, place.number(body)? == yes));
+        let flag = |field: &NumericField, yes: f64| Some((t_s, field.number(body)? == yes));
         match role {
             Role::Nothing => {}
-            Role::Outputs(index, places) => {
-                let values = places
+            Role::Outputs(index, fields) => {
+                let values = fields
                     .iter()
-                    .map(|place| place.number(body).unwrap_or(f64::NAN) as f32);
+                    .map(|field| field.number(body).unwrap_or(f64::NAN) as f32);
                 let Some(outputs) = self.outputs.get_mut(*index) else {
                     return;
                 };
@@ -214,22 +214,22 @@ impl<'o> Collector<'o> {
                 system_type,
             } => {
                 self.armed
-                    .extend(arming.as_ref().and_then(|place| flag(place, 2.0)));
+                    .extend(arming.as_ref().and_then(|field| flag(field, 2.0)));
                 let mode = mode
-                    .and_then(|place| place.number(body))
+                    .and_then(|field| field.number(body))
                     .map(|mode| mode as i64);
                 if let Some(mode) = mode
                     && self.modes.last().is_none_or(|(_, last)| *last != mode)
                 {
                     self.modes.push((t_s, mode));
                 }
-                let system_type = system_type.and_then(|place| place.number(body));
+                let system_type = system_type.and_then(|field| field.number(body));
                 self.system_type = self.system_type.or(system_type);
             }
-            Role::Land(place) => self.landed.extend(flag(place, 1.0)),
+            Role::Land(field) => self.landed.extend(flag(field, 1.0)),
             Role::Series(index, parts, utc) => {
-                if let (None, Some(place)) = (self.utc_at_zero_s, utc) {
-                    let utc_us = place.number(body).filter(|&utc_us| utc_us > 0.0);
+                if let (None, Some(field)) = (self.utc_at_zero_s, utc) {
+                    let utc_us = field.number(body).filter(|&utc_us| utc_us > 0.0);
                     self.utc_at_zero_s = utc_us.map(|utc_us| utc_us * 1e-6 - t_s);
                 }
                 if let Some((_, series)) = self.series.get_mut(*index) {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::place::{Kind, Place};
+use crate::field::{Kind, NumericField};
 
 /// Nested topics go no deeper than this; deeper ones are damage.
 const DEEPEST: usize = 8;
@@ -11,7 +11,7 @@ const LONGEST: usize = u16::MAX as usize;
 
 /// One field of a topic.
 #[derive(Debug, Clone, PartialEq)]
-struct Field {
+struct Member {
     kind: String,
     count: usize,
     name: String,
@@ -19,7 +19,7 @@ struct Field {
 
 /// All definitions of a log.
 #[derive(Debug, Default)]
-pub(super) struct Formats(HashMap<String, Vec<Field>>);
+pub(super) struct Formats(HashMap<String, Vec<Member>>);
 
 /// The type of that name.
 fn kind_of(name: &str) -> Option<Kind> {
@@ -41,11 +41,11 @@ fn kind_of(name: &str) -> Option<Kind> {
 /// A typed value: the number after a key such as `float MPC_THR_HOVER`, with its name.
 pub(super) fn keyed_number<'k>(key: &'k str, value: &[u8]) -> Option<(&'k str, f64)> {
     let (kind, name) = key.split_once(' ')?;
-    let place = Place {
+    let field = NumericField {
         offset: 0,
         kind: kind_of(kind)?,
     };
-    Some((name, place.number(value)?))
+    Some((name, field.number(value)?))
 }
 
 impl Formats {
@@ -55,8 +55,8 @@ impl Formats {
         let fields = fields
             .split(';')
             .filter(|field| !field.is_empty())
-            .map(field)
-            .collect::<Option<Vec<Field>>>()?;
+            .map(member)
+            .collect::<Option<Vec<Member>>>()?;
         self.0.entry(name.to_owned()).or_insert(fields);
         Some(())
     }
@@ -64,12 +64,12 @@ impl Formats {
     /// Bytes of a topic as it is logged: with its padding, but for that at the end.
     pub(super) fn logged_size(&self, topic: &str) -> Option<usize> {
         let fields = self.0.get(topic)?;
-        let padding = |field: &&Field| field.name.starts_with("_padding");
+        let padding = |field: &&Member| field.name.starts_with("_padding");
         let end = fields.iter().rev().take_while(padding).count();
         self.size_of(fields.get(..fields.len() - end)?, DEEPEST)
     }
 
-    fn size_of(&self, fields: &[Field], depth: usize) -> Option<usize> {
+    fn size_of(&self, fields: &[Member], depth: usize) -> Option<usize> {
         fields.iter().try_fold(0_usize, |size, field| {
             let one = self.field_size(field, depth)?;
             let size = size.checked_add(one.checked_mul(field.count)?)?;
@@ -78,7 +78,7 @@ impl Formats {
     }
 
     /// Bytes of one element of a field.
-    fn field_size(&self, field: &Field, depth: usize) -> Option<usize> {
+    fn field_size(&self, field: &Member, depth: usize) -> Option<usize> {
         if let Some(kind) = kind_of(&field.kind) {
             return Some(kind.width());
         }
@@ -86,7 +86,7 @@ impl Formats {
     }
 
     /// Where the field called `name`, with its index as in `q[2]`, is in a topic.
-    pub(super) fn place(&self, topic: &str, name: &str) -> Option<Place> {
+    pub(super) fn field(&self, topic: &str, name: &str) -> Option<NumericField> {
         let (name, index) = match name.split_once('[') {
             Some((name, index)) => (name, index.strip_suffix(']')?.parse().ok()?),
             None => (name, 0_usize),
@@ -96,7 +96,7 @@ impl Formats {
             let size = self.field_size(field, DEEPEST)?;
             if field.name == name {
                 let kind = kind_of(&field.kind)?;
-                return (index < field.count).then_some(Place {
+                return (index < field.count).then_some(NumericField {
                     offset: offset + index * size,
                     kind,
                 });
@@ -108,13 +108,13 @@ impl Formats {
 }
 
 /// `type name` or `type[count] name`.
-fn field(text: &str) -> Option<Field> {
+fn member(text: &str) -> Option<Member> {
     let (kind, name) = text.trim().split_once(' ')?;
     let (kind, count) = match kind.split_once('[') {
         Some((kind, count)) => (kind, count.strip_suffix(']')?.parse().ok()?),
         None => (kind, 1),
     };
-    Some(Field {
+    Some(Member {
         kind: kind.into(),
         count,
         name: name.trim().into(),
@@ -141,14 +141,14 @@ mod tests {
         let formats = formats();
         assert_eq!(formats.logged_size("all"), Some(8 + 2 * 16 + 16 + 1));
         assert_eq!(formats.logged_size("esc"), Some(12));
-        let place = formats.place("all", "q[2]").unwrap();
-        assert_eq!(place.offset, 8 + 32 + 8);
+        let field = formats.field("all", "q[2]").unwrap();
+        assert_eq!(field.offset, 8 + 32 + 8);
         let mut message = vec![0; 57];
         message[48..52].copy_from_slice(&1.5_f32.to_le_bytes());
-        assert_eq!(place.number(&message), Some(1.5));
-        assert_eq!(place.number(&message[..50]), None);
-        assert_eq!(formats.place("all", "q[4]"), None);
-        assert_eq!(formats.place("all", "esc"), None);
+        assert_eq!(field.number(&message), Some(1.5));
+        assert_eq!(field.number(&message[..50]), None);
+        assert_eq!(formats.field("all", "q[4]"), None);
+        assert_eq!(formats.field("all", "esc"), None);
     }
 
     #[test]

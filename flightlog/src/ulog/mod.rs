@@ -1,8 +1,8 @@
 //! PX4 ULog files: a head, and messages of a length, a letter and a body
 //! (<https://docs.px4.io/main/en/dev_log/ulog_file_format.html>).
 //!
-//! Nothing protects a message, so each is held against what is known of it: the letter,
-//! the length that its topic has, and that another message follows.
+//! Messages have no checksum, so each is checked against what is known of it: the letter,
+//! the length of its topic, and that another message follows.
 
 mod collect;
 mod format;
@@ -54,7 +54,7 @@ struct Scanner<'o> {
 }
 
 impl Scanner<'_> {
-    /// Reads the messages of a window and says how many bytes it is done with.
+    /// Reads the messages of a window and returns how many bytes are done.
     fn scan(&mut self, window: &[u8], at_end: bool) -> usize {
         let mut at = 0;
         if self.at == 0 && window.starts_with(&MAGIC) && window.len() >= FILE_HEAD {
@@ -63,7 +63,7 @@ impl Scanner<'_> {
             }
             at = FILE_HEAD;
         }
-        // A message and the head of the next are in sight of each other, but at the end.
+        // Except at the end, the window holds a whole message and the head of the next.
         let sure = match at_end {
             true => window.len(),
             false => window.len().saturating_sub(LONGEST + HEAD),
@@ -77,12 +77,12 @@ impl Scanner<'_> {
         used
     }
 
-    /// Deals with what is at the start of `bytes`, at `place` in the file; gives its length.
-    /// Behind `room` bytes damage cannot be told from a message that is not all in sight.
-    fn step(&mut self, bytes: &[u8], place: u64, room: usize) -> usize {
-        // What was appended starts anew, wherever the message before would have ended.
-        let next = self.appended.iter().find(|&&start| start > place);
-        let limit = next.and_then(|start| usize::try_from(start - place).ok());
+    /// Handles what is at the start of `bytes`, at `offset` in the file; returns its length.
+    /// After `room` bytes, damage cannot be told from a message that continues after the window.
+    fn step(&mut self, bytes: &[u8], offset: u64, room: usize) -> usize {
+        // Appended data starts with a message, wherever the message before would have ended.
+        let next = self.appended.iter().find(|&&start| start > offset);
+        let limit = next.and_then(|start| usize::try_from(start - offset).ok());
         let within = &bytes[..limit.unwrap_or(bytes.len()).min(bytes.len())];
         let report = &mut self.collector.report;
         match self.collector.topics.message(within) {
@@ -112,7 +112,7 @@ impl Scanner<'_> {
         }
     }
 
-    /// Where the next message starts that can be told from damage.
+    /// Offset of the next message that is certainly not damage.
     fn next_message(&self, bytes: &[u8]) -> usize {
         (1..bytes.len())
             .find(|&at| self.collector.topics.certain(&bytes[at..]))

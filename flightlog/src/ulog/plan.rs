@@ -1,39 +1,39 @@
-//! What is read from the messages of each ULog topic.
+//! The use of each ULog topic.
 
 use super::signals::{From, Spec};
 use crate::Options;
 use crate::angle::Angle;
-use crate::place::{Place, vector_length};
+use crate::field::{NumericField, vector_length};
 use crate::signal::Label;
 
-/// What the messages of one number are read for.
+/// The use of the messages of one topic.
 pub(super) enum Role {
     Nothing,
     /// Commands of motors or outputs: index in `outputs`.
-    Outputs(usize, Vec<Place>),
+    Outputs(usize, Vec<NumericField>),
     Status {
-        arming: Option<Place>,
-        mode: Option<Place>,
-        system_type: Option<Place>,
+        arming: Option<NumericField>,
+        mode: Option<NumericField>,
+        system_type: Option<NumericField>,
     },
-    Land(Place),
-    Series(usize, Vec<Part>, Option<Place>),
+    Land(NumericField),
+    Series(usize, Vec<Part>, Option<NumericField>),
 }
 
 /// One signal of a series.
 pub(super) enum Part {
-    Field(Place, f64),
-    Length(Vec<Place>),
-    Angle(Angle, [Place; 4]),
+    Field(NumericField, f64),
+    Length(Vec<NumericField>),
+    Angle(Angle, [NumericField; 4]),
 }
 
 impl Part {
     pub(super) fn value(&self, body: &[u8]) -> Option<f64> {
         match self {
-            Self::Field(place, scale) => Some(place.number(body)? * scale),
-            Self::Length(places) => vector_length(places.iter().map(|place| place.number(body))),
+            Self::Field(field, scale) => Some(field.number(body)? * scale),
+            Self::Length(fields) => vector_length(fields.iter().map(|field| field.number(body))),
             Self::Angle(angle, [w, x, y, z]) => {
-                let number = |place: &Place| place.number(body);
+                let number = |field: &NumericField| field.number(body);
                 Some(angle.of([number(w)?, number(x)?, number(y)?, number(z)?]))
             }
         }
@@ -43,23 +43,23 @@ impl Part {
 /// The signals that a topic holds and that are asked for.
 pub(super) fn parts(
     spec: &Spec,
-    place: &impl Fn(&str) -> Option<Place>,
+    find: &impl Fn(&str) -> Option<NumericField>,
     options: &Options,
 ) -> Vec<(Part, Label)> {
     let part = |from: &From| {
         Some(match from {
-            From::Field(field, scale) => (Part::Field(place(field)?, *scale), (*field).to_owned()),
+            From::Field(field, scale) => (Part::Field(find(field)?, *scale), (*field).to_owned()),
             From::Length(fields) => {
-                let places = fields.iter().map(|field| place(field));
+                let found = fields.iter().map(|field| find(field));
                 (
-                    Part::Length(places.collect::<Option<_>>()?),
+                    Part::Length(found.collect::<Option<_>>()?),
                     fields.join(", "),
                 )
             }
             From::Angle(angle, field) => {
-                let element = |index| place(&format!("{field}[{index}]"));
-                let places = [element(0)?, element(1)?, element(2)?, element(3)?];
-                (Part::Angle(*angle, places), (*field).to_owned())
+                let element = |index| find(&format!("{field}[{index}]"));
+                let found = [element(0)?, element(1)?, element(2)?, element(3)?];
+                (Part::Angle(*angle, found), (*field).to_owned())
             }
         })
     };

@@ -55,8 +55,36 @@ const RADIO: &[(&[From], &str, &str)] = &[
     (&[Field("noise", 1.0)], "radio_noise", ""),
 ];
 
+const fn outputs(
+    roll: &'static [From],
+    pitch: &'static [From],
+    yaw: &'static [From],
+) -> [(&'static [From], &'static str, &'static str); 3] {
+    [
+        (roll, "roll_output", "1"),
+        (pitch, "pitch_output", "1"),
+        (yaw, "yaw_output", "1"),
+    ]
+}
+
 /// Where two topics hold the same signal, the first is preferred.
 pub(super) const SPECS: &[Spec] = &[
+    Spec {
+        topic: "vehicle_torque_setpoint",
+        signals: &outputs(
+            &[Field("xyz[0]", 1.0)],
+            &[Field("xyz[1]", 1.0)],
+            &[Field("xyz[2]", 1.0)],
+        ),
+    },
+    Spec {
+        topic: "actuator_controls_0",
+        signals: &outputs(
+            &[Field("control[0]", 1.0)],
+            &[Field("control[1]", 1.0)],
+            &[Field("control[2]", 1.0)],
+        ),
+    },
     Spec {
         topic: "vehicle_attitude",
         signals: &[

@@ -1,4 +1,4 @@
-//! What a message must look like, from the topics that the log has announced.
+//! Checks of messages against the topics that the log has announced.
 
 use super::format::Formats;
 use super::{HEAD, SYNC};
@@ -12,7 +12,7 @@ pub(super) struct Topics {
 }
 
 impl Topics {
-    /// Topic `name` goes by the number `id` from now on.
+    /// Topic `name` has the number `id` from now on.
     pub(super) fn announce(&mut self, id: u16, name: &str) {
         let index = usize::from(id);
         if self.lengths.len() <= index {
@@ -39,7 +39,7 @@ impl Topics {
         None
     }
 
-    /// Whether a message starts here that cannot be damage, or hardly.
+    /// Whether a message starts here that is (almost) certainly not damage.
     pub(super) fn certain(&self, bytes: &[u8]) -> bool {
         let Some(message) = self.length(bytes).and_then(|length| bytes.get(..length)) else {
             return false;
@@ -84,7 +84,7 @@ impl Topics {
         bytes.len() < 5 || self.length(bytes).is_some()
     }
 
-    /// Whether the body, too, is as its letter wants it.
+    /// Whether the body also fits the letter.
     fn exact(&self, message: &[u8]) -> bool {
         let body = &message[HEAD..];
         match message[2] {

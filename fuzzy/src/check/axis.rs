@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::model::{Parts, Shape, Variable};
+use crate::model::{MembershipFunction, Parts, Variable};
 
 /// Points of the range at which to look: evenly spaced ones, and those that the terms' parameters name.
 const EVENLY_SPACED: usize = 64;
@@ -25,7 +25,7 @@ pub(super) fn places(variable: &Variable) -> Vec<f64> {
 }
 
 /// The corners and middles of a shape, among other numbers.
-pub(super) fn marks(shape: &Shape) -> Vec<f64> {
+pub(super) fn marks(shape: &MembershipFunction) -> Vec<f64> {
     match shape.parts() {
         Parts::Fixed(_, parameters) => parameters,
         Parts::Points(points) => points.iter().map(|&(x, _)| x).collect(),

@@ -2,13 +2,13 @@
 
 use alloc::{string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::logic::{Cells, Level, Logic, halves};
 use crate::model::{Model, Variable};
 
 /// A box of the input space in which no rule of an output holds.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Uncovered {
     /// The output.
     pub output: String,
@@ -29,7 +29,8 @@ pub struct Uncovered {
 }
 
 /// One side of a box.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Side {
     /// The input.
     pub input: String,
@@ -40,7 +41,8 @@ pub struct Side {
 }
 
 /// `input IS term`
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Antecedent {
     /// The input.
     pub input: String,

@@ -1,6 +1,7 @@
-//! A report in words.
+//! A report as located diagnostics.
 
 use alloc::{
+    collections::BTreeMap,
     format,
     string::{String, ToString},
     vec::Vec,
@@ -9,24 +10,25 @@ use core::ops::Range;
 
 use super::{
     AgainstTrend, Coordinate, Counterexample, Direction, Hole, Jump, Reach, Report, TermOf,
-    Uncovered, names::outside_range, shown,
+    Uncovered, shown, terms::outside,
 };
 use crate::{
-    diagnostic::{Diagnostic, Severity, listed},
+    diagnostic::{Diagnostic, listed},
     model::{
-        Model, NoRuleFires,
-        document::{Places, VariablePlaces},
+        Model, NoRuleFires, Variable,
+        document::{Spans, VariableSpans},
     },
     rule::{Condition, Consequent, Name, Rule},
 };
 
-/// More boxes than this are counted, not told one by one.
+/// More boxes than this are counted, not listed.
 const MOST_BOXES_TOLD: usize = 10;
 
-/// The report of a model, with the places at which its parts stand.
-pub(super) fn of(report: &Report, model: &Model, places: &Places) -> Vec<Diagnostic> {
-    let at = At { model, places };
+/// The diagnostics of a report, with the spans of the model's parts.
+pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
+    let at = At { model, spans };
     let mut found = Vec::new();
+    duplicate_rules(model, &at, &mut found);
     for (i, one) in report.uncovered.iter().enumerate() {
         if i == MOST_BOXES_TOLD {
             found.push(at.more_uncovered(report));
@@ -46,7 +48,7 @@ pub(super) fn of(report: &Report, model: &Model, places: &Places) -> Vec<Diagnos
         found.push(
             Diagnostic::warning("contradiction", at.rule(one.second), message)
                 .related(at.rule(one.first), "the other rule")
-                .help("keep one of them, or tell them apart by another input"),
+                .help("keep one of them, or distinguish them by another input"),
         );
     }
     for one in &report.subsumed {
@@ -55,7 +57,7 @@ pub(super) fn of(report: &Report, model: &Model, places: &Places) -> Vec<Diagnos
             Diagnostic::warning("subsumed-rule", at.rule(one.rule), message)
                 .related(
                     at.rule(one.by),
-                    "holds wherever the other does, and concludes the same",
+                    "this rule fires wherever the other does, with the same conclusion",
                 )
                 .help("remove the narrower rule, or change what it concludes"),
         );
@@ -64,7 +66,7 @@ pub(super) fn of(report: &Report, model: &Model, places: &Places) -> Vec<Diagnos
         let message = format!("rule {} never fires", rule + 1);
         found.push(
             Diagnostic::warning("never-fires", at.rule(rule), message)
-                .help("no value of the inputs meets all it asks for, or its weight is 0"),
+                .help("no inputs satisfy its condition, or its weight is 0"),
         );
     }
     found.extend(report.unused.iter().map(|one| at.unused(one)));
@@ -82,37 +84,59 @@ pub(super) fn of(report: &Report, model: &Model, places: &Places) -> Vec<Diagnos
     found
 }
 
-/// Where things stand.
+/// Equal rules, whatever their weights.
+fn duplicate_rules(model: &Model, at: &At<'_>, findings: &mut Vec<Diagnostic>) {
+    let mut seen: BTreeMap<String, Range<usize>> = BTreeMap::new();
+    for (i, rule) in model.rules.iter().enumerate() {
+        let mut bare = rule.rule.clone();
+        bare.weight = 1.0;
+        let here = at.rule(i);
+        let text = format!("{bare}");
+        if let Some(first) = seen.get(&text) {
+            let message = format!("rule {} duplicates an earlier rule", i + 1);
+            findings.push(
+                Diagnostic::warning("duplicate-rule", here, message)
+                    .related(first.clone(), "the earlier rule")
+                    .help("remove one of them"),
+            );
+        } else {
+            seen.insert(text, here);
+        }
+    }
+}
+
+/// Where the parts of a model stand.
 struct At<'a> {
     model: &'a Model,
-    places: &'a Places,
+    spans: &'a Spans,
 }
 
 impl At<'_> {
     fn rule(&self, index: usize) -> Range<usize> {
-        self.places.rules.get(index).cloned().unwrap_or(0..0)
+        let rule = self.spans.rules.get(index);
+        rule.map_or(0..0, |rule| rule.whole.clone())
     }
 
-    fn variable(&self, name: &str) -> Option<(&VariablePlaces, &crate::model::Variable)> {
-        let inputs = self.model.inputs.iter().zip(&self.places.inputs);
+    fn variable(&self, name: &str) -> Option<(&VariableSpans, &Variable)> {
+        let inputs = self.model.inputs.iter().zip(&self.spans.inputs);
         let outputs = self.model.outputs.iter().map(|output| &output.variable);
-        let mut all = inputs.chain(outputs.zip(&self.places.outputs));
+        let mut all = inputs.chain(outputs.zip(&self.spans.outputs));
         all.find(|(variable, _)| variable.name == name)
-            .map(|(variable, places)| (places, variable))
+            .map(|(variable, spans)| (spans, variable))
     }
 
     fn name(&self, variable: &str) -> Range<usize> {
         self.variable(variable)
-            .map_or(0..0, |(places, _)| places.name.clone())
+            .map_or(0..0, |(spans, _)| spans.name.clone())
     }
 
     fn term(&self, one: &TermOf) -> Range<usize> {
-        let term = self.variable(&one.variable).and_then(|(places, variable)| {
+        let term = self.variable(&one.variable).and_then(|(spans, variable)| {
             let index = variable
                 .terms
                 .iter()
                 .position(|t| Some(&t.name) == one.term.as_ref())?;
-            places.terms.get(index).cloned()
+            Some(spans.terms.get(index)?.name.clone())
         });
         term.unwrap_or_else(|| self.name(&one.variable))
     }
@@ -133,7 +157,7 @@ impl At<'_> {
                 shown(libm::round(1000.0 * share) / 10.0)
             ),
         };
-        let place_of_rules = self.places.rules_key.clone();
+        let place_of_rules = self.spans.rules_key.clone();
         let mut finding = if one.silent {
             let message = format!("no rule for `{output}` fires {place}{share}");
             let chosen = self.model.outputs.iter().any(|o| {
@@ -210,9 +234,10 @@ impl At<'_> {
         } else {
             "at least "
         };
-        let message = format!("{least}{more} more regions have no rule; the largest are told");
-        Diagnostic::warning("uncovered", self.places.rules_key.clone(), message)
-            .help("`--json` lists them")
+        let message =
+            format!("{least}{more} more regions have no rule; only the largest are listed");
+        Diagnostic::warning("uncovered", self.spans.rules_key.clone(), message)
+            .help("add the missing rules above first")
     }
 
     fn unused(&self, one: &TermOf) -> Diagnostic {
@@ -221,7 +246,7 @@ impl At<'_> {
             None => format!("no rule uses `{}`", one.variable),
         };
         Diagnostic::warning("unused", self.term(one), message)
-            .help("write a rule for it, or take it out")
+            .help("write a rule for it, or remove it")
     }
 
     fn unreachable(&self, one: &TermOf) -> Diagnostic {
@@ -232,15 +257,22 @@ impl At<'_> {
             .inputs
             .iter()
             .find(|input| input.name == one.variable);
-        let outside = input.and_then(|input| {
-            let index = input.terms.iter().position(|t| t.name == term)?;
-            outside_range("input", input, index, here.clone(), Severity::Warning)
+        let outside = input.filter(|input| {
+            let is_outside = |i: &usize| input.terms.get(*i).is_some_and(|t| t.name == term);
+            outside(input).iter().any(is_outside)
         });
-        outside.unwrap_or_else(|| {
-            let message = format!("the term `{term}` of `{}` is never reached", one.variable);
-            Diagnostic::warning("unreachable-term", here, message)
-                .help("every rule that concludes it never fires")
-        })
+        if let Some(Variable {
+            name, low, high, ..
+        }) = outside
+        {
+            let message =
+                format!("term `{term}` of input `{name}` is 0 on the whole range [{low}, {high}]");
+            return Diagnostic::warning("term-outside-range", here, message)
+                .help("widen the range or move the term");
+        }
+        let message = format!("the term `{term}` of `{}` is never reached", one.variable);
+        Diagnostic::warning("unreachable-term", here, message)
+            .help("no rule that concludes it ever fires")
     }
 
     fn hole(&self, one: &Hole) -> Diagnostic {
@@ -255,7 +287,7 @@ impl At<'_> {
             self.name(input),
             format!("`{input}` has no term {place}"),
         )
-        .help("let the terms beside it overlap, or add one between them")
+        .help("let the neighbouring terms overlap, or add a term between them")
     }
 
     /// Only where the output does not come near the ends of its range.
@@ -274,8 +306,8 @@ impl At<'_> {
             shown(low),
             shown(high)
         );
-        let help = "the centroid of a term lies inside the range; terms that reach beyond the range, or another \
-                    defuzzifier, reach its ends";
+        let help = "the centroid of a term lies inside the range; let the outer terms extend beyond the range, or use another \
+                    defuzzifier";
         Some(Diagnostic::note("narrow-reach", self.name(&one.output), message).help(help))
     }
 
@@ -295,7 +327,7 @@ impl At<'_> {
         );
         let steps = if one.following == 1 { "step" } else { "steps" };
         let trend = format!(
-            "in {} other {steps} between neighbouring rules more `{}` {rises} it; check whether this one is meant",
+            "in {} other {steps} between neighbouring rules, more `{}` {rises} it; check that this one is intended",
             one.following, one.input
         );
         Diagnostic::warning("against-trend", self.rule(one.to_rule), message)
@@ -334,7 +366,7 @@ impl At<'_> {
             shown(one.to)
         );
         Diagnostic::warning("not-monotone", self.name(output), message).help(format!(
-            "it was said that it never {does}; look at the rules that fire there with `flagred explain`"
+            "it is claimed that it never {does}; look at the rules that fire there"
         ))
     }
 
@@ -348,13 +380,13 @@ impl At<'_> {
             coordinates(&one.at)
         );
         Diagnostic::warning("jump", self.name(&one.output), message).help(
-            "a term with a vertical edge, or a place where one rule takes over from another, makes it jump; let terms overlap",
+            "a vertical edge of a term, or a switch from one rule to another, causes it; let terms overlap",
         )
     }
 }
 
 fn coordinates(at: &[Coordinate]) -> String {
-    /// Of very many inputs the first ones are told.
+    /// Of very many inputs the first ones are listed.
     const MOST: usize = 6;
     let all = at
         .iter()

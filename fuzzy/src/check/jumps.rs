@@ -2,31 +2,15 @@
 
 use alloc::{string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::{
     axis,
     probe::{Coordinate, Line, MOST_ON_A_LINE, NOTABLE, Probe},
 };
 
 /// A place at which an output jumps.
-///
-/// # Example: a term without slopes
-/// ```
-/// # use fuzzy::{Engine, check::{Jump, Options, check}};
-/// let text = "fuzzy: 1
-/// name: fan
-/// inputs: {heat: {range: [0, 100], terms: {hot: {rectangle: [50, 100]}}}}
-/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// rules: [IF heat IS NOT hot THEN speed IS slow, IF heat IS hot THEN speed IS fast]";
-/// # let model = fuzzy::yaml::parse(text)?.model;
-/// # let report = check(&model, &Engine::new(&model)?, &Options::default())?;
-/// let Jump { at, below, above, .. } = &report.jumps[0];
-/// assert!((at[0].value - 50.0).abs() < 1e-6);
-/// assert_eq!((*below, *above), (3.0, 6.0));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Jump {
     /// The output.
     pub output: String,

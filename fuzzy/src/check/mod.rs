@@ -1,20 +1,19 @@
-//! What an author should know about a rule set: static analysis.
+//! Static analysis of rule sets.
 //!
-//! [`names`] is what reading a file checks: whether the rules mean something at all. [`check`] asks what they amount to:
-//! which inputs no rule covers, which rules contradict each other or add nothing, which terms are never used or never
-//! reached, how far the outputs reach, where they jump, and where they go against what the author says of them.
+//! [`validate`](crate::validate()) finds what keeps a model from being used: unknown names, wrong parameters. [`check`] analyses a model that
+//! can be used: inputs that no rule covers, rules that contradict each other or add nothing, terms that are never used or
+//! never reached, the values an output takes, its jumps, and where it contradicts a claim of the author.
 
 use alloc::{string::String, vec::Vec};
 
-use serde::Serialize;
-
 use crate::{
     Engine,
-    diagnostic::{Diagnostic, Findings, Severity, suggest},
+    diagnostic::{Diagnostic, Findings, suggest},
     model::{
         Aggregation, Model,
-        document::{Document, Places},
+        document::{Document, Spans},
     },
+    validate::validate,
 };
 
 mod axis;
@@ -23,7 +22,6 @@ mod findings;
 mod jumps;
 mod logic;
 mod monotone;
-pub mod names;
 mod probe;
 mod reach;
 mod rules;
@@ -41,7 +39,7 @@ pub use rules::{Contradiction, Subsumed};
 pub use terms::{Hole, TermOf};
 pub use trend::AgainstTrend;
 
-/// What to hold a rule set against.
+/// How to analyse a rule set.
 ///
 /// # Example: what an author says of an output
 /// ```
@@ -49,16 +47,18 @@ pub use trend::AgainstTrend;
 ///
 /// let claim: Monotone = "heat:increasing:speed".parse()?;
 /// assert_eq!(claim.direction, Direction::Increasing);
-/// let options = Options { monotone: vec![claim], ..Options::default() };
+/// let mut options = Options::default();
+/// options.monotone.push(claim);
 /// assert_eq!(options.coverage, 0.5);
 /// # Ok::<(), String>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Options {
-    /// The degree that some rule should reach everywhere; with terms that sum to 1 and the minimum as AND, one half
-    /// means that the condition that dominates has a rule.
+    /// The firing strength that some rule should reach everywhere. With terms that sum to 1 and the minimum as AND, one
+    /// half means that the dominant combination of terms has a rule.
     pub coverage: f64,
-    /// What the author says of the outputs.
+    /// Claims of the author about the outputs.
     pub monotone: Vec<Monotone>,
 }
 
@@ -71,45 +71,26 @@ impl Default for Options {
     }
 }
 
-/// All that was found. Rules count from 0, as in the model.
-///
-/// # Example: three rules, and most of what can be wrong with them
-/// ```
-/// use fuzzy::check::{self, Antecedent, Contradiction, Side, Subsumed, TermOf, Uncovered};
-///
-/// let text = "fuzzy: 1
-/// name: fan
-/// inputs: {heat: {range: [0, 100], partition: [low, high]}, sun: {range: [0, 1], partition: [down, up]}}
-/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// rules:
-///   - IF heat IS high THEN speed IS fast
-///   - IF heat IS high AND sun IS up THEN speed IS fast
-///   - IF heat IS high THEN speed IS slow";
-/// let model = fuzzy::yaml::parse(text)?.model;
-/// let report = check::check(&model, &fuzzy::Engine::new(&model)?, &check::Options::default())?;
-///
-/// assert_eq!(report.subsumed, [Subsumed { rule: 1, by: 0 }]);
-/// let Contradiction { first, second, .. } = &report.contradictions[0];
-/// assert_eq!((*first, *second), (0, 2));
-/// let Uncovered { sides, missing, .. } = &report.uncovered[1]; // the first one is where no rule fires at all
-/// assert_eq!(sides[..], [Side { input: "heat".into(), low: 0.0, high: 50.0 }]);
-/// assert_eq!(missing[0], [Antecedent { input: "heat".into(), term: "low".into() }]);
-/// assert!(report.unused.contains(&TermOf { variable: "sun".into(), term: Some("down".into()) }));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// All that was found. Fields hold indices of rules in the model; serialised, rules count from 1.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Report {
     /// Boxes of the input space without a rule.
     pub uncovered: Vec<Uncovered>,
-    /// Whether these are all boxes; in a large rule set the search for more is given up.
+    /// Whether the list is complete; in a large rule set the search stops early.
     pub uncovered_complete: bool,
-    /// Rules of one condition and different conclusions.
+    /// Rules with equal conditions and different conclusions.
     pub contradictions: Vec<Contradiction>,
     /// Rules that add nothing to a wider one.
     pub subsumed: Vec<Subsumed>,
     /// Rules that fire nowhere.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_numbers")
+    )]
     pub never_firing: Vec<usize>,
-    /// Variables and terms that stand in no rule.
+    /// Variables and terms that no rule uses.
     pub unused: Vec<TermOf>,
     /// Terms that no value reaches.
     pub unreachable: Vec<TermOf>,
@@ -119,16 +100,16 @@ pub struct Report {
     pub reach: Vec<Reach>,
     /// Rules against the trend of their neighbours.
     pub against_trend: Vec<AgainstTrend>,
-    /// Places at which an output does not do what the author says.
+    /// Points at which an output contradicts a claim.
     pub counterexamples: Vec<Counterexample>,
-    /// Places at which an output jumps.
+    /// Points at which an output jumps.
     pub jumps: Vec<Jump>,
 }
 
-/// Analyses a model.
+/// Analyses the model of an engine.
 ///
 /// # Errors
-/// A claim of `options` about an input or output that the model does not have, without a place.
+/// A claim of `options` about an input or output that the model does not have.
 ///
 /// # Example: a rule is missing
 /// ```
@@ -142,20 +123,17 @@ pub struct Report {
 /// rules: [IF heat IS low THEN fan IS slow, IF heat IS high THEN fan IS fast]
 /// ")?;
 /// let engine = Engine::new(&document.model)?;
-/// let report = check::check(&document.model, &engine, &check::Options::default())?;
+/// let report = check::check(&engine, &check::Options::default())?;
 /// let hole = &report.uncovered[0];
 /// assert_eq!((hole.sides[0].low, hole.sides[0].high), (0.25, 0.75));
 /// assert_eq!(hole.missing[0][0].term, "medium");
 ///
-/// let findings = report.findings(&document.model, &document.places);
+/// let findings = report.findings(&document.model, &document.spans);
 /// assert!(findings.iter().any(|f| f.code == "uncovered"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn check(
-    model: &Model,
-    engine: &Engine,
-    options: &Options,
-) -> Result<Report, alloc::boxed::Box<Diagnostic>> {
+pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed::Box<Diagnostic>> {
+    let model = engine.model();
     for claim in &options.monotone {
         known(model, claim)?;
     }
@@ -188,57 +166,32 @@ pub fn check(
     })
 }
 
-/// Checks a rule set that was read and is meant to be used: all findings with their places in the text, what reading it
-/// warned of included, and the analysis, where there can be one.
+/// Checks a rule set that was read: its errors, or else the analysis, as located findings.
 ///
-/// A rule set without rules is read with a warning, for learning fills it; here it is an error.
+/// A rule set without rules is read with a warning, because rules are learned into it; here it is an error.
 ///
 /// # Errors
 /// As [`check`].
-///
-/// # Example: a rule set that nobody has filled yet
-/// ```
-/// use fuzzy::check;
-///
-/// let text = "
-/// fuzzy: 1
-/// name: fan
-/// inputs: {heat: {range: [0, 1], partition: [low, high]}}
-/// outputs: {fan: {range: [0, 1], partition: [slow, fast]}}
-/// rules: []
-/// ";
-/// let document = fuzzy::yaml::parse(text)?;
-/// let (findings, report) = check::document(&document, text, &check::Options::default())?;
-/// assert!(report.is_none());
-/// assert!(findings.to_string().starts_with("6:8: error[no-rules]: the list of rules is empty"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn document(
     document: &Document,
     text: &str,
     options: &Options,
 ) -> Result<(Findings, Option<Report>), alloc::boxed::Box<Diagnostic>> {
-    let mut findings = document.warnings.0.clone();
-    if document.model.rules.is_empty() {
-        for finding in findings.iter_mut().filter(|f| f.code == "no-rules") {
-            finding.severity = Severity::Error;
-        }
-        return Ok((Findings(findings), None));
+    let invalid = validate(&document.model, &document.spans);
+    if !invalid.is_empty() {
+        return Ok((Findings::locate(invalid, text), None));
     }
     let engine = match Engine::new(&document.model) {
         Ok(engine) => engine,
-        Err(error) => return Ok((error.findings(), None)),
+        Err(findings) => return Ok((findings, None)),
     };
-    let report = check(&document.model, &engine, options)?;
-    findings.extend(report.findings(&document.model, &document.places));
-    let mut findings = Findings::locate(findings, text);
-    // What reading the file warns of is found by the analysis again.
-    findings.0.dedup();
-    Ok((findings, Some(report)))
+    let report = check(&engine, options)?;
+    let findings = report.findings(&document.model, &document.spans);
+    Ok((Findings::locate(findings, text), Some(report)))
 }
 
 /// The uncovered boxes of all outputs: those where no rule fires at all, then those where none reaches the coverage.
-/// Outputs with the same boxes are told once.
+/// Outputs with the same boxes are listed once.
 fn all_uncovered(model: &Model, coverage: f64) -> (Vec<Uncovered>, bool) {
     let mut found: Vec<Uncovered> = Vec::new();
     let mut complete = true;
@@ -247,7 +200,7 @@ fn all_uncovered(model: &Model, coverage: f64) -> (Vec<Uncovered>, bool) {
             let boxes = coverage::uncovered(model, &output.variable.name, level);
             complete &= boxes.complete;
             let new = boxes.found.into_iter().filter(|one| {
-                // What is silent is uncovered too.
+                // A box in which no rule fires is uncovered too.
                 one.silent
                     || !found
                         .iter()
@@ -279,31 +232,14 @@ fn known(model: &Model, claim: &Monotone) -> Result<(), alloc::boxed::Box<Diagno
 }
 
 impl Report {
-    /// What was found, in words, the parts of the model at their places.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::{Engine, check};
-    ///
-    /// let text = "fuzzy: 1
-    /// name: fan
-    /// inputs: {heat: {range: [0, 100], partition: [low, high]}}
-    /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-    /// rules: [IF heat IS high THEN speed IS fast]";
-    /// let document = fuzzy::yaml::parse(text)?;
-    /// let engine = Engine::new(&document.model)?;
-    /// let report = check::check(&document.model, &engine, &check::Options::default())?;
-    /// let findings = report.findings(&document.model, &document.places);
-    /// assert!(findings.iter().any(|finding| finding.message == "no rule uses the term `low` of `heat`"));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// Converts the report to located diagnostics.
     #[must_use]
-    pub fn findings(&self, model: &Model, places: &Places) -> Vec<Diagnostic> {
-        findings::of(self, model, places)
+    pub fn findings(&self, model: &Model, spans: &Spans) -> Vec<Diagnostic> {
+        findings::of(self, model, spans)
     }
 }
 
-/// Numbers in messages: six digits, without noughts behind them.
+/// A number for a message: at most six digits.
 fn shown(x: f64) -> String {
     if x == 0.0 {
         return "0".into();

@@ -1,24 +1,13 @@
-//! Whether the outputs rise and fall as their author says.
+//! Whether outputs are monotone as claimed.
 
 use alloc::{string::String, vec::Vec};
 use core::str::FromStr;
 
-use serde::Serialize;
-
 use super::probe::{Coordinate, Line, NOTABLE, Probe};
 
-/// What an author says of an output: it never falls, or never rises, when an input rises.
-///
-/// # Example
-/// ```
-/// use fuzzy::check::Monotone;
-///
-/// let claim: Monotone = "margin:decreasing".parse()?;
-/// assert_eq!((claim.input.as_str(), claim.output), ("margin", None));
-/// assert!("margin".parse::<Monotone>().is_err());
-/// # Ok::<(), String>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+/// A claim about an output: it never falls, or never rises, when an input rises.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Monotone {
     /// The input.
     pub input: String,
@@ -29,8 +18,9 @@ pub struct Monotone {
 }
 
 /// What an output does when an input rises.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Direction {
     /// It never falls.
     Increasing,
@@ -41,7 +31,7 @@ pub enum Direction {
 impl FromStr for Monotone {
     type Err = String;
 
-    /// Reads `margin:decreasing`, or `margin:decreasing:risk` for one output of several.
+    /// Reads `heat:increasing`, or `heat:increasing:speed` for one output of several.
     fn from_str(text: &str) -> Result<Self, String> {
         let mut parts = text.split(':');
         let (input, direction) = (parts.next().unwrap_or(""), parts.next().unwrap_or(""));
@@ -63,23 +53,9 @@ impl FromStr for Monotone {
 }
 
 /// A place at which an output does not do what its author says.
-///
-/// # Example: a fan that slows down in the heat
-/// ```
-/// # use fuzzy::{Engine, check::{Counterexample, Options, check}};
-/// # let text = "fuzzy: 1
-/// # name: fan
-/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// # rules: [IF heat IS low THEN speed IS fast, IF heat IS high THEN speed IS slow]";
-/// # let model = fuzzy::yaml::parse(text)?.model;
-/// let options = Options { monotone: vec!["heat:increasing".parse()?], ..Options::default() };
-/// let report = check(&model, &Engine::new(&model)?, &options)?;
-/// let Counterexample { at, to, from_value, to_value, .. } = &report.counterexamples[0];
-/// assert!(at[0].value < *to && from_value > to_value);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Counterexample {
     /// What was said, with the output it was found in.
     pub claim: Monotone,

@@ -5,8 +5,6 @@
 
 use alloc::{string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::axis;
 use crate::{
     Engine,
@@ -15,7 +13,8 @@ use crate::{
 };
 
 /// The value of an input.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Coordinate {
     /// The input.
     pub input: String,

@@ -2,28 +2,12 @@
 
 use alloc::{string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::probe::{Coordinate, Probe};
 
 /// The values an output takes.
-///
-/// # Example: a centroid does not reach the ends of its range
-/// ```
-/// # use fuzzy::{Engine, check::{Coordinate, Options, Reach, check}};
-/// # let text = "fuzzy: 1
-/// # name: fan
-/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// # rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]";
-/// # let model = fuzzy::yaml::parse(text)?.model;
-/// # let report = check(&model, &Engine::new(&model)?, &Options::default())?;
-/// let Reach { low, high, high_at, range, .. } = &report.reach[0];
-/// assert_eq!((*range, *low, *high), ([0.0, 9.0], 3.0, 6.0));
-/// assert_eq!(high_at[..], [Coordinate { input: "heat".into(), value: 100.0 }]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Reach {
     /// The output.
     pub output: String,

@@ -6,8 +6,6 @@ use alloc::{
     vec::Vec,
 };
 
-use serde::Serialize;
-
 use super::logic::{Level, Logic};
 use crate::{
     model::Model,
@@ -15,11 +13,21 @@ use crate::{
 };
 
 /// Two rules of one condition that conclude different terms of one output. Rules count from 0.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Contradiction {
     /// The earlier rule.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub first: usize,
     /// The later rule.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub second: usize,
     /// The output they disagree about.
     pub output: String,
@@ -30,11 +38,20 @@ pub struct Contradiction {
 }
 
 /// A rule that never adds anything: whenever it holds, another one of the same conclusion holds as strongly.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Subsumed {
     /// The rule that adds nothing.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub rule: usize,
     /// The wider rule.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub by: usize,
 }
 

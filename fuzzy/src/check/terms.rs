@@ -2,13 +2,12 @@
 
 use alloc::{collections::BTreeSet, string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::axis;
-use crate::model::{Model, Shape, Term, Variable};
+use crate::model::{MembershipFunction, Model, Term, Variable};
 
 /// A term of a variable.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TermOf {
     /// The input or output.
     pub variable: String,
@@ -17,21 +16,9 @@ pub struct TermOf {
 }
 
 /// A part of a variable's range in which every term is 0.
-///
-/// # Example: no word for what is neither cool nor hot
-/// ```
-/// # use fuzzy::{Engine, check::{Hole, Options, check}};
-/// let text = "fuzzy: 1
-/// name: fan
-/// inputs: {heat: {range: [0, 100], terms: {cool: {left_shoulder: [20, 40]}, hot: {right_shoulder: [60, 80]}}}}
-/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]";
-/// # let model = fuzzy::yaml::parse(text)?.model;
-/// # let report = check(&model, &Engine::new(&model)?, &Options::default())?;
-/// assert_eq!(report.holes, [Hole { input: "heat".into(), low: 40.0, high: 60.0 }]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Hole {
     /// The input.
     pub input: String,
@@ -132,16 +119,20 @@ pub(super) fn outside(variable: &Variable) -> Vec<usize> {
         .collect()
 }
 
-fn is_set(shape: &Shape) -> bool {
+fn is_set(shape: &MembershipFunction) -> bool {
     match shape {
-        Shape::Linear { .. } | Shape::Constant { .. } => false,
-        Shape::Piecewise { points } => !points.is_empty(),
+        MembershipFunction::Linear { .. } | MembershipFunction::Constant { .. } => false,
+        MembershipFunction::Piecewise { points } => !points.is_empty(),
         _ => true,
     }
 }
 
 /// Where every term of an input is 0: no rule without NOT speaks of those values.
 pub(super) fn holes(input: &Variable) -> Vec<Hole> {
+    if input.terms.is_empty() {
+        // Only linear consequents read it.
+        return Vec::new();
+    }
     let covered = |x: f64| input.terms.iter().any(|term| term.membership(x) > 0.0);
     let places = axis::places(input);
     let mut found: Vec<Hole> = Vec::new();

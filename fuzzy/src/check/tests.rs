@@ -10,8 +10,8 @@ const OUTPUTS: &str = "outputs: {z: {range: [0, 1], partition: [low, medium, hig
 fn report_of(text: &str, options: &Options) -> (Report, Vec<Diagnostic>) {
     let document = yaml::parse(text).unwrap_or_else(|f| panic!("{text}\n{f}"));
     let engine = Engine::new(&document.model).unwrap();
-    let report = check(&document.model, &engine, options).unwrap();
-    let findings = report.findings(&document.model, &document.places);
+    let report = check(&engine, options).unwrap();
+    let findings = report.findings(&document.model, &document.spans);
     (report, findings)
 }
 
@@ -115,7 +115,7 @@ fn claims_about_unknown_variables_are_refused() {
             monotone: Vec::from([text.parse().unwrap()]),
             ..Options::default()
         };
-        let found = check(&document.model, &engine, &options).unwrap_err();
+        let found = check(&engine, &options).unwrap_err();
         assert_eq!(found.help.as_deref(), Some(help));
     }
 }
@@ -143,7 +143,7 @@ fn uncovered_boxes_agree_with_the_engine() {
         );
         let document = yaml::parse(&text).unwrap();
         let engine = Engine::new(&document.model).unwrap();
-        let report = check(&document.model, &engine, &Options::default()).unwrap();
+        let report = check(&engine, &Options::default()).unwrap();
         assert!(report.uncovered_complete);
         let inside = |point: [f64; 2], silent: bool| {
             report

@@ -5,36 +5,16 @@
 
 use alloc::{collections::BTreeMap, string::String, vec::Vec};
 
-use serde::Serialize;
-
 use super::{axis, monotone::Direction};
 use crate::{
-    model::{Model, Shape, Term, Variable},
+    model::{MembershipFunction, Model, Term, Variable},
     rule::{Condition, Proposition},
 };
 
 /// A rule that goes against what most rules say of an input and an output.
-///
-/// # Example: a slip of the pen in the last of four rules
-/// ```
-/// # use fuzzy::{Engine, check::{AgainstTrend, Direction, Options, check}};
-/// let text = "fuzzy: 1
-/// name: fan
-/// inputs: {heat: {range: [0, 100], partition: [cold, cool, warm, hot]}}
-/// outputs: {speed: {range: [0, 9], partition: [off, slow, fast]}}
-/// rules:
-///   - IF heat IS cold THEN speed IS off
-///   - IF heat IS cool THEN speed IS slow
-///   - IF heat IS warm THEN speed IS fast
-///   - IF heat IS hot THEN speed IS slow";
-/// # let model = fuzzy::yaml::parse(text)?.model;
-/// # let report = check(&model, &Engine::new(&model)?, &Options::default())?;
-/// let AgainstTrend { trend, following, from_rule, to_rule, .. } = &report.against_trend[0];
-/// assert_eq!((*trend, *following), (Direction::Increasing, 2));
-/// assert_eq!((*from_rule, *to_rule), (2, 3));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct AgainstTrend {
     /// The input.
     pub input: String,
@@ -45,10 +25,18 @@ pub struct AgainstTrend {
     /// The number of steps between neighbouring rules that follow the trend.
     pub following: usize,
     /// The rule at the lower term of the input.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub from_rule: usize,
     /// Its conclusion.
     pub from_term: String,
     /// The rule at the next term up.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub to_rule: usize,
     /// Its conclusion, on the other side.
     pub to_term: String,
@@ -208,8 +196,8 @@ fn ranks(variable: &Variable) -> Vec<usize> {
 /// The middle of the values at which a term is highest; of a constant, its value.
 fn middle(term: &Term, variable: &Variable) -> Option<f64> {
     match term.shape {
-        Shape::Constant { value } => return Some(value),
-        Shape::Linear { .. } => return None,
+        MembershipFunction::Constant { value } => return Some(value),
+        MembershipFunction::Linear { .. } => return None,
         _ => {}
     }
     let places = axis::places(variable);

@@ -1,18 +1,18 @@
-//! The aggregated set where a term is curved: cut where shapes change their nature and where they meet
-//! plateaus and each other, and integrated between the cuts.
+//! The aggregated set where a term is curved. It is cut where membership functions are not smooth, where they meet plateaus
+//! and where they cross, and integrated between the cuts.
 
 use alloc::vec::Vec;
 
 use super::piece::{Piece, root};
-use super::polyline::Room;
-use super::{Heights, Joint};
+use super::polyline::Workspace;
+use super::{Joint, Strengths};
 use crate::model::{Aggregation, Implication, Term};
 
-/// The terms of one output and where to cut its range for each of them.
+/// The terms of one output and the cuts of its range.
 #[derive(Debug, Clone)]
 pub(crate) struct Curves {
     terms: Vec<Term>,
-    /// Place and term, in the order of places; the ends of the range belong to no term.
+    /// Cuts and the terms they belong to, in ascending order; the ends of the range belong to no term.
     cuts: Vec<(f64, Option<usize>)>,
 }
 
@@ -33,30 +33,30 @@ impl Curves {
         }
     }
 
-    /// The most cuts that an evaluation can need room for.
-    pub(crate) fn room(&self) -> usize {
+    /// The most cuts of an evaluation.
+    pub(crate) fn workspace(&self) -> usize {
         self.cuts.len() + self.terms.len() * self.terms.len()
     }
 
-    /// Whether a term is 0 on the whole range.
+    /// Whether a term is 0 all over the range.
     pub(crate) fn is_empty(&self, term: usize) -> bool {
         let Some(shape) = self.terms.get(term) else {
             return true;
         };
         let inside = |x: f64| shape.membership(x) > 0.0;
-        let mut places = self.cuts.iter().zip(self.cuts.iter().skip(1));
-        places.all(|((a, _), (b, _))| !inside(*a) && !inside(0.5 * (a + b)) && !inside(*b))
+        let mut intervals = self.cuts.iter().zip(self.cuts.iter().skip(1));
+        intervals.all(|((a, _), (b, _))| !inside(*a) && !inside(0.5 * (a + b)) && !inside(*b))
     }
 
     /// The degree of the aggregated set at `x`.
-    pub(crate) fn degree(&self, heights: Heights<'_>, joint: Joint, x: f64) -> f64 {
+    pub(crate) fn degree(&self, strengths: Strengths<'_>, joint: Joint, x: f64) -> f64 {
         let mut degree = 0.0;
         for (index, term) in self.terms.iter().enumerate() {
             let mut membership = None;
-            for &height in heights.of(index) {
-                if height > 0.0 {
+            for &strength in strengths.of(index) {
+                if strength > 0.0 {
                     let membership = *membership.get_or_insert_with(|| term.membership(x));
-                    let cut = joint.implication.of(height, membership);
+                    let cut = joint.implication.of(strength, membership);
                     degree = joint.aggregation.of(degree, cut);
                 }
             }
@@ -67,14 +67,14 @@ impl Curves {
     /// Calls `visit` for each piece of the aggregated set, from left to right.
     pub(crate) fn pieces(
         &self,
-        heights: Heights<'_>,
+        strengths: Strengths<'_>,
         joint: Joint,
-        room: &mut Room,
+        workspace: &mut Workspace,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
-        let (cuts, most_cuts) = (&mut room.cuts, room.most_cuts);
+        let (cuts, most_cuts) = (&mut workspace.cuts, workspace.most_cuts);
         cuts.clear();
-        let active = |term: usize| heights.of(term).iter().any(|h| *h > 0.0);
+        let active = |term: usize| strengths.of(term).iter().any(|h| *h > 0.0);
         for &(x, term) in &self.cuts {
             if term.is_none_or(active) && cuts.last() != Some(&x) {
                 cuts.push(x);
@@ -85,16 +85,16 @@ impl Curves {
             let (Some(&a), Some(&b)) = (cuts.get(i - 1), cuts.get(i)) else {
                 break;
             };
-            self.kinks(heights, joint, (a, b), cuts, most_cuts);
+            self.kinks(strengths, joint, (a, b), cuts, most_cuts);
         }
         cuts.sort_unstable_by(f64::total_cmp);
-        let degree = |x: f64| self.degree(heights, joint, x);
+        let degree = |x: f64| self.degree(strengths, joint, x);
         for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
             if from < to {
                 visit(&Piece {
                     from,
                     to,
-                    // Just inside, where a step at the cut has been taken.
+                    // Just inside, past a step at the cut.
                     left: degree(from.next_up()),
                     right: degree(to.next_down()),
                     curve: Some(&|part| degree(from + (to - from) * part)),
@@ -103,12 +103,12 @@ impl Curves {
         }
     }
 
-    /// Adds the places between two cuts where a term meets one of its plateaus, two terms cross (maximum)
-    /// or the sum reaches 1 (bounded sum). One that is missed, because shapes meet twice between two cuts or
-    /// because room is short, costs time in the integration, not exactness.
+    /// Adds a cut where, between two cuts, a term meets one of its plateaus, two terms cross (maximum) or the sum reaches 1
+    /// (bounded sum). A kink may be missed, because curves meet twice between two cuts or because memory is short. Then the
+    /// integration takes longer, and is as exact.
     fn kinks(
         &self,
-        heights: Heights<'_>,
+        strengths: Strengths<'_>,
         joint: Joint,
         (a, b): (f64, f64),
         cuts: &mut Vec<f64>,
@@ -123,9 +123,9 @@ impl Curves {
         };
         if joint.implication == Implication::Minimum {
             for (index, term) in self.terms.iter().enumerate() {
-                for &height in heights.of(index) {
-                    if height > 0.0 {
-                        cut_at_sign_change(&|x| term.membership(x) - height);
+                for &strength in strengths.of(index) {
+                    if strength > 0.0 {
+                        cut_at_sign_change(&|x| term.membership(x) - strength);
                     }
                 }
             }
@@ -133,8 +133,8 @@ impl Curves {
         if joint.aggregation == Aggregation::Maximum {
             let activated = |index: usize, term: &Term, x: f64| {
                 let membership = term.membership(x);
-                let heights = heights.of(index).iter();
-                heights.fold(0.0, |most: f64, h| {
+                let strengths = strengths.of(index).iter();
+                strengths.fold(0.0, |most: f64, h| {
                     most.max(joint.implication.of(*h, membership))
                 })
             };
@@ -149,7 +149,7 @@ impl Curves {
                 aggregation: Aggregation::Sum,
                 ..joint
             };
-            cut_at_sign_change(&|x| self.degree(heights, unbounded, x) - 1.0);
+            cut_at_sign_change(&|x| self.degree(strengths, unbounded, x) - 1.0);
         }
     }
 }

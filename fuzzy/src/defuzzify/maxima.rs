@@ -1,10 +1,10 @@
-//! Where an aggregated set is highest.
+//! The maxima of an aggregated set.
 
 use super::piece::{Piece, root};
 use crate::model::Defuzzifier;
 
-/// Degrees this close to the highest, as a part of it, count as the highest: what rounding can do to a
-/// plateau made of two slopes.
+/// Degrees this close to the highest, relative to it, count as the highest. Rounding changes a plateau made of two slopes by
+/// less.
 const PLATEAU: f64 = 1e-12;
 
 /// The highest degree seen.
@@ -18,7 +18,7 @@ impl Highest {
     }
 }
 
-/// The values at which the set is highest.
+/// The values where the set is highest.
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Maxima {
     least_degree: f64,
@@ -87,7 +87,7 @@ impl Maxima {
     }
 }
 
-/// The highest place inside a curve that rises from its beginning and falls to its end.
+/// The maximum inside a curve that rises from its beginning and falls to its end, with its degree.
 fn peak(piece: &Piece<'_>) -> Option<(f64, f64)> {
     let curve = piece.curve?;
     // The derivative by central differences of sixth order.

@@ -3,36 +3,36 @@
 use alloc::vec::Vec;
 
 use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Sampling};
+use crate::table::Moment;
 use crate::table::operators::{larger, smaller};
-use crate::table::{self, Moment, Pair};
 use curves::Curves;
 use maxima::{Highest, Maxima};
+pub(crate) use partition::Partition;
 use piece::{Integrals, Piece};
-use polyline::{Polylines, Room};
-pub(crate) use ramps::Ramps;
-use weighted::Consequence;
+use polyline::{Polylines, Workspace};
+use weighted::Consequents;
 
 mod curves;
 mod maxima;
+mod partition;
 mod piece;
 pub(crate) mod polyline;
-mod ramps;
 mod sampled;
 pub(crate) mod weighted;
 
-/// How activated consequents come about and join.
+/// The operators that activate and aggregate consequents.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Joint {
     pub(crate) implication: Implication,
     pub(crate) aggregation: Aggregation,
 }
 
-/// How firing strengths of one consequent come together before anything is integrated.
+/// How the firing strengths of one consequent combine before the aggregated set is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Merging {
-    /// `max_r min(h_r, mu) = min(max_r h_r, mu)`, and the same for the product: the largest counts.
+    /// The largest counts: `max_r min(h_r, mu) = min(max_r h_r, mu)`, and the same for the product.
     Largest,
-    /// `sum_r h_r mu = (sum_r h_r) mu`: the sum counts.
+    /// The sum counts: `sum_r h_r mu = (sum_r h_r) mu`.
     Sum,
     /// Each rule keeps its own.
     Apart,
@@ -40,33 +40,19 @@ pub(crate) enum Merging {
 
 /// Firing strengths of one output, grouped by term.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Heights<'a> {
-    /// The firing strengths.
-    pub(crate) heights: &'a [f64],
-    /// Those of term k stand at `places[k]..places[k + 1]`.
-    pub(crate) places: &'a [usize],
+pub(crate) struct Strengths<'a> {
+    pub(crate) strengths: &'a [f64],
+    /// Term k has the firing strengths `offsets[k]..offsets[k + 1]`.
+    pub(crate) offsets: &'a [usize],
 }
 
-impl<'a> Heights<'a> {
+impl<'a> Strengths<'a> {
     fn of(&self, term: usize) -> &'a [f64] {
-        match (self.places.get(term), self.places.get(term + 1)) {
-            (Some(&first), Some(&end)) => self.heights.get(first..end).unwrap_or_default(),
+        match (self.offsets.get(term), self.offsets.get(term + 1)) {
+            (Some(&first), Some(&end)) => self.strengths.get(first..end).unwrap_or_default(),
             _ => &[],
         }
     }
-}
-
-/// The closed form of an output, as a table holds it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Closed<'a> {
-    /// None.
-    Open,
-    /// The centroid of minimum and maximum over a partition.
-    Partition(&'a [Pair]),
-    /// The centroid of a sum of products.
-    Moments(&'a [Moment]),
-    /// Takagi-Sugeno.
-    Weighted(table::Set, &'a [Consequence]),
 }
 
 /// One output, compiled.
@@ -74,21 +60,23 @@ pub(crate) enum Closed<'a> {
 pub(crate) struct Defuzzify {
     low: f64,
     high: f64,
-    defuzzifier: Defuzzifier,
+    pub(crate) defuzzifier: Defuzzifier,
     joint: Joint,
-    set: Set,
+    pub(crate) method: Method,
 }
 
+/// How the value is computed.
 #[derive(Debug, Clone)]
-enum Set {
+pub(crate) enum Method {
     Lines(Polylines),
     /// The centroid of minimum and maximum over a partition.
-    Ramps(Ramps),
+    Partition(Partition),
     Curves(Curves),
     Sampled(Sampling, Curves),
-    /// Sum of products: the area and moment of each term at full height.
+    /// The centroid of a sum of products: the area and moment of each term at a firing strength of 1.
     Moments(Vec<Moment>),
-    Weighted(Vec<Consequence>),
+    /// Takagi-Sugeno.
+    Weighted(Consequents),
 }
 
 impl Merging {
@@ -115,15 +103,15 @@ impl Defuzzifier {
 }
 
 impl Defuzzify {
-    /// Compiles an output of fuzzy sets.
+    /// Compiles a Mamdani output.
     pub(crate) fn fuzzy(output: &Output, operators: Operators) -> Self {
         let variable = &output.variable;
         let (low, high) = (variable.low, variable.high);
         let curves = || Curves::new(&variable.terms, low, high);
-        let set = match output.samples {
-            Some(sampling) => Set::Sampled(sampling, curves()),
+        let method = match output.samples {
+            Some(sampling) => Method::Sampled(sampling, curves()),
             None => Polylines::new(&variable.terms, low, high)
-                .map_or_else(|| Set::Curves(curves()), Set::Lines),
+                .map_or_else(|| Method::Curves(curves()), Method::Lines),
         };
         let mut compiled = Defuzzify {
             low,
@@ -133,26 +121,34 @@ impl Defuzzify {
                 implication: operators.implication,
                 aggregation: operators.aggregation,
             },
-            set,
+            method,
         };
         if output.defuzzifier == Defuzzifier::Centroid && output.samples.is_none() {
             let terms = variable.terms.len();
-            let closed = match (&compiled.set, operators.implication, operators.aggregation) {
+            let closed = match (
+                &compiled.method,
+                operators.implication,
+                operators.aggregation,
+            ) {
                 (_, Implication::Product, Aggregation::Sum) => {
-                    Some(Set::Moments(compiled.moments(terms)))
+                    Some(Method::Moments(compiled.moments(terms)))
                 }
-                (Set::Lines(lines), Implication::Minimum, Aggregation::Maximum) => {
-                    Ramps::new(lines, terms, compiled.middle()).map(Set::Ramps)
+                (Method::Lines(lines), Implication::Minimum, Aggregation::Maximum) => {
+                    Partition::new(lines, terms, compiled.middle()).map(Method::Partition)
                 }
                 _ => None,
             };
-            compiled.set = closed.unwrap_or(compiled.set);
+            compiled.method = closed.unwrap_or(compiled.method);
         }
         compiled
     }
 
     /// Compiles a Takagi-Sugeno output.
-    pub(crate) fn weighted(output: &Output, operators: Operators, z: Vec<Consequence>) -> Self {
+    pub(crate) fn weighted(
+        output: &Output,
+        operators: Operators,
+        consequents: Consequents,
+    ) -> Self {
         Defuzzify {
             low: output.variable.low,
             high: output.variable.high,
@@ -161,23 +157,23 @@ impl Defuzzify {
                 implication: operators.implication,
                 aggregation: operators.aggregation,
             },
-            set: Set::Weighted(z),
+            method: Method::Weighted(consequents),
         }
     }
 
-    /// Area and moment of each term alone at full height.
+    /// The area and moment of each term alone at a firing strength of 1.
     fn moments(&self, terms: usize) -> Vec<Moment> {
-        let places: Vec<usize> = (0..=terms).collect();
-        let mut room = Room::new(terms, self.cuts());
+        let offsets: Vec<usize> = (0..=terms).collect();
+        let mut workspace = Workspace::new(terms, self.cuts());
         let mut moments = Vec::new();
         for term in 0..terms {
-            let heights: Vec<f64> = (0..terms).map(|i| f64::from(i == term)).collect();
-            let heights = Heights {
-                heights: &heights,
-                places: &places,
+            let strengths: Vec<f64> = (0..terms).map(|i| f64::from(i == term)).collect();
+            let strengths = Strengths {
+                strengths: &strengths,
+                offsets: &offsets,
             };
             let mut integrals = self.integrals();
-            self.pieces(heights, &mut room, &mut |piece| integrals.add(piece));
+            self.pieces(strengths, &mut workspace, &mut |piece| integrals.add(piece));
             moments.push(Moment {
                 area: integrals.area,
                 moment: integrals.moment,
@@ -187,88 +183,73 @@ impl Defuzzify {
     }
 
     /// The closed form of the centroid over a partition.
-    pub(crate) fn ramps(&self) -> Option<&Ramps> {
-        match &self.set {
-            Set::Ramps(ramps) => Some(ramps),
+    pub(crate) fn partition(&self) -> Option<&Partition> {
+        match &self.method {
+            Method::Partition(partition) => Some(partition),
             _ => None,
         }
     }
 
-    /// How many heights the output has, and the place of each term's; `None` where they stand as
-    /// [`Heights`] says.
+    /// The number of firing strengths of a partition, and the index of each term's; `None` of another output, where
+    /// [`Strengths::offsets`] has them.
     pub(crate) fn ranks(&self) -> Option<(usize, &[usize])> {
-        self.ramps().map(|ramps| (ramps.places(), ramps.ranks()))
+        self.partition()
+            .map(|partition| (partition.strengths(), partition.ranks()))
     }
 
-    /// How many cuts an evaluation can need beside those of its activations.
+    /// The most cuts of an evaluation, besides those of its activations.
     pub(crate) fn cuts(&self) -> usize {
-        match &self.set {
-            Set::Curves(curves) => curves.room(),
+        match &self.method {
+            Method::Curves(curves) => curves.workspace(),
             _ => 0,
         }
     }
 
-    /// Whether a term is 0 on the whole range.
+    /// Whether a term is 0 all over the range.
     pub(crate) fn is_empty(&self, term: usize) -> bool {
-        match &self.set {
-            Set::Lines(lines) => lines.is_empty(term),
-            Set::Curves(curves) | Set::Sampled(_, curves) => curves.is_empty(term),
-            Set::Ramps(ramps) => ramps.is_empty(term),
-            Set::Moments(moments) => moments.get(term).is_none_or(|m| m.area <= 0.0),
-            Set::Weighted(_) => false,
+        match &self.method {
+            Method::Lines(lines) => lines.is_empty(term),
+            Method::Curves(curves) | Method::Sampled(_, curves) => curves.is_empty(term),
+            Method::Partition(partition) => partition.is_empty(term),
+            Method::Moments(moments) => moments.get(term).is_none_or(|m| m.area <= 0.0),
+            Method::Weighted(_) => false,
         }
     }
 
-    /// The closed form, where there is one.
-    pub(crate) fn closed(&self) -> Closed<'_> {
-        match &self.set {
-            Set::Ramps(ramps) => Closed::Partition(ramps.pairs()),
-            Set::Moments(moments) => Closed::Moments(moments),
-            Set::Weighted(consequences) => {
-                let set = match self.defuzzifier {
-                    Defuzzifier::WeightedSum => table::Set::WEIGHTED_SUM,
-                    _ => table::Set::WEIGHTED_AVERAGE,
-                };
-                Closed::Weighted(set, consequences)
-            }
-            Set::Lines(_) | Set::Curves(_) | Set::Sampled(..) => Closed::Open,
-        }
-    }
-
-    /// The number of an output without a closed form; `None` where no rule fired. A call, which costs nothing beside what it
-    /// does, and keeps it out of the way of outputs that have one.
+    /// The value of an output without a closed form; `None` where no rule fired. Not inlined, which keeps the code of closed
+    /// forms small.
     #[inline(never)]
-    pub(crate) fn value(&self, heights: Heights<'_>, room: &mut Room) -> Option<f64> {
-        let value = match &self.set {
-            Set::Sampled(sampling, curves) => {
+    pub(crate) fn value(&self, strengths: Strengths<'_>, workspace: &mut Workspace) -> Option<f64> {
+        let value = match &self.method {
+            Method::Sampled(sampling, curves) => {
                 sampling.value(self.defuzzifier, (self.low, self.high), |x| {
-                    curves.degree(heights, self.joint, x)
+                    curves.degree(strengths, self.joint, x)
                 })
             }
-            Set::Lines(_) | Set::Curves(_) => self.exact(heights, room),
-            Set::Ramps(_) | Set::Moments(_) | Set::Weighted(_) => None,
+            Method::Lines(_) | Method::Curves(_) => self.exact(strengths, workspace),
+            Method::Partition(_) | Method::Moments(_) | Method::Weighted(_) => None,
         }?;
         Some(larger(self.low, smaller(self.high, value)))
     }
 
-    fn exact(&self, heights: Heights<'_>, room: &mut Room) -> Option<f64> {
+    fn exact(&self, strengths: Strengths<'_>, workspace: &mut Workspace) -> Option<f64> {
         match self.defuzzifier {
             Defuzzifier::SmallestOfMaxima
             | Defuzzifier::MeanOfMaxima
             | Defuzzifier::LargestOfMaxima => {
                 let mut highest = Highest::default();
-                self.pieces(heights, room, &mut |piece| highest.see(piece));
+                self.pieces(strengths, workspace, &mut |piece| highest.see(piece));
                 let mut maxima = Maxima::of(highest);
-                self.pieces(heights, room, &mut |piece| maxima.see(piece));
+                self.pieces(strengths, workspace, &mut |piece| maxima.see(piece));
                 maxima.value(self.defuzzifier).filter(|_| highest.0 > 0.0)
             }
             Defuzzifier::Bisector => {
                 let mut whole = self.integrals();
-                self.pieces(heights, room, &mut |piece| whole.add(piece));
+                self.pieces(strengths, workspace, &mut |piece| whole.add(piece));
                 let half = 0.5 * whole.area;
                 let mut sum = 0.0;
                 let mut bisector = None;
-                self.pieces(heights, room, &mut |piece| {
+                self.pieces(strengths, workspace, &mut |piece| {
                     if bisector.is_none() {
                         let area = piece.area();
                         if sum + area >= half && area > 0.0 {
@@ -281,7 +262,7 @@ impl Defuzzify {
             }
             _ => {
                 let mut integrals = self.integrals();
-                self.pieces(heights, room, &mut |piece| integrals.add(piece));
+                self.pieces(strengths, workspace, &mut |piece| integrals.add(piece));
                 integrals.centroid()
             }
         }
@@ -296,11 +277,19 @@ impl Defuzzify {
         Integrals::about(self.middle())
     }
 
-    fn pieces(&self, heights: Heights<'_>, room: &mut Room, visit: &mut dyn FnMut(&Piece<'_>)) {
-        match &self.set {
-            Set::Lines(lines) => lines.pieces(heights, self.joint, room, visit),
-            Set::Curves(curves) => curves.pieces(heights, self.joint, room, visit),
-            Set::Ramps(_) | Set::Sampled(..) | Set::Moments(_) | Set::Weighted(_) => {}
+    fn pieces(
+        &self,
+        strengths: Strengths<'_>,
+        workspace: &mut Workspace,
+        visit: &mut dyn FnMut(&Piece<'_>),
+    ) {
+        match &self.method {
+            Method::Lines(lines) => lines.pieces(strengths, self.joint, workspace, visit),
+            Method::Curves(curves) => curves.pieces(strengths, self.joint, workspace, visit),
+            Method::Partition(_)
+            | Method::Sampled(..)
+            | Method::Moments(_)
+            | Method::Weighted(_) => {}
         }
     }
 }

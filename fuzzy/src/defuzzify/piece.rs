@@ -2,7 +2,7 @@
 
 use crate::table::{centroid, operators::larger};
 
-/// A stretch on which the aggregated set is a straight line, or a smooth curve.
+/// A stretch on which the aggregated set is a straight line or a smooth curve.
 pub(crate) struct Piece<'a> {
     /// Where it begins.
     pub(crate) from: f64,
@@ -12,8 +12,8 @@ pub(crate) struct Piece<'a> {
     pub(crate) left: f64,
     /// The degree just inside `to`.
     pub(crate) right: f64,
-    /// The degree of a curve at a part in [0, 1] of the way from `from` to `to`: places in `x` itself would be
-    /// too coarse in a narrow piece. A straight piece has none.
+    /// The degree of a curve at a share in [0, 1] of the way from `from` to `to`, which is finer than `x` in a narrow piece.
+    /// `None` where the piece is straight.
     pub(crate) curve: Option<&'a dyn Fn(f64) -> f64>,
 }
 
@@ -22,7 +22,7 @@ pub(crate) struct Piece<'a> {
 pub(crate) struct Integrals {
     pub(crate) area: f64,
     pub(crate) moment: f64,
-    /// Where the moment is measured from: the middle of the range, against cancellation.
+    /// The origin of the moment: the middle of the range, against cancellation.
     pub(crate) origin: f64,
 }
 
@@ -53,7 +53,7 @@ impl Integrals {
             width * ((piece.from - self.origin) * mean + width * (left + 2.0 * right) / 6.0);
     }
 
-    /// The centre of gravity; `None` without area.
+    /// The centroid; `None` where there is no area.
     pub(crate) fn centroid(&self) -> Option<f64> {
         centroid(self.area, self.moment, self.origin)
     }
@@ -69,7 +69,7 @@ impl Piece<'_> {
         (self.to - self.from) * mean
     }
 
-    /// Where the area from the piece's beginning reaches `area`, which is at most the piece's.
+    /// The value up to which the piece has this area, which is at most the piece's.
     pub(crate) fn where_area_is(&self, area: f64) -> f64 {
         let width = self.to - self.from;
         if let Some(curve) = self.curve {
@@ -77,7 +77,7 @@ impl Piece<'_> {
             let part = root(0.0, 1.0, |part| integrate(curve, part, 0.0).0 - mean);
             return self.from + width * part;
         }
-        // area = left d + slope d^2 / 2, solved for d without a difference of like numbers.
+        // area = left d + slope d^2 / 2, solved for d without cancellation.
         let slope = (self.right - self.left) / width;
         let root = libm::sqrt(libm::fmax(0.0, self.left * self.left + 2.0 * slope * area));
         let length = if area > 0.0 {
@@ -98,17 +98,17 @@ const NODES: [(f64, f64); 4] = [
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
 ];
 
-/// A stretch is halved at most this often, and all stretches of a piece together: enough to close in on
-/// several kinks that were not found before, and an end where rounding keeps halves from agreeing.
+/// The most halvings of a stretch, and of all stretches of a piece. They suffice to close in on several missed kinks, and
+/// end the search where rounding keeps halves from agreeing.
 const DEEPEST: usize = 48;
 const MOST_HALVINGS: usize = 400;
 
-/// How well a stretch and its halves must agree, as a part of the whole: the halves are then exact to
-/// rounding where the curve is smooth, and to this where it has a kink that was not found before.
+/// The relative difference up to which a stretch and its halves agree. The halves are then exact to rounding where the curve
+/// is smooth, and to this where it has a missed kink.
 const AGREEMENT: f64 = 1e-13;
 
-/// `(integral of f(t) dt, integral of t f(t) dt)` from 0 to `end`, by Gauss-Legendre on stretches halved until
-/// they agree. `known` is what the rest of the set amounts to: nothing far below it is worth halving for.
+/// `(integral of f(t) dt, integral of t f(t) dt)` from 0 to `end`, by Gauss-Legendre on stretches that are halved until
+/// they agree. `known` is the area of the rest of the set: the error need not be far below it.
 fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
     let mut stack = [(0.0, 0.0, 0.0, 0.0); DEEPEST + 1];
     let (whole, moment) = gauss(curve, 0.0, end);
@@ -148,8 +148,7 @@ fn gauss(curve: &dyn Fn(f64) -> f64, from: f64, to: f64) -> (f64, f64) {
     (half * area, half * (middle * area + half * moment))
 }
 
-/// The place between `a` and `b` where a function that changes sign there is 0: bisection with regula
-/// falsi (Illinois), to the last digit.
+/// The root of a function that changes sign between `a` and `b`: bisection with regula falsi (Illinois), to the last digit.
 pub(crate) fn root(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut a, mut b) = (a, b);
     let (mut fa, mut fb) = (f(a), f(b));

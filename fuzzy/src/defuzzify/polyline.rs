@@ -1,14 +1,13 @@
-//! The aggregated set where every term is made of straight lines: cut into pieces on which it has a
-//! closed form, without sampling.
+//! The aggregated set of terms made of straight lines, cut into pieces that have a closed form.
 //!
-//! The output's range is cut at every corner of every term when the engine is made; on each interval
-//! every term is one line. Per evaluation each interval is cut where a line meets its own plateau
-//! (implication by minimum), and then where lines cross (maximum) or their sum reaches 1 (bounded sum).
+//! Compilation cuts the output's range at every corner of every term; on each interval every term is one line. An
+//! evaluation cuts each interval where a line meets its own plateau (implication by minimum), and then where lines cross
+//! (maximum) or their sum reaches 1 (bounded sum).
 
 use alloc::vec::Vec;
 
 use super::piece::Piece;
-use super::{Heights, Joint};
+use super::{Joint, Strengths};
 use crate::model::{Aggregation, Implication, Term};
 use crate::table::operators::smaller;
 
@@ -35,19 +34,19 @@ pub(super) struct Line {
     pub(super) right: f64,
 }
 
-/// A straight line over a stretch.
+/// A straight line over a stretch, by its degrees at the ends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Segment {
     left: f64,
     right: f64,
 }
 
-/// Room to work in, owned by the caller's scratch: never grows while evaluating.
+/// Scratch memory of the caller. An evaluation never grows it.
 #[derive(Debug)]
-pub(crate) struct Room {
+pub(crate) struct Workspace {
     active: Vec<Activated>,
     pub(super) cuts: Vec<f64>,
-    /// The most cuts that may be made. Not the vector's capacity, which is up to the allocator.
+    /// The most cuts. The vector's capacity depends on the allocator.
     pub(super) most_cuts: usize,
     segments: Vec<Segment>,
 }
@@ -55,16 +54,16 @@ pub(crate) struct Room {
 /// A line under a firing strength.
 #[derive(Debug, Clone, Copy)]
 struct Activated {
-    height: f64,
+    strength: f64,
     left: f64,
     right: f64,
 }
 
-impl Room {
-    /// Room for `activations` and `cuts` at once.
+impl Workspace {
+    /// Workspace for `activations` and `cuts` at once.
     pub(crate) fn new(activations: usize, cuts: usize) -> Self {
         let most_cuts = cuts.max(activations + 2);
-        Room {
+        Workspace {
             active: Vec::with_capacity(activations),
             cuts: Vec::with_capacity(most_cuts),
             most_cuts,
@@ -73,10 +72,10 @@ impl Room {
     }
 }
 
-/// As much room, empty: the clone of a vector has no room for more than it holds.
-impl Clone for Room {
+/// Has the same capacities, and is empty. A derived clone would have no spare capacity.
+impl Clone for Workspace {
     fn clone(&self) -> Self {
-        Room::new(self.active.capacity(), self.most_cuts)
+        Workspace::new(self.active.capacity(), self.most_cuts)
     }
 }
 
@@ -121,7 +120,7 @@ impl Polylines {
         Some(polylines)
     }
 
-    /// The intervals between cuts, each with the lines alive on it.
+    /// The intervals between cuts, each with the lines over 0 on it.
     pub(super) fn intervals(&self) -> impl Iterator<Item = (f64, f64, &[Line])> {
         self.intervals.iter().map(|interval| {
             let lines = self.lines.get(interval.first_line..interval.end_line);
@@ -129,59 +128,61 @@ impl Polylines {
         })
     }
 
-    /// Whether a term is 0 on the whole range.
+    /// Whether a term is 0 all over the range.
     pub(crate) fn is_empty(&self, term: usize) -> bool {
         self.lines.iter().all(|line| line.term != term)
     }
 
-    /// Calls `visit` for each piece of the aggregated set, from left to right; where no term is alive
-    /// there is none.
+    /// Calls `visit` for each piece of the aggregated set over 0, from left to right.
     pub(crate) fn pieces(
         &self,
-        heights: Heights<'_>,
+        strengths: Strengths<'_>,
         joint: Joint,
-        room: &mut Room,
+        workspace: &mut Workspace,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
         for (from, to, lines) in self.intervals() {
-            room.active.clear();
-            room.cuts.clear();
-            room.cuts.push(0.0);
+            workspace.active.clear();
+            workspace.cuts.clear();
+            workspace.cuts.push(0.0);
             for line in lines {
-                for &height in heights.of(line.term) {
-                    if height > 0.0 {
-                        room.active.push(Activated {
-                            height,
+                for &strength in strengths.of(line.term) {
+                    if strength > 0.0 {
+                        workspace.active.push(Activated {
+                            strength,
                             left: line.left,
                             right: line.right,
                         });
                         if joint.implication == Implication::Minimum
-                            && (line.left > height) != (line.right > height)
-                            && line.left != height
-                            && line.right != height
+                            && (line.left > strength) != (line.right > strength)
+                            && line.left != strength
+                            && line.right != strength
                         {
-                            room.cuts
-                                .push((height - line.left) / (line.right - line.left));
+                            workspace
+                                .cuts
+                                .push((strength - line.left) / (line.right - line.left));
                         }
                     }
                 }
             }
-            if room.active.is_empty() {
+            if workspace.active.is_empty() {
                 continue;
             }
-            room.cuts.push(1.0);
-            room.cuts.sort_unstable_by(f64::total_cmp);
+            workspace.cuts.push(1.0);
+            workspace.cuts.sort_unstable_by(f64::total_cmp);
             let width = to - from;
-            for (&start, &end) in room.cuts.iter().zip(room.cuts.iter().skip(1)) {
+            for (&start, &end) in workspace.cuts.iter().zip(workspace.cuts.iter().skip(1)) {
                 if start >= end {
                     continue;
                 }
-                room.segments.clear();
-                for active in &room.active {
-                    room.segments.push(active.on(start, end, joint.implication));
+                workspace.segments.clear();
+                for active in &workspace.active {
+                    workspace
+                        .segments
+                        .push(active.on(start, end, joint.implication));
                 }
                 let at = |t: f64| match t {
-                    // The ends themselves, so that neighbouring pieces meet exactly.
+                    // Exact at the ends, so that neighbouring pieces meet.
                     0.0 => from,
                     1.0 => to,
                     _ => from + width * t,
@@ -190,14 +191,14 @@ impl Polylines {
                     from: at(start),
                     to: at(end),
                 };
-                join(&room.segments, stretch, joint.aggregation, visit);
+                join(&workspace.segments, stretch, joint.aggregation, visit);
             }
         }
     }
 }
 
 impl Activated {
-    /// The activated line between two places in [0, 1] of its interval, with no plateau's end between them.
+    /// The activated line on a part of its interval, where `start` and `end` are in [0, 1] and no plateau ends between them.
     fn on(&self, start: f64, end: f64, implication: Implication) -> Segment {
         let at = |t: f64| {
             if t == 0.0 {
@@ -208,16 +209,16 @@ impl Activated {
                 self.left + (self.right - self.left) * t
             }
         };
-        if implication == Implication::Minimum && at(0.5 * (start + end)) >= self.height {
-            // The plateau itself: read off the line, a low plateau would lose digits at its end.
+        if implication == Implication::Minimum && at(0.5 * (start + end)) >= self.strength {
+            // Exactly the plateau: reading it off the line would lose digits.
             return Segment {
-                left: self.height,
-                right: self.height,
+                left: self.strength,
+                right: self.strength,
             };
         }
         Segment {
-            left: implication.of(self.height, at(start)),
-            right: implication.of(self.height, at(end)),
+            left: implication.of(self.strength, at(start)),
+            right: implication.of(self.strength, at(end)),
         }
     }
 }
@@ -299,7 +300,7 @@ fn straight(stretch: Stretch, start: f64, end: f64, left: f64, right: f64) -> Pi
     }
 }
 
-/// The maximum of lines: from the highest on the left, always on to the next steeper line that crosses.
+/// The maximum of lines. Starts at the highest line on the left, and at each crossing continues on the steeper line.
 fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut dyn FnMut(&Piece<'_>)) {
     let Some(mut top) = segments.iter().copied().reduce(|best, segment| {
         if (segment.left, segment.right) > (best.left, best.right) {
@@ -317,7 +318,7 @@ fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut dyn FnMut(
             if segment.right <= top.right {
                 continue;
             }
-            // Where two lines cross, from their distances at both ends.
+            // The crossing of two lines, from their distances at both ends.
             let (behind, ahead) = (top.left - segment.left, segment.right - top.right);
             let crossing = if behind > 0.0 {
                 behind / (behind + ahead)
@@ -348,7 +349,7 @@ fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut dyn FnMut(
     visit(&straight(stretch, t, 1.0, y, top.right));
 }
 
-/// The degrees of a polyline just inside the ends of an interval that holds no corner.
+/// The degrees of a polyline just inside the ends of an interval without corners.
 fn limits(corners: &[(f64, f64)], from: f64, to: f64) -> (f64, f64) {
     let mut before: Option<(f64, f64)> = None;
     for &corner in corners {

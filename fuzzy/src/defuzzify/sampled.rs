@@ -1,4 +1,4 @@
-//! Sampled defuzzification, to reproduce programs that sample. Its error is theirs.
+//! Sampled defuzzification, which reproduces other programs with their error.
 
 use crate::model::{Defuzzifier, Sampling, SamplingRule};
 
@@ -28,7 +28,7 @@ impl Sampling {
         }
     }
 
-    /// The place and weight of a sample.
+    /// The value and weight of a sample.
     fn sample(self, i: usize, low: f64, high: f64) -> (f64, f64) {
         match self.rule {
             SamplingRule::Midpoint => {
@@ -43,7 +43,7 @@ impl Sampling {
         }
     }
 
-    /// The first sample at which half of the sum is reached.
+    /// The first sample at which the sum reaches its half.
     fn bisector(self, low: f64, high: f64, degree: impl Fn(f64) -> f64) -> Option<f64> {
         let terms = || {
             (0..self.samples).map(|i| {

@@ -2,48 +2,48 @@
 
 use alloc::vec::Vec;
 
-use crate::model::Shape;
+use crate::model::MembershipFunction;
+use crate::table::{Coefficient, Consequent};
 
-/// `z = constant + sum(coefficient input)`.
-#[derive(Debug, Clone)]
-pub(crate) struct Consequence {
-    pub(crate) constant: f64,
-    /// Input and coefficient.
-    pub(crate) coefficients: Vec<(usize, f64)>,
+/// The consequents of the terms of an output, with spans in their own coefficients.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Consequents {
+    pub(crate) consequents: Vec<Consequent>,
+    pub(crate) coefficients: Vec<Coefficient>,
 }
 
-impl Consequence {
-    /// The consequent of a term; `None` of a shape that is no consequent. A singleton is a constant.
-    /// Names of inputs that `input` does not know are given to `unknown`.
-    pub(crate) fn new(
-        shape: &Shape,
+impl Consequents {
+    /// Adds the consequent of a term of a valid model, in which `input` finds every name. A singleton is a constant.
+    pub(crate) fn push(
+        &mut self,
+        shape: &MembershipFunction,
         input: impl Fn(&str) -> Option<usize>,
-        mut unknown: impl FnMut(&str),
-    ) -> Option<Self> {
-        let (constant, coefficients) = match shape {
-            Shape::Constant { value: constant } | Shape::Singleton { at: constant } => {
-                (*constant, Vec::new())
-            }
-            Shape::Linear {
+    ) {
+        let first = self.coefficients.len();
+        let constant = match shape {
+            MembershipFunction::Constant { value: constant }
+            | MembershipFunction::Singleton { at: constant } => constant,
+            MembershipFunction::Linear {
                 coefficients,
                 constant,
             } => {
-                let mut indexed = Vec::new();
                 for (name, coefficient) in coefficients {
-                    match input(name) {
-                        Some(index) => indexed.push((index, *coefficient)),
-                        None => unknown(name),
-                    }
+                    self.coefficients
+                        .extend(input(name).map(|index| Coefficient {
+                            coefficient: *coefficient,
+                            input: index as u32,
+                        }));
                 }
-                // By input, so that the order of the lines does not change a bit of the sum.
-                indexed.sort_by_key(|(index, _)| *index);
-                (*constant, indexed)
+                // By input, so that the order in the text does not change a bit of the sum.
+                self.coefficients[first..].sort_by_key(|coefficient| coefficient.input);
+                constant
             }
-            _ => return None,
+            _ => return,
         };
-        Some(Consequence {
-            constant,
-            coefficients,
-        })
+        self.consequents.push(Consequent {
+            constant: *constant,
+            first: first as u32,
+            end: self.coefficients.len() as u32,
+        });
     }
 }

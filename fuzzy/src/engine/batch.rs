@@ -1,42 +1,38 @@
-//! Many evaluations at once, over columns.
+//! Evaluations of many rows, given as columns.
 
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
 use super::{Engine, EvaluateError, Outcome, Scratch};
 
-/// Rows that one thread takes at a time.
+/// The number of rows in a task.
 #[cfg(feature = "parallel")]
 const ROWS_A_TASK: usize = 4096;
 
 impl Engine {
-    /// Evaluates one column of values for each input, and gives the outcomes row by row: those of row i
-    /// stand at `i * outputs..(i + 1) * outputs`.
+    /// Evaluates a column of values for each input, and returns the outcomes row by row: those of row i have the indices
+    /// `i * outputs..(i + 1) * outputs`.
     ///
-    /// Each outcome has the bits that [`Engine::evaluate`] gives for its row, also with the feature `parallel`,
-    /// which splits the rows over the threads of the current rayon pool. A row in which no rule fires says so
-    /// ([`State::NoRuleFired`](super::State::NoRuleFired)) also where the author made that an error: one row
-    /// takes nothing from the others.
+    /// Each outcome has the bits of [`Engine::evaluate`]. The feature `parallel` splits the rows over the threads of the
+    /// current rayon pool. A row where no rule fires is [`State::NoRuleFired`](super::State::NoRuleFired), also where the
+    /// model makes that an error.
     ///
     /// # Errors
-    /// Not one column for each input, or columns of different lengths.
+    /// The number of columns is not that of the inputs, or their lengths differ.
     ///
-    /// # Example: two rows
+    /// # Example: two temperatures
     /// ```
-    /// # use fuzzy::model::{Model, Output, Shape, Variable};
-    /// # use fuzzy::rule::{Condition, Rule};
-    /// # let model = Model::builder("m")
-    /// #     .input(Variable::new("x", 0.0, 1.0).term("low", Shape::Triangle { left: 0.0, peak: 0.0, right: 0.5 }))
-    /// #     .input(Variable::new("y", 0.0, 1.0))
-    /// #     .output(Output::new(Variable::new("z", 0.0, 1.0).term("small", Shape::Rectangle { left: 0.0, right: 0.5 })))
-    /// #     .rule(Rule::new(Condition::is("x", "low"), "z", "small")).build();
-    /// use fuzzy::Engine;
+    /// use fuzzy::{Engine, model::{Model, Output, MembershipFunction, Variable}, rule};
     ///
+    /// let model = Model::builder("heater")
+    ///     .input(Variable::new("room", 0.0, 20.0).term("cold", MembershipFunction::LeftShoulder { top: 0.0, foot: 10.0 }))
+    ///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("high", MembershipFunction::Rectangle { left: 50.0, right: 100.0 })))
+    ///     .rule(rule::parse("IF room IS cold THEN power IS high")?)
+    ///     .build();
     /// let engine = Engine::new(&model)?;
-    /// let (x, y) = ([0.1, 0.9], [0.5, 0.5]);
-    /// let outcomes = engine.evaluate_batch(&[&x, &y])?;
-    /// assert_eq!(outcomes[0].value(), Some(0.25));
-    /// assert_eq!(outcomes[1].value(), None);
+    /// let outcomes = engine.evaluate_batch(&[&[5.0, 15.0]])?;
+    /// assert_eq!(outcomes[0].value(), Some(75.0));
+    /// assert_eq!(outcomes[1].value(), None); // no rule fires
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn evaluate_batch(&self, columns: &[&[f64]]) -> Result<Vec<Outcome>, EvaluateError> {
@@ -46,25 +42,10 @@ impl Engine {
         Ok(outcomes)
     }
 
-    /// [`Engine::evaluate_batch`] into outcomes that the caller owns: one for each row and output.
+    /// [`Engine::evaluate_batch`] into outcomes of the caller, one for each row and output.
     ///
     /// # Errors
-    /// As [`Engine::evaluate_batch`]; and not one place for each row and output.
-    ///
-    /// # Example: outcomes that are used again and again
-    /// ```
-    /// use fuzzy::{Engine, engine::Outcome};
-    ///
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// let engine = Engine::new(&model)?;
-    /// let mut outcomes = [Outcome::default(); 2];
-    /// let (margin, spread) = ([0.4, f64::NAN], [0.1, 0.1]);
-    /// engine.evaluate_batch_into(&[&margin, &spread], &mut outcomes)?;
-    /// assert!(outcomes[0].value() < Some(10.0));
-    /// assert_eq!(outcomes[1].value(), None, "an unknown margin is no margin");
-    /// assert!(engine.evaluate_batch_into(&[&margin, &spread], &mut outcomes[..1]).is_err());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// As [`Engine::evaluate_batch`], or the number of outcomes is wrong.
     pub fn evaluate_batch_into(
         &self,
         columns: &[&[f64]],
@@ -107,7 +88,7 @@ impl Engine {
         Ok(())
     }
 
-    /// Evaluates the rows from `first` on, as many as `outcomes` has room for.
+    /// Evaluates the rows that begin at index `first`, as many as `outcomes` holds.
     fn rows(
         &self,
         scratch: &mut Scratch,
@@ -124,7 +105,7 @@ impl Engine {
         });
     }
 
-    /// Evaluates the rows of `range` and calls `put` with the outcomes of each.
+    /// Evaluates the rows of `range` and calls `put` with the outcomes of each row.
     pub(crate) fn evaluate_rows(
         &self,
         scratch: &mut Scratch,

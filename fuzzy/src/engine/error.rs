@@ -1,59 +1,90 @@
 //! Why inputs could not be evaluated.
 
-use alloc::sync::Arc;
+use alloc::{string::String, sync::Arc};
+use core::fmt;
 
 /// Why inputs could not be evaluated.
-///
-/// # Example: a value too few
-/// ```
-/// use fuzzy::engine::EvaluateError;
-///
-/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-/// let engine = fuzzy::Engine::new(&model)?;
-/// let refused = engine.evaluate(&[0.1]).unwrap_err();
-/// assert_eq!(refused, EvaluateError::WrongNumberOfInputs { expected: 2, got: 1 });
-/// // An unknown value is no error to an evaluation, which says so in its outcome, but nothing can be explained.
-/// assert!(engine.evaluate(&[0.1, f64::NAN]).is_ok());
-/// assert_eq!(engine.explain(&model, &[0.1, f64::NAN]), Err(EvaluateError::InputNotFinite));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EvaluateError {
     /// Not one value for each input.
-    #[error("{got} values were given for {expected} input(s)")]
     WrongNumberOfInputs {
         /// How many inputs the model has.
         expected: usize,
         /// How many values were given.
         got: usize,
     },
-    /// Not one place for each output.
-    #[error("there is room for {got} outcomes of {expected} output(s)")]
+    /// Not one outcome for each output.
     WrongNumberOfOutputs {
         /// How many outputs the model has.
         expected: usize,
-        /// How many places were given.
+        /// How many outcomes were lent.
         got: usize,
     },
     /// Columns of a batch that are not equally long.
-    #[error("a column has {other} values where the first has {first}")]
     ColumnsOfDifferentLengths {
         /// The length of the first column.
         first: usize,
         /// Another length.
         other: usize,
     },
+    /// A name that is no input.
+    UnknownInput {
+        /// The name.
+        name: String,
+    },
+    /// An input without a value.
+    MissingInput {
+        /// The input.
+        name: Arc<str>,
+    },
+    /// An input with two values.
+    RepeatedInput {
+        /// The input.
+        name: Arc<str>,
+    },
+    /// A value that is no struct or map of numbers.
+    NoFields {
+        /// What was expected.
+        message: String,
+    },
     /// An input is NaN or infinite, so there is nothing to explain.
-    #[error("an input is not a finite number")]
     InputNotFinite,
-    /// The model is not the one that the engine was made from.
-    #[error("the engine was made from another model")]
-    OtherModel,
     /// No rule of an output fired, and the model says that this is an error.
-    #[error("no rule fired for output `{output}`")]
     NoRuleFired {
         /// The output's name.
         output: Arc<str>,
     },
 }
+
+impl fmt::Display for EvaluateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            EvaluateError::WrongNumberOfInputs { expected, got } => {
+                write!(
+                    f,
+                    "the model has {expected} inputs, but {got} values were given"
+                )
+            }
+            EvaluateError::WrongNumberOfOutputs { expected, got } => {
+                write!(
+                    f,
+                    "the model has {expected} outputs, but there is room for {got} outcomes"
+                )
+            }
+            EvaluateError::ColumnsOfDifferentLengths { first, other } => {
+                write!(f, "a column has {other} values where the first has {first}")
+            }
+            EvaluateError::UnknownInput { name } => write!(f, "there is no input `{name}`"),
+            EvaluateError::MissingInput { name } => write!(f, "input `{name}` has no value"),
+            EvaluateError::RepeatedInput { name } => write!(f, "input `{name}` has two values"),
+            EvaluateError::NoFields { message } => f.write_str(message),
+            EvaluateError::InputNotFinite => f.write_str("an input is not a finite number"),
+            EvaluateError::NoRuleFired { output } => {
+                write!(f, "no rule fired for output `{output}`")
+            }
+        }
+    }
+}
+
+impl core::error::Error for EvaluateError {}

@@ -6,32 +6,17 @@ use alloc::{
     vec::Vec,
 };
 
-use serde::Serialize;
-
 use super::{
     Engine, EvaluateError, Outcome, State,
     operators::{larger, smaller},
 };
-use crate::model::{Aggregation, Model, Operators, Output, Shape, Term, Variable};
+use crate::model::{Aggregation, MembershipFunction, Model, Operators, Output, Term, Variable};
 use crate::rule::{Condition, Proposition};
 
-/// All that an evaluation rests on.
-///
-/// # Example: what a margin of 0.05 means, and the rules that speak of it
-/// ```
-/// use fuzzy::engine::{Degree, ExplainedInput, FiredRule};
-///
-/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-/// let explanation = fuzzy::Engine::new(&model)?.explain(&model, &[0.05, 0.9])?;
-/// let ExplainedInput { terms, .. } = &explanation.inputs[0];
-/// assert_eq!(terms[0], Degree { term: "very_low".into(), degree: 0.5 });
-/// let ExplainedInput { given, value, .. } = &explanation.inputs[1];
-/// assert_eq!((*given, *value), (0.9, 0.5)); // out of its range
-/// let strengths = explanation.rules.iter().map(|FiredRule { rule, strength, .. }| (*rule, *strength));
-/// assert!(strengths.eq([(6, 0.5), (8, 0.5)]));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// Why an evaluation gives its values.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Explanation {
     /// The inputs, with the degree of each of their terms.
     pub inputs: Vec<ExplainedInput>,
@@ -41,8 +26,10 @@ pub struct Explanation {
     pub outputs: Vec<ExplainedOutput>,
 }
 
-/// An input, and what its value means.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// An input, and the degrees of its terms.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct ExplainedInput {
     /// Its name.
     pub name: String,
@@ -55,7 +42,9 @@ pub struct ExplainedInput {
 }
 
 /// The degree of membership of a value in a term.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Degree {
     /// The term.
     pub term: String,
@@ -64,9 +53,15 @@ pub struct Degree {
 }
 
 /// A rule that fired.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct FiredRule {
-    /// Its index in the model.
+    /// Its index in the model; serialised, rules count from 1.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub rule: usize,
     /// The rule as it is written.
     pub text: String,
@@ -76,31 +71,20 @@ pub struct FiredRule {
     pub strength: f64,
 }
 
-/// An output, and how it came about.
-///
-/// # Example: two rules share a result
-/// ```
-/// use fuzzy::engine::{ExplainedOutput, Share};
-///
-/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-/// let explanation = fuzzy::Engine::new(&model)?.explain(&model, &[0.1, 0.15])?;
-/// let ExplainedOutput { coverage, rules, is_default, .. } = &explanation.outputs[0];
-/// assert!((coverage - 0.5).abs() < 1e-12 && !is_default);
-/// let terms: Vec<&str> = rules.iter().map(|Share { term, .. }| term.as_str()).collect();
-/// assert_eq!(terms, ["medium", "very_high"]); // at the same strength `medium` is the wider set
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// An output, and the rules that contribute to it.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct ExplainedOutput {
     /// Its name.
     pub name: String,
-    /// The value; none where no rule fired and the model says that it is undefined or an error then.
+    /// The value; none where no rule fires and the model has no default.
     pub value: Option<f64>,
-    /// Whether the value is the one that the model gives where no rule fires.
+    /// Whether no rule fires and the value is the model's default.
     pub is_default: bool,
     /// The largest firing strength of a rule of this output.
     pub coverage: f64,
-    /// The rules that speak of it, the largest share first.
+    /// The rules that contribute to it, the largest share first.
     pub rules: Vec<Share>,
     /// The degree of the value in each term; empty for Takagi-Sugeno outputs.
     pub terms: Vec<Degree>,
@@ -108,10 +92,16 @@ pub struct ExplainedOutput {
     pub set: Vec<(f64, f64)>,
 }
 
-/// What a rule adds to an output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// What a rule contributes to an output.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Share {
-    /// The rule's index in the model.
+    /// The rule's index in the model; serialised, rules count from 1.
+    #[cfg_attr(
+        feature = "serde",
+        serde(serialize_with = "crate::serial::rule_number")
+    )]
     pub rule: usize,
     /// The term it concludes.
     pub term: String,
@@ -127,33 +117,33 @@ pub struct Share {
 const STEPS: usize = 200;
 
 impl Engine {
-    /// Tells how the outputs come about: memberships, fired rules with strength and share, the aggregated set.
+    /// Explains the outputs: the degrees of the inputs' terms, the fired rules with strength and share, the aggregated set.
     ///
-    /// `model` is the one the engine was made from: the engine itself keeps no names of terms and no text.
-    /// It allocates and takes its time; use [`Engine::evaluate`] for values alone.
+    /// It allocates and is slow; use [`Engine::evaluate`] for values alone.
     ///
     /// # Errors
-    /// Not one finite value for each input, or another model.
+    /// Not one finite value for each input.
     ///
-    /// # Example: which rules fired, how strongly?
+    /// # Example: which rules fire, and how strongly?
     /// ```
-    /// use fuzzy::Engine;
+    /// use fuzzy::{Engine, Model};
     ///
-    /// let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// let engine = Engine::new(&model)?;
-    /// let explanation = engine.explain(&model, &[0.007969, 0.226310])?;
+    /// let model: Model = "
+    /// fuzzy: 1
+    /// name: fan
+    /// inputs: {heat: {range: [0, 40], partition: [low, high]}}
+    /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
+    /// ".parse()?;
+    /// let explanation = Engine::new(&model)?.explain(&[30.0])?;
     /// let strongest = &explanation.rules[0];
-    /// assert_eq!(strongest.text, "IF margin IS very_low AND spread IS high THEN risk IS very_high");
-    /// assert!((strongest.strength - 0.92031).abs() < 1e-5);
-    /// assert!((explanation.outputs[0].rules.iter().map(|r| r.share).sum::<f64>() - 1.0).abs() < 1e-12);
+    /// assert_eq!(strongest.text, "IF heat IS high THEN speed IS fast");
+    /// assert_eq!(strongest.strength, 0.75);
+    /// assert!(explanation.outputs[0].rules[0].share > 0.75);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn explain(&self, model: &Model, inputs: &[f64]) -> Result<Explanation, EvaluateError> {
-        let names = model.inputs.iter().map(|input| input.name.as_str());
-        let outputs = model.outputs.iter().map(|o| o.variable.name.as_str());
-        if !names.eq(self.input_names()) || !outputs.eq(self.output_names()) {
-            return Err(EvaluateError::OtherModel);
-        }
+    pub fn explain(&self, inputs: &[f64]) -> Result<Explanation, EvaluateError> {
+        let model = self.model();
         if inputs.len() != self.inputs.len() {
             return Err(EvaluateError::WrongNumberOfInputs {
                 expected: self.inputs.len(),
@@ -316,7 +306,7 @@ fn explain_output(
     let sets = variable
         .terms
         .iter()
-        .all(|term| !matches!(term.shape, Shape::Linear { .. }));
+        .all(|term| !matches!(term.shape, MembershipFunction::Linear { .. }));
     ExplainedOutput {
         name: variable.name.clone(),
         value,

@@ -1,10 +1,9 @@
-//! Batches of the commonest kind of model, several rows at once: every step is done for [`LANES`] rows in
-//! one loop, which the compiler turns into vector instructions. Every number comes from the same operations
-//! in the same order as in a single evaluation, so the bits are the same.
+//! Evaluates batches of the most common kind of model, several rows at once. Each step is a loop over [`LANES`] rows that
+//! the compiler turns into vector instructions. The operations and their order are those of a single evaluation, so the
+//! bits are the same.
 //!
-//! The kind: one output with the centroid over a partition, rules that are plain ANDs by minimum, input
-//! terms that are slopes and plateaus. Every term and every rule is computed for every row, so the rules
-//! must be few.
+//! The kind of model: one output with the centroid over a partition, rules that are plain ANDs by minimum, input terms of
+//! slopes and plateaus, and few rules, because every term and rule is computed for every row.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -13,31 +12,31 @@ use super::literal::{Literal, lines};
 use super::operators::{larger, smaller};
 use super::rules::Draft;
 use super::{CompiledOutput, FROM_TINY, Input, Outcome, State, TINY};
-use crate::defuzzify::Ramps;
+use crate::defuzzify::Partition;
 use crate::model::{Conjunction, NoRuleFires};
 use crate::table::Line;
 
-/// Rows at a time: the width of the widest vectors.
+/// The number of rows at a time: the width of the widest vectors.
 const LANES: usize = 8;
 type Row = [f64; LANES];
 
-/// Above this number of operations a row, visiting only the rules alive is faster.
+/// Above this number of operations a row, visiting only the rules that fire is faster.
 const MOST_OPERATIONS: usize = 600;
 const MOST_INPUTS: usize = 8;
 const MOST_TERMS: usize = 32;
-const MOST_PLACES: usize = 33;
+const MOST_STRENGTHS: usize = 33;
 const MOST_RULES: usize = 64;
 
 #[derive(Debug, Clone)]
 pub(super) struct Lanes {
-    inputs: Vec<Span>,
+    inputs: Vec<InputRange>,
     slopes: Vec<Slopes>,
-    /// By place, so that each height is made at once.
+    /// Ordered by the firing strength they update.
     rules: Vec<Rule>,
     literals: Vec<usize>,
-    /// Where, in the rules, those of each place begin, and where the last one's end.
-    places: Vec<usize>,
-    ramps: Ramps,
+    /// The offset in `rules` of the rules of each firing strength, and the end of the last one's.
+    offsets: Vec<usize>,
+    partition: Partition,
     low: f64,
     high: f64,
     origin: f64,
@@ -45,14 +44,13 @@ pub(super) struct Lanes {
 }
 
 #[derive(Debug, Clone)]
-struct Span {
+struct InputRange {
     low: f64,
     high: f64,
     literals: Range<usize>,
 }
 
-/// A term that rises up to `split` at the latest and falls from there at the earliest:
-/// `(x - foot) / run` on both sides, held to [0, 1].
+/// A term that rises only below `split` and falls only above: `(x - foot) / run` on both sides, clamped to [0, 1].
 #[derive(Debug, Clone, Copy)]
 struct Slopes {
     split: f64,
@@ -63,24 +61,24 @@ struct Slopes {
 #[derive(Debug, Clone)]
 struct Rule {
     literal: usize,
-    /// Where its other literals stand among all of these.
+    /// The span of its other literals.
     others: Range<usize>,
     weight: f64,
-    /// The index in the model, with a minus.
-    below_0: f64,
+    /// The index in the model, negated.
+    negated_index: f64,
 }
 
-/// What a block is computed in.
-struct Room {
-    /// The values, by their bits, that the degrees of each input are of.
+/// The memory of an evaluation of a block.
+struct Block {
+    /// The bits of the values whose degrees are held, for each input.
     known: [[u64; LANES]; MOST_INPUTS],
     degrees: [Row; MOST_TERMS],
-    strengths: [Row; MOST_RULES],
-    heights: [Row; MOST_PLACES],
+    by_rule: [Row; MOST_RULES],
+    strengths: [Row; MOST_STRENGTHS],
 }
 
 impl Lanes {
-    /// `None` of another kind of model.
+    /// `None` for another kind of model.
     pub(super) fn new(
         and: Conjunction,
         inputs: &[Input],
@@ -91,7 +89,7 @@ impl Lanes {
         let [output] = outputs else {
             return None;
         };
-        let ramps = output.defuzzify.ramps()?;
+        let partition = output.defuzzify.partition()?;
         let mut slopes = Vec::new();
         let mut ranges = Vec::new();
         for (input, literals) in inputs.iter().zip(literals) {
@@ -99,7 +97,7 @@ impl Lanes {
             for literal in literals {
                 slopes.push(Slopes::new(&lines(literal)?, input.low, input.high)?);
             }
-            ranges.push(Span {
+            ranges.push(InputRange {
                 low: input.low,
                 high: input.high,
                 literals: first_literal..slopes.len(),
@@ -110,15 +108,15 @@ impl Lanes {
             let literals = draft.literals.as_ref()?;
             actions.extend(draft.actions.iter().map(|action| (action, literals)));
         }
-        actions.sort_by_key(|(action, _)| (action.place, action.rule));
+        actions.sort_by_key(|(action, _)| (action.strength, action.rule));
         let ands: usize = actions.iter().map(|(_, literals)| literals.len()).sum();
-        let operations = 12 * slopes.len() + ands + 6 * actions.len() + 20 * ramps.places();
+        let operations = 12 * slopes.len() + ands + 6 * actions.len() + 20 * partition.strengths();
         let fits = and == Conjunction::Minimum
             && operations <= MOST_OPERATIONS
             && inputs.len() <= MOST_INPUTS
             && slopes.len() <= MOST_TERMS
             && actions.len() <= MOST_RULES
-            && ramps.places() <= MOST_PLACES;
+            && partition.strengths() <= MOST_STRENGTHS;
         if !fits {
             return None;
         }
@@ -131,18 +129,18 @@ impl Lanes {
                 literal: *literal as usize,
                 others: start..all_literals.len(),
                 weight: action.weight,
-                below_0: -f64::from(action.rule),
+                negated_index: -f64::from(action.rule),
             });
         }
-        let before = |place: usize| actions.partition_point(|(a, _)| (a.place as usize) < place);
-        let places = (0..=ramps.places()).map(before).collect();
+        let before = |index: usize| actions.partition_point(|(a, _)| (a.strength as usize) < index);
+        let offsets = (0..=partition.strengths()).map(before).collect();
         Some(Lanes {
             inputs: ranges,
             slopes,
             rules,
             literals: all_literals,
-            places,
-            ramps: ramps.clone(),
+            offsets,
+            partition: partition.clone(),
             low: output.low,
             high: output.high,
             origin: output.defuzzify.middle(),
@@ -161,10 +159,10 @@ impl Lanes {
             range,
             put,
         };
-        // With the widest vectors of the processor at hand; the operations, and so the bits, are the same.
-        #[cfg(feature = "std")]
+        // Compiled for the widest vectors of the processor; the operations, and so the bits, stay the same.
+        #[cfg(feature = "simd")]
         pulp::Arch::new().dispatch(blocks);
-        #[cfg(not(feature = "std"))]
+        #[cfg(not(feature = "simd"))]
         blocks.evaluate();
     }
 
@@ -174,16 +172,16 @@ impl Lanes {
         &self,
         columns: &[&[f64]],
         range: Range<usize>,
-        room: &mut Room,
+        block: &mut Block,
         put: &mut impl FnMut(Outcome),
     ) {
-        let Room {
+        let Block {
             known,
             degrees,
+            by_rule,
             strengths,
-            heights,
-        } = room;
-        let heights = &mut heights[..self.ramps.places()];
+        } = block;
+        let strengths = &mut strengths[..self.partition.strengths()];
         let (mut infinite, mut clamped) = ([0; LANES], [0; LANES]);
         for ((input, column), known) in self.inputs.iter().zip(columns).zip(known) {
             let rows = &column[range.clone()];
@@ -198,7 +196,7 @@ impl Lanes {
                 x[lane] = larger(input.low, smaller(input.high, values[lane]));
                 clamped[lane] |= mask(x[lane] != values[lane]);
             }
-            // Along a line of a map all inputs but one stay as they are.
+            // Along a row of a map all inputs but one stay the same.
             let bits = values.map(f64::to_bits);
             if *known == bits {
                 continue;
@@ -213,11 +211,11 @@ impl Lanes {
             }
         }
         let mut strongest = [0.0; LANES];
-        let places = self.places.iter().zip(self.places.iter().skip(1));
-        for ((first, end), place) in places.zip(&mut *heights) {
-            let mut height = [0.0; LANES];
+        let spans = self.offsets.iter().zip(self.offsets.iter().skip(1));
+        for ((first, end), kept) in spans.zip(&mut *strengths) {
+            let mut largest = [0.0; LANES];
             let rules = *first..*end;
-            for (rule, kept) in self.rules[rules.clone()].iter().zip(&mut strengths[rules]) {
+            for (rule, of_rule) in self.rules[rules.clone()].iter().zip(&mut by_rule[rules]) {
                 let mut strength = degrees[rule.literal];
                 for literal in &self.literals[rule.others.clone()] {
                     let degrees = &degrees[*literal];
@@ -227,32 +225,32 @@ impl Lanes {
                 }
                 for lane in 0..LANES {
                     strength[lane] *= rule.weight;
-                    height[lane] = larger(height[lane], strength[lane]);
+                    largest[lane] = larger(largest[lane], strength[lane]);
                 }
-                *kept = strength;
+                *of_rule = strength;
             }
             for lane in 0..LANES {
-                strongest[lane] = larger(strongest[lane], height[lane]);
+                strongest[lane] = larger(strongest[lane], largest[lane]);
             }
-            *place = height;
+            *kept = largest;
         }
-        // Of several as strong the first in the model: the largest of the indices below 0.
+        // The first in the model of equally strong rules has the largest negated index.
         let mut first = [f64::NEG_INFINITY; LANES];
-        for (rule, strength) in self.rules.iter().zip(&*strengths) {
+        for (rule, strength) in self.rules.iter().zip(&*by_rule) {
             for lane in 0..LANES {
                 let is_strongest = strength[lane] == strongest[lane];
-                let index = choose(is_strongest, rule.below_0, f64::NEG_INFINITY);
+                let index = choose(is_strongest, rule.negated_index, f64::NEG_INFINITY);
                 first[lane] = larger(first[lane], index);
             }
         }
         if strongest.iter().any(|strength| *strength < TINY) {
-            for height in &mut *heights {
+            for strength in &mut *strengths {
                 for lane in 0..LANES {
-                    height[lane] *= choose(strongest[lane] < TINY, FROM_TINY, 1.0);
+                    strength[lane] *= choose(strongest[lane] < TINY, FROM_TINY, 1.0);
                 }
             }
         }
-        let values = self.ramps.centroids(heights, self.origin);
+        let values = self.partition.centroids(strengths, self.origin);
         for lane in 0..range.len().min(LANES) {
             if infinite[lane] != 0 {
                 put(Outcome {
@@ -277,7 +275,7 @@ impl Lanes {
     }
 }
 
-/// The arguments of [`Lanes::rows`], for a call compiled for wider vectors.
+/// The arguments of [`Lanes::rows`], for a function compiled for wider vectors.
 struct Blocks<'a, Put> {
     lanes: &'a Lanes,
     columns: &'a [&'a [f64]],
@@ -288,22 +286,22 @@ struct Blocks<'a, Put> {
 impl<Put: FnMut(Outcome)> Blocks<'_, Put> {
     #[inline(always)]
     fn evaluate(mut self) {
-        let mut room = Room {
-            // The bits of no finite number.
+        let mut block = Block {
+            // The bits of a NaN.
             known: [[u64::MAX; LANES]; MOST_INPUTS],
             degrees: [[0.0; LANES]; MOST_TERMS],
-            strengths: [[0.0; LANES]; MOST_RULES],
-            heights: [[0.0; LANES]; MOST_PLACES],
+            by_rule: [[0.0; LANES]; MOST_RULES],
+            strengths: [[0.0; LANES]; MOST_STRENGTHS],
         };
         for start in self.range.clone().step_by(LANES) {
             let end = self.range.end.min(start + LANES);
             self.lanes
-                .block(self.columns, start..end, &mut room, &mut self.put);
+                .block(self.columns, start..end, &mut block, &mut self.put);
         }
     }
 }
 
-#[cfg(feature = "std")]
+#[cfg(feature = "simd")]
 impl<Put: FnMut(Outcome)> pulp::WithSimd for Blocks<'_, Put> {
     type Output = ();
 
@@ -314,9 +312,9 @@ impl<Put: FnMut(Outcome)> pulp::WithSimd for Blocks<'_, Put> {
 }
 
 impl Slopes {
-    /// The term's lines between `low` and `high`, where it rises once and falls once at most.
+    /// `None` where, between `low` and `high`, the term rises or falls more than once.
     fn new(lines: &[(f64, Line)], low: f64, high: f64) -> Option<Self> {
-        // `x - (-infinity)` over 1 is infinite, which is held to 1: a plateau.
+        // `(x - (-infinity)) / 1` is infinite, which is clamped to 1: a plateau.
         let plateau = (f64::NEG_INFINITY, 1.0);
         let mut slopes = Slopes {
             split: f64::INFINITY,
@@ -364,21 +362,20 @@ impl Slopes {
     }
 }
 
-/// All bits or none: a truth as wide as a number.
+/// All bits or none.
 #[inline(always)]
 fn mask(truth: bool) -> u64 {
     0u64.wrapping_sub(u64::from(truth))
 }
 
-/// One of two numbers by their bits, which the compiler does for all lanes at once: an `if` it may turn into
-/// a branch for each.
+/// One of two numbers, selected by a mask. The compiler may turn an `if` into a branch for each lane.
 #[inline(always)]
 fn choose(first: bool, a: f64, b: f64) -> f64 {
     let mask = mask(first);
     f64::from_bits((a.to_bits() & mask) | (b.to_bits() & !mask))
 }
 
-/// How far a term has come from left to right.
+/// A part of a term, from left to right.
 #[derive(Clone, Copy, PartialEq)]
 enum Part {
     Below,

@@ -1,29 +1,29 @@
-//! The literals of an input, cut into straight lines, on their way into a table.
+//! The literals of an input, as straight lines on intervals.
 
 use alloc::vec::Vec;
 
-use crate::model::{Shape, Term};
+use crate::model::{MembershipFunction, Term};
 use crate::rule::Hedge;
 use crate::table::Line;
 
-/// A hedged term of an input. Hedges stand in the order in which they apply.
+/// A term of an input with its hedges, in the order in which they apply.
 #[derive(Debug, Clone)]
 pub(super) struct Literal {
     pub(super) term: Term,
     pub(super) hedges: Vec<Hedge>,
 }
 
-/// The literals of one input. Straight ones are cut into intervals, so that only those alive at a
-/// value are touched.
+/// The literals of an input. Straight ones are cut into intervals, so that an evaluation reads only those that can be over
+/// 0.
 #[derive(Debug, Clone)]
 pub(super) struct Literals {
-    /// The first of them among all of the engine's literals.
+    /// The index of the first among the literals of all inputs.
     pub(super) first: u32,
-    /// How many there are.
+    /// Their number.
     pub(super) count: u32,
-    /// Where intervals begin; values before the first cut lie in interval 0.
+    /// The bounds between intervals. Values below the first cut are in interval 0.
     pub(super) cuts: Vec<f64>,
-    /// The lines alive on interval i are `lines[starts[i]..starts[i + 1]]`.
+    /// The lines over 0 on interval i are `lines[starts[i]..starts[i + 1]]`.
     pub(super) starts: Vec<u32>,
     pub(super) lines: Vec<Line>,
     pub(super) curved: Vec<(u32, Literal)>,
@@ -70,7 +70,7 @@ impl Literals {
         table
     }
 
-    /// The lines alive on each interval.
+    /// The lines over 0 on each interval.
     pub(super) fn intervals(&self) -> impl Iterator<Item = &[Line]> {
         let ends = self.starts.iter().zip(self.starts.iter().skip(1));
         ends.map(|(start, end)| &self.lines[*start as usize..*end as usize])
@@ -80,15 +80,15 @@ impl Literals {
         !self.curved.is_empty()
     }
 
-    /// The most literals that can be alive at once.
+    /// The most literals that can be over 0 at once.
     pub(super) fn most_alive(&self) -> usize {
         let most = self.intervals().map(<[Line]>::len).max();
         most.unwrap_or(0) + self.curved.len()
     }
 }
 
-/// The lines of a plain straight term and where each begins to hold, from minus infinity on; `None` of
-/// another.
+/// The lines of a straight term without hedges, each with the start of its interval, from minus infinity on; `None` of
+/// another literal.
 pub(super) fn lines(literal: &Literal) -> Option<Vec<(f64, Line)>> {
     if !literal.hedges.is_empty() || literal.term.height != 1.0 {
         return None;
@@ -111,11 +111,11 @@ pub(super) fn lines(literal: &Literal) -> Option<Vec<(f64, Line)>> {
     Some(lines)
 }
 
-/// Adds the line from a corner to the next one, or for good where there is none; before it, the corner
-/// itself where a step has a higher degree.
+/// Adds the line from a corner to the next, or to infinity where there is none. At a step, the corner itself may have another
+/// degree and is a line of its own.
 fn after(
     lines: &mut Vec<(f64, Line)>,
-    shape: &Shape,
+    shape: &MembershipFunction,
     corner: (f64, f64),
     next: Option<(f64, f64)>,
 ) {
@@ -150,54 +150,54 @@ fn after(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::arrays::Arrays;
+    use crate::engine::arrays::OwnedTable;
     use crate::table;
     use alloc::{string::String, vec};
     use proptest::prelude::*;
 
-    fn shapes() -> Vec<Shape> {
+    fn shapes() -> Vec<MembershipFunction> {
         vec![
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 0.1,
                 peak: 0.3,
                 right: 0.7,
             },
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 0.0,
                 peak: 0.0,
                 right: 0.7,
             },
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 0.2,
                 peak: 1.0,
                 right: 1.0,
             },
-            Shape::Triangle {
+            MembershipFunction::Triangle {
                 left: 0.5,
                 peak: 0.5,
                 right: 0.5,
             },
-            Shape::Trapezoid {
+            MembershipFunction::Trapezoid {
                 left: -0.5,
                 left_top: 0.2,
                 right_top: 0.4,
                 right: 1.5,
             },
-            Shape::LeftShoulder {
+            MembershipFunction::LeftShoulder {
                 top: 0.25,
                 foot: 0.25,
             },
-            Shape::RightShoulder {
+            MembershipFunction::RightShoulder {
                 foot: 0.1,
                 top: 0.9,
             },
-            Shape::Rectangle {
+            MembershipFunction::Rectangle {
                 left: 0.25,
                 right: 0.5,
             },
-            Shape::Singleton { at: 0.5 },
-            Shape::Constant { value: 0.4 },
-            Shape::Piecewise {
+            MembershipFunction::Singleton { at: 0.5 },
+            MembershipFunction::Constant { value: 0.4 },
+            MembershipFunction::Piecewise {
                 points: vec![
                     (0.1, 0.5),
                     (0.3, 0.2),
@@ -207,11 +207,11 @@ mod tests {
                     (0.9, 0.3),
                 ],
             },
-            Shape::Gaussian { mean: 0.4, sd: 0.1 },
+            MembershipFunction::Gaussian { mean: 0.4, sd: 0.1 },
         ]
     }
 
-    fn literal(shape: Shape, hedges: &[Hedge]) -> Literal {
+    fn literal(shape: MembershipFunction, hedges: &[Hedge]) -> Literal {
         Literal {
             term: Term {
                 name: String::new(),
@@ -233,11 +233,11 @@ mod tests {
             let x = match ulps { -1 => x.next_down(), 1 => x.next_up(), _ => x }.clamp(0.0, 1.0);
             let mut all: Vec<Literal> =
                 shapes().into_iter().map(|shape| literal(shape, &[])).collect();
-            all.push(literal(Shape::LeftShoulder { top: 0.2, foot: 0.6 }, &[Hedge::Very, Hedge::Not]));
-            let mut arrays = Arrays::default();
-            arrays.input(&Literals::new(0, all.clone(), 0.0, 1.0), 0.0, 1.0);
+            all.push(literal(MembershipFunction::LeftShoulder { top: 0.2, foot: 0.6 }, &[Hedge::Very, Hedge::Not]));
+            let mut owned = OwnedTable::default();
+            owned.input(&Literals::new(0, all.clone(), 0.0, 1.0), 0.0, 1.0);
             let mut degrees = vec![0.0; all.len()];
-            table::degrees(&arrays, &arrays.inputs[0], x, |literal, degree| degrees[literal as usize] = degree);
+            table::degrees(&owned, &owned.inputs[0], x, |literal, degree| degrees[literal as usize] = degree);
             for (literal, degree) in all.iter().zip(degrees) {
                 let plain = literal.term.membership(x);
                 let expected = literal.hedges.iter().fold(plain, |degree, hedge| hedge.of(degree));

@@ -1,118 +1,68 @@
-//! The rules, compiled: plain ANDs in a dense table or a trie, all others as programs.
+//! Rules as arrays: plain ANDs in a uniform or dense table or a trie, all others as programs.
 
 use alloc::{vec, vec::Vec};
 
-use super::condition::Step;
+use super::arrays::OwnedTable;
 use super::literal::Literals;
-use super::uniform::Uniform;
-use crate::table::{Action, Edge, Node, Program};
+use crate::table::{Action, Axis, Conjunctions, Dimension, Edge, Line, Node, Op, Program, Step};
 
-#[derive(Debug, Clone)]
-pub(super) struct Rules {
-    pub(super) actions: Vec<Action>,
-    pub(super) conjunctions: Conjunctions,
-    pub(super) programs: Vec<Program>,
-    pub(super) steps: Vec<Step>,
-    /// Whether degrees of literals are needed by their index.
-    pub(super) needs_degrees: bool,
-}
-
-/// The rules that are plain ANDs of literals of different inputs.
-#[derive(Debug, Clone)]
-pub(super) enum Conjunctions {
-    Uniform(Uniform),
-    Dense(Dense),
-    Trie(Trie),
-}
-
-/// A cell for each combination of literals, one an input.
-#[derive(Debug, Clone)]
-pub(super) struct Dense {
-    pub(super) dimensions: Vec<Dimension>,
-    /// The actions of a cell are `starts[cell]..starts[cell + 1]`.
-    pub(super) starts: Vec<u32>,
-    pub(super) most_partial: usize,
-}
-
-#[derive(Debug, Clone)]
-pub(super) struct Dimension {
-    pub(super) input: usize,
-    pub(super) stride: u32,
-    /// The coordinate of rules that say nothing of this input.
-    pub(super) any: Option<u32>,
-}
-
-/// Rules as paths of literals in ascending order.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Trie {
-    pub(super) nodes: Vec<Node>,
-    pub(super) edges: Vec<Edge>,
-}
-
-/// A rule on its way into the compiled form.
+/// A rule with indices in place of names.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
-    /// The literals of a plain AND, ascending, each of another input; `None` of another condition.
+    /// The literals of a plain AND, ascending, each of another input; `None` of another antecedent.
     pub(super) literals: Option<Vec<u32>>,
     pub(super) steps: Vec<Step>,
     pub(super) actions: Vec<Action>,
 }
 
-/// A dense table takes at most this many cells, and at most this many for each rule.
+/// The literals and actions of a plain AND.
+type Plain<'d> = (&'d [u32], &'d [Action]);
+
+/// A dense table has at most this number of cells, and at most the second number for each rule.
 const MOST_CELLS: usize = 1 << 16;
 const MOST_CELLS_A_RULE: usize = 32;
+/// More axes would visit more than 64 cells, of which most have a degree of 0.
+const MOST_AXES: usize = 6;
+const MOST_ACTIONS_A_CELL: usize = 2;
 
-impl Rules {
-    /// `drafts` in an order that does not depend on the order of the model's rules; `nowhere` is the height
-    /// that belongs to no term.
-    pub(super) fn new(drafts: &[Draft], inputs: &[Literals], nowhere: usize) -> Self {
-        let mut rules = Rules {
-            actions: Vec::new(),
-            conjunctions: Conjunctions::Trie(Trie::default()),
-            programs: Vec::new(),
-            steps: Vec::new(),
-            needs_degrees: false,
-        };
+impl OwnedTable {
+    /// Adds the rules. The order of `drafts` does not depend on the order of the model's rules. `unused` is the index of the
+    /// firing strength of no output.
+    pub(super) fn rules(&mut self, drafts: &[Draft], inputs: &[Literals], unused: u32) {
         for draft in drafts.iter().filter(|draft| draft.literals.is_none()) {
-            let (first_step, first_action) = (rules.steps.len(), rules.actions.len());
-            rules.steps.extend(&draft.steps);
-            rules.actions.extend(&draft.actions);
-            rules.programs.push(Program {
+            let (first_step, first_action) = (self.steps.len(), self.actions.len());
+            self.steps.extend(&draft.steps);
+            self.actions.extend(&draft.actions);
+            self.programs.push(Program {
                 first_step: first_step as u32,
-                end_step: rules.steps.len() as u32,
+                end_step: self.steps.len() as u32,
                 first_action: first_action as u32,
-                end_action: rules.actions.len() as u32,
+                end_action: self.actions.len() as u32,
             });
+            let pushes = draft.steps.iter().filter(|step| step.op == Op::PUSH);
+            self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
         }
-        let plain: Vec<(&[u32], &[Action])> = drafts
+        let plain: Vec<Plain<'_>> = drafts
             .iter()
             .filter_map(|draft| Some((draft.literals.as_deref()?, &*draft.actions)))
             .collect();
-        rules.conjunctions = match Dense::new(&plain, inputs, &mut rules.actions) {
-            Some(dense) => match Uniform::new(&dense, &rules.actions, inputs, nowhere) {
-                Some(uniform) => Conjunctions::Uniform(uniform),
-                None => Conjunctions::Dense(dense),
-            },
-            None => Conjunctions::Trie(Trie::new(&plain, &mut rules.actions)),
-        };
-        rules.needs_degrees =
-            !rules.programs.is_empty() || matches!(rules.conjunctions, Conjunctions::Trie(_));
-        rules
+        if self.dense(&plain, inputs).is_some() {
+            self.uniform(inputs, unused);
+        } else {
+            let mut sorted = plain;
+            sorted.sort_by_key(|(literals, _)| *literals);
+            self.node(&sorted, 0);
+            self.conjunctions = Conjunctions::Trie;
+            self.sizes.partial = self.edges.len() as u32 + 1;
+        }
     }
-}
 
-impl Dense {
-    fn new(
-        plain: &[(&[u32], &[Action])],
-        inputs: &[Literals],
-        all_actions: &mut Vec<Action>,
-    ) -> Option<Self> {
+    /// Adds a dense table; `None` where it would have too many cells.
+    fn dense(&mut self, plain: &[Plain<'_>], inputs: &[Literals]) -> Option<()> {
         let used = |input: &Literals, literals: &[u32]| {
             let range = input.first..input.first + input.count;
-            literals
-                .iter()
-                .find(|l| range.contains(l))
-                .map(|l| l - input.first)
+            let literal = literals.iter().find(|literal| range.contains(literal));
+            literal.map(|literal| literal - input.first)
         };
         let mut dimensions = Vec::new();
         let (mut cells, mut most_partial) = (1usize, 1usize);
@@ -124,59 +74,103 @@ impl Dense {
             if uses == 0 {
                 continue;
             }
-            let any = (uses < plain.len()).then_some(input.count);
-            let coordinates = input.count as usize + usize::from(any.is_some());
+            let in_all = uses == plain.len();
             dimensions.push(Dimension {
-                input: index,
+                input: index as u32,
                 stride: cells as u32,
-                any,
+                any: if in_all { Dimension::NONE } else { input.count },
             });
-            cells = cells.checked_mul(coordinates)?;
+            cells = cells.checked_mul(input.count as usize + usize::from(!in_all))?;
             if cells > MOST_CELLS.min(MOST_CELLS_A_RULE * plain.len().max(8)) {
                 return None;
             }
-            most_partial *= input.most_alive() + usize::from(any.is_some());
+            most_partial *= input.most_alive() + usize::from(!in_all);
         }
         dimensions.reverse();
-        let mut table = vec![Vec::new(); cells];
+        let mut actions_of = vec![Vec::new(); cells];
         for (literals, actions) in plain {
             let mut cell = 0;
             for dimension in &dimensions {
-                let coordinate = used(&inputs[dimension.input], literals).or(dimension.any)?;
-                cell += coordinate * dimension.stride;
+                let literal = used(&inputs[dimension.input as usize], literals);
+                cell += literal.unwrap_or(dimension.any) * dimension.stride;
             }
-            table[cell as usize].extend_from_slice(actions);
+            actions_of[cell as usize].extend_from_slice(actions);
         }
-        let mut starts = Vec::with_capacity(cells + 1);
-        for actions in table {
-            starts.push(all_actions.len() as u32);
-            all_actions.extend(actions);
+        for actions in actions_of {
+            self.cells.push(self.actions.len() as u32);
+            self.actions.extend(actions);
         }
-        starts.push(all_actions.len() as u32);
-        Some(Dense {
-            dimensions,
-            starts,
-            most_partial,
-        })
-    }
-}
-
-impl Trie {
-    fn new(plain: &[(&[u32], &[Action])], all_actions: &mut Vec<Action>) -> Self {
-        let mut trie = Trie::default();
-        let mut sorted = plain.to_vec();
-        sorted.sort_by_key(|(literals, _)| *literals);
-        trie.add(&sorted, 0, all_actions);
-        trie
+        self.cells.push(self.actions.len() as u32);
+        self.dimensions = dimensions;
+        self.conjunctions = Conjunctions::Dense;
+        self.sizes.partial = most_partial as u32 + 1;
+        Some(())
     }
 
-    /// Adds the node of all rules that share their first `depth` literals; gives its index.
-    fn add(
-        &mut self,
-        rules: &[(&[u32], &[Action])],
-        depth: usize,
-        all_actions: &mut Vec<Action>,
-    ) -> u32 {
+    /// Replaces a dense table by a uniform one; `None` where an input has curved or hedged literals, or where too many cells
+    /// would be visited.
+    fn uniform(&mut self, inputs: &[Literals], unused: u32) -> Option<()> {
+        let (mut axes, mut cuts, mut lines) = (Vec::new(), Vec::new(), Vec::new());
+        for dimension in &self.dimensions {
+            let literals = &inputs[dimension.input as usize];
+            if literals.has_curved() {
+                return None;
+            }
+            let any = (dimension.any != Dimension::NONE)
+                .then(|| Line::flat(dimension.any * dimension.stride, 1.0));
+            let (first_cut, first_line) = (cuts.len(), lines.len() as u32);
+            for alive in literals.intervals() {
+                let offset = |line: &Line| Line {
+                    literal: line.literal * dimension.stride,
+                    ..*line
+                };
+                let end = lines.len() + 2;
+                lines.extend(alive.iter().map(offset).chain(any));
+                if lines.len() > end {
+                    return None;
+                }
+                lines.resize(end, Line::flat(0, 0.0));
+            }
+            cuts.extend(&literals.cuts);
+            let padded = literals.cuts.len().next_multiple_of(4);
+            cuts.resize(first_cut + padded, f64::INFINITY);
+            axes.push(Axis {
+                input: dimension.input,
+                first_cut: first_cut as u32,
+                end_cut: cuts.len() as u32,
+                first_line,
+            });
+        }
+        let cells = |ends: &[u32]| self.actions.get(ends[0] as usize..ends[1] as usize);
+        let cells: Vec<&[Action]> = self.cells.windows(2).filter_map(cells).collect();
+        let actions_a_cell = cells.iter().map(|actions| actions.len()).max()?.max(1);
+        if axes.len() > MOST_AXES || actions_a_cell > MOST_ACTIONS_A_CELL {
+            return None;
+        }
+        let mut actions = Vec::new();
+        for cell in cells {
+            let end = actions.len() + actions_a_cell;
+            actions.extend(cell);
+            actions.resize(end, Action::none(unused));
+        }
+        // The padded cells take the place of those of the dense table.
+        let first_action = self.cells.first().copied()?;
+        self.conjunctions = Conjunctions::Uniform {
+            actions_a_cell: actions_a_cell as u32,
+            first_action,
+            sums: self.actions.iter().any(|action| action.sums != 0),
+        };
+        self.actions.truncate(first_action as usize);
+        self.actions.extend(actions);
+        self.sizes.partial = 1 << axes.len();
+        (self.axes, self.cuts, self.lines) = (axes, cuts, lines);
+        self.dimensions.clear();
+        self.cells.clear();
+        Some(())
+    }
+
+    /// Adds the node of a trie for rules that share their first `depth` literals, and returns its index.
+    fn node(&mut self, rules: &[Plain<'_>], depth: usize) -> u32 {
         let node = self.nodes.len();
         self.nodes.push(Node::default());
         let ended = rules
@@ -184,16 +178,16 @@ impl Trie {
             .take_while(|(literals, _)| literals.len() == depth)
             .count();
         let (here, further) = rules.split_at(ended);
-        let first_action = all_actions.len() as u32;
+        let first_action = self.actions.len() as u32;
         for (_, actions) in here {
-            all_actions.extend_from_slice(actions);
+            self.actions.extend_from_slice(actions);
         }
-        let end_action = all_actions.len() as u32;
-        let next = |rule: &(&[u32], &[Action])| rule.0.get(depth).copied();
+        let end_action = self.actions.len() as u32;
+        let next = |rule: &Plain<'_>| rule.0.get(depth).copied();
         let mut children = Vec::new();
         for group in further.chunk_by(|a, b| next(a) == next(b)) {
             if let Some(literal) = group.first().and_then(next) {
-                let node = self.add(group, depth + 1, all_actions);
+                let node = self.node(group, depth + 1);
                 children.push(Edge { literal, node });
             }
         }

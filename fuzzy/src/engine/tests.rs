@@ -3,19 +3,19 @@
 use alloc::string::ToString;
 
 use super::*;
-use crate::model::{Model, NoRuleFires, Output, Shape, Variable};
+use crate::model::{MembershipFunction, Model, NoRuleFires, Output, Variable};
 use crate::rule::{Condition, Rule};
 
 /// `x` in [0, 10] says `y` in [0, 100]: a gap without a rule from 4 to 6.
 fn gap(when_no_rule_fires: NoRuleFires) -> Model {
-    let shoulder = |top, foot| Shape::LeftShoulder { top, foot };
+    let shoulder = |top, foot| MembershipFunction::LeftShoulder { top, foot };
     Model::builder("gap")
         .input(
             Variable::new("x", 0.0, 10.0)
                 .term("low", shoulder(1.0, 4.0))
                 .term(
                     "high",
-                    Shape::RightShoulder {
+                    MembershipFunction::RightShoulder {
                         foot: 6.0,
                         top: 9.0,
                     },
@@ -26,14 +26,14 @@ fn gap(when_no_rule_fires: NoRuleFires) -> Model {
                 Variable::new("y", 0.0, 100.0)
                     .term(
                         "small",
-                        Shape::Rectangle {
+                        MembershipFunction::Rectangle {
                             left: 0.0,
                             right: 20.0,
                         },
                     )
                     .term(
                         "large",
-                        Shape::Rectangle {
+                        MembershipFunction::Rectangle {
                             left: 80.0,
                             right: 100.0,
                         },
@@ -125,14 +125,14 @@ fn wrong_numbers_of_places() {
     let engine = Engine::new(&gap(NoRuleFires::Undefined)).unwrap();
     assert_eq!(
         engine.evaluate(&[1.0, 2.0]).unwrap_err().to_string(),
-        "2 values were given for 1 input(s)"
+        "the model has 1 inputs, but 2 values were given"
     );
     assert_eq!(
         engine
             .evaluate_with(&mut engine.scratch(), &[1.0], &mut [])
             .unwrap_err()
             .to_string(),
-        "there is room for 0 outcomes of 1 output(s)"
+        "the model has 1 outputs, but there is room for 0 outcomes"
     );
 }
 
@@ -140,7 +140,7 @@ fn wrong_numbers_of_places() {
 fn every_problem_of_a_model_at_once() {
     let mut model = gap(NoRuleFires::Value(101.0));
     model.inputs.push(Variable::new("x", 1.0, 1.0));
-    model.inputs[0].terms[0].shape = Shape::Gaussian {
+    model.inputs[0].terms[0].shape = MembershipFunction::Gaussian {
         mean: 0.0,
         sd: -1.0,
     };
@@ -154,16 +154,24 @@ fn every_problem_of_a_model_at_once() {
         .into(),
     );
     insta::assert_snapshot!(
-        Engine::new(&model).unwrap_err().to_string().replace("; ", "\n"),
+        Engine::new(&model).unwrap_err().to_string(),
         @"
-    `x` is defined twice in the inputs
-    term `low` of `x`: `sd` is -1, not over 0
-    the range of `x` is not from a finite number up to a larger one
-    the value of `y` where no rule fires is not in its range
-    rule 3 names `z`, which is no input
-    rule 3 names `middle`, which is no term of `x`
-    the weight of rule 1 is not in [0, 1]
-    rule 3 names `none`, which is no term of `y`
+    error[duplicate-variable]: the rule set has the variable `x` twice
+      help: inputs and outputs have different names; rename one of them
+    error[wrong-parameter]: term `low` of input `x`: `sd` is -1, but must be greater than 0
+      help: the positions of a membership function ascend, its widths are greater than 0, its degrees lie in [0, 1]
+    error[wrong-range]: the range of input `x` starts at 1 and ends at 1
+      help: write the least value first, then the greatest
+    error[value-outside-range]: the value 101 lies outside the range of output `y`
+      help: write a value from 0 to 100
+    error[weight-outside-range]: rule 1: the weight NaN is outside [0, 1]
+      help: a weight is a number from 0 to 1
+    error[unknown-variable]: rule 3: there is no input `z`
+      help: there is `x`
+    error[unknown-term]: rule 3: input `x` has no term `middle`
+      help: there are `low` and `high`
+    error[unknown-term]: rule 3: output `y` has no term `none`
+      help: there are `small` and `large`
     "
     );
 }
@@ -185,18 +193,18 @@ fn same_bits(one: &Outcome, other: &Outcome) -> bool {
 
 /// Rules of all kinds of terms that the batch computes for several rows at once.
 fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
-    let triangle = |left, peak, right| Shape::Triangle { left, peak, right };
+    let triangle = |left, peak, right| MembershipFunction::Triangle { left, peak, right };
     let risk = Variable::new("z", -1.0, 3.0)
         .term(
             "large",
-            Shape::RightShoulder {
+            MembershipFunction::RightShoulder {
                 foot: 1.0,
                 top: 2.0,
             },
         )
         .term(
             "small",
-            Shape::LeftShoulder {
+            MembershipFunction::LeftShoulder {
                 top: 0.0,
                 foot: 1.0,
             },
@@ -209,7 +217,7 @@ fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
                 .term("falls", triangle(0.0, 0.0, 0.5))
                 .term(
                     "plateau",
-                    Shape::Trapezoid {
+                    MembershipFunction::Trapezoid {
                         left: 0.1,
                         left_top: 0.3,
                         right_top: 0.4,
@@ -218,7 +226,7 @@ fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
                 )
                 .term(
                     "rises",
-                    Shape::RightShoulder {
+                    MembershipFunction::RightShoulder {
                         foot: 0.3,
                         top: 0.7,
                     },
@@ -228,7 +236,7 @@ fn slopes(when_no_rule_fires: NoRuleFires) -> Model {
             Variable::new("y", 0.0, 1.0)
                 .term(
                     "low",
-                    Shape::LeftShoulder {
+                    MembershipFunction::LeftShoulder {
                         top: 0.2,
                         foot: 0.6,
                     },
@@ -295,7 +303,7 @@ mod laws {
             for term in &mut output.terms {
                 let corners = term.shape.corners().unwrap();
                 let points = corners.into_iter().map(|(x, y)| (scale * x, y)).collect();
-                term.shape = Shape::Piecewise { points };
+                term.shape = MembershipFunction::Piecewise { points };
             }
             let outcome = Engine::new(&scaled).unwrap().evaluate(&[x, y]).unwrap()[0];
             match (outcome.value(), expected.value()) {
@@ -318,7 +326,7 @@ mod laws {
                 for term in &mut variable.terms {
                     let corners = term.shape.corners().unwrap();
                     let points = corners.into_iter().rev().map(|(x, y)| (-x, y)).collect();
-                    term.shape = Shape::Piecewise { points };
+                    term.shape = MembershipFunction::Piecewise { points };
                 }
             }
             let value = Engine::new(&model).unwrap().evaluate(&[x, y]).unwrap()[0].value();
@@ -333,9 +341,9 @@ mod laws {
         #[test]
         fn monotone_models_are_monotone(a in 0.0..=10.0f64, b in 0.0..=10.0f64) {
             let three = |name| Variable::new(name, 0.0, 10.0)
-                .term("low", Shape::LeftShoulder { top: 0.0, foot: 5.0 })
-                .term("middle", Shape::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
-                .term("high", Shape::RightShoulder { foot: 5.0, top: 10.0 });
+                .term("low", MembershipFunction::LeftShoulder { top: 0.0, foot: 5.0 })
+                .term("middle", MembershipFunction::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
+                .term("high", MembershipFunction::RightShoulder { foot: 5.0, top: 10.0 });
             let mut model = Model::builder("follows")
                 .input(three("x"))
                 .output(Output::new(three("y")))

@@ -1,23 +1,19 @@
 //! The file format of rule sets, version 1: [`Model`] from a tree and back.
 //!
-//! This is the only interpretation of the format, whatever it is written in: `yaml::parse` brings a tree with places,
-//! serde one without. What the keys mean is told in `docs/rule-sets.md`.
+//! The format has this one reader, whatever a rule set is written in: `yaml::parse` gives it a tree with spans, serde a
+//! tree without. `docs/rule-sets.md` documents the keys.
 
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use alloc::{format, string::String, vec::Vec};
 
 use crate::{
-    check,
     diagnostic::{Diagnostic, Findings, Severity},
     model::Model,
     tree::{Node, Value},
+    validate::validate,
 };
 
 mod rules;
+#[cfg(feature = "serde")]
 mod schema;
 mod shapes;
 #[cfg(test)]
@@ -26,45 +22,43 @@ mod variables;
 mod words;
 mod write;
 
-pub use crate::model::document::{Document, Places, VariablePlaces};
+pub use crate::model::document::{Document, RuleSpans, Spans, TermSpans, VariableSpans};
+#[cfg(feature = "serde")]
 pub use schema::schema;
 
 /// The version of the format this library reads and writes.
 pub const VERSION: u64 = 1;
 
-/// Reads a model from a tree. The findings of all of it are told at once, but those that follow from another one are not.
+/// Reads a model from a tree. Reports all findings at once, except those that follow from another one.
 ///
 /// # Errors
 /// All findings, where one of them is an error. Without a text at hand they have no line and column.
-///
-/// # Example
-/// ```
-/// let tree = fuzzy::yaml::read("fuzzy: 2")?;
-/// let findings = fuzzy::format::read(&tree).unwrap_err();
-/// assert_eq!(findings[0].code, "unsupported-version");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+#[doc(hidden)]
 pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     let mut findings = Vec::new();
-    let mut places = Places::default();
-    let model = model(tree, &mut places, &mut findings);
+    let mut spans = Spans::default();
+    let model = model(tree, &mut spans, &mut findings);
     if let Some(model) = &model {
-        // A variable that could not be read is no unknown name.
-        findings.extend(check::names::check(model, &places));
+        let mut invalid = validate(model, &spans);
+        for finding in invalid.iter_mut().filter(|f| f.code == "no-rules") {
+            // A rule set without rules can be read: rules are learned into it.
+            finding.severity = Severity::Warning;
+        }
+        findings.extend(invalid);
     }
     let failed = findings.iter().any(|f| f.severity == Severity::Error);
     match model {
         Some(model) if !failed => Ok(Document {
             model,
-            places,
+            spans,
             warnings: Findings(findings),
         }),
         _ => Err(findings),
     }
 }
 
-/// The model as far as it can be read; what cannot is a finding, and stands in the model by its name alone.
-fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Option<Model> {
+/// The model as far as it can be read. A part that cannot be read is a finding, and in the model only its name.
+fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Option<Model> {
     const KEYS: [&str; 7] = [
         "fuzzy",
         "name",
@@ -76,9 +70,7 @@ fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Op
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
         let finding = tree.unexpected("a mapping for the rule set");
-        findings.push(finding.help(
-            "a rule set begins with `fuzzy: 1`; `flagred new NAME` writes one to start from",
-        ));
+        findings.push(finding.help("a rule set begins with `fuzzy: 1`"));
         return None;
     }
     let mut unknown_keys = Vec::new();
@@ -113,25 +105,28 @@ fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Op
             "write `inputs:` and a name, a range and terms for each",
             findings,
         )
-        .and_then(|node| variables::inputs(node, &mut places.inputs, findings));
+        .and_then(|node| variables::inputs(node, &mut spans.inputs, findings));
     let outputs = fields
         .require(
             "outputs",
             "write `outputs:` and a name, a range and terms for each",
             findings,
         )
-        .and_then(|node| variables::outputs(node, &mut places.outputs, findings));
+        .and_then(|node| variables::outputs(node, &mut spans.outputs, findings));
     let operators = match fields.get("operators") {
         Some(node) => words::operators(node, findings),
         None => Some(crate::model::Operators::default()),
     };
     let rules_help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`";
-    if let Some(entry) = fields.entry("rules") {
-        places.rules_key = entry.key_span.clone();
-    }
-    let rules = fields
-        .require("rules", rules_help, findings)
-        .and_then(|node| rules::read(node, &mut places.rules, findings));
+    let key = |key| {
+        fields
+            .entry(key)
+            .map_or(0..0, |entry| entry.key_span.clone())
+    };
+    (spans.outputs_key, spans.rules_key) = (key("outputs"), key("rules"));
+    let rules = fields.require("rules", rules_help, findings);
+    let rules = rules.and_then(|node| rules::read(node, spans, findings));
+    spans.rules_unread |= rules.is_none();
     Some(Model {
         name: name.unwrap_or_default(),
         description,
@@ -143,30 +138,10 @@ fn model(tree: &Node, places: &mut Places, findings: &mut Vec<Diagnostic>) -> Op
 }
 
 /// The model as a tree; reading it again gives the same model.
-///
-/// # Example
-/// ```
-/// let model = fuzzy::Model::builder("fan").build();
-/// let tree = fuzzy::format::write(&model);
-/// assert!(fuzzy::yaml::to_text(&tree).starts_with("fuzzy: 1\nname: fan\n"));
-/// ```
+#[doc(hidden)]
 #[must_use]
 pub fn write(model: &Model) -> Node {
     write::model(model)
-}
-
-impl Serialize for Model {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        write(self).serialize(serializer)
-    }
-}
-
-impl<'de> Deserialize<'de> for Model {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let tree = Node::deserialize(deserializer)?;
-        let told = |findings| serde::de::Error::custom(Findings(findings).to_string());
-        Ok(read(&tree).map_err(told)?.model)
-    }
 }
 
 /// Text behind a key, where there is some.

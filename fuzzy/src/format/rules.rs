@@ -3,7 +3,7 @@
 use alloc::{format, string::ToString, vec::Vec};
 use core::ops::Range;
 
-use super::optional_text;
+use super::{RuleSpans, Spans, optional_text};
 use crate::{
     diagnostic::Diagnostic,
     model::{Beaten, Rule},
@@ -15,28 +15,33 @@ pub(super) const KEYS: [&str; 5] = ["rule", "confidence", "support", "against", 
 
 pub(super) fn read(
     node: &Node,
-    places: &mut Vec<Range<usize>>,
+    spans: &mut Spans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Rule>> {
     let items = node.items("`rules`", findings)?;
-    if items.is_empty() {
-        findings.push(
-            Diagnostic::warning("no-rules", node.span.clone(), "the list of rules is empty").help(
-                "write rules, `- IF input IS term THEN output IS term`, or let `flagred learn` write them",
-            ),
-        );
-    }
     let mut rules = Vec::with_capacity(items.len());
     for (i, item) in items.iter().enumerate() {
-        if let Some(rule) = one(item, i + 1, findings) {
-            rules.push(rule);
-            places.push(item.span.clone());
+        let mut here = RuleSpans {
+            whole: item.span.clone(),
+            ..RuleSpans::default()
+        };
+        match one(item, i + 1, &mut here, findings) {
+            Some(rule) => {
+                rules.push(rule);
+                spans.rules.push(here);
+            }
+            None => spans.rules_unread = true,
         }
     }
     Some(rules)
 }
 
-fn one(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Rule> {
+fn one(
+    node: &Node,
+    number: usize,
+    spans: &mut RuleSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Rule> {
     let what = format!("rule {number}");
     let mut found = Rule {
         rule: rule::Rule {
@@ -58,7 +63,7 @@ fn one(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Rul
         findings.push(finding.help("write `IF input IS term THEN output IS term`"));
         return None;
     };
-    // `- IF ... THEN risk IS high: why` reads as a mapping: the colon is the mistake, not the key.
+    // `- IF ... THEN speed IS fast: why` reads as a mapping: the colon is the mistake, not the key.
     if let [(key, _)] = pairs.as_slice()
         && let Value::Scalar(scalar) = &key.value
         && scalar
@@ -79,9 +84,10 @@ fn one(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Rul
     let fields = node.fields(&what, &KEYS, findings)?;
     let help = "write `{rule: IF input IS term THEN output IS term, confidence: 0.8}`";
     let text = fields.require("rule", help, findings);
-    found.confidence = fields
-        .get("confidence")
-        .and_then(|node| degree(&format!("the confidence of {what}"), node, findings));
+    if let Some(node) = fields.get("confidence") {
+        spans.confidence = node.span.clone();
+        found.confidence = node.finite(&format!("the confidence of {what}"), findings);
+    }
     found.support = fields
         .get("support")
         .and_then(|node| node.whole(&format!("the support of {what}"), 0, findings));
@@ -89,56 +95,50 @@ fn one(node: &Node, number: usize, findings: &mut Vec<Diagnostic>) -> Option<Rul
     if let Some(node) = fields.get("against") {
         let what = format!("`against` of {what}");
         let items = node.items(&what, findings).unwrap_or_default();
-        found.against = items
-            .iter()
-            .filter_map(|item| beaten(&what, item, findings))
-            .collect();
+        for item in items {
+            if let Some((beaten, span)) = beaten(&what, item, findings) {
+                found.against.push(beaten);
+                spans.against.push(span);
+            }
+        }
     }
     found.rule = parse(text?.words(&what, findings)?, findings)?;
     Some(found)
 }
 
 /// `{term: high, degree: 0.4, support: 3}`
-fn beaten(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Beaten> {
+fn beaten(
+    what: &str,
+    node: &Node,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<(Beaten, Range<usize>)> {
     let fields = node.fields(what, &["term", "degree", "support"], findings)?;
     let help = "write `{term: high, degree: 0.4, support: 3}`";
     let term = fields.require("term", help, findings);
     let term = term.and_then(|node| node.words(&format!("the term in {what}"), findings));
-    let degree = fields
-        .require("degree", help, findings)
-        .and_then(|node| self::degree(&format!("the degree in {what}"), node, findings));
+    let degree = fields.require("degree", help, findings);
+    let span = degree.map_or(0..0, |node| node.span.clone());
+    let degree = degree.and_then(|node| node.finite(&format!("the degree in {what}"), findings));
     let support = fields
         .require("support", help, findings)
         .and_then(|node| node.whole(&format!("the support in {what}"), 0, findings));
-    Some(Beaten {
+    let beaten = Beaten {
         term: term?.text.to_string(),
         degree: degree?,
         support: support?,
-    })
+    };
+    Some((beaten, span))
 }
 
-fn degree(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<f64> {
-    let degree = node.finite(what, findings)?;
-    if (0.0..=1.0).contains(&degree) {
-        return Some(degree);
-    }
-    let message = format!("{what} is {degree}, outside [0, 1]");
-    findings.push(
-        Diagnostic::error("value-outside-range", node.span.clone(), message)
-            .help("write a number from 0 to 1"),
-    );
-    None
-}
-
-/// Parses the rule in a scalar; places in it become places in the document.
+/// Parses the rule in a scalar; its spans become spans of the document.
 fn parse(scalar: &Scalar, findings: &mut Vec<Diagnostic>) -> Option<rule::Rule> {
     match rule::parse(&scalar.text) {
         Ok(mut rule) => {
-            rule.names_mut(&mut |name| name.span = scalar.place(name.span.clone()));
+            rule.names_mut(&mut |name| name.span = scalar.span(name.span.clone()));
             Some(rule)
         }
         Err(mut finding) => {
-            finding.span = scalar.place(finding.span.clone());
+            finding.span = scalar.span(finding.span.clone());
             findings.push(*finding);
             None
         }

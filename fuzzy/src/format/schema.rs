@@ -1,7 +1,7 @@
 //! The file format as a JSON Schema (draft 2020-12), for editors that complete and check while one types.
 //!
-//! It is made from the tables that read the format, so it cannot tell of a shape or an operator that is not there. What
-//! a schema cannot say (that parameters stand in order, that rules name what there is) `flagred check` tells.
+//! It is made from the tables that read the format, so it lists the membership functions and operators that exist. What a
+//! schema cannot express (parameters in order, names in rules) [`validate`](crate::validate()) checks.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -11,7 +11,7 @@ use super::{
     words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, IMPLICATIONS},
 };
 use crate::{
-    model::{Form, Role, Shape},
+    model::{Form, MembershipFunction, Role},
     tree::Node,
 };
 
@@ -299,7 +299,7 @@ fn term() -> Node {
         ("linear", linear),
         height,
     ];
-    let properties = Shape::FORMS
+    let properties = MembershipFunction::FORMS
         .iter()
         .map(|form| (form.name, shape(form)))
         .chain(others);
@@ -426,7 +426,7 @@ mod tests {
     fn the_guide_has_a_line_for_every_shape() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/rule-sets.md");
         let guide = std::fs::read_to_string(path).unwrap();
-        let names = Shape::FORMS.iter().map(|form| form.name);
+        let names = MembershipFunction::FORMS.iter().map(|form| form.name);
         for name in names.chain(["piecewise", "linear"]) {
             assert!(guide.contains(&format!("\n| `{name}` |")), "{name}");
         }

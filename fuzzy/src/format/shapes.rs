@@ -5,48 +5,52 @@ use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
-use core::ops::Range;
 
 use crate::{
     diagnostic::{Diagnostic, suggest},
-    model::{Form, Parts, Shape},
+    model::{Form, MembershipFunction, Parts, document::TermSpans},
     tree::{Fields, Node, Value},
 };
 
-/// Reads the shape out of a term `{triangle: [0, 1, 2], height: 1}`; `term` names it in messages.
+/// Reads the membership function out of a term `{triangle: [0, 1, 2], height: 1}`; `term` names it in messages. The
+/// spans of its parameters go to `spans`.
 pub(super) fn read(
     term: &str,
-    place: Range<usize>,
     fields: &Fields<'_>,
+    spans: &mut TermSpans,
     findings: &mut Vec<Diagnostic>,
-) -> Option<Shape> {
+) -> Option<MembershipFunction> {
     let mut shapes = fields
         .entries()
         .iter()
         .filter(|entry| entry.key != "height");
     let Some(shape) = shapes.next() else {
+        let message = format!("{term} has no membership function");
         findings.push(
-            Diagnostic::error("missing-key", place, format!("{term} has no shape"))
+            Diagnostic::error("missing-key", spans.name.clone(), message)
                 .help("write one: `{triangle: [0, 1, 2]}`"),
         );
         return None;
     };
     if let Some(second) = shapes.next() {
-        let message = format!("{term} has a second shape, `{}`", second.key);
+        let message = format!("{term} has a second membership function, `{}`", second.key);
         findings.push(
             Diagnostic::error("duplicate-key", second.key_span.clone(), message)
                 .related(shape.key_span.clone(), "the first one")
-                .help("a term has one shape; for two write two terms"),
+                .help("a term has one membership function; for two write two terms"),
         );
     }
     match shape.key {
-        "piecewise" => points(term, shape.value, findings),
-        "linear" => linear(shape.value, findings),
-        name => match Shape::FORMS.iter().find(|form| form.name == name) {
-            Some(form) => by_form(form, shape.value, findings),
+        "piecewise" => points(term, shape.value, spans, findings),
+        "linear" => linear(shape.value, spans, findings),
+        name => match MembershipFunction::FORMS
+            .iter()
+            .find(|form| form.name == name)
+        {
+            Some(form) => by_form(form, shape.value, spans, findings),
             None => {
-                let known = Shape::FORMS.iter().map(|form| form.name);
-                let message = format!("there is no shape `{name}`");
+                let known = MembershipFunction::FORMS.iter().map(|form| form.name);
+                let message = format!("there is no membership function `{name}`");
                 let mut finding =
                     Diagnostic::error("unknown-shape", shape.key_span.clone(), message);
                 finding.help = suggest(name, known.chain(["piecewise", "linear"]));
@@ -57,13 +61,17 @@ pub(super) fn read(
     }
 }
 
-fn by_form(form: &Form, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Shape> {
+fn by_form(
+    form: &Form,
+    node: &Node,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<MembershipFunction> {
     let name = form.name;
     let names = form.names();
-    let mut spans: Vec<Range<usize>> = Vec::new();
     let mut values = Vec::new();
     let mut read = |parameter: &str, node: &Node, findings: &mut Vec<Diagnostic>| {
-        spans.push(node.span.clone());
+        spans.parameters.push(node.span.clone());
         values.extend(node.finite(&format!("`{parameter}` of the {name}"), findings));
     };
     match &node.value {
@@ -108,31 +116,7 @@ fn by_form(form: &Form, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<S
     if values.len() != names.len() {
         return None;
     }
-    let shape = (form.build)(&values)?;
-    let place = |blamed: &str| {
-        let index = names.iter().position(|p| *p == blamed);
-        index.and_then(|i| spans.get(i)).cloned()
-    };
-    valid(shape, name, node, place, findings)
-}
-
-/// The shape, unless its parameters make none; `place` says where a parameter or point stands.
-fn valid(
-    shape: Shape,
-    name: &str,
-    node: &Node,
-    place: impl Fn(&str) -> Option<Range<usize>>,
-    findings: &mut Vec<Diagnostic>,
-) -> Option<Shape> {
-    let Err(error) = shape.validate() else {
-        return Some(shape);
-    };
-    let span = place(&error.blamed).unwrap_or(node.span.clone());
-    let message = format!("this is no {name}: {error}");
-    findings.push(Diagnostic::error("wrong-parameter", span, message).help(
-        "the places of a shape stand from left to right, its widths are over 0, degrees lie in [0, 1]",
-    ));
-    None
+    (form.build)(&values)
 }
 
 /// How the shape is written, for messages.
@@ -153,10 +137,16 @@ fn spelling(form: &Form) -> String {
     }
 }
 
-fn points(term: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Shape> {
+fn points(
+    term: &str,
+    node: &Node,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<MembershipFunction> {
     let items = node.items(&format!("the points of {term}"), findings)?;
     let mut points = Vec::with_capacity(items.len());
     for item in items {
+        spans.parameters.push(item.span.clone());
         match &item.value {
             Value::List(pair) if pair.len() == 2 => {
                 let mut numbers = pair.iter().map(|n| n.finite("a point", findings));
@@ -170,23 +160,14 @@ fn points(term: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Sha
             ),
         }
     }
-    if points.len() != items.len() {
-        return None;
-    }
-    let place = |blamed: &str| {
-        let index = blamed.strip_prefix("point ")?.parse::<usize>().ok()?;
-        items.get(index).map(|item| item.span.clone())
-    };
-    valid(
-        Shape::Piecewise { points },
-        "piecewise",
-        node,
-        place,
-        findings,
-    )
+    (points.len() == items.len()).then_some(MembershipFunction::Piecewise { points })
 }
 
-fn linear(node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Shape> {
+fn linear(
+    node: &Node,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<MembershipFunction> {
     let entries = node.entries("the linear term", "key", findings)?;
     let mut coefficients = Vec::new();
     let mut constant = 0.0;
@@ -197,16 +178,17 @@ fn linear(node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Shape> {
             constant = number;
         } else {
             coefficients.push((entry.key.to_string(), number));
+            spans.parameters.push(entry.key_span.clone());
         }
     }
-    Some(Shape::Linear {
+    Some(MembershipFunction::Linear {
         coefficients,
         constant,
     })
 }
 
 /// The shape as the key and the value of a term's mapping.
-pub(super) fn write(shape: &Shape) -> (&'static str, Node) {
+pub(super) fn write(shape: &MembershipFunction) -> (&'static str, Node) {
     let numbers = |values: &[f64]| Node::list(values.iter().copied().map(Node::number).collect());
     match shape.parts() {
         Parts::Fixed(form, values) => {

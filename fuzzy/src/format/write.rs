@@ -4,11 +4,13 @@ use alloc::vec::Vec;
 
 use super::{
     VERSION, rules, shapes,
-    variables::{between_peaks, even_peaks},
     words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, IMPLICATIONS, word_of},
 };
 use crate::{
-    model::{Model, NoRuleFires, Operators, Output, SamplingRule, Shape, Term, Variable},
+    model::{
+        MembershipFunction, Model, NoRuleFires, Operators, Output, SamplingRule, Term, Variable,
+        between_peaks, even_peaks,
+    },
     tree::Node,
 };
 
@@ -92,7 +94,7 @@ fn terms(variable: &Variable) -> (&'static str, Node) {
         && peaks
             .iter()
             .all(|p| (variable.low..=variable.high).contains(p))
-        && *terms == between_peaks(names().zip(peaks.iter().copied()));
+        && *terms == between_peaks(&names().zip(peaks.iter().copied()).collect::<Vec<_>>());
     if !is_partition {
         let terms = terms.iter().map(|term| {
             let (shape, parameters) = shapes::write(&term.shape);
@@ -116,8 +118,9 @@ fn terms(variable: &Variable) -> (&'static str, Node) {
 /// Where each term of a partition would have its peak.
 fn peaks(terms: &[Term]) -> Vec<f64> {
     let peak = |term: &Term| match term.shape {
-        Shape::Triangle { peak, .. } => Some(peak),
-        Shape::LeftShoulder { top, .. } | Shape::RightShoulder { top, .. } => Some(top),
+        MembershipFunction::Triangle { peak, .. } => Some(peak),
+        MembershipFunction::LeftShoulder { top, .. }
+        | MembershipFunction::RightShoulder { top, .. } => Some(top),
         _ => None,
     };
     let peaks: Option<Vec<f64>> = terms.iter().map(peak).collect();

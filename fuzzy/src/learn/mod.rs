@@ -1,17 +1,17 @@
-//! Rules from data, after Wang and Mendel (1992): every sample votes for the rule it lies nearest to.
+//! Rules from data, after Wang and Mendel (1992): each sample votes for the rule with the highest memberships.
 //!
 //! 1. Each value of a sample is given to the term with its highest membership (the first of equal ones). The terms of
 //!    the inputs are the antecedent, the term of the output the consequent, and the degree of the vote is the product
 //!    of all memberships, times the sample's weight.
 //! 2. Where the samples of an antecedent disagree, [`Resolution`] decides.
-//! 3. What was beaten, how many samples stand behind a rule and how sure they are is kept with the rule.
+//! 3. The rule keeps the consequents that lost, the number of its samples (support) and its confidence.
 //!
-//! Sums are made in fixed point, so the order of the samples changes nothing, not a bit.
+//! Sums are in fixed point, so the result does not depend on the order of the samples.
 
 use alloc::{boxed::Box, collections::BTreeMap, string::ToString, vec, vec::Vec};
 
 use crate::{
-    model::{Model, Shape, Variable},
+    model::{MembershipFunction, Model, Variable},
     rule::{Condition, Name},
 };
 
@@ -22,100 +22,81 @@ mod tests;
 
 pub use settings::{Direction, LearnError, Refusal, Resolution, Settings};
 
-/// Collects samples, and makes rules of them.
+/// Collects samples and derives rules from them.
 ///
-/// # Example: one row of the FLAGRED paper's Table I, and the rule it makes
+/// # Example: a fan's rules from three samples, two of which contradict each other
 ///
 /// ```
 /// use fuzzy::learn::{Learner, Settings};
 ///
 /// let model = fuzzy::yaml::parse("
 /// fuzzy: 1
-/// name: flight
+/// name: fan
 /// inputs:
-///   margin: {range: [0, 0.5], partition: {very_low: 0, low: 0.1, medium: 0.2, high: 0.3}}
-///   spread: {range: [0, 0.5], partition: {low: 0, medium: 0.1, high: 0.2}}
+///   heat: {range: [0, 100], partition: [low, high]}
 /// outputs:
-///   risk: {range: [0, 100], partition: [very_low, low, medium, high, very_high]}
+///   speed: {range: [0, 9], partition: [slow, fast]}
 /// rules: []
 /// ")?.model;
 /// let mut learner = Learner::new(&model, Settings::default())?;
-/// learner.add(&[0.007969, 0.226310, 65.679063], 1.0)?;
+/// for sample in [[5.0, 1.0], [95.0, 8.5], [90.0, 2.0]] {
+///     learner.add(&sample, 1.0)?;
+/// }
 /// let learned = learner.finish();
 ///
-/// let rule = &learned.model.rules[0];
-/// assert_eq!(rule.rule.to_string(), "IF margin IS very_low AND spread IS high THEN risk IS high");
-/// assert!((rule.confidence.unwrap_or(0.0) - 0.577186).abs() < 1e-5);
-/// assert_eq!(learned.missing, 11);
+/// let rule = &learned.model.rules[1];
+/// assert_eq!(rule.rule.to_string(), "IF heat IS high THEN speed IS fast");
+/// assert_eq!(rule.against[0].term, "slow");
+/// assert_eq!((learned.conflicts, learned.missing), (1, 0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Learner {
     model: Model,
     settings: Settings,
-    /// The inputs that rules are learned over, as indices of the model's.
+    /// The indices of the inputs that rules are learned over.
     learned: Vec<usize>,
-    /// The given condition: inputs and terms.
+    /// The given antecedent: indices of inputs and of their terms.
     given: Vec<(usize, usize)>,
-    /// Where the terms of the output stand.
+    /// The peak of each term of the output.
     peaks: Vec<f64>,
     samples: u64,
     cells: BTreeMap<Box<[u16]>, Cell>,
 }
 
-/// The rules that were learned, and what was learned about the data.
-///
-/// # Example: two samples that disagree
-/// ```
-/// # let text = "fuzzy: 1
-/// # name: fan
-/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// # rules: []";
-/// # let model = fuzzy::yaml::parse(text)?.model;
-/// use fuzzy::learn::{Learned, Learner, Settings};
-///
-/// let mut learner = Learner::new(&model, Settings::default())?;
-/// learner.add(&[90.0, 9.0], 1.0)?;
-/// learner.add(&[80.0, 0.0], 1.0)?;
-/// let Learned { conflicts, missing, missing_antecedents, model, .. } = learner.finish();
-/// assert_eq!((conflicts, missing), (1, 1));
-/// assert_eq!(missing_antecedents[0].to_string(), "heat IS low");
-/// assert_eq!(model.rules[0].against[0].term, "slow"); // 0.8 against 0.9
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// The learned rules, and counts of the data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Learned {
-    /// The model with the rules: those it came with, then the learned ones in the order of their antecedents.
+    /// The model with its own rules, then the learned ones in the order of their antecedents.
     pub model: Model,
-    /// The samples learned from.
+    /// The number of samples.
     pub samples: u64,
-    /// The antecedents whose samples voted for more than one consequent.
+    /// The number of antecedents whose samples voted for more than one consequent.
     pub conflicts: u64,
-    /// The antecedents without a rule.
+    /// The number of antecedents without a rule.
     pub missing: u64,
-    /// The first [`Learned::SHOWN`] of them.
+    /// The first [`Learned::SHOWN`] antecedents without a rule.
     pub missing_antecedents: Vec<Condition>,
-    /// The antecedents that had samples, but too few or too unsure ones for a rule.
+    /// The number of antecedents with samples, but below [`Settings::min_support`] or [`Settings::min_degree`].
     pub left_out: u64,
-    /// The rules that were completed from their neighbours.
+    /// The number of rules completed from their neighbours.
     pub completed: u64,
 }
 
 impl Learned {
-    /// How many antecedents without a rule are kept.
+    /// The most antecedents in [`Learned::missing_antecedents`].
     pub const SHOWN: usize = 100;
 }
 
-/// What the samples of one antecedent say.
+/// The votes of the samples of one antecedent.
 #[derive(Debug, Clone, Default)]
 struct Cell {
     samples: u64,
-    /// For each term of the output that samples voted for.
+    /// By the index of the output's term.
     votes: BTreeMap<u16, Votes>,
-    /// Sum of the degrees of the antecedent.
+    /// The sum of the degrees of the antecedent.
     degrees: Fixed,
-    /// Sum of these degrees times the share of the output's range below the value.
+    /// The sum of these degrees times the value, as a share of the output's range.
     values: Fixed,
 }
 
@@ -126,7 +107,7 @@ struct Votes {
     degrees: Fixed,
 }
 
-/// A sum of numbers from 0 to 2^40 in steps of 2^-64: the same in whatever order they come.
+/// A sum of numbers from 0 to 2^40 in steps of 2^-64. It does not depend on their order.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct Fixed(u128);
 
@@ -146,23 +127,7 @@ impl Learner {
     /// A learner for the variables of a model with one output.
     ///
     /// # Errors
-    ///
-    /// Not one output, a variable without terms, or settings that name what the model does not have.
-    ///
-    /// # Example
-    /// ```
-    /// # let text = "fuzzy: 1
-    /// # name: fan
-    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-    /// # rules: []";
-    /// # let model = fuzzy::yaml::parse(text)?.model;
-    /// use fuzzy::learn::{Learner, Settings};
-    ///
-    /// let learner = Learner::new(&model, Settings::default())?;
-    /// assert_eq!(learner.samples(), 0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The model does not have one output, a variable has no terms, or the settings name something the model does not have.
     pub fn new(model: &Model, settings: Settings) -> Result<Learner, LearnError> {
         let [output] = model.outputs.as_slice() else {
             return Err(LearnError::Outputs {
@@ -204,29 +169,10 @@ impl Learner {
         })
     }
 
-    /// Adds a sample: a value for each input of the model, then the output; and its weight.
+    /// Adds a sample: a value for each input of the model, then the output, and a weight.
     ///
     /// # Errors
-    ///
-    /// Why it was refused; the learner goes on without it.
-    ///
-    /// # Example
-    /// ```
-    /// # let text = "fuzzy: 1
-    /// # name: fan
-    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-    /// # rules: []";
-    /// # let model = fuzzy::yaml::parse(text)?.model;
-    /// use fuzzy::learn::{Learner, Settings};
-    ///
-    /// let mut learner = Learner::new(&model, Settings::default())?;
-    /// learner.add(&[95.0, 8.5], 1.0)?;
-    /// let refusal = learner.add(&[95.0, 12.0], 1.0).unwrap_err();
-    /// assert_eq!(refusal.to_string(), "`speed` is 12, outside its range from 0 to 9");
-    /// assert_eq!(learner.samples(), 1);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The sample is invalid. The learner does not change.
     pub fn add(&mut self, values: &[f64], weight: f64) -> Result<(), Refusal> {
         let Some((output, inputs)) = values
             .split_last()
@@ -248,7 +194,7 @@ impl Learner {
         }
         let mut degree = weight;
         let mut antecedent = vec![0; self.learned.len()];
-        for (place, input) in antecedent.iter_mut().zip(&self.learned) {
+        for (index, input) in antecedent.iter_mut().zip(&self.learned) {
             let (Some(variable), Some(value)) = (self.model.inputs.get(*input), inputs.get(*input))
             else {
                 continue;
@@ -257,7 +203,7 @@ impl Learner {
                 variable: variable.name.clone(),
                 value: *value,
             })?;
-            *place = term;
+            *index = term;
             degree *= membership;
         }
         for (input, term) in &self.given {
@@ -273,7 +219,7 @@ impl Learner {
         let vote = match (highest(consequent, *output), self.settings.resolution) {
             (Some(vote), Resolution::Mean) => (vote.0, 1.0),
             (Some(vote), _) => vote,
-            // Between terms that leave gaps a value still lies nearest to one of them.
+            // In a gap between terms, the nearest one.
             (None, Resolution::Mean) => (resolve::nearest_peak(&self.peaks, *output), 1.0),
             (None, _) => {
                 return Err(Refusal::NoTerm {
@@ -299,54 +245,18 @@ impl Learner {
         Ok(())
     }
 
-    /// The number of samples learned from so far.
-    ///
-    /// # Example
-    /// ```
-    /// # let text = "fuzzy: 1
-    /// # name: fan
-    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-    /// # rules: []";
-    /// # let model = fuzzy::yaml::parse(text)?.model;
-    /// use fuzzy::learn::{Learner, Settings};
-    ///
-    /// let mut learner = Learner::new(&model, Settings::default())?;
-    /// learner.add(&[95.0, 8.5], 1.0)?;
-    /// assert_eq!(learner.samples(), 1);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The number of samples so far.
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Makes the rules.
-    ///
-    /// # Example: two samples that contradict each other
-    /// ```
-    /// # let text = "fuzzy: 1
-    /// # name: fan
-    /// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-    /// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-    /// # rules: []";
-    /// # let model = fuzzy::yaml::parse(text)?.model;
-    /// use fuzzy::learn::{Learner, Settings};
-    ///
-    /// let mut learner = Learner::new(&model, Settings::default())?;
-    /// for (heat, speed) in [(5.0, 1.0), (95.0, 8.5), (90.0, 2.0)] {
-    ///     learner.add(&[heat, speed], 1.0)?;
-    /// }
-    /// let learned = learner.finish();
-    /// assert_eq!((learned.model.rules.len(), learned.conflicts, learned.missing), (2, 1, 0));
-    /// assert_eq!(learned.model.rules[1].rule.to_string(), "IF heat IS high THEN speed IS fast");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// Derives the rules.
     pub fn finish(&self) -> Learned {
         resolve::resolve(self)
     }
 }
 
-/// The inputs and terms of `a IS x AND b IS y`.
+/// The indices of the inputs and terms of `a IS x AND b IS y`.
 fn given(model: &Model, condition: &Condition) -> Result<Vec<(usize, usize)>, LearnError> {
     match condition {
         Condition::And(all) => {
@@ -390,7 +300,8 @@ fn check(variable: &Variable, value: f64) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The term a value belongs to most, and its membership; the first of equal ones, `None` where it belongs to none.
+/// The index of the term with the highest membership, the first of equal ones, and that membership; `None` where every
+/// membership is 0.
 fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
     let mut best: Option<(u16, f64)> = None;
     for (i, term) in (0..=u16::MAX).zip(&variable.terms) {
@@ -402,9 +313,9 @@ fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
     best
 }
 
-/// Where a term stands on its variable: the middle of the part in which it is highest.
-fn peak(variable: &Variable, shape: &Shape) -> f64 {
-    // Shapes are many and few have a closed form; terms are told apart by far more than a thousandth of the range.
+/// The middle of the interval where a term is highest.
+fn peak(variable: &Variable, shape: &MembershipFunction) -> f64 {
+    // By sampling, which is fine enough: the peaks of terms differ by far more than a thousandth of the range.
     const STEPS: u32 = 2000;
     let at =
         |i: u32| variable.low + (variable.high - variable.low) * f64::from(i) / f64::from(STEPS);
@@ -429,7 +340,7 @@ fn antecedent(learner: &Learner, terms: &[u16]) -> Option<Condition> {
         .iter()
         .zip(terms.iter().map(|t| usize::from(*t)));
     let given = learner.given.iter().map(|(input, term)| (input, *term));
-    // In the order of the model's inputs, whatever was given.
+    // In the order of the model's inputs.
     let mut all: Vec<(usize, usize)> = learned.chain(given).map(|(i, t)| (*i, t)).collect();
     all.sort_unstable();
     let parts: Vec<Condition> = all

@@ -8,17 +8,17 @@ use crate::{
     rule::{Consequent, Name},
 };
 
-/// The most antecedents that are completed or made monotone; more than that nobody reads.
+/// The most antecedents that are completed or made monotone.
 const MOST_COMPLETED: u64 = 1_000_000;
 
-/// Averages of neighbours settle long before this many rounds.
+/// The most rounds of averaging neighbours. Averages settle long before.
 const MOST_ROUNDS: usize = 1000;
 
-/// What an antecedent says before it is put into words.
+/// The consequent of an antecedent.
 struct Decision {
-    /// The output, in its unit.
+    /// The value of the output.
     value: f64,
-    /// The term of the output that samples decided for; `None` where the value decides.
+    /// The index of the output's term; `None` where the value decides.
     term: Option<u16>,
     confidence: Option<f64>,
     note: Option<String>,
@@ -86,7 +86,7 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
 }
 
 fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> Decision {
-    // Equal ones: more samples, then the first term.
+    // Of equal ones, the one with more samples, then the first.
     let winner = |weigh: fn(&Votes) -> f64| {
         let mut votes = cell.votes.iter();
         let first = votes.next();
@@ -121,7 +121,7 @@ fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> D
     }
 }
 
-/// How much stands behind a consequent, in [0, 1].
+/// The confidence of a consequent, in [0, 1].
 fn degree(learner: &Learner, cell: &Cell, votes: Option<&Votes>) -> f64 {
     let Some(votes) = votes else {
         return 0.0;
@@ -142,7 +142,7 @@ fn degree(learner: &Learner, cell: &Cell, votes: Option<&Votes>) -> f64 {
     }
 }
 
-/// The term a value belongs to most; where it belongs to none, the one whose peak is nearest.
+/// The index of the term with the highest membership, or with the nearest peak where every membership is 0.
 fn nearest_term(output: &Variable, peaks: &[f64], value: f64) -> u16 {
     if let Some((term, _)) = highest(output, value) {
         return term;
@@ -199,7 +199,7 @@ fn rule(
     })
 }
 
-/// Every antecedent, the last input running fastest.
+/// Every antecedent; the last input runs fastest.
 fn every_antecedent(shape: &[u16]) -> impl Iterator<Item = Vec<u16>> + '_ {
     let count = shape.iter().map(|n| u64::from(*n)).product();
     (0..count).map(move |i| {
@@ -213,7 +213,7 @@ fn every_antecedent(shape: &[u16]) -> impl Iterator<Item = Vec<u16>> + '_ {
     })
 }
 
-/// Gives every antecedent without a decision that of the nearest one; how many.
+/// Gives every antecedent without a decision that of the nearest one, and returns their number.
 fn complete(shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) -> u64 {
     let known: Vec<(Box<[u16]>, f64, Option<u16>)> = decisions
         .iter()
@@ -254,7 +254,7 @@ fn complete(shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) -> u6
     completed
 }
 
-/// Averages neighbours that go against the direction until none does.
+/// Averages neighbours that contradict the direction until none does.
 fn make_monotone(learner: &Learner, shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) {
     let directions: Vec<Option<Direction>> = learner
         .learned
@@ -266,9 +266,9 @@ fn make_monotone(learner: &Learner, shape: &[u16], decisions: &mut BTreeMap<Box<
         })
         .collect();
     let keys: Vec<Vec<u16>> = every_antecedent(shape).collect();
-    let place = |terms: &[u16]| {
-        terms.iter().zip(shape).fold(0usize, |at, (term, n)| {
-            at * usize::from(*n) + usize::from(*term)
+    let index = |terms: &[u16]| {
+        terms.iter().zip(shape).fold(0usize, |index, (term, n)| {
+            index * usize::from(*n) + usize::from(*term)
         })
     };
     let mut values: Vec<Option<f64>> = keys
@@ -290,7 +290,7 @@ fn make_monotone(learner: &Learner, shape: &[u16], decisions: &mut BTreeMap<Box<
                 if next.get(axis) >= shape.get(axis) {
                     continue;
                 }
-                let (here, there) = (place(terms), place(&next));
+                let (here, there) = (index(terms), index(&next));
                 let (Some(Some(a)), Some(Some(b))) = (values.get(here), values.get(there)) else {
                     continue;
                 };

@@ -1,193 +1,161 @@
-//! What is learned and how, and why something is not.
+//! The settings of a learner, and its errors.
 
 use alloc::{string::String, vec::Vec};
 
 use crate::rule::Condition;
 
-/// What decides between the consequents that samples of one antecedent vote for.
+/// How the consequent is chosen where samples of one antecedent disagree.
 ///
-/// # Example: one sure sample against two
+/// # Example: one clear sample against two
 /// ```
-/// # let text = "fuzzy: 1
-/// # name: fan
-/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// # rules: []";
-/// # let model = fuzzy::yaml::parse(text)?.model;
 /// use fuzzy::learn::{Learner, Resolution, Settings};
 ///
-/// let concluded = |resolution| -> Result<String, Box<dyn std::error::Error>> {
+/// let model = fuzzy::yaml::parse("
+/// fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// rules: []
+/// ")?.model;
+/// let consequent = |resolution| -> Result<String, Box<dyn std::error::Error>> {
 ///     let mut learner = Learner::new(&model, Settings { resolution, ..Settings::default() })?;
 ///     for sample in [[90.0, 9.0], [70.0, 0.0], [80.0, 0.0]] {
 ///         learner.add(&sample, 1.0)?;
 ///     }
 ///     Ok(learner.finish().model.rules[0].rule.consequents[0].term.text.clone())
 /// };
-/// assert_eq!(concluded(Resolution::Strongest)?, "fast"); // 0.9 over 0.8
-/// assert_eq!(concluded(Resolution::Heaviest)?, "slow"); // 0.9 under 0.7 + 0.8
+/// assert_eq!(consequent(Resolution::Strongest)?, "fast"); // 0.9 over 0.8
+/// assert_eq!(consequent(Resolution::Heaviest)?, "slow"); // 0.9 under 0.7 + 0.8
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Resolution {
-    /// The consequent of the one vote with the highest degree wins: Wang and Mendel's, and the FLAGRED paper's.
-    /// One odd sample can decide. The confidence of a rule is that degree.
+    /// The consequent of the vote with the highest degree (Wang and Mendel). One outlier can decide. The confidence of a rule
+    /// is that degree.
     #[default]
     Strongest,
-    /// The consequent with the highest sum of degrees wins. The confidence is its share of the sum of all degrees.
+    /// The consequent with the highest sum of degrees. The confidence is its share of the sum of all degrees.
     Heaviest,
-    /// The mean of the output over the samples of the antecedent, each weighted with the product of its input
-    /// memberships, decides: the term it belongs to most. Where no term holds it, the term whose peak is nearest. The
-    /// confidence is the share of that weight whose own values say the same term.
+    /// The term with the highest membership of the mean output, or the term with the nearest peak where all memberships are 0.
+    /// The mean weights each sample of the antecedent with the product of its input memberships. The confidence is the share
+    /// of the votes for that term.
     Mean,
 }
 
-/// Which way the output must go when an input rises.
-///
-/// # Example: a fan that never slows down in the heat
-/// ```
-/// # let text = "fuzzy: 1
-/// # name: fan
-/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// # rules: []";
-/// # let model = fuzzy::yaml::parse(text)?.model;
-/// use fuzzy::learn::{Direction, Learner, Settings};
-///
-/// let monotone = vec![("heat".to_string(), Direction::Rising)];
-/// let mut learner = Learner::new(&model, Settings { monotone, ..Settings::default() })?;
-/// for sample in [[10.0, 9.0], [90.0, 0.0], [90.0, 0.0]] {
-///     learner.add(&sample, 1.0)?;
-/// }
-/// let rules = learner.finish().model.rules;
-/// assert_eq!(rules[0].rule.consequents, rules[1].rule.consequents); // averaged until they agree
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// How the output changes when an input rises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// It never falls.
+    /// It does not fall.
     Rising,
-    /// It never rises.
+    /// It does not rise.
     Falling,
 }
 
-/// What is learned, and how.
+/// How rules are learned.
 ///
-/// # Example: rules for what no sample says, too
+/// # Example: a rule for an antecedent without samples
 /// ```
-/// # let text = "fuzzy: 1
-/// # name: fan
-/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// # rules: []";
-/// # let model = fuzzy::yaml::parse(text)?.model;
 /// use fuzzy::learn::{Learner, Settings};
 ///
+/// let model = fuzzy::yaml::parse("
+/// fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 100], partition: [low, high]}}
+/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// rules: []
+/// ")?.model;
 /// let mut learner = Learner::new(&model, Settings { complete: true, ..Settings::default() })?;
 /// learner.add(&[90.0, 9.0], 1.0)?;
 /// let learned = learner.finish();
 /// assert_eq!((learned.completed, learned.missing), (1, 0));
-/// assert!(learned.model.rules.iter().any(|rule| rule.note.is_some()), "a completed rule says so");
+/// assert!(learned.model.rules[0].note.is_some()); // the note names the completed rule
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
-    /// What decides where samples disagree.
+    /// How the consequent is chosen where samples disagree.
     pub resolution: Resolution,
-    /// An antecedent with fewer samples makes no rule; 0 and 1 take every one.
+    /// The fewest samples of a rule.
     pub min_support: u64,
-    /// A rule with a lower confidence is left out.
+    /// The lowest confidence of a rule.
     pub min_degree: f64,
-    /// Complete the rules: an antecedent without one takes what the nearest one says (steps between terms counted,
-    /// the highest of equally near ones), and says so in its note.
+    /// Whether an antecedent without a rule gets that of the nearest one: by the number of steps between terms, and the
+    /// highest output of equally near ones. The note of the rule says so.
     pub complete: bool,
-    /// Inputs on which the output must be monotone. Neighbouring antecedents that contradict it are averaged until
-    /// none does.
+    /// Inputs in which the output is made monotone, by averaging neighbouring antecedents that contradict it.
     pub monotone: Vec<(String, Direction)>,
-    /// A condition that every learned rule is joined to by AND; its inputs are not learned over, and a sample counts
-    /// as much as it fulfils it.
+    /// An antecedent that every learned rule has in addition, joined by AND. Its inputs are not learned over. Its degree
+    /// weights each sample.
     pub given: Option<Condition>,
 }
 
-/// Why nothing can be learned with a model and settings.
-///
-/// # Example
-/// ```
-/// use fuzzy::{Model, learn::{LearnError, Learner, Settings}};
-///
-/// let nothing = Learner::new(&Model::builder("empty").build(), Settings::default()).unwrap_err();
-/// assert_eq!(nothing, LearnError::Outputs { outputs: 0 });
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+/// Why a model and settings cannot be learned with.
+#[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LearnError {
-    /// The model has not exactly one output.
-    #[error("rules are learned for one output, but the model has {outputs}")]
+    /// The model does not have exactly one output.
     Outputs {
-        /// How many it has.
+        /// The number of outputs.
         outputs: usize,
     },
     /// A variable without terms.
-    #[error("`{variable}` has no terms")]
     NoTerms {
         /// The variable.
         variable: String,
     },
-    /// A setting names what is no input of the model, or not one that is learned over.
-    #[error("`{name}` is no input that rules are learned over")]
+    /// A setting names something that is not an input, or an input of the given antecedent.
     NoInput {
         /// The name.
         name: String,
     },
-    /// The given condition names a term that its input does not have.
-    #[error("`{variable}` has no term `{term}`")]
+    /// The given antecedent names a term that its input does not have.
     NoTerm {
         /// The input.
         variable: String,
         /// The term.
         term: String,
     },
-    /// The given condition is more than propositions joined by AND.
-    #[error("the given condition is not made of `input IS term` joined by AND")]
+    /// The given antecedent is not made of propositions joined by AND.
     Given,
 }
 
-/// Why a sample was not learned from.
-///
-/// # Example: a speed that the fan does not have
-/// ```
-/// # let text = "fuzzy: 1
-/// # name: fan
-/// # inputs: {heat: {range: [0, 100], partition: [low, high]}}
-/// # outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// # rules: []";
-/// # let model = fuzzy::yaml::parse(text)?.model;
-/// use fuzzy::learn::{Learner, Refusal, Settings};
-///
-/// let mut learner = Learner::new(&model, Settings::default())?;
-/// let refused = learner.add(&[90.0, 12.0], 1.0).unwrap_err();
-/// assert!(matches!(&refused, Refusal::OutOfRange { variable, .. } if variable == "speed"));
-/// assert_eq!(refused.to_string(), "`speed` is 12, outside its range from 0 to 9");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+impl core::fmt::Display for LearnError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            LearnError::Outputs { outputs } => {
+                write!(f, "the model has {outputs} outputs; learning takes one")
+            }
+            LearnError::NoTerms { variable } => write!(f, "`{variable}` has no terms"),
+            LearnError::NoInput { name } => write!(f, "`{name}` is not an input to learn over"),
+            LearnError::NoTerm { variable, term } => {
+                write!(f, "`{variable}` has no term `{term}`")
+            }
+            LearnError::Given => {
+                f.write_str("the given antecedent is not of the form `input IS term AND ...`")
+            }
+        }
+    }
+}
+
+impl core::error::Error for LearnError {}
+
+/// Why a sample is invalid.
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// Not one value for each variable.
-    #[error("there are {got} values for {expected} variables")]
+    /// The number of values is not that of the variables.
     WrongNumber {
-        /// Inputs and output.
+        /// The number of inputs and the output.
         expected: usize,
-        /// The values given.
+        /// The number of values.
         got: usize,
     },
     /// A value that is NaN or infinite.
-    #[error("`{variable}` is not a finite number")]
     NotFinite {
         /// The variable.
         variable: String,
     },
     /// A value outside the range of its variable.
-    #[error("`{variable}` is {value}, outside its range from {low} to {high}")]
     OutOfRange {
         /// The variable.
         variable: String,
@@ -198,8 +166,7 @@ pub enum Refusal {
         /// The upper end of the range.
         high: f64,
     },
-    /// A value that belongs to no term.
-    #[error("`{variable}` is {value}, which belongs to none of its terms")]
+    /// A value at which every term is 0.
     NoTerm {
         /// The variable.
         variable: String,
@@ -207,9 +174,36 @@ pub enum Refusal {
         value: f64,
     },
     /// A weight that is not a finite number above 0.
-    #[error("the weight {weight} is not a finite number above 0")]
     Weight {
         /// The weight.
         weight: f64,
     },
 }
+
+impl core::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Refusal::WrongNumber { expected, got } => {
+                write!(f, "{got} values for {expected} variables")
+            }
+            Refusal::NotFinite { variable } => write!(f, "`{variable}` is not a finite number"),
+            Refusal::OutOfRange {
+                variable,
+                value,
+                low,
+                high,
+            } => write!(
+                f,
+                "`{variable}` is {value}, outside its range from {low} to {high}"
+            ),
+            Refusal::NoTerm { variable, value } => {
+                write!(f, "every term of `{variable}` is 0 at {value}")
+            }
+            Refusal::Weight { weight } => {
+                write!(f, "the weight {weight} is not a finite number above 0")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}

@@ -262,7 +262,7 @@ fn rules_that_the_model_has_are_kept() {
 fn bad_samples_are_refused_with_the_reason() {
     let mut learner = Learner::new(&variables(), Settings::default()).unwrap();
     for (values, weight, message) in [
-        (vec![0.1, 0.1], 1.0, "there are 2 values for 3 variables"),
+        (vec![0.1, 0.1], 1.0, "2 values for 3 variables"),
         (
             vec![f64::NAN, 0.1, 1.0],
             1.0,
@@ -308,10 +308,10 @@ fn settings_that_do_not_fit_the_model_are_refused() {
         ..Settings::default()
     };
     for (settings, message) in [
-        (monotone, "`wind` is no input that rules are learned over"),
+        (monotone, "`wind` is not an input to learn over"),
         (
             given("IF wind IS low THEN risk IS low"),
-            "`wind` is no input that rules are learned over",
+            "`wind` is not an input to learn over",
         ),
         (
             given("IF spread IS wide THEN risk IS low"),
@@ -319,7 +319,7 @@ fn settings_that_do_not_fit_the_model_are_refused() {
         ),
         (
             given("IF spread IS low OR margin IS low THEN risk IS low"),
-            "the given condition is not made of `input IS term` joined by AND",
+            "the given antecedent is not of the form `input IS term AND ...`",
         ),
     ] {
         let error = Learner::new(&variables(), settings).unwrap_err();

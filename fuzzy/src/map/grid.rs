@@ -1,27 +1,31 @@
-//! Points on a rectangular grid over some of an engine's inputs.
+//! Rectangular grids over inputs of an engine.
 
 use alloc::{string::String, sync::Arc, vec::Vec};
 
 use crate::Engine;
 
-/// Equidistant points over some inputs of an engine, the other inputs fixed.
+/// Equidistant points over some inputs of an engine, with the other inputs fixed.
 ///
-/// Cells are counted with the last axis fastest.
+/// The index of a cell runs fastest along the last axis.
 ///
-/// # Example: a slice of a model of three inputs
+/// # Example: a slice of a model with three inputs
 /// ```
-/// # use fuzzy::model::{Model, Output, Shape, Variable};
-/// # use fuzzy::rule::{Condition, Rule};
-/// # let term = |name, low, high| Variable::new(name, low, high).term("any", Shape::Rectangle { left: low, right: high });
-/// # let model = Model::builder("m").input(term("margin", 0.0, 0.5)).input(term("spread", 0.0, 0.5)).input(term("battery", 0.0, 1.0))
-/// #     .output(Output::new(term("risk", 0.0, 100.0))).rule(Rule::new(Condition::is("margin", "any"), "risk", "any")).build();
-/// use fuzzy::{Engine, map::Grid};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
+/// use fuzzy::{Engine, map::Grid, rule};
 ///
+/// let variable = |name, high| Variable::new(name, 0.0, high).term("high", MembershipFunction::RightShoulder { foot: 0.0, top: high });
+/// let model = Model::builder("tip")
+///     .input(variable("food", 10.0))
+///     .input(variable("service", 10.0))
+///     .input(variable("bill", 500.0))
+///     .output(Output::new(variable("tip", 25.0)))
+///     .rule(rule::parse("IF food IS high AND service IS high AND bill IS high THEN tip IS high")?)
+///     .build();
 /// let engine = Engine::new(&model)?;
-/// let grid = Grid::new(&engine, 51)?.fix("battery", 0.8)?;
+/// let grid = Grid::new(&engine, 51)?.fix("bill", 80.0)?;
 /// assert_eq!(grid.axes().len(), 2);
 /// assert_eq!(grid.cells(), 51 * 51);
-/// assert_eq!(grid.point(51), [0.01, 0.0]);
+/// assert_eq!(grid.point(52), [0.2, 0.2]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -32,23 +36,11 @@ pub struct Grid {
 }
 
 /// One input of a grid.
-///
-/// # Example
-/// ```
-/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-/// # let engine = fuzzy::Engine::new(&model)?;
-/// use fuzzy::map::{Axis, Grid};
-///
-/// let grid = Grid::new(&engine, 11)?;
-/// let spread = Axis { name: "spread".into(), input: 1, low: 0.0, high: 0.5, points: 11 };
-/// assert_eq!(grid.axes()[1], spread);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// The input's name.
     pub name: Arc<str>,
-    /// The input's place among the engine's inputs.
+    /// The index of the input.
     pub input: usize,
     /// The first point.
     pub low: f64,
@@ -58,65 +50,37 @@ pub struct Axis {
     pub points: usize,
 }
 
-/// An input that has one value all over a grid.
-///
-/// # Example: along the margin at one spread
-/// ```
-/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-/// # let engine = fuzzy::Engine::new(&model)?;
-/// use fuzzy::map::{Fixed, Grid};
-///
-/// let grid = Grid::new(&engine, 11)?.fix("spread", 0.2)?;
-/// assert_eq!(grid.fixed(), [Fixed { name: "spread".into(), input: 1, value: 0.2 }]);
-/// assert_eq!(grid.axes().len(), 1);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// A fixed input of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fixed {
     /// The input's name.
     pub name: Arc<str>,
-    /// The input's place among the engine's inputs.
+    /// The index of the input.
     pub input: usize,
     /// Its value.
     pub value: f64,
 }
 
-/// Why a grid cannot be laid.
-///
-/// # Example
-/// ```
-/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-/// # let engine = fuzzy::Engine::new(&model)?;
-/// use fuzzy::map::{Grid, GridError};
-///
-/// assert_eq!(Grid::new(&engine, 1), Err(GridError::TooFewPoints { points: 1 }));
-/// let fixed_twice = Grid::new(&engine, 11)?.fix("spread", 0.2)?.fix("spread", 0.3);
-/// assert_eq!(fixed_twice, Err(GridError::NoAxis { name: "spread".into() }));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+/// Why a grid cannot be made.
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum GridError {
-    /// An axis needs both ends of its input's range.
-    #[error("an axis needs at least 2 points, not {points}")]
+    /// An axis has fewer than 2 points.
     TooFewPoints {
-        /// The number asked for.
+        /// The number of points.
         points: usize,
     },
-    /// More cells than can be counted in 32 bits.
-    #[error("the grid has too many cells: at most {most} fit")]
+    /// The grid has too many cells.
     TooManyCells {
-        /// The most that fit.
+        /// The most cells of a grid.
         most: usize,
     },
-    /// A name that is no input, or no longer an axis.
-    #[error("`{name}` is no axis of the grid")]
+    /// No axis has this name: it is no input, or it is fixed.
     NoAxis {
         /// The name.
         name: String,
     },
-    /// A fixed value that is not a finite number.
-    #[error("`{name}` cannot be fixed at {value}")]
+    /// A fixed value is not finite.
     NotFinite {
         /// The input.
         name: String,
@@ -125,22 +89,28 @@ pub enum GridError {
     },
 }
 
-/// Cells are counted in 32 bits wherever one is kept.
+impl core::fmt::Display for GridError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            GridError::TooFewPoints { points } => {
+                write!(f, "an axis needs at least 2 points, not {points}")
+            }
+            GridError::TooManyCells { most } => write!(f, "the grid has more than {most} cells"),
+            GridError::NoAxis { name } => write!(f, "the grid has no axis `{name}`"),
+            GridError::NotFinite { name, value } => {
+                write!(f, "the value {value} of `{name}` is not finite")
+            }
+        }
+    }
+}
+
+impl core::error::Error for GridError {}
+
+/// The index of a cell fits 32 bits.
 const MOST_CELLS: usize = u32::MAX as usize;
 
 impl Axis {
-    /// The coordinate of a point: `low + i (high - low) / (points - 1)`; the last is `high` itself.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 11)?;
-    /// let margin = &grid.axes()[0];
-    /// assert_eq!((margin.coordinate(0), margin.coordinate(3), margin.coordinate(10)), (0.0, 0.15, 0.5));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The coordinate of a point: `low + i (high - low) / (points - 1)`, and exactly `high` for the last.
     pub fn coordinate(&self, i: usize) -> f64 {
         if i + 1 >= self.points {
             self.high
@@ -149,25 +119,14 @@ impl Axis {
         }
     }
 
-    /// The points around `x` and how far it lies between them, in [0, 1]; beyond the ends, the end.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 3)?; // points at 0, 0.25 and 0.5
-    /// let margin = &grid.axes()[0];
-    /// assert_eq!(margin.locate(0.3125), (1, 0.25));
-    /// assert_eq!(margin.locate(9.0), (1, 1.0));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn locate(&self, x: f64) -> (usize, f64) {
+    /// The index of the point below `x`, and the share in [0, 1] of the way from there to the next point. `x` is clamped to
+    /// the axis.
+    fn locate(&self, x: f64) -> (usize, f64) {
         let last = self.points.saturating_sub(2);
-        let place = (x - self.low) / (self.high - self.low) * (self.points - 1) as f64;
-        if place > 0.0 {
-            let i = (place as usize).min(last);
-            (i, (place - i as f64).min(1.0))
+        let steps = (x - self.low) / (self.high - self.low) * (self.points - 1) as f64;
+        if steps > 0.0 {
+            let i = (steps as usize).min(last);
+            (i, (steps - i as f64).min(1.0))
         } else {
             (0, 0.0)
         }
@@ -178,18 +137,7 @@ impl Grid {
     /// A grid over every input's range, with the same number of points on each axis.
     ///
     /// # Errors
-    /// Fewer than 2 points; more cells than can be counted.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 11)?;
-    /// assert_eq!(grid.cells(), 11 * 11);
-    /// assert!(Grid::new(&engine, 1).is_err());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// Fewer than 2 points, or too many cells.
     pub fn new(engine: &Engine, points: usize) -> Result<Self, GridError> {
         let axes = engine
             .ranges()
@@ -212,17 +160,7 @@ impl Grid {
     /// Sets the number of points of one axis.
     ///
     /// # Errors
-    /// No such axis; fewer than 2 points; more cells than can be counted.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 11)?.points("spread", 3)?;
-    /// assert_eq!(grid.cells(), 11 * 3);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// No such axis, fewer than 2 points, or too many cells.
     pub fn points(mut self, name: &str, points: usize) -> Result<Self, GridError> {
         let axis = self.axes.iter_mut().find(|axis| &*axis.name == name);
         let axis = axis.ok_or_else(|| GridError::NoAxis { name: name.into() })?;
@@ -230,21 +168,10 @@ impl Grid {
         self.counted()
     }
 
-    /// Fixes one input, which is then no axis: a slice of the whole.
+    /// Fixes an input, which removes its axis.
     ///
     /// # Errors
-    /// No such axis, or the value is not a finite number.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let line = Grid::new(&engine, 11)?.fix("spread", 0.1)?;
-    /// assert_eq!((line.cells(), line.axes().len()), (11, 1));
-    /// assert_eq!(line.clone().fix("battery", 1.0).unwrap_err().to_string(), "`battery` is no axis of the grid");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// No such axis, or the value is not finite.
     pub fn fix(mut self, name: &str, value: f64) -> Result<Self, GridError> {
         if !value.is_finite() {
             return Err(GridError::NotFinite {
@@ -252,9 +179,9 @@ impl Grid {
                 value,
             });
         }
-        let place = self.axes.iter().position(|axis| &*axis.name == name);
-        let place = place.ok_or_else(|| GridError::NoAxis { name: name.into() })?;
-        let axis = self.axes.remove(place);
+        let index = self.axes.iter().position(|axis| &*axis.name == name);
+        let index = index.ok_or_else(|| GridError::NoAxis { name: name.into() })?;
+        let axis = self.axes.remove(index);
         self.fixed.push(Fixed {
             name: axis.name,
             input: axis.input,
@@ -279,62 +206,21 @@ impl Grid {
     }
 
     /// The axes, in the order of the engine's inputs.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 11)?;
-    /// assert_eq!(&*grid.axes()[1].name, "spread");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// The inputs that have one value all over the grid.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let line = Grid::new(&engine, 11)?.fix("spread", 0.1)?;
-    /// assert_eq!((&*line.fixed()[0].name, line.fixed()[0].value), ("spread", 0.1));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The fixed inputs.
     pub fn fixed(&self) -> &[Fixed] {
         &self.fixed
     }
 
     /// The number of cells.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 11)?;
-    /// let corners = (0..grid.cells()).filter(|&cell| grid.indices(cell).iter().all(|i| i % 10 == 0));
-    /// assert_eq!(corners.count(), 4);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn cells(&self) -> usize {
         self.cells
     }
 
-    /// The point's place on each axis.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 11)?;
-    /// assert_eq!(grid.indices(25), [2, 3]); // the last axis runs fastest
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The index of a cell on each axis.
     pub fn indices(&self, cell: usize) -> Vec<usize> {
         let mut rest = cell;
         let mut indices: Vec<usize> = self
@@ -351,18 +237,7 @@ impl Grid {
         indices
     }
 
-    /// The cell at a place on each axis; `None` off the grid.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 11)?;
-    /// assert_eq!(grid.cell(&[2, 3]), Some(25));
-    /// assert_eq!(grid.cell(&[2, 11]), None);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The cell with this index on each axis; `None` where it is not on the grid.
     pub fn cell(&self, indices: &[usize]) -> Option<usize> {
         if indices.len() != self.axes.len() {
             return None;
@@ -375,38 +250,15 @@ impl Grid {
             })
     }
 
-    /// A cell's coordinate on each axis.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 11)?;
-    /// assert_eq!(grid.point(25), [0.1, 0.15]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The coordinate of a cell on each axis.
     pub fn point(&self, cell: usize) -> Vec<f64> {
         let indices = self.indices(cell);
         let axes = self.axes.iter().zip(indices);
         axes.map(|(axis, i)| axis.coordinate(i)).collect()
     }
 
-    /// Reads values on the grid's cells N-linearly at a point with a coordinate for each axis; beyond
-    /// the grid's ends, at the end.
-    ///
-    /// `None` where a cell that counts there has no value, or where the number of coordinates is wrong.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::Grid};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let grid = Grid::new(&engine, 3)?;
-    /// let sum = |cell| Some(grid.point(cell).iter().sum());
-    /// assert_eq!(grid.interpolate(sum, &[0.125, 0.375]), Some(0.5));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// Interpolates the values of cells N-linearly at a point with a coordinate for each axis. Coordinates are clamped to the
+    /// grid. `None` where a cell has no value, a coordinate is NaN, or the number of coordinates is wrong.
     pub fn interpolate(&self, value: impl Fn(usize) -> Option<f64>, point: &[f64]) -> Option<f64> {
         if point.len() != self.axes.len() || point.iter().any(|x| x.is_nan()) {
             return None;
@@ -414,7 +266,7 @@ impl Grid {
         self.corner_sum(&value, point, 0, 0)
     }
 
-    /// Interpolates along one axis between what the further axes give on both sides.
+    /// Interpolates along one axis between the interpolations along the further axes.
     fn corner_sum(
         &self,
         value: &impl Fn(usize) -> Option<f64>,

@@ -1,9 +1,9 @@
-//! Decision maps: an engine on a grid, with how well each cell is covered by rules.
+//! Decision maps: the values, coverage and dominant rules of an engine on a grid.
 
 use alloc::{sync::Arc, vec, vec::Vec};
 
 use crate::Engine;
-use crate::engine::{EvaluateError, Outcome, Scratch, State};
+use crate::engine::{EvaluateError, Outcome, Scratch};
 
 mod grid;
 mod picture;
@@ -17,22 +17,22 @@ pub use table::{DecisionTable, TableError};
 
 /// One output of an engine on every cell of a grid.
 ///
-/// # Example: the part of a map that rules cover
+/// # Example: the cells that rules cover
 /// ```
-/// # use fuzzy::model::{Model, Output, Shape, Variable};
-/// # use fuzzy::rule::{Condition, Rule};
-/// # let model = Model::builder("m")
-/// #     .input(Variable::new("x", 0.0, 1.0).term("low", Shape::Triangle { left: 0.0, peak: 0.0, right: 0.5 }))
-/// #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("small", Shape::Rectangle { left: 0.0, right: 0.5 })))
-/// #     .rule(Rule::new(Condition::is("x", "low"), "y", "small")).build();
-/// use fuzzy::{Engine, map::{DecisionMap, Grid}};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
+/// use fuzzy::{Engine, map::{DecisionMap, Grid}, rule};
 ///
+/// let model = Model::builder("heater")
+///     .input(Variable::new("room", 0.0, 20.0).term("cold", MembershipFunction::LeftShoulder { top: 0.0, foot: 10.0 }))
+///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("high", MembershipFunction::Rectangle { left: 50.0, right: 100.0 })))
+///     .rule(rule::parse("IF room IS cold THEN power IS high")?)
+///     .build();
 /// let engine = Engine::new(&model)?;
-/// let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+/// let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?; // at 0, 2, 4 ... 20 degrees
 /// let covered = (0..map.grid().cells()).filter(|&cell| map.coverage(cell) >= 0.5);
-/// assert_eq!(covered.count(), 3); // x = 0, 0.1 and 0.2
-/// assert_eq!(map.value(0), Some(0.25));
-/// assert_eq!(map.value(10), None);
+/// assert_eq!(covered.count(), 3);
+/// assert_eq!(map.value(0), Some(75.0));
+/// assert_eq!(map.value(10), None); // no rule fires
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -40,24 +40,24 @@ pub struct DecisionMap {
     grid: Grid,
     output: Arc<str>,
     range: (f64, f64),
-    /// NaN where there is no value; never shown.
+    /// NaN where there is no value.
     values: Vec<f64>,
     coverage: Vec<f64>,
-    /// One more than the rule's index; 0 where no rule fired.
+    /// The rule's index plus one; 0 where no rule fired.
     dominant: Vec<u32>,
 }
 
-/// Cells that are evaluated at a time: a batch that stays in the cache.
+/// The number of cells in a batch, which fits the cache.
 const CELLS_A_TASK: usize = 512;
 
-/// What fills cells: the engine, and room for a batch.
+/// Evaluates batches of cells.
 struct Worker<'a> {
     engine: &'a Engine,
     grid: &'a Grid,
     output: usize,
     scratch: Scratch,
     /// The coordinates along each axis.
-    places: Vec<Vec<f64>>,
+    coordinates: Vec<Vec<f64>>,
     /// One column of coordinates for each input.
     columns: Vec<Vec<f64>>,
 }
@@ -70,19 +70,21 @@ impl<'a> Worker<'a> {
                 column.fill(fixed.value);
             }
         }
-        let places = grid.axes().iter();
-        let places = places.map(|axis| (0..axis.points).map(|i| axis.coordinate(i)).collect());
+        let coordinates = grid
+            .axes()
+            .iter()
+            .map(|axis| (0..axis.points).map(|i| axis.coordinate(i)).collect());
         Worker {
             engine,
             grid,
             output,
             scratch: engine.scratch(),
-            places: places.collect(),
+            coordinates: coordinates.collect(),
             columns,
         }
     }
 
-    /// Evaluates the cells from `first` on.
+    /// Evaluates the cells that begin at index `first`.
     fn fill(
         &mut self,
         first: usize,
@@ -92,11 +94,11 @@ impl<'a> Worker<'a> {
     ) {
         let cells = values.len();
         let mut stride = self.grid.cells();
-        for (axis, places) in self.grid.axes().iter().zip(&self.places) {
+        for (axis, coordinates) in self.grid.axes().iter().zip(&self.coordinates) {
             stride /= axis.points;
             if let Some(column) = self.columns.get_mut(axis.input) {
                 spread(
-                    places,
+                    coordinates,
                     first,
                     stride,
                     column.get_mut(..cells).unwrap_or_default(),
@@ -119,17 +121,17 @@ impl<'a> Worker<'a> {
     }
 }
 
-/// Writes the coordinates of cells from `first` on, where neighbours on an axis with these places stand `stride` cells
+/// Writes the coordinates on an axis of the cells that begin at index `first`. Neighbours on the axis are `stride` cells
 /// apart.
-fn spread(places: &[f64], first: usize, stride: usize, mut cells: &mut [f64]) {
+fn spread(coordinates: &[f64], first: usize, stride: usize, mut cells: &mut [f64]) {
     let mut left = stride - first % stride;
-    let around = places.iter().cycle().skip(first / stride % places.len());
-    for place in around {
+    let around = coordinates.iter().cycle();
+    for coordinate in around.skip(first / stride % coordinates.len()) {
         if cells.is_empty() {
             return;
         }
         let (run, behind) = cells.split_at_mut(left.min(cells.len()));
-        run.fill(*place);
+        run.fill(*coordinate);
         left = stride;
         cells = behind;
     }
@@ -138,22 +140,11 @@ fn spread(places: &[f64], first: usize, stride: usize, mut cells: &mut [f64]) {
 impl DecisionMap {
     /// Evaluates one output on every cell of a grid.
     ///
-    /// Cells where no rule fires have no value, also where the model calls that an error; where the
-    /// author chose a value for that, they have it, and no dominant rule.
+    /// A cell where no rule fires has no dominant rule. Its value is the default value of the output, if there is one; it has
+    /// none where the model makes that an error.
     ///
     /// # Errors
-    /// The grid was laid over another engine, or there is no such output.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// assert_eq!(map.grid().cells(), 51 * 51);
-    /// assert!(DecisionMap::new(&engine, Grid::new(&engine, 51)?, 1).is_err(), "there is no second output");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The grid belongs to another engine, or there is no such output.
     pub fn new(engine: &Engine, grid: Grid, output: usize) -> Result<Self, EvaluateError> {
         let inputs = engine.input_names().len();
         let named = grid.axes().len() + grid.fixed().len();
@@ -173,7 +164,7 @@ impl DecisionMap {
         let mut map = DecisionMap {
             output: Arc::clone(name),
             range: (low, high),
-            // Zeros come from the system for nothing; every cell is written below.
+            // The system provides zeroed memory at no cost; every cell is written below.
             values: vec![0.0; cells],
             coverage: vec![0.0; cells],
             dominant: vec![0; cells],
@@ -207,136 +198,38 @@ impl DecisionMap {
     }
 
     /// The grid.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// assert_eq!(map.grid().point(0), [0.0, 0.0]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
     /// The output's name.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// assert_eq!((map.output(), map.range()), ("risk", (0.0, 100.0)));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn output(&self) -> &str {
         &self.output
     }
 
     /// The output's range.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// let (low, high) = map.range();
-    /// let share = |cell| Some((map.value(cell)? - low) / (high - low));
-    /// assert!(share(51 * 51 - 1).is_some_and(|share| share < 0.1));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn range(&self) -> (f64, f64) {
         self.range
     }
 
-    /// The value of a cell; `None` where there is none, and off the grid.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// assert_eq!(map.value(0), None); // no margin, no spread: the paper has no rule
-    /// assert!(map.value(51 * 51 - 1).is_some_and(|risk| risk < 10.0));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The value of a cell; `None` where it has none, or where it is not on the grid.
     pub fn value(&self, cell: usize) -> Option<f64> {
         self.values.get(cell).copied().filter(|v| !v.is_nan())
     }
 
     /// The largest firing strength of a rule of this output in a cell, in [0, 1].
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// // The corner that the paper marks: no rule reaches one half there.
-    /// let corner = map.grid().cell(&[14, 4]).ok_or("off the grid")?;
-    /// assert!(map.coverage(corner) < 0.5);
-    /// assert_eq!(map.coverage(51 * 51 - 1), 1.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn coverage(&self, cell: usize) -> f64 {
         self.coverage.get(cell).copied().unwrap_or(0.0)
     }
 
     /// The rule of the largest firing strength in a cell, as its index in the model.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// let calm = map.grid().cell(&[50, 0]).and_then(|cell| map.dominant(cell));
-    /// assert_eq!(calm, Some(1)); // IF margin IS high AND spread IS low THEN risk IS very_low
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn dominant(&self, cell: usize) -> Option<usize> {
         let rule = self.dominant.get(cell)?.checked_sub(1)?;
         Some(rule as usize)
     }
 
-    /// The map read N-linearly between its cells; `None` where a cell that counts there has no value.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// let between = map.interpolate(&[0.123, 0.234]).ok_or("not covered")?;
-    /// let exact = engine.evaluate(&[0.123, 0.234])?[0].value().ok_or("not covered")?;
-    /// assert!((between - exact).abs() < 2.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The N-linear interpolation between cells; `None` where one of those cells has no value.
     pub fn interpolate(&self, point: &[f64]) -> Option<f64> {
         self.grid.interpolate(|cell| self.value(cell), point)
-    }
-
-    /// What a cell says, as an evaluation there would.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionMap, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// # let map = DecisionMap::new(&engine, Grid::new(&engine, 51)?, 0)?;
-    /// assert_eq!(map.state(0), engine.evaluate(&[0.0, 0.0])?[0].state);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn state(&self, cell: usize) -> State {
-        match (self.value(cell), self.dominant(cell)) {
-            (Some(value), Some(_)) => State::Defined(value),
-            (Some(value), None) => State::Default(value),
-            (None, _) => State::NoRuleFired,
-        }
     }
 }

@@ -1,40 +1,39 @@
-//! A decision map as text: for snapshots of rule sets, and for terminals.
+//! A decision map as text, for snapshots and terminals.
 
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::Write as _;
 
 use super::{Axis, DecisionMap};
 
-/// The most characters a row of the picture has.
+/// The most columns of the picture.
 const WIDEST: usize = 51;
 /// The most rows of the picture.
 const TALLEST: usize = 26;
 /// Rows and columns of the table below the picture.
 const TABLE: usize = 6;
-/// A map counts as covered here where a rule fires this strongly.
+/// A cell is covered where its coverage is at least this.
 const COVERED: f64 = 0.5;
 
-/// A text picture of a map and a coarse table of its values: what a snapshot of a rule set should hold.
+/// A text picture of a map, and a coarse table of its values.
 ///
-/// One character a cell: the tenth of the output's range in which the value lies, `0` to `9`; `.` where
-/// there is no value. The first axis runs to the right, the second upwards; further axes stand at their
-/// middle points, and the head says so. Of a fine map every n-th cell is shown. The last line counts the
-/// cells of the whole map that no rule covers at 0.5 or more.
+/// A cell is one character: the tenth of the output's range that holds the value, `0` to `9`, or `.` where there is no
+/// value. The first axis runs to the right, the second upwards. Further axes are at their middle points, which the first line
+/// names. A fine map shows every n-th cell. The last line counts the cells of the whole map with a coverage below 0.5.
 ///
-/// # Example: snapshot your own rule set
+/// # Example: a snapshot of a rule set
 /// ```
-/// # use fuzzy::model::{Model, Output, Shape, Variable};
-/// # use fuzzy::rule::{Condition, Rule};
-/// # let model = Model::builder("m")
-/// #     .input(Variable::new("x", 0.0, 1.0).term("low", Shape::Triangle { left: 0.0, peak: 0.0, right: 0.5 }))
-/// #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("small", Shape::Rectangle { left: 0.0, right: 0.5 })))
-/// #     .rule(Rule::new(Condition::is("x", "low"), "y", "small")).build();
-/// use fuzzy::{Engine, map::{DecisionMap, Grid, picture}};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
+/// use fuzzy::{Engine, map::{DecisionMap, Grid, picture}, rule};
 ///
+/// let model = Model::builder("heater")
+///     .input(Variable::new("room", 0.0, 20.0).term("cold", MembershipFunction::LeftShoulder { top: 0.0, foot: 10.0 }))
+///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("high", MembershipFunction::Rectangle { left: 50.0, right: 100.0 })))
+///     .rule(rule::parse("IF room IS cold THEN power IS high")?)
+///     .build();
 /// let engine = Engine::new(&model)?;
 /// let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
 /// let text = picture(&map); // insta::assert_snapshot!(picture(&map));
-/// assert!(text.contains("22222......"));
+/// assert!(text.contains("77777......"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn picture(map: &DecisionMap) -> String {
@@ -57,8 +56,8 @@ pub fn picture(map: &DecisionMap) -> String {
     text.push('\n');
     let at = |column: usize, row: usize| {
         let mut indices = middle.clone();
-        for (place, i) in [column, row].into_iter().enumerate() {
-            if let Some(index) = indices.get_mut(place) {
+        for (axis, i) in [column, row].into_iter().enumerate() {
+            if let Some(index) = indices.get_mut(axis) {
                 *index = i;
             }
         }
@@ -121,15 +120,15 @@ fn every(axis: &Axis, most: usize) -> Vec<usize> {
 
 /// The coordinate at the ends and the middle of the rows.
 fn mark(axis: &Axis, row: usize, rows: &[usize]) -> String {
-    let places = [rows.first(), rows.get(rows.len() / 2), rows.last()];
-    if places.contains(&Some(&row)) {
+    let marked = [rows.first(), rows.get(rows.len() / 2), rows.last()];
+    if marked.contains(&Some(&row)) {
         short(axis.coordinate(row))
     } else {
         String::new()
     }
 }
 
-/// At most 4 decimals, without zeros behind.
+/// At most 4 decimals, without trailing zeros.
 fn short(x: f64) -> String {
     let text = format!("{x:.4}");
     text.trim_end_matches('0').trim_end_matches('.').into()

@@ -1,4 +1,4 @@
-//! A look-up table in place of an engine, with its measured error: for flight controllers.
+//! A look-up table that replaces an engine on small processors, with its measured error.
 
 use alloc::vec::Vec;
 
@@ -8,100 +8,107 @@ use crate::engine::EvaluateError;
 
 /// Values of one output on a grid, read N-linearly between its points.
 ///
-/// A look-up touches `2^N` values of N inputs, allocates nothing and takes the same time everywhere. It has no
-/// value where a grid point around it has none: a table never makes up what no rule says.
+/// A look-up with N inputs reads `2^N` values, does not allocate and takes the same time everywhere. It has no value where
+/// one of these has none.
 ///
-/// # Example: a table that is at most 0.5 % of risk away from its engine
+/// # Example: a table within 0.5 % of the engine's power
 /// ```
-/// # use fuzzy::model::{Model, Output, Shape, Variable};
-/// # use fuzzy::rule::{Condition, Rule};
-/// # let model = Model::builder("m")
-/// #     .input(Variable::new("x", 0.0, 1.0)
-/// #         .term("low", Shape::LeftShoulder { top: 0.0, foot: 1.0 }).term("high", Shape::RightShoulder { foot: 0.0, top: 1.0 }))
-/// #     .output(Output::new(Variable::new("risk", 0.0, 100.0)
-/// #         .term("low", Shape::LeftShoulder { top: 0.0, foot: 100.0 }).term("high", Shape::RightShoulder { foot: 0.0, top: 100.0 })))
-/// #     .rule(Rule::new(Condition::is("x", "low"), "risk", "low"))
-/// #     .rule(Rule::new(Condition::is("x", "high"), "risk", "high")).build();
-/// use fuzzy::{Engine, map::DecisionTable};
+/// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
+/// use fuzzy::{Engine, map::DecisionTable, rule};
 ///
+/// let falling = |low, high| MembershipFunction::LeftShoulder { top: low, foot: high };
+/// let rising = |low, high| MembershipFunction::RightShoulder { foot: low, top: high };
+/// let model = Model::builder("heater")
+///     .input(Variable::new("room", 0.0, 20.0).term("cold", falling(0.0, 20.0)).term("warm", rising(0.0, 20.0)))
+///     .output(Output::new(Variable::new("power", 0.0, 100.0).term("low", falling(0.0, 100.0)).term("high", rising(0.0, 100.0))))
+///     .rule(rule::parse("IF room IS cold THEN power IS high")?)
+///     .rule(rule::parse("IF room IS warm THEN power IS low")?)
+///     .build();
 /// let engine = Engine::new(&model)?;
 /// let table = DecisionTable::within(&engine, 0, 0.5)?;
 /// assert!(table.error() <= 0.5);
-/// let exact = engine.evaluate(&[0.123])?[0].value().unwrap();
-/// assert!((table.value(&[0.123]).unwrap() - exact).abs() <= 0.5);
+/// let exact = engine.evaluate(&[12.3])?[0].value().ok_or("no rule fires")?;
+/// assert!((table.value(&[12.3]).ok_or("no rule fires")? - exact).abs() <= 0.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DecisionTable {
     grid: Grid,
-    /// NaN where there is no value; never shown.
+    /// NaN where there is no value.
     values: Vec<f64>,
     error: f64,
 }
 
-/// Why there is no table.
-///
-/// # Example
-/// ```
-/// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-/// # let engine = fuzzy::Engine::new(&model)?;
-/// use fuzzy::map::{DecisionTable, TableError};
-///
-/// // No table of numbers is exact.
-/// assert_eq!(DecisionTable::within(&engine, 0, 0.0), Err(TableError::Bound { bound: 0.0 }));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+/// Why a table cannot be made.
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum TableError {
-    /// The grid cannot be laid, or is too fine to be measured.
-    #[error(transparent)]
-    Grid(#[from] GridError),
-    /// The grid is not one over the engine, or there is no such output.
-    #[error(transparent)]
-    Evaluate(#[from] EvaluateError),
-    /// An error bound that is not over 0.
-    #[error("the error bound {bound} is not over 0")]
+    /// The grid has an error, or the grid that measures the table has too many cells.
+    Grid(GridError),
+    /// The grid belongs to another engine, or there is no such output.
+    Evaluate(EvaluateError),
+    /// The error bound is not positive.
     Bound {
         /// The bound.
         bound: f64,
     },
-    /// The largest table that was tried is not good enough.
-    #[error("with {cells} cells the error is still {error}, over {bound}")]
+    /// The largest table exceeds the error bound.
     TooCoarse {
-        /// The cells of the finest table tried.
+        /// The number of cells of the largest table.
         cells: usize,
         /// Its error.
         error: f64,
-        /// The bound asked for.
+        /// The bound.
         bound: f64,
     },
 }
 
-/// Where the error is measured: this many places between two points on each axis.
-const PLACES_BETWEEN: usize = 4;
+impl core::fmt::Display for TableError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            TableError::Grid(error) => error.fmt(f),
+            TableError::Evaluate(error) => error.fmt(f),
+            TableError::Bound { bound } => write!(f, "the error bound {bound} is not positive"),
+            TableError::TooCoarse {
+                cells,
+                error,
+                bound,
+            } => write!(
+                f,
+                "a table of {cells} cells has an error of {error}, over the bound of {bound}"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for TableError {}
+
+impl From<GridError> for TableError {
+    fn from(error: GridError) -> Self {
+        TableError::Grid(error)
+    }
+}
+
+impl From<EvaluateError> for TableError {
+    fn from(error: EvaluateError) -> Self {
+        TableError::Evaluate(error)
+    }
+}
+
+/// The error is measured on a grid this much finer on each axis.
+const FINER: usize = 4;
 /// The most cells of a table that [`DecisionTable::within`] makes.
 const MOST_CELLS: usize = 1 << 18;
 
 impl DecisionTable {
-    /// Evaluates an output on a grid, and measures how far the table is from the engine between its points.
+    /// Evaluates an output on a grid, and measures the error of the table between its points.
     ///
     /// # Errors
-    /// The grid is not one over the engine, there is no such output, or measuring takes too many cells.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
-    /// assert!(table.error() > 0.0, "it is measured, and no map is flat");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The grid belongs to another engine, there is no such output, or the grid that measures the error has too many cells.
     pub fn new(engine: &Engine, grid: Grid, output: usize) -> Result<Self, TableError> {
         let mut finer = grid.clone();
         for axis in grid.axes() {
-            finer = finer.points(&axis.name, (axis.points - 1) * PLACES_BETWEEN + 1)?;
+            finer = finer.points(&axis.name, (axis.points - 1) * FINER + 1)?;
         }
         let map = DecisionMap::new(engine, grid, output)?;
         let between = DecisionMap::new(engine, finer, output)?;
@@ -123,18 +130,7 @@ impl DecisionTable {
     /// `bound`, in the unit of the output.
     ///
     /// # Errors
-    /// As [`DecisionTable::new`]; a bound that is not over 0; no table of up to 2^18 cells is good enough.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let table = DecisionTable::within(&engine, 0, 10.0)?;
-    /// assert!(table.error() <= 10.0);
-    /// assert!(DecisionTable::within(&engine, 0, 0.0).is_err());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// As [`DecisionTable::new`]; the bound is not positive; or every table of up to 2^18 cells exceeds it.
     pub fn within(engine: &Engine, output: usize, bound: f64) -> Result<Self, TableError> {
         if bound.is_nan() || bound <= 0.0 {
             return Err(TableError::Bound { bound });
@@ -158,68 +154,25 @@ impl DecisionTable {
         }
     }
 
-    /// The value at a point with a coordinate for each axis of the grid, beyond its ends that of the end;
-    /// `None` where a grid point around it has none, and for NaN.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
-    /// assert!(table.value(&[0.1, 0.2]).unwrap() > 90.0);
-    /// assert_eq!(table.value(&[0.0, 0.0]), None); // no rule speaks there
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The value at a point with a coordinate for each axis of the grid. Coordinates are clamped to the grid. `None` where a
+    /// neighbouring grid point has no value, and for NaN.
     pub fn value(&self, point: &[f64]) -> Option<f64> {
         let value = |cell: usize| self.values.get(cell).copied().filter(|v| !v.is_nan());
         self.grid.interpolate(value, point)
     }
 
-    /// The largest distance from the engine that was measured, in the unit of the output: on a grid four times
-    /// as fine on each axis, wherever both have a value. It is measured, not proven.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let coarse = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
-    /// let fine = DecisionTable::new(&engine, Grid::new(&engine, 21)?, 0)?;
-    /// assert!(fine.error() < coarse.error());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The largest measured difference from the engine, in the unit of the output, on a grid four times finer on each axis,
+    /// where both have a value. It is no proven bound.
     pub fn error(&self) -> f64 {
         self.error
     }
 
     /// The grid.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 11)?, 0)?;
-    /// assert_eq!(table.grid().cells(), 11 * 11);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// The values on the cells of the grid, to be written into firmware; `None` where there is none.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::{Engine, map::{DecisionTable, Grid}};
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// # let engine = Engine::new(&model)?;
-    /// let table = DecisionTable::new(&engine, Grid::new(&engine, 3)?, 0)?;
-    /// let shares: Vec<Option<u8>> = table.values().map(|risk| Some((risk? * 2.55) as u8)).collect();
-    /// assert_eq!((shares.len(), shares[0]), (9, None));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// The values of the cells of the grid; `None` where there is none.
     pub fn values(&self) -> impl ExactSizeIterator<Item = Option<f64>> {
         self.values.iter().map(|v| (!v.is_nan()).then_some(*v))
     }

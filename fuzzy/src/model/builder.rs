@@ -3,7 +3,8 @@
 use alloc::{boxed::Box, string::String, vec::Vec};
 
 use super::{
-    Defuzzifier, Model, NoRuleFires, Operators, Output, Rule, Sampling, Shape, Term, Variable,
+    Defuzzifier, MembershipFunction, Model, NoRuleFires, Operators, Output, Rule, Sampling, Term,
+    Variable, between_peaks, even_peaks,
 };
 use crate::rule::{self, Condition, Consequent, Proposition};
 
@@ -12,21 +13,21 @@ impl Model {
     ///
     /// # Example: a tip from the service alone
     /// ```
-    /// use fuzzy::model::{Model, Output, Shape, Variable};
+    /// use fuzzy::model::{Model, Output, MembershipFunction, Variable};
     /// use fuzzy::rule::{Condition, Rule};
     /// use fuzzy::Engine;
     ///
     /// let model = Model::builder("tip")
     ///     .input(
     ///         Variable::new("service", 0.0, 10.0)
-    ///             .term("poor", Shape::LeftShoulder { top: 2.0, foot: 8.0 })
-    ///             .term("good", Shape::RightShoulder { foot: 2.0, top: 8.0 }),
+    ///             .term("poor", MembershipFunction::LeftShoulder { top: 2.0, foot: 8.0 })
+    ///             .term("good", MembershipFunction::RightShoulder { foot: 2.0, top: 8.0 }),
     ///     )
     ///     .output(Output::new(
     ///         Variable::new("tip", 0.0, 20.0)
     ///             .unit("%")
-    ///             .term("small", Shape::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
-    ///             .term("large", Shape::Triangle { left: 10.0, peak: 15.0, right: 20.0 }),
+    ///             .term("small", MembershipFunction::Triangle { left: 0.0, peak: 5.0, right: 10.0 })
+    ///             .term("large", MembershipFunction::Triangle { left: 10.0, peak: 15.0, right: 20.0 }),
     ///     ))
     ///     .rule(Rule::new(Condition::is("service", "poor"), "tip", "small"))
     ///     .rule(Rule::new(Condition::is("service", "good"), "tip", "large"))
@@ -52,20 +53,6 @@ impl Model {
 }
 
 /// Collects the parts of a [`Model`]; made by [`Model::builder`].
-///
-/// # Example: the parts of a model
-/// ```
-/// use fuzzy::Model;
-/// use fuzzy::model::{Conjunction, Operators, Variable};
-///
-/// let model = Model::builder("fan")
-///     .description("how fast a fan turns")
-///     .operators(Operators { and: Conjunction::Product, ..Operators::default() })
-///     .input(Variable::new("heat", 0.0, 100.0).unit("°C"))
-///     .build();
-/// assert_eq!(model.description.as_deref(), Some("how fast a fan turns"));
-/// assert_eq!(model.operators.and, Conjunction::Product);
-/// ```
 #[derive(Debug, Clone)]
 pub struct ModelBuilder {
     model: Model,
@@ -73,12 +60,6 @@ pub struct ModelBuilder {
 
 impl ModelBuilder {
     /// What the rule set is for.
-    ///
-    /// # Example
-    /// ```
-    /// let model = fuzzy::Model::builder("fan").description("how fast a fan turns").build();
-    /// assert_eq!(model.description.as_deref(), Some("how fast a fan turns"));
-    /// ```
     #[must_use]
     pub fn description(mut self, text: impl Into<String>) -> Self {
         self.model.description = Some(text.into());
@@ -86,14 +67,6 @@ impl ModelBuilder {
     }
 
     /// Adds an input.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::{Model, model::Variable};
-    ///
-    /// let model = Model::builder("fan").input(Variable::new("heat", 0.0, 100.0)).build();
-    /// assert_eq!(model.inputs[0].name, "heat");
-    /// ```
     #[must_use]
     pub fn input(mut self, variable: Variable) -> Self {
         self.model.inputs.push(variable);
@@ -101,14 +74,6 @@ impl ModelBuilder {
     }
 
     /// Adds an output.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::{Model, model::{Output, Variable}};
-    ///
-    /// let model = Model::builder("fan").output(Output::new(Variable::new("speed", 0.0, 9.0))).build();
-    /// assert_eq!(model.outputs[0].variable.high, 9.0);
-    /// ```
     #[must_use]
     pub fn output(mut self, output: Output) -> Self {
         self.model.outputs.push(output);
@@ -116,14 +81,6 @@ impl ModelBuilder {
     }
 
     /// Sets the operators; Mamdani's where this is not called.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::{Model, model::{Aggregation, Implication, Operators}};
-    ///
-    /// let larsen = Operators { implication: Implication::Product, aggregation: Aggregation::Sum, ..Operators::default() };
-    /// assert_eq!(Model::builder("fan").operators(larsen).build().operators, larsen);
-    /// ```
     #[must_use]
     pub fn operators(mut self, operators: Operators) -> Self {
         self.model.operators = operators;
@@ -131,14 +88,6 @@ impl ModelBuilder {
     }
 
     /// Adds a rule.
-    ///
-    /// # Example
-    /// ```
-    /// let rule = fuzzy::rule::parse("IF heat IS high THEN speed IS fast")?;
-    /// let model = fuzzy::Model::builder("fan").rule(rule).build();
-    /// assert_eq!(model.rules[0].rule.weight, 1.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn rule(mut self, rule: rule::Rule) -> Self {
         self.model.rules.push(Rule::from(rule));
@@ -146,14 +95,6 @@ impl ModelBuilder {
     }
 
     /// The model. Whether its parts fit is found when an engine is made from it.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::{Engine, Model};
-    ///
-    /// let model = Model::builder("fan").build();
-    /// assert!(Engine::new(&model).is_err(), "it has no outputs");
-    /// ```
     pub fn build(self) -> Model {
         self.model
     }
@@ -173,16 +114,6 @@ impl From<rule::Rule> for Rule {
 
 impl Variable {
     /// A variable without terms over `[low, high]`.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::model::{Shape, Variable};
-    ///
-    /// let heat = Variable::new("heat", 0.0, 100.0)
-    ///     .unit("°C")
-    ///     .term("high", Shape::RightShoulder { foot: 60.0, top: 90.0 });
-    /// assert_eq!(heat.terms[0].membership(75.0), 0.5);
-    /// ```
     pub fn new(name: impl Into<String>, low: f64, high: f64) -> Self {
         Variable {
             name: name.into(),
@@ -195,30 +126,48 @@ impl Variable {
     }
 
     /// Sets the unit of its values.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::model::Variable;
-    ///
-    /// assert_eq!(Variable::new("heat", 0.0, 100.0).unit("°C").unit.as_deref(), Some("°C"));
-    /// ```
     #[must_use]
     pub fn unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = Some(unit.into());
         self
     }
 
-    /// Adds a term of height 1.
+    /// Adds terms evenly spaced over the range: triangles with shoulders at the ends, whose degrees sum to 1.
     ///
     /// # Example
     /// ```
-    /// use fuzzy::model::{Shape, Variable};
+    /// use fuzzy::model::Variable;
     ///
-    /// let heat = Variable::new("heat", 0.0, 100.0).term("mild", Shape::Gaussian { mean: 20.0, sd: 5.0 });
-    /// assert_eq!(heat.terms[0].height, 1.0);
+    /// let heat = Variable::new("heat", 0.0, 100.0).partition(["low", "medium", "high"]);
+    /// let at_25: Vec<f64> = heat.terms.iter().map(|term| term.membership(25.0)).collect();
+    /// assert_eq!(at_25, [0.5, 0.5, 0.0]);
     /// ```
     #[must_use]
-    pub fn term(mut self, name: impl Into<String>, shape: Shape) -> Self {
+    pub fn partition<'a>(self, names: impl IntoIterator<Item = &'a str>) -> Self {
+        let names: Vec<&str> = names.into_iter().collect();
+        let peaks: Vec<f64> = even_peaks(self.low, self.high, names.len()).collect();
+        self.partition_at(names.into_iter().zip(peaks))
+    }
+
+    /// Adds terms with these peaks, from left to right: triangles with shoulders at the ends, whose degrees sum to 1.
+    ///
+    /// # Example
+    /// ```
+    /// use fuzzy::model::Variable;
+    ///
+    /// let heat = Variable::new("heat", 0.0, 100.0).partition_at([("low", 10.0), ("high", 30.0)]);
+    /// assert_eq!(heat.terms[1].membership(15.0), 0.25);
+    /// ```
+    #[must_use]
+    pub fn partition_at<'a>(mut self, peaks: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
+        let peaks: Vec<(&str, f64)> = peaks.into_iter().collect();
+        self.terms.extend(between_peaks(&peaks));
+        self
+    }
+
+    /// Adds a term of height 1.
+    #[must_use]
+    pub fn term(mut self, name: impl Into<String>, shape: MembershipFunction) -> Self {
         self.terms.push(Term {
             name: name.into(),
             shape,
@@ -230,15 +179,6 @@ impl Variable {
 
 impl Term {
     /// The degree of membership of `x`: the height times the shape's degree, in [0, 1].
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::model::{Shape, Term};
-    ///
-    /// let shape = Shape::RightShoulder { foot: 60.0, top: 90.0 };
-    /// let high = Term { name: "high".into(), shape, height: 0.8 };
-    /// assert_eq!(high.membership(75.0), 0.4);
-    /// ```
     pub fn membership(&self, x: f64) -> f64 {
         self.height * self.shape.membership(x)
     }
@@ -246,14 +186,6 @@ impl Term {
 
 impl Output {
     /// An output with the exact centroid, undefined where no rule fires.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::model::{Defuzzifier, NoRuleFires, Output, Variable};
-    ///
-    /// let speed = Output::new(Variable::new("speed", 0.0, 9.0));
-    /// assert_eq!((speed.defuzzifier, speed.when_no_rule_fires), (Defuzzifier::Centroid, NoRuleFires::Undefined));
-    /// ```
     pub fn new(variable: Variable) -> Self {
         Output {
             variable,
@@ -264,14 +196,6 @@ impl Output {
     }
 
     /// Sets the defuzzifier.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::model::{Defuzzifier, Output, Variable};
-    ///
-    /// let speed = Output::new(Variable::new("speed", 0.0, 9.0)).defuzzifier(Defuzzifier::Bisector);
-    /// assert_eq!(speed.defuzzifier, Defuzzifier::Bisector);
-    /// ```
     #[must_use]
     pub fn defuzzifier(mut self, defuzzifier: Defuzzifier) -> Self {
         self.defuzzifier = defuzzifier;
@@ -279,15 +203,6 @@ impl Output {
     }
 
     /// Integrates by sampling, to reproduce another program.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::model::{Output, Sampling, SamplingRule, Variable};
-    ///
-    /// let as_fuzzylite = Sampling { samples: 100, rule: SamplingRule::Midpoint };
-    /// let speed = Output::new(Variable::new("speed", 0.0, 9.0)).samples(as_fuzzylite);
-    /// assert_eq!(speed.samples, Some(as_fuzzylite));
-    /// ```
     #[must_use]
     pub fn samples(mut self, sampling: Sampling) -> Self {
         self.samples = Some(sampling);
@@ -295,14 +210,6 @@ impl Output {
     }
 
     /// Sets what the output is where no rule fires.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::model::{NoRuleFires, Output, Variable};
-    ///
-    /// let speed = Output::new(Variable::new("speed", 0.0, 9.0)).when_no_rule_fires(NoRuleFires::Value(0.0));
-    /// assert_eq!(speed.when_no_rule_fires, NoRuleFires::Value(0.0));
-    /// ```
     #[must_use]
     pub fn when_no_rule_fires(mut self, what: NoRuleFires) -> Self {
         self.when_no_rule_fires = what;
@@ -332,14 +239,6 @@ impl rule::Rule {
     }
 
     /// Adds `AND output IS term` behind THEN.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::rule::{Condition, Rule};
-    ///
-    /// let rule = Rule::new(Condition::is("heat", "high"), "speed", "fast").then("lamp", "on");
-    /// assert_eq!(rule.consequents.len(), 2);
-    /// ```
     #[must_use]
     pub fn then(mut self, output: &str, term: &str) -> Self {
         self.consequents.push(Consequent {
@@ -350,13 +249,6 @@ impl rule::Rule {
     }
 
     /// `WITH weight`.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::rule::{Condition, Rule};
-    ///
-    /// assert_eq!(Rule::new(Condition::is("heat", "high"), "speed", "fast").with(0.5).weight, 0.5);
-    /// ```
     #[must_use]
     pub fn with(mut self, weight: f64) -> Self {
         self.weight = weight;
@@ -366,26 +258,11 @@ impl rule::Rule {
 
 impl Condition {
     /// `variable IS term`.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::rule::Condition;
-    ///
-    /// assert_eq!(Condition::is("heat", "high").to_string(), "heat IS high");
-    /// ```
     pub fn is(variable: &str, term: &str) -> Self {
         Condition::is_hedged(variable, &[], term)
     }
 
     /// `variable IS hedge* term`.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::rule::{Condition, Hedge};
-    ///
-    /// let hot = Condition::is_hedged("heat", &[Hedge::Not, Hedge::Very], "high");
-    /// assert_eq!(hot.to_string(), "heat IS NOT very high");
-    /// ```
     pub fn is_hedged(variable: &str, hedges: &[rule::Hedge], term: &str) -> Self {
         Condition::Is(Proposition {
             variable: variable.into(),
@@ -395,14 +272,6 @@ impl Condition {
     }
 
     /// `self AND other`.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::rule::Condition;
-    ///
-    /// let hot = Condition::is("heat", "high").and(Condition::is("sun", "up"));
-    /// assert_eq!(hot.to_string(), "heat IS high AND sun IS up");
-    /// ```
     #[must_use]
     pub fn and(self, other: Condition) -> Self {
         match self {
@@ -415,14 +284,6 @@ impl Condition {
     }
 
     /// `self OR other`.
-    ///
-    /// # Example: brackets stand where they must
-    /// ```
-    /// use fuzzy::rule::Condition;
-    ///
-    /// let either = Condition::is("heat", "high").or(Condition::is("smoke", "seen"));
-    /// assert_eq!(either.and(Condition::is("door", "shut")).to_string(), "(heat IS high OR smoke IS seen) AND door IS shut");
-    /// ```
     #[must_use]
     pub fn or(self, other: Condition) -> Self {
         match self {
@@ -435,14 +296,6 @@ impl Condition {
     }
 
     /// `NOT self`.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::rule::Condition;
-    ///
-    /// let never = Condition::is("heat", "high").or(Condition::is("smoke", "seen")).negated();
-    /// assert_eq!(never.to_string(), "NOT (heat IS high OR smoke IS seen)");
-    /// ```
     #[must_use]
     pub fn negated(self) -> Self {
         Condition::Not(Box::new(self))

@@ -8,50 +8,89 @@ use crate::diagnostic::Findings;
 
 /// A model as it was read, and where its parts stand in the text.
 ///
-/// # Example: from a rule back to its place
+/// # Example: where a rule stands
 /// ```
-/// use fuzzy::format::{Document, VariablePlaces};
-///
 /// let text = "fuzzy: 1
 /// name: fan
 /// inputs: {heat: {range: [0, 100], partition: [low, high]}}
 /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
 /// rules: [IF heat IS high THEN speed IS fast]";
-/// let Document { model, places, warnings } = fuzzy::yaml::parse(text)?;
-/// assert_eq!((model.rules.len(), warnings.0.len()), (1, 0));
-/// assert_eq!(&text[places.rules[0].clone()], "IF heat IS high THEN speed IS fast");
-/// let VariablePlaces { name, terms } = &places.inputs[0];
-/// assert_eq!((&text[name.clone()], &text[terms[1].clone()]), ("heat", "high"));
+/// let document = fuzzy::yaml::parse(text)?;
+/// assert_eq!(document.model.rules.len(), 1);
+/// assert_eq!(&text[document.spans.rules[0].whole.clone()], "IF heat IS high THEN speed IS fast");
+/// assert_eq!(&text[document.spans.inputs[0].terms[1].name.clone()], "high");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Document {
     /// What the author wrote.
     pub model: Model,
     /// Where its parts stand.
-    pub places: Places,
-    /// What does not keep the model from working.
+    pub spans: Spans,
+    /// What does not keep the model from being read.
     pub warnings: Findings,
 }
 
-/// Where the parts of a model stand in its text, in the order of the model.
+/// Where the parts of a model stand in its text, in the order of the model. Empty for a model made in code.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Places {
+#[non_exhaustive]
+pub struct Spans {
     /// The inputs.
-    pub inputs: Vec<VariablePlaces>,
+    pub inputs: Vec<VariableSpans>,
+    /// The key `outputs`.
+    pub outputs_key: Range<usize>,
     /// The outputs.
-    pub outputs: Vec<VariablePlaces>,
+    pub outputs: Vec<VariableSpans>,
     /// The key `rules`.
     pub rules_key: Range<usize>,
     /// The rules.
-    pub rules: Vec<Range<usize>>,
+    pub rules: Vec<RuleSpans>,
+    /// Some rule could not be read, and is not in the model; a finding says why.
+    pub(crate) rules_unread: bool,
 }
 
 /// Where the parts of a variable stand.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct VariablePlaces {
+#[non_exhaustive]
+pub struct VariableSpans {
     /// Its name.
     pub name: Range<usize>,
-    /// The names of its terms.
-    pub terms: Vec<Range<usize>>,
+    /// The ends of its range.
+    pub range: Range<usize>,
+    /// Its terms.
+    pub terms: Vec<TermSpans>,
+    /// Of an output, the number of samples.
+    pub samples: Range<usize>,
+    /// Of an output, the value where no rule fires.
+    pub default: Range<usize>,
+    /// The range, or the terms, could not be read; a finding says why.
+    pub(crate) range_unread: bool,
+    pub(crate) terms_unread: bool,
+}
+
+/// Where the parts of a term stand.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct TermSpans {
+    /// Its name.
+    pub name: Range<usize>,
+    /// The parameters of its membership function: empty in a partition.
+    pub parameters: Vec<Range<usize>>,
+    /// Its height.
+    pub height: Range<usize>,
+    /// The membership function could not be read; a finding says why.
+    pub(crate) unread: bool,
+}
+
+/// Where the parts of a rule stand. The names in it have their own spans.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct RuleSpans {
+    /// All of it.
+    pub whole: Range<usize>,
+    /// Its confidence.
+    pub confidence: Range<usize>,
+    /// The degrees of the consequents that it beat.
+    pub against: Vec<Range<usize>>,
 }

@@ -1,4 +1,4 @@
-//! The rule language: its syntax tree, parser and printer. `IF margin IS low AND spread IS very high THEN risk IS high WITH 0.8`.
+//! The rule language: its syntax tree, parser and printer. `IF heat IS high AND humidity IS very high THEN speed IS fast WITH 0.8`.
 //!
 //! Precedence is NOT, then AND, then OR; parentheses group.
 
@@ -15,27 +15,12 @@ mod tests;
 pub use crate::table::Hedge;
 pub use parse::{DEEPEST_NESTING, parse};
 
-/// A name as the author wrote it, with its byte span in the source text.
-///
-/// Two names are equal when their text is: where a name stands does not change what a rule means.
-///
-/// # Example: equal wherever it stands
-/// ```
-/// use fuzzy::rule::{Name, parse};
-///
-/// let text = "IF 'air flow' IS low THEN speed IS fast";
-/// let flow = parse(text)?.condition.and(parse(text)?.condition);
-/// let mut names: Vec<Name> = Vec::new();
-/// flow.visit(&mut |proposition| names.push(proposition.variable.clone()));
-/// assert_eq!(names[0], Name::from("air flow"));
-/// assert_eq!(&text[names[0].span.clone()], "'air flow'");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// A name with its byte span in the source text. Names with equal text are equal, whatever their spans.
 #[derive(Debug, Clone, Eq)]
 pub struct Name {
     /// The name itself, without quotes.
     pub text: String,
-    /// Where it stands in the text it was parsed from; `0..0` for names made by code.
+    /// Its span in the text it was parsed from; `0..0` for names made in code.
     pub span: Range<usize>,
 }
 
@@ -54,7 +39,7 @@ impl From<&str> for Name {
     }
 }
 
-/// One rule: what must hold, what follows, and how much the rule counts.
+/// One rule: antecedent, consequents and weight.
 ///
 /// # Example: the parts of a rule
 /// ```
@@ -77,15 +62,6 @@ pub struct Rule {
 }
 
 /// The antecedent of a rule, as a tree.
-///
-/// # Example: AND binds closer than OR
-/// ```
-/// use fuzzy::rule::{Condition, parse};
-///
-/// let Condition::Or(any) = parse("IF a IS low OR b IS low AND NOT c IS low THEN y IS low")?.condition else { return Ok(()) };
-/// assert!(matches!(&any[..], [Condition::Is(_), Condition::And(all)] if matches!(all[1], Condition::Not(_))));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
     /// `variable IS hedge* term`.
@@ -99,17 +75,6 @@ pub enum Condition {
 }
 
 /// `variable IS hedge* term`. `variable IS NOT term` is the hedge [`Hedge::Not`].
-///
-/// # Example: what stands between IS and the term
-/// ```
-/// use fuzzy::rule::{Condition, Hedge, Proposition, parse};
-///
-/// let Condition::Is(Proposition { variable, hedges, term }) = parse("IF heat IS NOT very high THEN speed IS slow")?.condition
-/// else { return Err("more than one".into()) };
-/// assert_eq!((variable.text.as_str(), term), ("heat", Some("high".into())));
-/// assert_eq!(hedges, [Hedge::Not, Hedge::Very]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposition {
     /// The input.
@@ -130,14 +95,7 @@ pub struct Consequent {
 }
 
 impl Rule {
-    /// Whether a word, in any case, is one of the rule language, so that a name equal to it stands in quotes.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::rule::Rule;
-    ///
-    /// assert!(Rule::is_keyword("then") && !Rule::is_keyword("margin"));
-    /// ```
+    /// Whether a word, in any case, is a keyword of the rule language; a name equal to a keyword is written in quotes.
     #[must_use]
     pub fn is_keyword(word: &str) -> bool {
         let keywords = ["IF", "IS", "AND", "OR", "THEN", "WITH"];
@@ -175,15 +133,6 @@ impl Condition {
     }
 
     /// Calls `visit` on every proposition, from left to right.
-    ///
-    /// # Example
-    /// ```
-    /// let rule = fuzzy::rule::parse("IF heat IS high AND NOT (sun IS up OR heat IS low) THEN speed IS fast")?;
-    /// let mut asked = Vec::new();
-    /// rule.condition.visit(&mut |proposition| asked.push(proposition.variable.text.as_str()));
-    /// assert_eq!(asked, ["heat", "sun", "heat"]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn visit<'a>(&'a self, visit: &mut impl FnMut(&'a Proposition)) {
         match self {
             Condition::Is(proposition) => visit(proposition),

@@ -38,12 +38,12 @@ pub const DEEPEST_NESTING: usize = 64;
 ///
 /// # Example
 /// ```
-/// let rule = fuzzy::rule::parse("if margin is very low or not spread is low then risk is high with 0.8")?;
-/// assert_eq!(rule.to_string(), "IF margin IS very low OR NOT spread IS low THEN risk IS high WITH 0.8");
+/// let rule = fuzzy::rule::parse("if heat is very high or not humidity is low then speed is fast with 0.8")?;
+/// assert_eq!(rule.to_string(), "IF heat IS very high OR NOT humidity IS low THEN speed IS fast WITH 0.8");
 ///
-/// let mistake = fuzzy::rule::parse("IF margin IS low THNE risk IS high").unwrap_err();
+/// let mistake = fuzzy::rule::parse("IF heat IS high THNE speed IS fast").unwrap_err();
 /// assert_eq!(mistake.message, "expected `AND`, `OR` or `THEN` after the condition, found `THNE`");
-/// assert_eq!(mistake.span, 17..21);
+/// assert_eq!(mistake.span, 16..20);
 /// assert_eq!(mistake.help.as_deref(), Some("did you mean `THEN`?"));
 /// # Ok::<(), Box<fuzzy::diagnostic::Diagnostic>>(())
 /// ```

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::Shape;
+use super::MembershipFunction;
 
 /// A shape as rule sets spell it.
 pub(crate) struct Form {
@@ -11,16 +11,20 @@ pub(crate) struct Form {
     /// Its parameters, in the order of a list.
     pub(crate) parameters: &'static [(&'static str, Role)],
     /// What it is, for the schema.
+    #[cfg_attr(
+        not(feature = "serde"),
+        allow(dead_code, reason = "only the schema tells it")
+    )]
     pub(crate) about: &'static str,
     /// The shape of so many values.
-    pub(crate) build: fn(&[f64]) -> Option<Shape>,
+    pub(crate) build: fn(&[f64]) -> Option<MembershipFunction>,
 }
 
 /// What a parameter may be; all are finite numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// A place on the axis; the places of a shape stand from left to right.
-    Place,
+    /// A position on the axis, not left of the one before.
+    Ascending,
     /// Over 0: a width, a deviation.
     Positive,
     /// Any.
@@ -28,10 +32,12 @@ pub(crate) enum Role {
 }
 
 impl Form {
-    /// Whether the parameters may stand in a list. Only places may: programs differ in the order of all others,
+    /// Whether the parameters may stand in a list. Only positions may: programs differ in the order of all others,
     /// `gaussian: [1, 5]` means mean 1 to one and mean 5 to another.
     pub(crate) fn as_list(&self) -> bool {
-        self.parameters.iter().all(|(_, role)| *role == Role::Place)
+        self.parameters
+            .iter()
+            .all(|(_, role)| *role == Role::Ascending)
     }
 
     /// The names of the parameters.
@@ -62,19 +68,19 @@ pub(super) fn padded(parameters: &[f64]) -> [f64; 4] {
 /// Makes the table of forms, and takes shapes apart by it, so that a shape without a line does not compile.
 macro_rules! forms {
     ($($shape:ident $name:literal $formula:ident [$($parameter:ident: $role:ident),+] $about:literal;)+) => {
-        impl Shape {
+        impl MembershipFunction {
             /// The forms of all shapes with a fixed number of parameters.
             pub(crate) const FORMS: &[Form] = &[$(form::forms!(@form $shape $name [$($parameter: $role),+] $about)),+];
 
             /// The form and the values, or what a shape without a fixed number of parameters has.
             pub(crate) fn parts(&self) -> Parts<'_> {
                 match *self {
-                    $(Shape::$shape { $($parameter),+ } => Parts::Fixed(
+                    $(MembershipFunction::$shape { $($parameter),+ } => Parts::Fixed(
                         const { &form::forms!(@form $shape $name [$($parameter: $role),+] $about) },
                         vec![$($parameter),+],
                     ),)+
-                    Shape::Piecewise { ref points } => Parts::Points(points),
-                    Shape::Linear { ref coefficients, constant } => Parts::Linear(coefficients, constant),
+                    MembershipFunction::Piecewise { ref points } => Parts::Points(points),
+                    MembershipFunction::Linear { ref coefficients, constant } => Parts::Linear(coefficients, constant),
                 }
             }
 
@@ -82,9 +88,9 @@ macro_rules! forms {
             /// function: 0 everywhere.
             pub(crate) fn kind(&self) -> (Kind, [f64; 4]) {
                 match *self {
-                    $(Shape::$shape { $($parameter),+ } => (Kind::$formula, form::padded(&[$($parameter),+])),)+
-                    Shape::Piecewise { .. } => (Kind::PIECEWISE, [0.0; 4]),
-                    Shape::Linear { .. } => (Kind::CONSTANT, [0.0; 4]),
+                    $(MembershipFunction::$shape { $($parameter),+ } => (Kind::$formula, form::padded(&[$($parameter),+])),)+
+                    MembershipFunction::Piecewise { .. } => (Kind::PIECEWISE, [0.0; 4]),
+                    MembershipFunction::Linear { .. } => (Kind::CONSTANT, [0.0; 4]),
                 }
             }
         }
@@ -95,7 +101,7 @@ macro_rules! forms {
             parameters: &[$((stringify!($parameter), Role::$role)),+],
             about: $about,
             build: |values| match *values {
-                [$($parameter),+] => Some(Shape::$shape { $($parameter),+ }),
+                [$($parameter),+] => Some(MembershipFunction::$shape { $($parameter),+ }),
                 _ => None,
             },
         }

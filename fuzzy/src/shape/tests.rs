@@ -1,6 +1,6 @@
 //! Tables of degrees, held against the formulas by hand, and what is said of parameters that make no shape.
 
-use super::{Shape, straight::along};
+use super::{MembershipFunction, straight::along};
 use alloc::{string::ToString, vec};
 
 const INFINITY: f64 = f64::INFINITY;
@@ -8,7 +8,7 @@ const NEG_INFINITY: f64 = f64::NEG_INFINITY;
 const NAN: f64 = f64::NAN;
 
 /// Every row: x and the exact degree.
-fn table(shape: Shape, rows: &[(f64, f64)]) {
+fn table(shape: MembershipFunction, rows: &[(f64, f64)]) {
     shape.validate().unwrap();
     for &(x, degree) in rows {
         let got = shape.membership(x);
@@ -31,7 +31,7 @@ fn table(shape: Shape, rows: &[(f64, f64)]) {
 
 #[test]
 fn triangle() {
-    let shape = |left, peak, right| Shape::Triangle { left, peak, right };
+    let shape = |left, peak, right| MembershipFunction::Triangle { left, peak, right };
     table(
         shape(0.0, 1.0, 3.0),
         &[
@@ -62,7 +62,7 @@ fn triangle() {
 #[test]
 fn trapezoid_and_shoulders() {
     table(
-        Shape::Trapezoid {
+        MembershipFunction::Trapezoid {
             left: 0.0,
             left_top: 2.0,
             right_top: 3.0,
@@ -81,7 +81,7 @@ fn trapezoid_and_shoulders() {
         ],
     );
     table(
-        Shape::Trapezoid {
+        MembershipFunction::Trapezoid {
             left: 1.0,
             left_top: 1.0,
             right_top: 2.0,
@@ -90,7 +90,7 @@ fn trapezoid_and_shoulders() {
         &[(0.9, 0.0), (1.0, 1.0), (1.5, 1.0), (2.0, 1.0), (2.1, 0.0)],
     );
     table(
-        Shape::LeftShoulder {
+        MembershipFunction::LeftShoulder {
             top: 1.0,
             foot: 3.0,
         },
@@ -104,14 +104,14 @@ fn trapezoid_and_shoulders() {
         ],
     );
     table(
-        Shape::LeftShoulder {
+        MembershipFunction::LeftShoulder {
             top: 1.0,
             foot: 1.0,
         },
         &[(0.0, 1.0), (1.0, 1.0), (1.1, 0.0)],
     );
     table(
-        Shape::RightShoulder {
+        MembershipFunction::RightShoulder {
             foot: 1.0,
             top: 3.0,
         },
@@ -124,7 +124,7 @@ fn trapezoid_and_shoulders() {
         ],
     );
     table(
-        Shape::RightShoulder {
+        MembershipFunction::RightShoulder {
             foot: 1.0,
             top: 1.0,
         },
@@ -135,7 +135,7 @@ fn trapezoid_and_shoulders() {
 #[test]
 fn rectangle_singleton_piecewise_constant() {
     table(
-        Shape::Rectangle {
+        MembershipFunction::Rectangle {
             left: 1.0,
             right: 2.0,
         },
@@ -149,7 +149,7 @@ fn rectangle_singleton_piecewise_constant() {
         ],
     );
     table(
-        Shape::Singleton { at: 1.0 },
+        MembershipFunction::Singleton { at: 1.0 },
         &[
             (NEG_INFINITY, 0.0),
             (0.9, 0.0),
@@ -160,7 +160,7 @@ fn rectangle_singleton_piecewise_constant() {
     );
     // Up, a step down in which the higher degree holds, a step up, a last degree that holds.
     table(
-        Shape::Piecewise {
+        MembershipFunction::Piecewise {
             points: vec![
                 (0.0, 0.25),
                 (1.0, 0.75),
@@ -183,7 +183,7 @@ fn rectangle_singleton_piecewise_constant() {
         ],
     );
     table(
-        Shape::Constant { value: 0.3 },
+        MembershipFunction::Constant { value: 0.3 },
         &[(NEG_INFINITY, 0.3), (0.0, 0.3), (INFINITY, 0.3)],
     );
 }
@@ -193,7 +193,7 @@ fn gaussians() {
     let at_one_sd = 0.606_530_659_712_633_4; // exp(-1/2)
     let at_two_sd = 0.135_335_283_236_612_7; // exp(-2)
     table(
-        Shape::Gaussian { mean: 1.0, sd: 2.0 },
+        MembershipFunction::Gaussian { mean: 1.0, sd: 2.0 },
         &[
             (NEG_INFINITY, 0.0),
             (-3.0, at_two_sd),
@@ -205,7 +205,7 @@ fn gaussians() {
         ],
     );
     table(
-        Shape::Gaussian2 {
+        MembershipFunction::Gaussian2 {
             left_mean: 1.0,
             left_sd: 0.5,
             right_mean: 2.0,
@@ -227,7 +227,7 @@ fn gaussians() {
 #[test]
 fn bell_and_sigmoids() {
     table(
-        Shape::Bell {
+        MembershipFunction::Bell {
             center: 1.0,
             width: 2.0,
             slope: 1.0,
@@ -244,7 +244,7 @@ fn bell_and_sigmoids() {
     );
     let third = 3.0_f64.ln();
     table(
-        Shape::Sigmoid {
+        MembershipFunction::Sigmoid {
             inflection: 2.0,
             slope: 1.0,
         },
@@ -257,7 +257,7 @@ fn bell_and_sigmoids() {
         ],
     );
     table(
-        Shape::Sigmoid {
+        MembershipFunction::Sigmoid {
             inflection: 2.0,
             slope: -1.0,
         },
@@ -269,7 +269,7 @@ fn bell_and_sigmoids() {
         ],
     );
     table(
-        Shape::SigmoidDifference {
+        MembershipFunction::SigmoidDifference {
             left_inflection: 0.0,
             left_slope: 1.0,
             right_inflection: third,
@@ -283,7 +283,7 @@ fn bell_and_sigmoids() {
         ],
     );
     table(
-        Shape::SigmoidProduct {
+        MembershipFunction::SigmoidProduct {
             left_inflection: 0.0,
             left_slope: 1.0,
             right_inflection: 0.0,
@@ -302,7 +302,7 @@ fn bell_and_sigmoids() {
 #[test]
 fn s_z_and_pi() {
     table(
-        Shape::SShape {
+        MembershipFunction::SShape {
             foot: 0.0,
             top: 4.0,
         },
@@ -317,7 +317,7 @@ fn s_z_and_pi() {
         ],
     );
     table(
-        Shape::ZShape {
+        MembershipFunction::ZShape {
             top: 0.0,
             foot: 4.0,
         },
@@ -332,7 +332,7 @@ fn s_z_and_pi() {
         ],
     );
     table(
-        Shape::PiShape {
+        MembershipFunction::PiShape {
             left: 0.0,
             left_top: 2.0,
             right_top: 3.0,
@@ -351,7 +351,7 @@ fn s_z_and_pi() {
         ],
     );
     table(
-        Shape::PiShape {
+        MembershipFunction::PiShape {
             left: 1.0,
             left_top: 1.0,
             right_top: 1.0,
@@ -364,7 +364,7 @@ fn s_z_and_pi() {
 #[test]
 fn cosine_spike_concave() {
     table(
-        Shape::Cosine {
+        MembershipFunction::Cosine {
             center: 1.0,
             width: 4.0,
         },
@@ -381,7 +381,7 @@ fn cosine_spike_concave() {
     );
     let tenth = 0.367_879_441_171_442_33; // exp(-1)
     table(
-        Shape::Spike {
+        MembershipFunction::Spike {
             center: 1.0,
             width: 10.0,
         },
@@ -394,7 +394,7 @@ fn cosine_spike_concave() {
         ],
     );
     table(
-        Shape::Concave {
+        MembershipFunction::Concave {
             inflection: 1.0,
             end: 3.0,
         },
@@ -408,7 +408,7 @@ fn cosine_spike_concave() {
         ],
     );
     table(
-        Shape::Concave {
+        MembershipFunction::Concave {
             inflection: 3.0,
             end: 1.0,
         },
@@ -426,18 +426,18 @@ fn cosine_spike_concave() {
 #[test]
 fn parameters_that_make_no_shape_still_give_no_nan() {
     for shape in [
-        Shape::Gaussian { mean: NAN, sd: 0.0 },
-        Shape::Bell {
+        MembershipFunction::Gaussian { mean: NAN, sd: 0.0 },
+        MembershipFunction::Bell {
             center: 0.0,
             width: 0.0,
             slope: NAN,
         },
-        Shape::Concave {
+        MembershipFunction::Concave {
             inflection: 1.0,
             end: INFINITY,
         },
-        Shape::Piecewise { points: vec![] },
-        Shape::Constant { value: NAN },
+        MembershipFunction::Piecewise { points: vec![] },
+        MembershipFunction::Constant { value: NAN },
     ] {
         for x in [NEG_INFINITY, -1.0, 0.0, 1.0, INFINITY, NAN] {
             let degree = shape.membership(x);
@@ -448,13 +448,13 @@ fn parameters_that_make_no_shape_still_give_no_nan() {
 
 #[test]
 fn says_which_parameter() {
-    let message = |shape: Shape| shape.validate().unwrap_err().to_string();
+    let message = |shape: MembershipFunction| shape.validate().unwrap_err().to_string();
     assert_eq!(
-        message(Shape::Gaussian { mean: 1.0, sd: 0.0 }),
-        "`sd` is 0, not over 0"
+        message(MembershipFunction::Gaussian { mean: 1.0, sd: 0.0 }),
+        "`sd` is 0, but must be greater than 0"
     );
     assert_eq!(
-        message(Shape::Bell {
+        message(MembershipFunction::Bell {
             center: f64::NAN,
             width: 1.0,
             slope: 1.0
@@ -462,26 +462,26 @@ fn says_which_parameter() {
         "`center` is NaN, not a finite number"
     );
     assert_eq!(
-        message(Shape::Piecewise {
+        message(MembershipFunction::Piecewise {
             points: vec![(0.0, 0.5), (1.0, 1.5)]
         }),
-        "the degree 1.5 at 1 is not in [0, 1]"
+        "the degree 1.5 at 1 is outside [0, 1]"
     );
     assert_eq!(
-        message(Shape::Piecewise {
+        message(MembershipFunction::Piecewise {
             points: vec![(1.0, 0.5), (0.0, 0.5)]
         }),
-        "the point at 0 stands behind 1"
+        "the point at 0 follows the point at 1"
     );
     assert_eq!(
-        message(Shape::Concave {
+        message(MembershipFunction::Concave {
             inflection: 1.0,
             end: 1.0
         }),
         "`inflection` and `end` are both 1"
     );
     assert_eq!(
-        message(Shape::Rectangle {
+        message(MembershipFunction::Rectangle {
             left: -1.7e308,
             right: 1.7e308
         }),

@@ -1,34 +1,33 @@
 //! Which parameters make a shape.
 
-use alloc::{format, string::String, vec::Vec};
+use alloc::{format, string::String};
 
-use super::{Parts, Role, Shape};
+use super::{MembershipFunction, Parts, Role};
 
-/// Why the parameters of a shape make no membership function.
-///
-/// # Example: a bell without a width
-/// ```
-/// use fuzzy::model::{Shape, ShapeError};
-///
-/// let refused: ShapeError = Shape::Gaussian { mean: 20.0, sd: 0.0 }.validate().unwrap_err();
-/// assert_eq!(refused.to_string(), "`sd` is 0, not over 0");
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
-pub struct ShapeError {
+/// Why parameters make no membership function.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MembershipError {
     message: String,
-    /// The parameter to blame by name, or `point 3`, for those who know where it was written.
-    pub(crate) blamed: String,
+    /// The index of the parameter, point or coefficient to blame.
+    pub(crate) parameter: Option<usize>,
 }
 
-fn wrong(blamed: &str, message: String) -> Result<(), ShapeError> {
-    Err(ShapeError {
+impl core::fmt::Display for MembershipError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl core::error::Error for MembershipError {}
+
+fn wrong(parameter: usize, message: String) -> Result<(), MembershipError> {
+    Err(MembershipError {
         message,
-        blamed: blamed.into(),
+        parameter: Some(parameter),
     })
 }
 
-impl Shape {
+impl MembershipFunction {
     /// Whether the parameters make a membership function: finite, in order, widths over 0.
     ///
     /// # Errors
@@ -36,88 +35,73 @@ impl Shape {
     ///
     /// # Example: the corners of a triangle stand in order
     /// ```
-    /// use fuzzy::model::Shape;
+    /// use fuzzy::model::MembershipFunction;
     ///
-    /// let shape = Shape::Triangle { left: 0.0, peak: 2.0, right: 1.0 };
-    /// assert_eq!(shape.validate().unwrap_err().to_string(), "`peak` 2 is over `right` 1");
+    /// let shape = MembershipFunction::Triangle { left: 0.0, peak: 2.0, right: 1.0 };
+    /// assert_eq!(shape.validate().unwrap_err().to_string(), "`peak` (2) is greater than `right` (1)");
     /// ```
-    pub fn validate(&self) -> Result<(), ShapeError> {
+    pub fn validate(&self) -> Result<(), MembershipError> {
         match self.parts() {
             Parts::Fixed(form, values) => {
-                let of = |role: Role| {
-                    let all = form.parameters.iter().zip(&values);
-                    all.filter(move |((_, r), _)| *r == role)
-                        .map(|((name, _), value)| (*name, *value))
-                };
-                ordered(&of(Role::Place).collect::<Vec<_>>())?;
-                of(Role::Positive).try_for_each(|(name, value)| positive(name, value))?;
-                of(Role::Number).try_for_each(|(name, value)| finite(name, value))?;
+                let mut before: Option<(&str, f64)> = None;
+                for (i, (&(name, role), &value)) in form.parameters.iter().zip(&values).enumerate()
+                {
+                    finite(i, name, value)?;
+                    match (role, before) {
+                        (Role::Ascending, Some((left, low))) if low > value => {
+                            let message =
+                                format!("`{left}` ({low}) is greater than `{name}` ({value})");
+                            return wrong(i, message);
+                        }
+                        (Role::Ascending, _) => before = Some((name, value)),
+                        (Role::Positive, _) if value <= 0.0 => {
+                            return wrong(
+                                i,
+                                format!("`{name}` is {value}, but must be greater than 0"),
+                            );
+                        }
+                        _ => {}
+                    }
+                }
             }
             Parts::Points(points) => piecewise(points)?,
             Parts::Linear(coefficients, constant) => {
-                for (input, coefficient) in coefficients {
-                    finite(input, *coefficient)?;
+                for (i, (input, coefficient)) in coefficients.iter().enumerate() {
+                    finite(i, input, *coefficient)?;
                 }
-                finite("constant", constant)?;
+                finite(coefficients.len(), "constant", constant)?;
             }
         }
-        self.misfit()
-            .map_or(Ok(()), |(blamed, message)| wrong(blamed, message))
+        self.misfit().map_or(Ok(()), |message| wrong(0, message))
     }
 }
 
-fn finite(name: &str, value: f64) -> Result<(), ShapeError> {
-    // Twice the value must be finite too: spans between parameters must not overflow.
+fn finite(i: usize, name: &str, value: f64) -> Result<(), MembershipError> {
+    // Twice the value must be finite too: distances between parameters must not overflow.
     if (2.0 * value).is_finite() {
         Ok(())
     } else if value.is_finite() {
-        wrong(name, format!("`{name}` is too large a number"))
+        wrong(i, format!("`{name}` is too large a number"))
     } else {
-        wrong(name, format!("`{name}` is {value}, not a finite number"))
+        wrong(i, format!("`{name}` is {value}, not a finite number"))
     }
 }
 
-fn positive(name: &str, value: f64) -> Result<(), ShapeError> {
-    finite(name, value)?;
-    if value > 0.0 {
-        Ok(())
-    } else {
-        wrong(name, format!("`{name}` is {value}, not over 0"))
-    }
-}
-
-fn ordered(parameters: &[(&str, f64)]) -> Result<(), ShapeError> {
-    for (name, value) in parameters {
-        finite(name, *value)?;
-    }
-    for pair in parameters.windows(2) {
-        if let [(before, low), (after, high)] = pair
-            && low > high
-        {
-            return wrong(after, format!("`{before}` {low} is over `{after}` {high}"));
-        }
-    }
-    Ok(())
-}
-
-fn piecewise(points: &[(f64, f64)]) -> Result<(), ShapeError> {
+fn piecewise(points: &[(f64, f64)]) -> Result<(), MembershipError> {
     if points.is_empty() {
-        return wrong("", "there are no points".into());
+        return Err(MembershipError {
+            message: "there are no points".into(),
+            parameter: None,
+        });
     }
     let mut before = f64::NEG_INFINITY;
     for (i, &(x, degree)) in points.iter().enumerate() {
-        let blamed = format!("point {i}");
-        if let Err(error) = finite("x", x) {
-            return wrong(&blamed, error.message);
-        }
+        finite(i, "x", x)?;
         if !(0.0..=1.0).contains(&degree) {
-            return wrong(
-                &blamed,
-                format!("the degree {degree} at {x} is not in [0, 1]"),
-            );
+            return wrong(i, format!("the degree {degree} at {x} is outside [0, 1]"));
         }
         if before > x {
-            return wrong(&blamed, format!("the point at {x} stands behind {before}"));
+            return wrong(i, format!("the point at {x} follows the point at {before}"));
         }
         before = x;
     }

@@ -1,39 +1,44 @@
-//! Outputs with a closed form: from heights to a number by a few sums.
+//! Defuzzifiers with a closed form: from firing strengths to a number by a few sums.
 
 use super::operators::smaller;
 use super::{Arrays, Output};
 
-/// The closed form of an output.
+/// The closed form of a defuzzifier.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(transparent)]
-pub struct Set(pub u32);
+pub struct ClosedForm(pub u32);
 
-impl Set {
-    /// None: only an [`Engine`](crate::Engine) knows its value.
-    pub const OPEN: Set = Set(0);
+impl ClosedForm {
+    /// None: an [`Engine`](crate::Engine) integrates the aggregated set.
+    pub const NONE: ClosedForm = ClosedForm(0);
     /// The centroid of minimum and maximum over a partition: [`Pair`]s.
-    pub const PARTITION: Set = Set(1);
+    pub const PARTITION: ClosedForm = ClosedForm(1);
     /// The centroid of a sum of products: [`Moment`]s.
-    pub const MOMENTS: Set = Set(2);
-    /// Takagi-Sugeno, `sum(w z) / sum(w)`: [`Consequence`]s.
-    pub const WEIGHTED_AVERAGE: Set = Set(3);
-    /// Takagi-Sugeno, `sum(w z)`: [`Consequence`]s.
-    pub const WEIGHTED_SUM: Set = Set(4);
+    pub const MOMENTS: ClosedForm = ClosedForm(2);
+    /// Takagi-Sugeno, `sum(w z) / sum(w)`: [`Consequent`]s.
+    pub const WEIGHTED_AVERAGE: ClosedForm = ClosedForm(3);
+    /// Takagi-Sugeno, `sum(w z)`: [`Consequent`]s.
+    pub const WEIGHTED_SUM: ClosedForm = ClosedForm(4);
 
-    /// Whether sets are integrated, whose ratios alone count.
+    /// Whether the consequents are fuzzy sets. Then only the ratios of firing strengths count where all are tiny.
     pub(crate) fn is_fuzzy(self) -> bool {
-        !matches!(self, Set::WEIGHTED_AVERAGE | Set::WEIGHTED_SUM)
+        !matches!(
+            self,
+            ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM
+        )
     }
 }
 
 /// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
-/// Two at a time, because that is how many every processor computes at once.
+/// Two fill a vector register of every processor that has vectors.
 ///
-/// A term cut at height h has, on a slope of width w around its middle m (from the middle of the range),
+/// A term cut at firing strength h has, on a slope of width w around its middle m (from the middle of the range),
 /// area `w (h - h^2 / 2)` and first moment `m area + s w^2 (h^2 / 4 - h^3 / 6)`, with s = 1 rising and -1
 /// falling; on a plateau `w h` and `m w h`. Both sum over the term's stretches to polynomials in h. Where a
 /// falling and a rising slope overlap, the minimum of the two cut terms has area `w v (1 - v)` with
-/// `v = min(h_falling, h_rising, 1/2)`, symmetric about m. The union's area is the sum less the overlaps.
+/// `v = min(h_falling, h_rising, 1/2)`, symmetric about m. The area of the union is the sum less the overlaps.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct Pair {
@@ -41,13 +46,14 @@ pub struct Pair {
     pub area: [[f64; 2]; 2],
     /// `moment = moment[0] h + moment[1] h^2 + moment[2] h^3`.
     pub moment: [[f64; 2]; 3],
-    /// The width of the overlap; 0 without one.
+    /// The width of the overlap; 0 where there is none.
     pub width: [f64; 2],
-    /// The overlap's middle, from the middle of the range.
+    /// The middle of the overlap, from the middle of the range.
     pub middle: [f64; 2],
 }
 
-/// Area and first moment of a term at full height.
+/// The area and first moment of a term at a firing strength of 1.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Moment {
@@ -57,30 +63,32 @@ pub struct Moment {
     pub moment: f64,
 }
 
-/// `z = constant + sum(coefficient input)`.
+/// A Takagi-Sugeno consequent: `z = constant + sum(coefficient input)`.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
-pub struct Consequence {
+pub struct Consequent {
     /// The constant.
     pub constant: f64,
-    /// Its coefficients.
+    /// Its span of coefficients.
     pub first: u32,
-    /// Where they end.
+    /// The end of that span.
     pub end: u32,
 }
 
 /// A coefficient of a Takagi-Sugeno consequent.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Coefficient {
     /// The coefficient.
     pub coefficient: f64,
-    /// The input.
+    /// The index of the input.
     pub input: u32,
 }
 
 impl Pair {
-    /// Area and moment that one of the two terms adds, at its height and the one to its right.
+    /// The area and moment that one of the two terms adds, from its firing strength and that of the term to its right.
     #[inline(always)]
     pub(crate) fn add(&self, side: usize, h: f64, right: f64) -> (f64, f64) {
         let v = smaller(smaller(h, right), 0.5);
@@ -91,14 +99,14 @@ impl Pair {
         (area, alone - self.middle[side] * common)
     }
 
-    /// Area and moment of the aggregated set of a partition; heights stand from left to right.
+    /// The area and moment of the aggregated set of a partition. Firing strengths are ordered from left to right.
     #[inline(always)]
-    pub(crate) fn integrals(pairs: &[Pair], heights: &[f64]) -> Moment {
+    pub(crate) fn integrals(pairs: &[Pair], strengths: &[f64]) -> Moment {
         let (mut area, mut moment) = ([0.0; 2], [0.0; 2]);
         for (pair, i) in pairs.iter().zip((0..).step_by(2)) {
-            let heights: &[f64] = &heights[i..i + 3];
+            let strengths: &[f64] = &strengths[i..i + 3];
             for side in 0..2 {
-                let (a, m) = pair.add(side, heights[side], heights[side + 1]);
+                let (a, m) = pair.add(side, strengths[side], strengths[side + 1]);
                 area[side] += a;
                 moment[side] += m;
             }
@@ -110,67 +118,68 @@ impl Pair {
     }
 }
 
-/// The centre of gravity of a set whose moment is measured from `origin`; `None` without area.
+/// The centroid of a set whose moment is measured from `origin`; `None` where it has no area.
 #[inline(always)]
 pub(crate) fn centroid(area: f64, moment: f64, origin: f64) -> Option<f64> {
     (area > 0.0).then(|| origin + moment / area)
 }
 
-/// The number; `None` where no rule fired.
+/// The value of an output with a closed form; `None` where no rule fired.
 #[inline(always)]
 pub(super) fn closed<A: Arrays>(
     table: &A,
     output: &Output,
-    heights: &[f64],
+    strengths: &[f64],
     inputs: &[f64],
 ) -> Option<f64> {
     let range = output.first as usize..output.end as usize;
-    let Moment { area, moment } = match output.set {
-        Set::PARTITION => Pair::integrals(&table.pairs()[range], heights),
-        Set::MOMENTS => {
+    let Moment { area, moment } = match output.form {
+        ClosedForm::PARTITION => Pair::integrals(&table.pairs()[range], strengths),
+        ClosedForm::MOMENTS => {
             let mut sum = Moment {
                 area: 0.0,
                 moment: 0.0,
             };
-            for (Moment { area, moment }, height) in table.moments()[range].iter().zip(heights) {
-                sum.area += height * area;
-                sum.moment += height * moment;
+            for (Moment { area, moment }, strength) in table.moments()[range].iter().zip(strengths)
+            {
+                sum.area += strength * area;
+                sum.moment += strength * moment;
             }
             sum
         }
-        // Not held to the range: the consequents are the author's own numbers.
-        set => {
-            let consequences = &table.consequences()[range];
-            return weighted(set, consequences, table.coefficients(), heights, inputs);
+        // Not clamped to the range: consequents are numbers that the author chose.
+        form => {
+            let consequents = &table.consequents()[range];
+            return weighted(form, consequents, table.coefficients(), strengths, inputs);
         }
     };
     let value = centroid(area, moment, output.origin())?;
     Some(super::larger(output.low, smaller(output.high, value)))
 }
 
-/// `sum(w z) / sum(w)` or `sum(w z)`; `None` where no weight is over 0.
+/// `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; `None` where none is over 0.
 fn weighted(
-    set: Set,
-    consequences: &[Consequence],
+    form: ClosedForm,
+    consequents: &[Consequent],
     coefficients: &[Coefficient],
-    weights: &[f64],
+    strengths: &[f64],
     inputs: &[f64],
 ) -> Option<f64> {
     let (mut sum, mut total) = (0.0, 0.0);
-    for (consequence, &weight) in consequences.iter().zip(weights) {
-        if weight > 0.0 {
-            let range = consequence.first as usize..consequence.end as usize;
+    for (consequent, &strength) in consequents.iter().zip(strengths) {
+        if strength > 0.0 {
+            let range = consequent.first as usize..consequent.end as usize;
             let z = coefficients[range]
                 .iter()
-                .fold(consequence.constant, |z, c| {
+                .fold(consequent.constant, |z, c| {
                     z + c.coefficient * inputs[c.input as usize]
                 });
-            sum += weight * z;
-            total += weight;
+            sum += strength * z;
+            total += strength;
         }
     }
-    (total > 0.0).then_some(match set {
-        Set::WEIGHTED_SUM => sum,
+    (total > 0.0).then_some(match form {
+        ClosedForm::WEIGHTED_SUM => sum,
         _ => sum / total,
     })
 }

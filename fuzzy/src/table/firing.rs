@@ -1,44 +1,41 @@
-//! Firing all rules: plain ANDs from a table of cells or a trie, all others as programs.
+//! Fires all rules: plain ANDs from a table of cells or a trie, all others as programs.
 //!
-//! A firing strength of 0 counts nowhere, and 0 AND anything is 0. So a plain AND is only followed as long
-//! as its degree is over 0: with terms that sum to 1, 16 of the 625 rules of 4 inputs with 5 terms.
+//! A firing strength of 0 has no effect, and 0 AND anything is 0. So a plain AND is followed only while its degree is over 0:
+//! with terms that sum to 1, that is 16 of the 625 rules of 4 inputs with 5 terms.
 
 use core::ops::DerefMut;
 
 use super::input::degrees;
 use super::operators::{larger, smaller};
 use super::rules::{Action, Axis, Dimension, Op, Step};
-use super::{Arrays, Conjunction, Conjunctions, Disjunction, Line, Rooms};
+use super::{Arrays, Buffers, Conjunction, Conjunctions, Disjunction, Line};
 
-/// A strength on the way, and the cell or node it is at.
+/// The degree of the first literals of a plain AND, and the offset of the cell or the index of the node they lead to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Partial {
-    strength: f64,
+    degree: f64,
     at: u32,
 }
 
 impl Line {
-    /// Its degree at `x`, and its offset among the cells.
+    /// Its degree at `x` and its offset among the cells.
     #[inline(always)]
     fn at(&self, x: f64) -> Partial {
         Partial {
-            strength: self.degree(x),
+            degree: self.degree(x),
             at: self.literal,
         }
     }
 }
 
 impl Partial {
-    /// None yet.
-    pub const NONE: Partial = Partial {
-        strength: 0.0,
-        at: 0,
-    };
+    /// No literal yet.
+    pub const NONE: Partial = Partial { degree: 0.0, at: 0 };
 }
 
-/// The strongest rule of an output: the bits of its strength above those of `u32::MAX` less the rule. For
-/// numbers that are not negative, bits order as the numbers do, so the largest of these is the strongest
-/// rule, of several as strong the first in the model, whatever the order of firing; found without a branch.
+/// The strongest rule of an output: the bits of its firing strength above those of `u32::MAX` less its index. The bits of
+/// non-negative numbers are ordered as the numbers are. So the largest is the strongest rule, and the first in the model of
+/// several equally strong rules, in whatever order they fire. Finding it takes no branch.
 #[derive(Debug, Clone, Copy)]
 pub struct Strongest(u128);
 
@@ -52,7 +49,7 @@ impl Strongest {
         Strongest(if bits > self.0 { bits } else { self.0 })
     }
 
-    /// The strength, and the rule where it is over 0.
+    /// The firing strength, and the index of the rule where it is over 0.
     #[inline(always)]
     pub(super) fn rule(self) -> (f64, Option<usize>) {
         let strength = f64::from_bits((self.0 >> 32) as u64);
@@ -62,28 +59,28 @@ impl Strongest {
 }
 
 impl Action {
-    /// Takes the action and gives the strongest rule so far.
+    /// Updates the firing strength and returns the strongest rule so far.
     #[inline(always)]
     fn act<const SUMS: bool>(
         &self,
         degree: f64,
-        heights: &mut [f64],
+        strengths: &mut [f64],
         strongest: Strongest,
     ) -> Strongest {
         let strength = self.weight * degree;
-        let height = &mut heights[self.place as usize];
-        *height = if SUMS && self.sums != 0 {
-            *height + strength
+        let kept = &mut strengths[self.strength as usize];
+        *kept = if SUMS && self.sums != 0 {
+            *kept + strength
         } else {
-            larger(*height, strength)
+            larger(*kept, strength)
         };
         strongest.or(strength, self.rule)
     }
 }
 
-/// Where firing strengths go.
+/// The firing strengths and strongest rules that actions update.
 struct Firing<'m> {
-    heights: &'m mut [f64],
+    strengths: &'m mut [f64],
     strongest: &'m mut [Strongest],
 }
 
@@ -92,22 +89,22 @@ impl Firing<'_> {
     fn act(&mut self, actions: &[Action], degree: f64) {
         for action in actions {
             let strongest = &mut self.strongest[action.output as usize];
-            *strongest = action.act::<true>(degree, self.heights, *strongest);
+            *strongest = action.act::<true>(degree, self.strengths, *strongest);
         }
     }
 }
 
-/// Fires all rules on the values in the scratch into its heights and strongest rules.
+/// Fires all rules on the values in the scratch memory into its firing strengths and strongest rules.
 #[inline(always)]
-pub(super) fn fire<A, N, P, S>(table: &A, scratch: &mut Rooms<N, P, S>)
+pub(super) fn fire<A, N, P, S>(table: &A, scratch: &mut Buffers<N, P, S>)
 where
     A: Arrays,
     N: DerefMut<Target = [f64]>,
     P: DerefMut<Target = [Partial]>,
     S: DerefMut<Target = [Strongest]>,
 {
-    scratch.heights.fill(0.0);
-    // One, which is the rule, without a call.
+    scratch.strengths.fill(0.0);
+    // Models with one output are the common case; this saves the call of `fill`.
     match &mut *scratch.strongest {
         [one] => *one = Strongest::NONE,
         all => all.fill(Strongest::NONE),
@@ -120,7 +117,7 @@ where
             });
         }
     }
-    // The usual operators without a choice inside the loops.
+    // The common operators, so that the loops do not branch on the operator.
     match table.and() {
         Conjunction::Minimum => fire_with(table, smaller, scratch),
         Conjunction::Product => fire_with(table, |a, b| a * b, scratch),
@@ -129,24 +126,27 @@ where
 }
 
 #[inline(always)]
-fn fire_with<A, N, P, S>(table: &A, and: impl Fn(f64, f64) -> f64, scratch: &mut Rooms<N, P, S>)
+fn fire_with<A, N, P, S>(table: &A, and: impl Fn(f64, f64) -> f64, scratch: &mut Buffers<N, P, S>)
 where
     A: Arrays,
     N: DerefMut<Target = [f64]>,
     P: DerefMut<Target = [Partial]>,
     S: DerefMut<Target = [Strongest]>,
 {
-    let Rooms {
+    let Buffers {
         values,
         degrees,
         alive,
         partial,
         next,
         stack,
-        heights,
+        strengths,
         strongest,
     } = scratch;
-    let mut firing = Firing { heights, strongest };
+    let mut firing = Firing {
+        strengths,
+        strongest,
+    };
     match table.conjunctions() {
         Conjunctions::Uniform {
             actions_a_cell,
@@ -185,7 +185,7 @@ fn fire_uniform<A: Arrays>(
     firing: &mut Firing<'_>,
 ) {
     let both = |p: Partial, q: Partial| Partial {
-        strength: and(p.strength, q.strength),
+        degree: and(p.degree, q.degree),
         at: p.at + q.at,
     };
     if let [first, second] = table.axes() {
@@ -194,10 +194,7 @@ fn fire_uniform<A: Arrays>(
         cells.act(&[both(a, c), both(b, c), both(a, d), both(b, d)], firing);
         return;
     }
-    partial[0] = Partial {
-        strength: 1.0,
-        at: 0,
-    };
+    partial[0] = Partial { degree: 1.0, at: 0 };
     let mut count = 1;
     for axis in table.axes() {
         let [a, b] = at(table, axis, values);
@@ -211,7 +208,7 @@ fn fire_uniform<A: Arrays>(
     cells.act(&partial[..count], firing);
 }
 
-/// Degrees and offsets of the two lines on the interval in which the axis' input lies.
+/// The degrees and offsets of the two lines on the interval that holds the axis' input.
 #[inline(always)]
 fn at<A: Arrays>(table: &A, axis: &Axis, values: &[f64]) -> [Partial; 2] {
     let x = values[axis.input as usize];
@@ -227,7 +224,7 @@ fn at<A: Arrays>(table: &A, axis: &Axis, values: &[f64]) -> [Partial; 2] {
     [lines[0].at(x), lines[1].at(x)]
 }
 
-/// Widens partial ANDs input by input; the last input acts at once.
+/// Extends partial ANDs input by input. The last input acts at once.
 #[inline(always)]
 fn fire_dense<A: Arrays>(
     table: &A,
@@ -244,23 +241,20 @@ fn fire_dense<A: Arrays>(
         firing.act(actions(0), 1.0);
         return;
     };
-    partial[0] = Partial {
-        strength: 1.0,
-        at: 0,
-    };
+    partial[0] = Partial { degree: 1.0, at: 0 };
     let mut count = 1;
     for dimension in others {
         let alive_here = alive_terms(table, dimension, values, alive);
         let mut widened = 0;
         for cell in &partial[..count] {
             for term in &alive[..alive_here] {
-                // Written in any case, counted where it is over 0: no branch to mispredict.
-                let strength = and(cell.strength, term.strength);
+                // Always written, but counted only where it is over 0: a branch would be mispredicted.
+                let degree = and(cell.degree, term.degree);
                 next[widened] = Partial {
-                    strength,
+                    degree,
                     at: cell.at + term.at,
                 };
-                widened += usize::from(strength > 0.0);
+                widened += usize::from(degree > 0.0);
             }
         }
         core::mem::swap(&mut partial, &mut next);
@@ -269,13 +263,13 @@ fn fire_dense<A: Arrays>(
     let alive_here = alive_terms(table, last, values, alive);
     for cell in &partial[..count] {
         for term in &alive[..alive_here] {
-            let strength = and(cell.strength, term.strength);
-            firing.act(actions((cell.at + term.at) as usize), strength);
+            let degree = and(cell.degree, term.degree);
+            firing.act(actions((cell.at + term.at) as usize), degree);
         }
     }
 }
 
-/// Writes the degrees over 0 and their offsets; gives their number.
+/// Writes the degrees over 0 and their offsets, and returns their number.
 #[inline(always)]
 fn alive_terms<A: Arrays>(
     table: &A,
@@ -291,15 +285,15 @@ fn alive_terms<A: Arrays>(
         values[input],
         |literal, degree| {
             alive[count] = Partial {
-                strength: degree,
+                degree,
                 at: literal * dimension.stride,
             };
             count += usize::from(degree > 0.0);
         },
     );
-    if dimension.any != u32::MAX {
+    if dimension.any != Dimension::NONE {
         alive[count] = Partial {
-            strength: 1.0,
+            degree: 1.0,
             at: dimension.any * dimension.stride,
         };
         count += 1;
@@ -314,22 +308,19 @@ fn fire_trie<A: Arrays>(
     and: impl Fn(f64, f64) -> f64,
     firing: &mut Firing<'_>,
 ) {
-    path[0] = Partial {
-        strength: 1.0,
-        at: 0,
-    };
+    path[0] = Partial { degree: 1.0, at: 0 };
     let mut open = 1;
     while open > 0 {
         open -= 1;
-        let Partial { strength, at } = path[open];
+        let Partial { degree, at } = path[open];
         let node = &table.nodes()[at as usize];
         let range = node.first_action as usize..node.end_action as usize;
-        firing.act(&table.actions()[range], strength);
+        firing.act(&table.actions()[range], degree);
         for edge in &table.edges()[node.first_edge as usize..node.end_edge as usize] {
-            let both = and(strength, degrees[edge.literal as usize]);
+            let both = and(degree, degrees[edge.literal as usize]);
             if both > 0.0 {
                 path[open] = Partial {
-                    strength: both,
+                    degree: both,
                     at: edge.node,
                 };
                 open += 1;
@@ -352,7 +343,7 @@ impl Cells<'_> {
             let mut top = *strongest;
             for cell in cells {
                 let action = &self.actions[cell.at as usize];
-                top = action.act::<false>(cell.strength, firing.heights, top);
+                top = action.act::<false>(cell.degree, firing.strengths, top);
             }
             *strongest = top;
             return;
@@ -361,13 +352,13 @@ impl Cells<'_> {
             let first = cell.at as usize * self.actions_a_cell;
             firing.act(
                 &self.actions[first..first + self.actions_a_cell],
-                cell.strength,
+                cell.degree,
             );
         }
     }
 }
 
-/// The degree of a condition. `stack` has room for the program's depth.
+/// The degree of an antecedent. `stack` holds at least the depth of the program.
 fn run(
     steps: &[Step],
     degrees: &[f64],

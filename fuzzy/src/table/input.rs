@@ -1,9 +1,10 @@
-//! From an input's value to the degrees of the literals on it.
+//! From an input's value to the degrees of its literals. A literal is a term, hedged or not.
 
 use super::operators::Hedge;
 use super::{Arrays, Kind};
 
-/// An input: its range, and where its literals (terms, hedged or not) stand.
+/// An input: its range and its literals.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Input {
@@ -11,61 +12,67 @@ pub struct Input {
     pub low: f64,
     /// The upper end of its range.
     pub high: f64,
-    /// The first of its literals among all.
+    /// The index of its first literal among those of all inputs.
     pub first_literal: u32,
-    /// Its cuts: values before the first lie in its first interval.
+    /// Its span of cuts. A value below the first cut is in the first interval.
     pub first_cut: u32,
-    /// Where its cuts end.
+    /// The end of that span.
     pub end_cut: u32,
-    /// Where, in the starts, that of its first interval stands.
+    /// The index in `starts` of its first interval.
     pub first_start: u32,
-    /// Its curves.
+    /// Its span of curves.
     pub first_curve: u32,
-    /// Where its curves end.
+    /// The end of that span.
     pub end_curve: u32,
 }
 
 /// `base + rise ((x - foot) / run)`, the degree of a literal on an interval.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Line {
-    /// Measured from the lower end of a slope: exactly 0 at its foot, exactly 1 at its top, and as exact as the value
-    /// itself near the foot.
+    /// The lower end of the slope. Measured from there, the degree is exactly 0 at the foot and exactly 1 at the top, and
+    /// near the foot it is as exact as the value.
     pub foot: f64,
     /// The width of the slope; negative where it falls.
     pub run: f64,
     /// The degree at its foot.
     pub base: f64,
-    /// How far it rises.
+    /// The degree at its top less that at its foot.
     pub rise: f64,
-    /// The literal, by its place among its input's; in a uniform table, its offset among the cells.
+    /// The index of the literal among its input's; in a uniform table, its offset among the cells.
     pub literal: u32,
 }
 
+/// A corner `(x, degree)` of a piecewise linear membership function.
+#[doc(hidden)] // Exported data.
+pub type Point = [f64; 2];
+
 /// A literal that is curved or hedged.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Curve {
-    /// The parameters of the shape.
+    /// The parameters of the membership function.
     pub parameters: [f64; 4],
     /// The height of the term.
     pub height: f64,
-    /// The shape.
+    /// The kind of membership function.
     pub kind: Kind,
-    /// The literal, by its place among its input's.
+    /// The index of the literal among its input's.
     pub literal: u32,
-    /// The points of a shape made of them.
+    /// Its span of points, where it is piecewise linear.
     pub first_point: u32,
-    /// Where they end.
+    /// The end of that span.
     pub end_point: u32,
-    /// The hedges, in the order in which they apply.
+    /// Its span of hedges, in the order in which they apply.
     pub first_hedge: u32,
-    /// Where they end.
+    /// The end of that span.
     pub end_hedge: u32,
 }
 
 impl Line {
-    /// The same degree everywhere.
+    /// A constant degree.
     pub(crate) const fn flat(literal: u32, degree: f64) -> Self {
         Line {
             literal,
@@ -82,8 +89,8 @@ impl Line {
     }
 }
 
-/// Calls `visit` with each literal of an input that may be alive at `x`, by its place among the input's, and its
-/// degree, which may be 0.
+/// Calls `visit` with the index, among the input's, and the degree of each literal that can be over 0 at `x`. The degree may
+/// be 0.
 #[inline(always)]
 pub(crate) fn degrees<A: Arrays>(
     table: &A,
@@ -110,9 +117,9 @@ pub(crate) fn degrees<A: Arrays>(
 }
 
 impl Curve {
-    // Not a function of the table: one that is called with all of it would have it built in memory for every evaluation.
+    // Takes arrays and not the table: passing the table would build it in memory for each evaluation.
     #[inline(always)]
-    fn degree(&self, points: &[[f64; 2]], hedges: &[Hedge], x: f64) -> f64 {
+    fn degree(&self, points: &[Point], hedges: &[Hedge], x: f64) -> f64 {
         let degree = self.height * self.kind.membership(&self.parameters, points, x);
         hedges.iter().fold(degree, |degree, hedge| hedge.of(degree))
     }

@@ -1,13 +1,14 @@
-//! A compiled rule set as plain arrays, evaluated where there is neither an allocator nor a standard library.
+//! A compiled rule set as plain arrays. Evaluating it needs neither an allocator nor a standard library.
 //!
-//! An [`Engine`](crate::Engine) owns such arrays and evaluates through them; written out as `static` data they are the
-//! same table in firmware, and give the same bits. Numbers that point into an array count from its beginning. Structures
-//! have the layout of C, so that a table can also be written in C.
+//! An [`Engine`](crate::Engine) owns such arrays. Exported as `static` data they are the same table on board, and give the
+//! same bits. Indices into an array are absolute. Structures have the layout of C.
 //!
-//! A table is made by compiling a model, not by hand: the arrays lean on each other. [`Table::check`] tells whether they do.
+//! A table is made by compiling a model, not by hand: its arrays index into one another. [`Table::check`] verifies the
+//! indices.
 
 use core::ops::DerefMut;
 
+mod arrays;
 mod check;
 mod closed;
 mod firing;
@@ -16,13 +17,15 @@ pub(crate) mod operators;
 mod outcome;
 mod rules;
 
-pub use check::Broken;
+pub(crate) use arrays::{Arrays, arrays_from_fields};
+pub use arrays::{Table, arrays};
+pub use check::Damaged;
 pub(crate) use closed::centroid;
-pub use closed::{Coefficient, Consequence, Moment, Pair, Set};
+pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub use firing::{Partial, Strongest};
 #[cfg(test)]
 pub(crate) use input::degrees;
-pub use input::{Curve, Input, Line};
+pub use input::{Curve, Input, Line, Point};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
 pub use rules::{Action, Axis, Dimension, Edge, Node, Op, Program, Step};
@@ -33,95 +36,43 @@ use closed::closed;
 use firing::fire;
 use operators::{larger, smaller};
 
-/// A compiled rule set. See the [module](self).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Table<'a> {
-    /// AND.
-    pub and: Conjunction,
-    /// OR.
-    pub or: Disjunction,
-    /// How the rules that are plain ANDs are found.
-    pub conjunctions: Conjunctions,
-    /// What an evaluation needs to work in.
-    pub sizes: Sizes,
-    /// The inputs.
-    pub inputs: &'a [Input],
-    /// Where the intervals of inputs begin.
-    pub cuts: &'a [f64],
-    /// Where, in the lines, those of each interval begin.
-    pub starts: &'a [u32],
-    /// Terms of inputs, as straight lines on intervals.
-    pub lines: &'a [Line],
-    /// Terms of inputs that are curved or hedged.
-    pub curves: &'a [Curve],
-    /// The corners of curves made of straight lines: `(x, degree)`.
-    pub points: &'a [[f64; 2]],
-    /// The hedges of curves.
-    pub hedges: &'a [Hedge],
-    /// The inputs of a uniform table, in its order.
-    pub axes: &'a [Axis],
-    /// The inputs of a dense table, in its order.
-    pub dimensions: &'a [Dimension],
-    /// Where, in the actions, those of each cell of a dense table begin, and where the last one's end.
-    pub cells: &'a [u32],
-    /// The nodes of a trie.
-    pub nodes: &'a [Node],
-    /// Its edges.
-    pub edges: &'a [Edge],
-    /// What rules do.
-    pub actions: &'a [Action],
-    /// The rules that are not plain ANDs.
-    pub programs: &'a [Program],
-    /// Their steps.
-    pub steps: &'a [Step],
-    /// The outputs.
-    pub outputs: &'a [Output],
-    /// Closed forms of partitions.
-    pub pairs: &'a [Pair],
-    /// Closed forms of sums of products.
-    pub moments: &'a [Moment],
-    /// Takagi-Sugeno consequents.
-    pub consequences: &'a [Consequence],
-    /// Their coefficients.
-    pub coefficients: &'a [Coefficient],
-}
-
 /// How the rules that are plain ANDs of terms of different inputs are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Conjunctions {
-    /// A cell for each combination of terms, and two terms alive on each axis.
+    /// A table with a cell for each combination of terms. On each axis exactly two terms are read.
     Uniform {
-        /// How many actions each cell has.
+        /// The number of actions of each cell.
         actions_a_cell: u32,
-        /// The first of them.
+        /// The index of the first action of the first cell.
         first_action: u32,
-        /// Whether strengths are summed anywhere.
+        /// Whether any action sums firing strengths.
         sums: bool,
     },
-    /// A cell for each combination of terms.
+    /// A table with a cell for each combination of terms.
     Dense,
-    /// Rules as paths of terms.
+    /// A trie whose paths are the terms of rules.
     #[default]
     Trie,
 }
 
-/// What an evaluation needs to work in.
+/// The sizes of the scratch memory that an evaluation needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(C)]
 pub struct Sizes {
-    /// The degrees of literals; 0 where they are not needed by their index.
+    /// The number of literals; 0 where no rule reads their degrees by index.
     pub degrees: u32,
-    /// The most terms of an input alive at once, and two more.
+    /// The most terms of an input with a degree over 0 at once, and two more.
     pub alive: u32,
-    /// The most cells or edges on the way.
+    /// The most cells or edges held at once.
     pub partial: u32,
-    /// The deepest program.
+    /// The depth of the deepest program.
     pub stack: u32,
-    /// The heights of all outputs, and one that belongs to none.
-    pub heights: u32,
+    /// The number of firing strengths of all outputs, and one that belongs to no output.
+    pub strengths: u32,
 }
 
-/// An output: its range, and how its heights become a number.
+/// An output: its range, and how firing strengths become a number.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Output {
@@ -129,47 +80,47 @@ pub struct Output {
     pub low: f64,
     /// The upper end of its range.
     pub high: f64,
-    /// The value where no rule fires; NaN where it is undefined there.
-    pub otherwise: f64,
-    /// Its closed form.
-    pub set: Set,
-    /// Where, in the array of that form, its numbers begin ...
+    /// The value where no rule fires; NaN where the output is undefined there.
+    pub default_value: f64,
+    /// The closed form of its defuzzifier.
+    pub form: ClosedForm,
+    /// Its span in the array of that form.
     pub first: u32,
-    /// ... and end.
+    /// The end of that span.
     pub end: u32,
-    /// Where, in the heights, its own begin ...
-    pub first_height: u32,
-    /// ... and end.
-    pub end_height: u32,
+    /// Its span in the firing strengths.
+    pub first_strength: u32,
+    /// The end of that span.
+    pub end_strength: u32,
 }
 
-/// What an evaluation works in, of the [`Sizes`] of the table: numbers, ANDs on their way and strongest rules, lent as
-/// slices or owned as vectors.
+/// The memory an evaluation works in, of the [`Sizes`] of the table: slices or vectors of numbers, partial conjunctions
+/// and strongest rules.
 #[derive(Debug, Clone)]
-pub struct Rooms<N, P, S> {
+pub struct Buffers<N, P, S> {
     /// One for each input.
     pub values: N,
-    /// As many as [`Sizes::degrees`].
+    /// [`Sizes::degrees`].
     pub degrees: N,
-    /// As many as [`Sizes::alive`].
+    /// [`Sizes::alive`].
     pub alive: P,
-    /// As many as [`Sizes::partial`].
+    /// [`Sizes::partial`].
     pub partial: P,
-    /// As many as [`Sizes::partial`].
+    /// [`Sizes::partial`].
     pub next: P,
-    /// As many as [`Sizes::stack`].
+    /// [`Sizes::stack`].
     pub stack: N,
-    /// As many as [`Sizes::heights`].
-    pub heights: N,
+    /// [`Sizes::strengths`].
+    pub strengths: N,
     /// One for each output.
     pub strongest: S,
 }
 
-/// What an evaluation works in: memory of the caller.
-pub type Scratch<'m> = Rooms<&'m mut [f64], &'m mut [Partial], &'m mut [Strongest]>;
+/// The memory of the caller that an evaluation works in.
+pub type Scratch<'m> = Buffers<&'m mut [f64], &'m mut [Partial], &'m mut [Strongest]>;
 
 impl Output {
-    /// The middle of the range, from which moments are measured, against cancellation.
+    /// The middle of the range. Moments are measured from there, against cancellation.
     #[inline(always)]
     pub(crate) fn origin(&self) -> f64 {
         self.low + 0.5 * (self.high - self.low)
@@ -177,130 +128,54 @@ impl Output {
 }
 
 impl Table<'_> {
-    /// Evaluates one value for each input into one outcome for each output. A table whose [`check`](Table::check) finds
-    /// nothing, with scratch of its sizes, never panics and does not allocate.
+    /// Evaluates one value for each input into one outcome for each output. It does not allocate, and does not panic where
+    /// [`Table::check`] passes and the scratch memory has the sizes of the table.
     ///
-    /// A value outside its input's range is taken as the range's end, and the outcome says so. A value that is NaN or
+    /// A value outside its input's range is clamped to the range, and the outcome says so. A value that is NaN or
     /// infinite makes every outcome [`State::InputNotFinite`].
     ///
-    /// # Example: the bits of the engine, in memory of one's own
+    /// # Example: a fan's speed from the temperature
     /// ```
+    /// use fuzzy::{Engine, model::{Model, Output, MembershipFunction, Variable}, rule};
     /// use fuzzy::table::{Outcome, Partial, Scratch, Strongest};
     ///
-    /// # let model = fuzzy::yaml::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml")))?.model;
-    /// let engine = fuzzy::Engine::new(&model)?;
+    /// let model = Model::builder("fan")
+    ///     .input(Variable::new("temperature", 0.0, 40.0).term("hot", MembershipFunction::RightShoulder { foot: 20.0, top: 30.0 }))
+    ///     .output(Output::new(Variable::new("speed", 0.0, 100.0).term("fast", MembershipFunction::RightShoulder { foot: 50.0, top: 100.0 })))
+    ///     .rule(rule::parse("IF temperature IS hot THEN speed IS fast")?)
+    ///     .build();
+    /// let engine = Engine::new(&model)?;
     /// let table = engine.table();
     /// let sizes = table.sizes;
     /// let mut scratch = Scratch {
-    ///     values: &mut [0.0; 2],
+    ///     values: &mut [0.0],
     ///     degrees: &mut vec![0.0; sizes.degrees as usize],
     ///     alive: &mut vec![Partial::NONE; sizes.alive as usize],
     ///     partial: &mut vec![Partial::NONE; sizes.partial as usize],
     ///     next: &mut vec![Partial::NONE; sizes.partial as usize],
     ///     stack: &mut vec![0.0; sizes.stack as usize],
-    ///     heights: &mut vec![0.0; sizes.heights as usize],
+    ///     strengths: &mut vec![0.0; sizes.strengths as usize],
     ///     strongest: &mut [Strongest::NONE],
     /// };
     /// let mut outcomes = [Outcome::UNDEFINED];
-    /// table.evaluate(&mut scratch, &[0.05, 0.2], &mut outcomes);
-    /// assert_eq!(outcomes[..], engine.evaluate(&[0.05, 0.2])?);
+    /// table.evaluate(&mut scratch, &[27.5], &mut outcomes);
+    /// assert_eq!(outcomes[..], engine.evaluate(&[27.5])?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn evaluate(&self, scratch: &mut Scratch<'_>, inputs: &[f64], outcomes: &mut [Outcome]) {
-        evaluate(self, scratch, inputs, outcomes, |_, _, _| None);
+        evaluate(self, scratch, inputs, outcomes, |_, _| None);
     }
 }
 
-/// The arrays of a table, one at a time. An engine that lent all of its arrays at once, as a [`Table`], would gather
-/// forty numbers for every evaluation, of which most models need a few.
-pub(crate) trait Arrays {
-    fn and(&self) -> Conjunction;
-    fn or(&self) -> Disjunction;
-    fn conjunctions(&self) -> Conjunctions;
-    fn inputs(&self) -> &[Input];
-    fn cuts(&self) -> &[f64];
-    fn starts(&self) -> &[u32];
-    fn lines(&self) -> &[Line];
-    fn curves(&self) -> &[Curve];
-    fn points(&self) -> &[[f64; 2]];
-    fn hedges(&self) -> &[Hedge];
-    fn axes(&self) -> &[Axis];
-    fn dimensions(&self) -> &[Dimension];
-    fn cells(&self) -> &[u32];
-    fn nodes(&self) -> &[Node];
-    fn edges(&self) -> &[Edge];
-    fn actions(&self) -> &[Action];
-    fn programs(&self) -> &[Program];
-    fn steps(&self) -> &[Step];
-    fn outputs(&self) -> &[Output];
-    fn pairs(&self) -> &[Pair];
-    fn moments(&self) -> &[Moment];
-    fn consequences(&self) -> &[Consequence];
-    fn coefficients(&self) -> &[Coefficient];
-}
-
-/// [`Arrays`] of a structure that has fields of these names.
-macro_rules! arrays_of_fields {
-    ($owner:ty) => {
-        $crate::table::arrays_of_fields! { @ $owner;
-            inputs ($crate::table::Input),
-            cuts (f64),
-            starts (u32),
-            lines ($crate::table::Line),
-            curves ($crate::table::Curve),
-            points ([f64; 2]),
-            hedges ($crate::table::Hedge),
-            axes ($crate::table::Axis),
-            dimensions ($crate::table::Dimension),
-            cells (u32),
-            nodes ($crate::table::Node),
-            edges ($crate::table::Edge),
-            actions ($crate::table::Action),
-            programs ($crate::table::Program),
-            steps ($crate::table::Step),
-            outputs ($crate::table::Output),
-            pairs ($crate::table::Pair),
-            moments ($crate::table::Moment),
-            consequences ($crate::table::Consequence),
-            coefficients ($crate::table::Coefficient)
-        }
-    };
-    (@ $owner:ty; $($field:ident ($item:ty)),*) => {
-        impl $crate::table::Arrays for $owner {
-            #[inline(always)]
-            fn and(&self) -> $crate::table::Conjunction {
-                self.and
-            }
-            #[inline(always)]
-            fn or(&self) -> $crate::table::Disjunction {
-                self.or
-            }
-            #[inline(always)]
-            fn conjunctions(&self) -> $crate::table::Conjunctions {
-                self.conjunctions
-            }
-            $(
-                #[inline(always)]
-                fn $field(&self) -> &[$item] {
-                    &self.$field
-                }
-            )*
-        }
-    };
-}
-pub(crate) use arrays_of_fields;
-
-arrays_of_fields!(Table<'_>);
-
-/// [`Table::evaluate`] where outputs have no closed form: `open` gives the value of such an output by its index,
-/// from its heights and the values of the inputs.
+/// [`Table::evaluate`], with `integrate` giving the value of an output without a closed form from its index and its firing
+/// strengths.
 #[inline(always)]
 pub(crate) fn evaluate<A, N, P, S>(
     table: &A,
-    scratch: &mut Rooms<N, P, S>,
+    scratch: &mut Buffers<N, P, S>,
     inputs: &[f64],
     outcomes: &mut [Outcome],
-    mut open: impl FnMut(usize, &[f64], &[f64]) -> Option<f64>,
+    mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
 ) where
     A: Arrays,
     N: DerefMut<Target = [f64]>,
@@ -308,7 +183,7 @@ pub(crate) fn evaluate<A, N, P, S>(
     S: DerefMut<Target = [Strongest]>,
 {
     let mut clamped = false;
-    for ((&value, input), place) in inputs
+    for ((&value, input), clamped_value) in inputs
         .iter()
         .zip(table.inputs())
         .zip(scratch.values.iter_mut())
@@ -320,14 +195,14 @@ pub(crate) fn evaluate<A, N, P, S>(
             });
             return;
         }
-        *place = larger(input.low, smaller(input.high, value));
-        clamped |= *place != value;
+        *clamped_value = larger(input.low, smaller(input.high, value));
+        clamped |= *clamped_value != value;
     }
     fire(table, scratch);
     for (index, (output, outcome)) in table.outputs().iter().zip(outcomes).enumerate() {
         let (coverage, dominant) = scratch.strongest[index].rule();
         *outcome = Outcome {
-            state: state(table, index, output, coverage, scratch, &mut open),
+            state: state(table, index, output, coverage, scratch, &mut integrate),
             coverage,
             dominant,
             clamped,
@@ -341,35 +216,34 @@ fn state<A: Arrays, N: DerefMut<Target = [f64]>, P, S>(
     index: usize,
     output: &Output,
     strongest: f64,
-    scratch: &mut Rooms<N, P, S>,
-    open: &mut impl FnMut(usize, &[f64], &[f64]) -> Option<f64>,
+    scratch: &mut Buffers<N, P, S>,
+    integrate: &mut impl FnMut(usize, &[f64]) -> Option<f64>,
 ) -> State {
     if strongest > 0.0 {
-        let range = output.first_height as usize..output.end_height as usize;
-        let heights = &mut scratch.heights[range];
-        if strongest < TINY && output.set.is_fuzzy() {
-            for height in heights.iter_mut() {
-                *height *= FROM_TINY;
+        let range = output.first_strength as usize..output.end_strength as usize;
+        let strengths = &mut scratch.strengths[range];
+        if strongest < TINY && output.form.is_fuzzy() {
+            for strength in strengths.iter_mut() {
+                *strength *= FROM_TINY;
             }
         }
-        let value = match output.set {
-            Set::OPEN => open(index, heights, &scratch.values),
-            _ => closed(table, output, heights, &scratch.values),
+        let value = match output.form {
+            ClosedForm::NONE => integrate(index, strengths),
+            _ => closed(table, output, strengths, &scratch.values),
         };
         if let Some(value) = value {
             return State::Defined(value);
         }
     }
-    if output.otherwise.is_nan() {
+    if output.default_value.is_nan() {
         State::NoRuleFired
     } else {
-        State::Default(output.otherwise)
+        State::Default(output.default_value)
     }
 }
 
-/// Below this, areas would lose digits to underflow. Where all strengths are so small, only their ratios
-/// count: every set is cut so low that its slopes are vertical to the last digit, so all of them can be
-/// multiplied by [`FROM_TINY`].
+/// Below this strength, areas lose digits to underflow. Where all strengths are below it, only their ratios count, because
+/// the slopes of sets cut so low are vertical to the last digit. So all strengths are multiplied by [`FROM_TINY`].
 pub(crate) const TINY: f64 = 1e-200;
-/// 2^500: multiplying by it rounds nothing.
+/// 2^500: multiplying by it does not round.
 pub(crate) const FROM_TINY: f64 = 3.273_390_607_896_142e150;

@@ -1,25 +1,6 @@
-//! The operators and hedges, and their formulas.
+//! The operators and hedges.
 
 /// AND of two degrees: a t-norm.
-///
-/// # Example: two degrees of one half
-/// ```
-/// # use fuzzy::{Engine, model::{Conjunction, Model, Operators, Output, Shape, Variable}, rule};
-/// # let rule = rule::parse("IF a IS high AND b IS high THEN y IS any_value")?;
-/// let half_and_half = |and| -> Result<f64, Box<dyn std::error::Error>> {
-///     # let rising = Shape::RightShoulder { foot: 0.0, top: 1.0 };
-///     # let model = Model::builder("and").operators(Operators { and, ..Operators::default() })
-///     #     .input(Variable::new("a", 0.0, 1.0).term("high", rising.clone()))
-///     #     .input(Variable::new("b", 0.0, 1.0).term("high", rising))
-///     #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("any_value", Shape::Rectangle { left: 0.0, right: 1.0 })))
-///     #     .rule(rule.clone()).build();
-///     Ok(Engine::new(&model)?.evaluate(&[0.5, 0.5])?[0].coverage)
-/// };
-/// assert_eq!(half_and_half(Conjunction::Minimum)?, 0.5);
-/// assert_eq!(half_and_half(Conjunction::Product)?, 0.25);
-/// assert_eq!(half_and_half(Conjunction::BoundedDifference)?, 0.0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Conjunction {
     /// `min(a, b)`.
@@ -29,7 +10,7 @@ pub enum Conjunction {
     Product,
     /// `max(0, a + b - 1)` (Lukasiewicz).
     BoundedDifference,
-    /// `min(a, b)` where the other is 1, else 0.
+    /// `min(a, b)` where one of them is 1, else 0.
     Drastic,
     /// `a b / (2 - (a + b - a b))`.
     Einstein,
@@ -40,25 +21,6 @@ pub enum Conjunction {
 }
 
 /// OR of two degrees: an s-norm.
-///
-/// # Example: two degrees of one half
-/// ```
-/// # use fuzzy::{Engine, model::{Disjunction, Model, Operators, Output, Shape, Variable}, rule};
-/// # let rule = rule::parse("IF a IS high OR b IS high THEN y IS any_value")?;
-/// let half_or_half = |or| -> Result<f64, Box<dyn std::error::Error>> {
-///     # let rising = Shape::RightShoulder { foot: 0.0, top: 1.0 };
-///     # let model = Model::builder("or").operators(Operators { or, ..Operators::default() })
-///     #     .input(Variable::new("a", 0.0, 1.0).term("high", rising.clone()))
-///     #     .input(Variable::new("b", 0.0, 1.0).term("high", rising))
-///     #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("any_value", Shape::Rectangle { left: 0.0, right: 1.0 })))
-///     #     .rule(rule.clone()).build();
-///     Ok(Engine::new(&model)?.evaluate(&[0.5, 0.5])?[0].coverage)
-/// };
-/// assert_eq!(half_or_half(Disjunction::Maximum)?, 0.5);
-/// assert_eq!(half_or_half(Disjunction::ProbabilisticSum)?, 0.75);
-/// assert_eq!(half_or_half(Disjunction::BoundedSum)?, 1.0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Disjunction {
     /// `max(a, b)`.
@@ -68,7 +30,7 @@ pub enum Disjunction {
     ProbabilisticSum,
     /// `min(1, a + b)`.
     BoundedSum,
-    /// `max(a, b)` where the other is 0, else 1.
+    /// `max(a, b)` where one of them is 0, else 1.
     Drastic,
     /// `(a + b) / (1 + a b)`.
     Einstein,
@@ -78,24 +40,7 @@ pub enum Disjunction {
     NilpotentMaximum,
 }
 
-/// How a firing strength `h` and a membership `m` make an activated consequent.
-///
-/// # Example: a triangle from 0 over 0 to 9, cut at one half or scaled by it
-/// ```
-/// # use fuzzy::{Engine, model::{Implication, Model, Operators, Output, Shape, Variable}, rule};
-/// # let rule = rule::parse("IF heat IS high THEN speed IS slow WITH 0.5")?;
-/// let centroid = |implication| -> Result<f64, Box<dyn std::error::Error>> {
-///     # let model = Model::builder("fan").operators(Operators { implication, ..Operators::default() })
-///     #     .input(Variable::new("heat", 0.0, 1.0).term("high", Shape::RightShoulder { foot: 0.0, top: 1.0 }))
-///     #     .output(Output::new(Variable::new("speed", 0.0, 9.0).term("slow", Shape::LeftShoulder { top: 0.0, foot: 9.0 })))
-///     #     .rule(rule.clone()).build();
-///     let outcome = Engine::new(&model)?.evaluate(&[1.0])?[0];
-///     Ok(outcome.value().ok_or("no rule fired")?)
-/// };
-/// assert_eq!(centroid(Implication::Minimum)?, 3.5);
-/// assert_eq!(centroid(Implication::Product)?, 3.0); // its shape stays, so its centroid does
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// How a firing strength `h` activates a consequent with membership `m`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Implication {
     /// `min(h, m)` (Mamdani).
@@ -105,25 +50,7 @@ pub enum Implication {
     Product,
 }
 
-/// How activated consequents of one output join.
-///
-/// # Example: two rules of one conclusion count once, or twice
-/// ```
-/// # use fuzzy::{Engine, model::{Aggregation, Model, Operators, Output, Shape, Variable}, rule};
-/// let rules = ["IF x IS any THEN y IS low WITH 0.5", "IF NOT x IS NOT any THEN y IS low WITH 0.5", "IF x IS any THEN y IS high WITH 0.5"];
-/// let centroid = |aggregation| -> Result<f64, Box<dyn std::error::Error>> {
-///     # let mut model = Model::builder("both").operators(Operators { aggregation, ..Operators::default() })
-///     #     .input(Variable::new("x", 0.0, 1.0))
-///     #     .output(Output::new(Variable::new("y", 0.0, 9.0)
-///     #         .term("low", Shape::Rectangle { left: 0.0, right: 3.0 }).term("high", Shape::Rectangle { left: 6.0, right: 9.0 })));
-///     # for rule in rules { model = model.rule(rule::parse(rule)?); }
-///     let outcome = Engine::new(&model.build())?.evaluate(&[1.0])?[0];
-///     Ok(outcome.value().ok_or("no rule fired")?)
-/// };
-/// assert_eq!(centroid(Aggregation::Maximum)?, 4.5);
-/// assert_eq!(centroid(Aggregation::Sum)?, 3.5);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// How the activated consequents of an output are aggregated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Aggregation {
     /// `max(a, b)`.
@@ -137,23 +64,7 @@ pub enum Aggregation {
     Sum,
 }
 
-/// A word that changes a degree of membership `x`.
-///
-/// # Example: a degree of one quarter
-/// ```
-/// # use fuzzy::{Engine, model::{Model, Output, Shape, Variable}, rule::{Condition, Hedge, Rule}};
-/// let quarter = |hedges: &[Hedge]| -> Result<f64, Box<dyn std::error::Error>> {
-///     # let model = Model::builder("hedged")
-///     #     .input(Variable::new("x", 0.0, 1.0).term("high", Shape::RightShoulder { foot: 0.0, top: 1.0 }))
-///     #     .output(Output::new(Variable::new("y", 0.0, 1.0).term("any_value", Shape::Rectangle { left: 0.0, right: 1.0 })))
-///     #     .rule(Rule::new(Condition::is_hedged("x", hedges, "high"), "y", "any_value")).build();
-///     Ok(Engine::new(&model)?.evaluate(&[0.25])?[0].coverage)
-/// };
-/// assert_eq!((quarter(&[Hedge::Very])?, quarter(&[Hedge::Somewhat])?), (0.0625, 0.5));
-/// assert_eq!(quarter(&[Hedge::Extremely])?, 0.125);
-/// assert_eq!(quarter(&[Hedge::Not, Hedge::Somewhat])?, 0.5); // NOT somewhat high: the nearest to the term goes first
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// A hedge: changes a membership `x`. Of several hedges the one nearest to the term applies first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u32)]
 pub enum Hedge {
@@ -167,7 +78,7 @@ pub enum Hedge {
     Extremely,
     /// `(x/2)^(1/2)` up to 0.5, `1 - ((1 - x)/2)^(1/2)` above.
     Seldom,
-    /// 1 whatever `x` is.
+    /// 1.
     Any,
 }
 
@@ -182,15 +93,7 @@ impl Hedge {
         Hedge::Any,
     ];
 
-    /// The word for it in rules.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::rule::Hedge;
-    ///
-    /// let words: Vec<&str> = Hedge::ALL.iter().map(|hedge| hedge.word()).collect();
-    /// assert_eq!(words.join(" "), "NOT very somewhat extremely seldom any");
-    /// ```
+    /// Its word in the rule language.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -204,7 +107,7 @@ impl Hedge {
     }
 }
 
-/// The smaller of two numbers that are not NaN: one instruction, unlike `f64::min`.
+/// The smaller of two numbers that are not NaN, in one instruction, unlike `f64::min`.
 #[inline(always)]
 pub(crate) fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
@@ -223,7 +126,7 @@ impl Conjunction {
         match self {
             Conjunction::Minimum => smaller(a, b),
             Conjunction::Product => a * b,
-            // Not `a + b - 1`, which loses the digits of a small degree beside 1.
+            // `a + b - 1` loses the digits of a small degree.
             Conjunction::BoundedDifference => larger(0.0, smaller(a, b) - (1.0 - larger(a, b))),
             Conjunction::Drastic => {
                 if larger(a, b) == 1.0 {
@@ -238,12 +141,12 @@ impl Conjunction {
                 if small == 0.0 {
                     0.0
                 } else {
-                    // A factor of at most 1, where the product of two small degrees would underflow.
+                    // The factor is at most 1; the product of two small degrees would underflow.
                     small * (large / (large + small * (1.0 - large)))
                 }
             }
             Conjunction::NilpotentMinimum => {
-                // `a + b > 1`, without the rounding of a sum with a small degree.
+                // `a + b > 1`, without rounding the sum.
                 if smaller(a, b) > 1.0 - larger(a, b) {
                     smaller(a, b)
                 } else {
@@ -274,7 +177,7 @@ impl Disjunction {
                 if a * b == 1.0 {
                     1.0
                 } else {
-                    // The same as (a + b - 2ab) / (1 - ab), without a difference of like numbers.
+                    // (a + b - 2ab) / (1 - ab), without cancellation.
                     smaller(1.0, (a * (1.0 - b) + b * (1.0 - a)) / (1.0 - a * b))
                 }
             }
@@ -289,25 +192,25 @@ impl Disjunction {
     }
 }
 
-/// `a + b - a b`, as `a + b (1 - a)`: within [0, 1] whatever the rounding.
+/// `a + b - a b`, as `a + b (1 - a)`, which rounds into [0, 1].
 #[inline(always)]
 pub(crate) fn probabilistic_sum(a: f64, b: f64) -> f64 {
     smaller(1.0, a + b * (1.0 - a))
 }
 
 impl Implication {
-    /// The consequent's degree `membership` under the firing strength `height`.
+    /// The activated membership.
     #[inline(always)]
-    pub(crate) fn of(self, height: f64, membership: f64) -> f64 {
+    pub(crate) fn of(self, strength: f64, membership: f64) -> f64 {
         match self {
-            Implication::Minimum => smaller(height, membership),
-            Implication::Product => height * membership,
+            Implication::Minimum => smaller(strength, membership),
+            Implication::Product => strength * membership,
         }
     }
 }
 
 impl Aggregation {
-    /// The degree of two activated consequents together.
+    /// The aggregated degree of two activated consequents.
     #[inline(always)]
     pub(crate) fn of(self, a: f64, b: f64) -> f64 {
         match self {
@@ -414,7 +317,7 @@ mod tests {
             for b in DEGREES {
                 for (and, ..) in CONJUNCTIONS {
                     let both = and.of(a, b);
-                    // One rounding over the minimum is a rounding, not a law broken.
+                    // The law holds up to a rounding.
                     let most = a.min(b) * (1.0 + 4e-16);
                     assert!(
                         (0.0..=most).contains(&both),

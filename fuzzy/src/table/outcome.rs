@@ -1,6 +1,6 @@
-//! What an evaluation says.
+//! The results of an evaluation.
 
-/// What one output is for one set of inputs.
+/// The result for one output.
 ///
 /// # Example: the value, or why there is none
 /// ```
@@ -15,41 +15,28 @@ pub struct Outcome {
     pub state: State,
     /// The largest firing strength (weight included) of a rule of this output, in [0, 1].
     pub coverage: f64,
-    /// That rule, as its index in the model; of several, the first. `None` where no rule fired.
+    /// The index in the model of the rule with that strength, the first of equal ones. `None` where no rule fired.
     pub dominant: Option<usize>,
-    /// Whether an input lay outside its range and was taken as the range's end.
+    /// Whether an input was outside its range and was clamped to it.
     pub clamped: bool,
 }
 
 /// Whether an output has a value.
-///
-/// # Example
-/// ```
-/// use fuzzy::engine::State;
-///
-/// let told = |state: State| match state {
-///     State::Defined(value) => format!("{value} by the rules"),
-///     State::Default(value) => format!("{value}, for no rule fires"),
-///     State::NoRuleFired => "no rule fires".to_string(),
-///     State::InputNotFinite => "an input is unknown".to_string(),
-/// };
-/// assert_eq!(told(State::Default(0.5)), "0.5, for no rule fires");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum State {
-    /// Rules fired, and this is the value.
+    /// Rules fired and gave this value.
     Defined(f64),
-    /// No rule fired; this is the value that the author chose for that.
+    /// No rule fired; this is the default value of the output.
     Default(f64),
-    /// No rule fired: the output is undefined here.
+    /// No rule fired, and the output has no default value.
     #[default]
     NoRuleFired,
-    /// An input is NaN or infinite: nothing can be said.
+    /// An input is NaN or infinite.
     InputNotFinite,
 }
 
 impl Outcome {
-    /// Nothing is known: no rule fired.
+    /// No rule fired.
     pub const UNDEFINED: Outcome = Outcome {
         state: State::NoRuleFired,
         coverage: 0.0,
@@ -57,16 +44,7 @@ impl Outcome {
         clamped: false,
     };
 
-    /// The value: of the rules, or the one chosen by the author for where no rule fires. Never NaN.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::engine::{Outcome, State};
-    ///
-    /// let of = |state| Outcome { state, ..Outcome::default() }.value();
-    /// assert_eq!(of(State::Defined(0.3)), Some(0.3));
-    /// assert_eq!(of(State::InputNotFinite), None);
-    /// ```
+    /// The value that rules gave, or the default value. Never NaN.
     pub fn value(&self) -> Option<f64> {
         match self.state {
             State::Defined(value) | State::Default(value) => Some(value),

@@ -1,27 +1,28 @@
-//! Rules as plain data: what they do, and the tables, tries and programs by which those that fire are found.
+//! Rules as plain data: their actions, and the tables, tries and programs that find the rules that fire.
 
-/// What a rule does with its degree for one consequent.
+/// What a rule does for one of its consequents: its weight times the degree of its antecedent is its firing strength.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Action {
     /// The rule's weight.
     pub weight: f64,
-    /// Where its firing strength goes among all heights.
-    pub place: u32,
-    /// The output.
+    /// The index of the firing strength it updates.
+    pub strength: u32,
+    /// The index of the output.
     pub output: u32,
     /// The rule's index in the model.
     pub rule: u32,
-    /// 1 where strengths are summed there, 0 where the largest counts.
+    /// 1 where firing strengths are summed, 0 where the largest counts.
     pub sums: u32,
 }
 
 impl Action {
-    /// Of weight 0 for no term: fills up cells.
-    pub(crate) fn none(nowhere: usize) -> Self {
+    /// An action without effect, which pads cells. `unused` is the index of the firing strength of no output.
+    pub(crate) fn none(unused: u32) -> Self {
         Action {
             weight: 0.0,
-            place: nowhere as u32,
+            strength: unused,
             output: 0,
             rule: u32::MAX,
             sums: 0,
@@ -29,98 +30,109 @@ impl Action {
     }
 }
 
-/// An input of a uniform table: where every input has straight terms only, of which at most two are alive at once, each
-/// interval holds two lines (made up with lines of degree 0), and the same number of cells is visited for every value.
-/// Which terms are alive cannot be predicted, so every branch saved counts.
+/// An input of a uniform table. All its terms are straight and at most two overlap. Each interval has two lines, padded with
+/// lines of degree 0, so every value visits the same number of cells without a branch that a processor could mispredict.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Axis {
-    /// The input.
+    /// The index of the input.
     pub input: u32,
-    /// Where, in the cuts, its own begin: made up to a multiple of 4 with infinity.
+    /// Its span of cuts, padded to a multiple of 4 with infinity.
     pub first_cut: u32,
-    /// Where they end.
+    /// The end of that span.
     pub end_cut: u32,
-    /// Where, in the lines, the two of its first interval stand.
+    /// The index of the first of the two lines of its first interval.
     pub first_line: u32,
 }
 
 /// An input of a dense table.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Dimension {
-    /// The input.
+    /// The index of the input.
     pub input: u32,
-    /// How many cells apart its neighbouring terms stand.
+    /// The distance, in cells, between neighbouring terms.
     pub stride: u32,
-    /// The coordinate of rules that say nothing of this input; `u32::MAX` where there is none.
+    /// The coordinate of rules without this input; [`Dimension::NONE`] where there are none.
     pub any: u32,
 }
 
-/// A node of a trie of rules, whose paths are literals in ascending order.
+impl Dimension {
+    /// [`Dimension::any`] where every rule has the input.
+    pub const NONE: u32 = u32::MAX;
+}
+
+/// A node of a trie of rules. Its paths are literals in ascending order.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct Node {
-    /// Its edges.
+    /// Its span of edges.
     pub first_edge: u32,
-    /// Where they end.
+    /// The end of that span.
     pub end_edge: u32,
-    /// The actions of the rule that ends here.
+    /// The span of actions of the rules that end here.
     pub first_action: u32,
-    /// Where they end.
+    /// The end of that span.
     pub end_action: u32,
 }
 
 /// An edge of a trie.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Edge {
-    /// The literal, among all.
+    /// The index of its literal among those of all inputs.
     pub literal: u32,
-    /// The node it leads to.
+    /// The index of the node it leads to.
     pub node: u32,
 }
 
-/// A rule whose condition is no plain AND.
+/// A rule whose antecedent is not a plain AND.
+#[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Program {
-    /// Its steps.
+    /// Its span of steps.
     pub first_step: u32,
-    /// Where they end.
+    /// The end of that span.
     pub end_step: u32,
-    /// Its actions.
+    /// Its span of actions.
     pub first_action: u32,
-    /// Where they end.
+    /// The end of that span.
     pub end_action: u32,
 }
 
-/// One step of a condition, on a stack of degrees: no recursion and no allocation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// A step of an antecedent, on a stack of degrees.
+#[doc(hidden)] // Exported data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(C)]
 pub struct Step {
-    /// What it does.
+    /// The operation.
     pub op: Op,
-    /// The literal, among all, of a step that has one.
+    /// The index of its literal among those of all inputs; 0 where the operation has none.
     pub literal: u32,
 }
 
-/// What a step does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The operation of a step.
+#[doc(hidden)] // Exported data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(transparent)]
 pub struct Op(pub u32);
 
 impl Op {
     /// Push the degree of a literal.
     pub const PUSH: Op = Op(0);
-    /// Join the top with a literal by AND.
+    /// Replace the top by its AND with a literal.
     pub const AND_LITERAL: Op = Op(1);
-    /// Join the top with a literal by OR.
+    /// Replace the top by its OR with a literal.
     pub const OR_LITERAL: Op = Op(2);
-    /// Join the two on top by AND.
+    /// Replace the two on top by their AND.
     pub const AND: Op = Op(3);
-    /// Join the two on top by OR.
+    /// Replace the two on top by their OR.
     pub const OR: Op = Op(4);
-    /// One minus the top.
+    /// Replace the top by one minus it.
     pub const NOT: Op = Op(5);
 }

@@ -8,24 +8,11 @@ use alloc::{
 use core::ops::Range;
 
 use super::{Node, Scalar, Value};
-use crate::diagnostic::{Diagnostic, suggest};
+use crate::diagnostic::{Diagnostic, duplicate, suggest};
 
 /// The fields of a mapping whose keys are known.
-///
-/// # Example
-/// ```
-/// # use fuzzy::yaml;
-/// # let mut findings = Vec::new();
-/// let tree = yaml::read("{speed: fast, blades: }")?;
-/// let fields = tree.fields("the fan", &["speed", "blades"], &mut findings).ok_or("no mapping")?;
-/// assert!(fields.get("speed").is_some() && fields.get("blades").is_none());
-/// assert_eq!(fields.entries().len(), 2);
-/// assert!(fields.require("blades", "write `blades: 5`", &mut findings).is_none());
-/// assert_eq!(findings[0].to_string(), "error[missing-key]: `blades` of the fan is empty\n  help: write `blades: 5`");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub struct Fields<'a> {
-    /// What the mapping is, for messages: ``input `margin` ``.
+    /// What the mapping is, for messages: ``input `heat` ``.
     what: String,
     /// Where to tell that something is missing.
     place: Range<usize>,
@@ -33,18 +20,6 @@ pub struct Fields<'a> {
 }
 
 /// A key and what stands behind it.
-///
-/// # Example: where a key stands
-/// ```
-/// use fuzzy::tree::Entry;
-///
-/// let text = "{speed: fast}";
-/// let tree = fuzzy::yaml::read(text)?;
-/// let fields = tree.fields("the fan", &["speed"], &mut Vec::new()).ok_or("no mapping")?;
-/// let Entry { key, key_span, value } = &fields.entries()[0];
-/// assert_eq!((*key, &text[key_span.clone()], &text[value.span.clone()]), ("speed", "speed", "fast"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone)]
 pub struct Entry<'a> {
     /// The key.
@@ -57,33 +32,12 @@ pub struct Entry<'a> {
 
 impl<'a> Fields<'a> {
     /// The value behind a key; a key with nothing behind it counts as absent.
-    ///
-    /// # Example: nothing behind a key is as good as no key
-    /// ```
-    /// let tree = fuzzy::yaml::read("{speed: fast, blades: }")?;
-    /// let fields = tree.fields("the fan", &["speed", "blades"], &mut Vec::new()).ok_or("no mapping")?;
-    /// assert!(fields.get("speed").is_some());
-    /// assert_eq!((fields.get("blades"), fields.get("colour")), (None, None));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&'a Node> {
         self.entry(key).map(|entry| entry.value)
     }
 
     /// The key and the value behind it; a key with nothing behind it counts as absent.
-    ///
-    /// # Example: a finding at the key
-    /// ```
-    /// use fuzzy::diagnostic::Diagnostic;
-    ///
-    /// let tree = fuzzy::yaml::read("{blades: 5, speed: fast}")?;
-    /// let fields = tree.fields("the fan", &["speed", "blades"], &mut Vec::new()).ok_or("no mapping")?;
-    /// let speed = fields.entry("speed").ok_or("no speed")?;
-    /// let finding = Diagnostic::note("unused", speed.key_span.clone(), "the fan has one speed");
-    /// assert_eq!(finding.span, 12..17);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn entry(&self, key: &str) -> Option<&Entry<'a>> {
         self.entries
@@ -92,33 +46,12 @@ impl<'a> Fields<'a> {
     }
 
     /// All keys that are there once, with their values.
-    ///
-    /// # Example: a key given twice counts once, and is a finding
-    /// ```
-    /// let mut findings = Vec::new();
-    /// let tree = fuzzy::yaml::read("{speed: fast, blades: 5, speed: slow}")?;
-    /// let fields = tree.fields("the fan", &["speed", "blades"], &mut findings).ok_or("no mapping")?;
-    /// let keys: Vec<&str> = fields.entries().iter().map(|entry| entry.key).collect();
-    /// assert_eq!((keys, findings[0].code), (vec!["speed", "blades"], "duplicate-key"));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn entries(&self) -> &[Entry<'a>] {
         &self.entries
     }
 
     /// The value behind a key that has to be there.
-    ///
-    /// # Example
-    /// ```
-    /// let mut findings = Vec::new();
-    /// let tree = fuzzy::yaml::read("{speed: fast}")?;
-    /// let fields = tree.fields("the fan", &["speed", "blades"], &mut findings).ok_or("no mapping")?;
-    /// assert!(fields.require("speed", "write `speed: fast`", &mut findings).is_some());
-    /// assert!(fields.require("blades", "write `blades: 5`", &mut findings).is_none());
-    /// assert_eq!(findings[0].to_string(), "error[missing-key]: the fan has no `blades`\n  help: write `blades: 5`");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn require(
         &self,
         key: &str,
@@ -141,18 +74,6 @@ impl<'a> Fields<'a> {
 
 impl<'a> Entry<'a> {
     /// [`Node::fields`] of the value; what is missing in it is told at the key.
-    ///
-    /// # Example: what is missing is told at the key
-    /// ```
-    /// let text = "{fan: {speed: fast}}";
-    /// let mut findings = Vec::new();
-    /// let tree = fuzzy::yaml::read(text)?;
-    /// let file = tree.fields("the file", &["fan"], &mut findings).ok_or("no mapping")?;
-    /// let fan = file.entries()[0].fields("the fan", &["speed", "blades"], &mut findings).ok_or("no mapping")?;
-    /// fan.require("blades", "write `blades: 5`", &mut findings);
-    /// assert_eq!(&text[findings[0].span.clone()], "fan");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn fields(
         &self,
         what: &str,
@@ -168,19 +89,8 @@ impl<'a> Entry<'a> {
 }
 
 impl Node {
-    /// Reads a mapping of known keys. `what` names it in messages, as in ``input `margin` ``. An unknown key, a key
+    /// Reads a mapping of known keys. `what` names it in messages, as in ``input `heat` ``. An unknown key, a key
     /// given twice and anything but a mapping is a finding.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::yaml;
-    /// # let mut findings = Vec::new();
-    /// let tree = yaml::read("{sped: fast}")?;
-    /// let fields = tree.fields("the fan", &["speed"], &mut findings).ok_or("no mapping")?;
-    /// assert_eq!(fields.entries()[0].key, "sped");
-    /// assert_eq!(findings[0].help.as_deref(), Some("did you mean `speed`?"));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn fields<'a>(
         &'a self,
         what: &str,
@@ -205,16 +115,6 @@ impl Node {
 
     /// Reads a mapping of names the author chose: of two equal ones the second is a finding `duplicate-<kind>` and
     /// left out.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::yaml;
-    /// # let mut findings = Vec::new();
-    /// let tree = yaml::read("{low: 1, high: 2}")?;
-    /// let entries = tree.entries("the fan", "speed", &mut findings).ok_or("no mapping")?;
-    /// assert_eq!(entries[1].key, "high");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn entries<'a>(
         &'a self,
         what: &str,
@@ -248,16 +148,6 @@ impl Node {
     }
 
     /// Reads a list.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::yaml;
-    /// # let mut findings = Vec::new();
-    /// assert_eq!(yaml::read("[1, 2]")?.items("the speeds", &mut findings).map(|items| items.len()), Some(2));
-    /// assert!(yaml::read("fast")?.items("the speeds", &mut findings).is_none());
-    /// assert_eq!(findings[0].code, "wrong-type");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn items(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&[Node]> {
         match &self.value {
             Value::List(items) => Some(items),
@@ -270,16 +160,6 @@ impl Node {
     }
 
     /// Reads a finite number.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::yaml;
-    /// # let mut findings = Vec::new();
-    /// assert_eq!(yaml::read("1e3")?.finite("`speed`", &mut findings), Some(1000.0));
-    /// assert_eq!(yaml::read(".inf")?.finite("`speed`", &mut findings), None);
-    /// assert_eq!(findings[0].code, "not-finite");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn finite(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<f64> {
         let number = match &self.value {
             Value::Scalar(scalar) => scalar.as_number(),
@@ -307,15 +187,6 @@ impl Node {
     }
 
     /// Reads a whole number from `least` on.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::yaml;
-    /// # let mut findings = Vec::new();
-    /// assert_eq!(yaml::read("5")?.whole("`blades`", 1, &mut findings), Some(5));
-    /// assert_eq!(yaml::read("2.5")?.whole("`blades`", 1, &mut findings), None);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn whole(&self, what: &str, least: u64, findings: &mut Vec<Diagnostic>) -> Option<u64> {
         let found = match &self.value {
             Value::Scalar(scalar) if !scalar.quoted => scalar.text.parse().ok(),
@@ -335,15 +206,6 @@ impl Node {
     }
 
     /// Reads text. A number or `true` stands for its own letters: names may look like that.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::yaml;
-    /// # let mut findings = Vec::new();
-    /// let tree = yaml::read("12")?;
-    /// assert_eq!(tree.words("the name", &mut findings).map(|word| word.text.as_str()), Some("12"));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn words(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&Scalar> {
         match &self.value {
             Value::Scalar(scalar) if !scalar.is_null() => Some(scalar),
@@ -356,15 +218,6 @@ impl Node {
     }
 
     /// Reads `true` or `false`.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::yaml;
-    /// # let mut findings = Vec::new();
-    /// assert_eq!(yaml::read("true")?.boolean("`quiet`", &mut findings), Some(true));
-    /// assert_eq!(yaml::read("1")?.boolean("`quiet`", &mut findings), None);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn boolean(&self, what: &str, findings: &mut Vec<Diagnostic>) -> Option<bool> {
         let found = match &self.value {
             Value::Scalar(scalar) if !scalar.quoted => scalar.as_bool(),
@@ -378,17 +231,6 @@ impl Node {
     }
 
     /// Reads one of several words.
-    ///
-    /// # Example
-    /// ```
-    /// # use fuzzy::yaml;
-    /// # let mut findings = Vec::new();
-    /// let choices = [("slow", 1), ("fast", 9)];
-    /// assert_eq!(yaml::read("fast")?.choice("`speed`", &choices, &mut findings), Some(9));
-    /// assert_eq!(yaml::read("fats")?.choice("`speed`", &choices, &mut findings), None);
-    /// assert_eq!(findings[0].help.as_deref(), Some("did you mean `fast`?"));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn choice<T: Copy>(
         &self,
         what: &str,
@@ -407,13 +249,6 @@ impl Node {
     }
 
     /// A finding: here stands something else than what was expected.
-    ///
-    /// # Example
-    /// ```
-    /// let finding = fuzzy::yaml::read("fast")?.unexpected("a number");
-    /// assert_eq!(finding.message, "expected a number, found `fast`");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn unexpected(&self, expected: &str) -> Diagnostic {
         let message = format!("expected {expected}, found {}", self.shown());
@@ -471,43 +306,8 @@ impl Node {
     }
 }
 
-/// A finding: this name is taken already.
-pub(crate) fn duplicate(
-    kind: &str,
-    name: &str,
-    what: &str,
-    span: Range<usize>,
-    first: Range<usize>,
-) -> Diagnostic {
-    let (code, help) = match kind {
-        "variable" => (
-            "duplicate-variable",
-            "inputs and outputs have different names; rename one of them",
-        ),
-        "term" => (
-            "duplicate-term",
-            "the terms of a variable have different names; rename one of them",
-        ),
-        _ => ("duplicate-key", "keep one of them"),
-    };
-    Diagnostic::error(code, span, format!("{what} has the {kind} `{name}` twice"))
-        .related(first, "the first one")
-        .help(help)
-}
-
 impl Scalar {
     /// The number it is, if it is one: YAML's forms of decimal numbers, infinities and NaN.
-    ///
-    /// # Example
-    /// ```
-    /// use fuzzy::tree::Value;
-    ///
-    /// let number = |text: &str| match fuzzy::yaml::read(text).ok()?.value {
-    ///     Value::Scalar(scalar) => scalar.as_number(),
-    ///     _ => None,
-    /// };
-    /// assert_eq!((number("-.5"), number("'5'"), number("inf")), (Some(-0.5), None, None));
-    /// ```
     #[must_use]
     pub fn as_number(&self) -> Option<f64> {
         if self.quoted {

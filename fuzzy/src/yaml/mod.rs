@@ -1,12 +1,11 @@
 //! YAML: text to [`Node`] and back. The only place that names the YAML library.
 //!
-//! The library is an event parser, not a deserializer: it hands over every key, doubles included, with the bytes it
-//! stands at and the style it is written in. That is what tells an author the place of a wrong word inside a rule
-//! inside a folded scalar, and all findings of a file at once. Aliases (`*name`) are expanded here within limits, so
-//! that a small file cannot ask for much memory.
+//! The library is an event parser, not a deserializer: it gives every key, repeated ones included, with its span and its
+//! style. So a finding has the span of a wrong word within a rule within a folded scalar, and all findings of a file are
+//! reported at once. Aliases (`*name`) are expanded here within limits, so that a small file cannot take much memory.
 
 use alloc::{boxed::Box, collections::BTreeMap, string::String, vec::Vec};
-use core::ops::Range;
+use core::{ops::Range, str::FromStr};
 
 use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, ScanError, Span};
 
@@ -14,12 +13,13 @@ use crate::{
     diagnostic::{Diagnostic, Findings},
     format::{self, Document},
     model::Model,
-    tree::{Letter, Node, Places, Scalar, Value},
+    tree::{Letter, Node, Offsets, Scalar, Value},
 };
 
 #[cfg(test)]
 mod tests;
 mod write;
+#[doc(hidden)]
 pub use write::to_text;
 
 /// Lists and mappings nested deeper than this are an error.
@@ -28,22 +28,11 @@ const DEEPEST: usize = 64;
 /// Values that aliases may add to a document, beyond which it is an error; 16 bytes of text count as one.
 const MOST_FROM_ALIASES: usize = 100_000;
 
-/// Reads one YAML document.
+/// Reads one YAML document as a tree. Public for the crate that reads its profiles so; not part of the API.
 ///
 /// # Errors
-/// What is no YAML, with its place: one finding, since behind it nothing can be told apart.
-///
-/// # Example
-/// ```
-/// let tree = fuzzy::yaml::read("window: {length_s: 2}")?;
-/// let mut findings = Vec::new();
-/// let window = tree.fields("the file", &["window"], &mut findings).unwrap();
-/// assert!(window.get("window").is_some() && findings.is_empty());
-///
-/// let mistake = fuzzy::yaml::read("range: [0, 1\nunit: s").unwrap_err();
-/// assert!(mistake.to_string().starts_with("2:5: error[yaml-syntax]"));
-/// # Ok::<(), fuzzy::diagnostic::Findings>(())
-/// ```
+/// The first syntax error; parsing stops there.
+#[doc(hidden)]
 pub fn read(text: &str) -> Result<Node, Findings> {
     build(text).map_err(|finding| Findings::locate(alloc::vec![*finding], text))
 }
@@ -87,22 +76,18 @@ pub fn parse(text: &str) -> Result<Document, Findings> {
 }
 
 /// A rule set as YAML; [`parse`] reads the same model from it.
-///
-/// # Example
-/// ```
-/// let text = "fuzzy: 1
-/// name: fan
-/// inputs: {heat: {range: [0, 100], partition: [low, high]}}
-/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
-/// rules: [IF heat IS high THEN speed IS fast]";
-/// let model = fuzzy::yaml::parse(text)?.model;
-/// let written = fuzzy::yaml::to_string(&model);
-/// assert_eq!(fuzzy::yaml::parse(&written)?.model, model);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[must_use]
 pub fn to_string(model: &Model) -> String {
     to_text(&format::write(model))
+}
+
+impl FromStr for Model {
+    type Err = Findings;
+
+    /// The model that [`parse`] reads; its warnings are dropped.
+    fn from_str(text: &str) -> Result<Self, Findings> {
+        parse(text).map(|document| document.model)
+    }
 }
 
 /// A list or mapping that is not yet at its end.
@@ -218,7 +203,7 @@ fn build(text: &str) -> Result<Node, Box<Diagnostic>> {
     document.filter(|node| !node.is_null()).ok_or_else(|| {
         Box::new(
             Diagnostic::error("empty-file", 0..0, "the file is empty")
-                .help("write a rule set; `flagred new NAME` makes one to start from"),
+                .help("write a rule set; it begins with `fuzzy: 1`"),
         )
     })
 }
@@ -302,15 +287,15 @@ fn syntax(text: &str, error: &ScanError) -> Box<Diagnostic> {
         | ErrorKind::ExpectedFlowSequenceSeparator
         | ErrorKind::UnexpectedEofFlowMapping
         | ErrorKind::UnexpectedEofFlowSequence => {
-            "look for a missing `]`, `}` or comma before this place"
+            "look for a missing `]`, `}` or comma before this point"
         }
-        _ => "check the indentation, and the quotes and brackets before this place",
+        _ => "check the indentation, and the quotes and brackets before this point",
     };
     Box::new(
         Diagnostic::error(
             "yaml-syntax",
             span,
-            alloc::format!("this is no YAML: {}", error.kind()),
+            alloc::format!("invalid YAML: {}", error.kind()),
         )
         .help(help),
     )
@@ -323,22 +308,22 @@ fn scalar(document: &str, value: &str, style: ScalarStyle, bytes: &Range<usize>)
         _ => 0,
     };
     let in_a_row = written.get(inside..).is_some_and(|w| w.starts_with(value));
-    let places = if in_a_row {
-        Places::Row(bytes.start + inside)
+    let offsets = if in_a_row {
+        Offsets::From(bytes.start + inside)
     } else {
-        Places::Table(table(written, value, style, bytes.start))
+        Offsets::Each(table(written, value, style, bytes.start))
     };
     // Nothing behind a key is handed over as `~` without a place.
     let text = if bytes.is_empty() { "" } else { value };
     Scalar {
         text: String::from(text),
         quoted: style != ScalarStyle::Plain,
-        places,
+        offsets,
     }
 }
 
-/// Where each character of a scalar's value stands: both texts have the same characters but for white space, which
-/// folds and is indented, and for escapes in quotes.
+/// The span of each character of a scalar's value: both texts have the same characters except for white space, which is
+/// folded and indented, and for escapes in quotes.
 fn table(written: &str, value: &str, style: ScalarStyle, start: usize) -> Vec<Letter> {
     let rest = |from: usize| written.get(from..).unwrap_or("");
     let quoted = matches!(style, ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted);

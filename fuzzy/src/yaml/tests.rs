@@ -34,13 +34,13 @@ fn places_in_a_scalar_are_found_in_every_style() {
         };
         for word in ["IF", "margin", "THEN", "risk", "IS"] {
             if let Some(at) = scalar.text.find(word) {
-                let place = scalar.place(at..at + word.len());
+                let place = scalar.span(at..at + word.len());
                 assert_eq!(&text[place], word, "{text}");
             }
         }
         for (word, written) in [("low", "\\x6cow"), ("high", "\\u0068igh")] {
             if let Some(at) = scalar.text.find(word) {
-                let found = &text[scalar.place(at..at + word.len())];
+                let found = &text[scalar.span(at..at + word.len())];
                 assert!(found == word || found == written, "{text}: {found}");
             }
         }

@@ -8,14 +8,6 @@ use crate::tree::{Node, Scalar, Value};
 const LINE_WIDTH: usize = 110;
 
 /// The tree as YAML text; reading it again gives the same tree but for the places.
-///
-/// # Example
-/// ```
-/// use fuzzy::tree::Node;
-///
-/// let node = Node::mapping([("name", Node::text("fan")), ("range", Node::list(vec![Node::number(0.0), Node::number(9.0)]))]);
-/// assert_eq!(fuzzy::yaml::to_text(&node), "name: fan\nrange: [0, 9]\n");
-/// ```
 #[must_use]
 pub fn to_text(node: &Node) -> String {
     let mut text = String::new();

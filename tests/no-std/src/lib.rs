@@ -4,8 +4,9 @@
 //! workspace cargo turns on the features that other members want, so such a build proves nothing.
 #![no_std]
 
-use fuzzy::engine::{CompileError, EvaluateError, Outcome, Scratch};
-use fuzzy::model::{Model, Output, Shape, Variable};
+use fuzzy::diagnostic::Findings;
+use fuzzy::engine::{EvaluateError, Outcome, Scratch};
+use fuzzy::model::{MembershipFunction, Model, Output, Variable};
 use fuzzy::rule::{Condition, Rule};
 use fuzzy::{Engine, map::DecisionMap, map::Grid};
 
@@ -13,15 +14,15 @@ use fuzzy::{Engine, map::DecisionMap, map::Grid};
 ///
 /// # Errors
 /// Never: the model is whole.
-pub fn engine() -> Result<Engine, CompileError> {
+pub fn engine() -> Result<Engine, Findings> {
     Engine::new(
         &Model::builder("margin")
             .input(
                 Variable::new("margin", 0.0, 0.5)
-                    .term("low", Shape::Gaussian { mean: 0.0, sd: 0.1 })
+                    .term("low", MembershipFunction::Gaussian { mean: 0.0, sd: 0.1 })
                     .term(
                         "high",
-                        Shape::RightShoulder {
+                        MembershipFunction::RightShoulder {
                             foot: 0.1,
                             top: 0.3,
                         },
@@ -31,14 +32,14 @@ pub fn engine() -> Result<Engine, CompileError> {
                 Variable::new("risk", 0.0, 100.0)
                     .term(
                         "low",
-                        Shape::LeftShoulder {
+                        MembershipFunction::LeftShoulder {
                             top: 0.0,
                             foot: 50.0,
                         },
                     )
                     .term(
                         "high",
-                        Shape::SShape {
+                        MembershipFunction::SShape {
                             foot: 50.0,
                             top: 100.0,
                         },

@@ -158,19 +158,19 @@ fn oxictl(
     sentences: &[Sentence],
     rows: &[Vec<f64>],
 ) -> Result<(), Box<dyn std::error::Error>> {
-    type Shape = Box<dyn MembershipFn<f64>>;
-    let shapes = |variable: &Variable| -> Result<Vec<Shape>, Box<dyn std::error::Error>> {
-        let shape = |(name, corners): &(String, Vec<f64>)| -> Result<Shape, String> {
+    type MembershipFunction = Box<dyn MembershipFn<f64>>;
+    let shapes = |variable: &Variable| -> Result<Vec<MembershipFunction>, Box<dyn std::error::Error>> {
+        let shape = |(name, corners): &(String, Vec<f64>)| -> Result<MembershipFunction, String> {
             match corners[..] {
-                [a, b, c] => Triangular::new(a, b, c).map(|s| Box::new(s) as Shape),
-                [a, b, c, d] => Trapezoidal::new(a, b, c, d).map(|s| Box::new(s) as Shape),
+                [a, b, c] => Triangular::new(a, b, c).map(|s| Box::new(s) as MembershipFunction),
+                [a, b, c, d] => Trapezoidal::new(a, b, c, d).map(|s| Box::new(s) as MembershipFunction),
                 _ => return Err(format!("`{name}` has {} corners", corners.len())),
             }
             .map_err(|error| error.to_string())
         };
         Ok(variable.terms.iter().map(shape).collect::<Result<_, _>>()?)
     };
-    let inputs: Vec<Vec<Shape>> = inputs.iter().map(shapes).collect::<Result<_, _>>()?;
+    let inputs: Vec<Vec<MembershipFunction>> = inputs.iter().map(shapes).collect::<Result<_, _>>()?;
     let inputs: Vec<Vec<&dyn MembershipFn<f64>>> = inputs
         .iter()
         .map(|terms| terms.iter().map(|t| &**t).collect())

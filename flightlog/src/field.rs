@@ -1,8 +1,8 @@
-//! A number somewhere in a message: all formats here are little-endian.
+//! Numeric fields of messages; all formats here are little-endian.
 
-/// Where a number is in a message, and of what type.
+/// Offset and type of a numeric field.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct NumericField {
     pub(crate) offset: usize,
     pub(crate) kind: Kind,
 }
@@ -34,7 +34,7 @@ impl Kind {
     }
 }
 
-impl Place {
+impl NumericField {
     /// The number in `message`; `None` where the message is too short.
     pub(crate) fn number(self, message: &[u8]) -> Option<f64> {
         let bytes = message.get(self.offset..)?;

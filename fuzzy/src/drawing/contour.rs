@@ -1,6 +1,6 @@
 //! Contour lines by marching squares.
 
-/// A piece of a contour line between two places, each in cells from the first one.
+/// A piece of a contour line between two points, each in cells from the first one.
 pub(super) type Piece = [(f64, f64); 2];
 
 /// The pieces of the line at `level` through values at the corners of a grid; cells with an unknown corner have none.
@@ -33,7 +33,7 @@ pub(super) fn pieces(
             }
             match crossings[..] {
                 [p, q] => pieces.push([p, q]),
-                // A saddle: the middle says which corners hang together.
+                // A saddle: the mean of the corners decides which of them are joined.
                 [p, q, r, s] => {
                     let middle = values.iter().sum::<f64>() / 4.0;
                     if (middle >= level) == (a >= level) {
@@ -52,7 +52,7 @@ pub(super) fn pieces(
 /// Joins pieces that meet into lines.
 pub(super) fn lines(mut pieces: Vec<Piece>) -> Vec<Vec<(f64, f64)>> {
     let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).abs() + (a.1 - b.1).abs() < 1e-9;
-    // Where a line runs through a node of the grid, cells beside it have pieces of no length.
+    // A line through a node of the grid leaves pieces of length 0 in the cells around it.
     pieces.retain(|[first, second]| !near(*first, *second));
     let mut lines = Vec::new();
     while let Some([first, second]) = pieces.pop() {
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hill_has_a_closed_line_and_what_is_unknown_none() {
+    fn a_hill_has_a_closed_line_and_unknown_values_none() {
         let hill = |i: usize, j: usize| {
             let (x, y) = (i as f64 - 5.0, j as f64 - 5.0);
             Some(30.0 - x * x - y * y)
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_saddle_is_told_by_its_middle() {
+    fn the_mean_of_the_corners_decides_a_saddle() {
         let saddle = |i: usize, j: usize| Some(if i == j { 10.0 } else { 0.0 });
         assert_eq!(pieces(2, 2, saddle, 4.0).len(), 2);
         assert_eq!(pieces(2, 2, saddle, 6.0).len(), 2);

@@ -1,8 +1,6 @@
-//! The centroid of minimum and maximum as a polynomial in the heights, for partitions: terms of height 1
-//! that rise straight from 0 to 1, stay there and fall straight to 0, of which two overlap only where one
-//! falls from 1 to 0 while the other rises from 0 to 1.
-//!
-//! The formulas stand at [`Pair`].
+//! The centroid of minimum and maximum over a partition, as a polynomial in the firing strengths. The terms of a partition
+//! have height 1, rise straight from 0 to 1, stay there and fall straight to 0. Two overlap only where one falls from 1 to 0
+//! while the other rises from 0 to 1. [`Pair`] has the formulas.
 
 use alloc::{vec, vec::Vec};
 
@@ -10,37 +8,37 @@ use super::polyline::Polylines;
 use crate::table::Pair;
 
 #[derive(Debug, Clone)]
-pub(crate) struct Ramps {
-    /// Terms from left to right, made up to an even number.
+pub(crate) struct Partition {
+    /// Terms from left to right, padded to an even number.
     pairs: Vec<Pair>,
-    /// The rank of each term from left to right.
+    /// The index of each term from left to right.
     ranks: Vec<usize>,
 }
 
-impl Ramps {
+impl Partition {
     /// `None` where the terms are no partition.
     pub(crate) fn new(lines: &Polylines, terms: usize, origin: f64) -> Option<Self> {
-        // Without a part in the range a term has no place, and stands behind all others.
-        let mut places = vec![f64::INFINITY; terms];
+        // A term that is 0 all over the range comes last.
+        let mut middles = vec![f64::INFINITY; terms];
         for (from, to, alive) in lines.intervals() {
             for line in alive {
                 // The middle of its highest interval, or the end of the range next to its top.
                 let x = 0.5 * (from + to) + 0.5 * (to - from) * (line.right - line.left);
-                let place = places.get_mut(line.term)?;
-                *place = if place.is_finite() {
-                    0.5 * (*place + x)
+                let middle = middles.get_mut(line.term)?;
+                *middle = if middle.is_finite() {
+                    0.5 * (*middle + x)
                 } else {
                     x
                 };
             }
         }
         let mut order: Vec<usize> = (0..terms).collect();
-        order.sort_by(|a, b| f64::total_cmp(&places[*a], &places[*b]));
+        order.sort_by(|a, b| f64::total_cmp(&middles[*a], &middles[*b]));
         let mut ranks = vec![0; terms];
         for (rank, term) in order.into_iter().enumerate() {
             ranks[term] = rank;
         }
-        let mut ramps = Ramps {
+        let mut partition = Partition {
             pairs: vec![Pair::default(); terms.div_ceil(2)],
             ranks,
         };
@@ -48,8 +46,8 @@ impl Ramps {
             let (w, m) = (to - from, from + 0.5 * (to - from) - origin);
             let (mut falling, mut rising) = (None, None);
             for line in alive {
-                let rank = ramps.ranks[line.term];
-                let Pair { area, moment, .. } = &mut ramps.pairs[rank / 2];
+                let rank = partition.ranks[line.term];
+                let Pair { area, moment, .. } = &mut partition.pairs[rank / 2];
                 let lane = rank % 2;
                 let side = match (line.left, line.right) {
                     (0.0, 1.0) => {
@@ -75,45 +73,49 @@ impl Ramps {
             }
             match (falling, rising, alive.len()) {
                 (Some(left), Some(right), 2) if right == left + 1 => {
-                    ramps.pairs[left / 2].width[left % 2] = w;
-                    ramps.pairs[left / 2].middle[left % 2] = m;
+                    partition.pairs[left / 2].width[left % 2] = w;
+                    partition.pairs[left / 2].middle[left % 2] = m;
                 }
                 (_, _, 0 | 1) => {}
                 _ => return None,
             }
         }
-        Some(ramps)
+        Some(partition)
     }
 
-    /// The place of each term's height: heights stand from left to right.
+    /// The index of each term's firing strength; they are ordered from left to right.
     pub(crate) fn ranks(&self) -> &[usize] {
         &self.ranks
     }
 
-    /// How many heights are read, the last ones always 0.
-    pub(crate) fn places(&self) -> usize {
+    /// The number of firing strengths that are read. The last ones are always 0.
+    pub(crate) fn strengths(&self) -> usize {
         2 * self.pairs.len() + 1
     }
 
-    /// Whether a term is 0 on the whole range.
+    /// Whether a term is 0 all over the range.
     pub(crate) fn is_empty(&self, term: usize) -> bool {
         let area = |rank: usize| self.pairs[rank / 2].area[0][rank % 2];
         self.ranks.get(term).is_none_or(|rank| area(*rank) <= 0.0)
     }
 
-    /// The closed form.
+    /// The coefficients of the polynomials.
     pub(crate) fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 
-    /// The centroids of several sets at once: the same operations in the same order as one at a time.
+    /// The centroids of several sets at once, by the operations of a single set in the same order.
     #[inline(always)]
-    pub(crate) fn centroids<const N: usize>(&self, heights: &[[f64; N]], origin: f64) -> [f64; N] {
+    pub(crate) fn centroids<const N: usize>(
+        &self,
+        strengths: &[[f64; N]],
+        origin: f64,
+    ) -> [f64; N] {
         let (mut area, mut moment) = ([[0.0; N]; 2], [[0.0; N]; 2]);
         for (pair, i) in self.pairs.iter().zip((0..).step_by(2)) {
-            let heights: &[[f64; N]] = &heights[i..i + 3];
+            let strengths: &[[f64; N]] = &strengths[i..i + 3];
             for side in 0..2 {
-                let (here, right) = (&heights[side], &heights[side + 1]);
+                let (here, right) = (&strengths[side], &strengths[side + 1]);
                 for lane in 0..N {
                     let (a, m) = pair.add(side, here[lane], right[lane]);
                     area[side][lane] += a;
@@ -137,15 +139,15 @@ impl Ramps {
 mod tests {
     use super::*;
     use crate::defuzzify::piece::Integrals;
-    use crate::defuzzify::polyline::Room;
-    use crate::defuzzify::{Heights, Joint};
-    use crate::model::{Aggregation, Implication, Shape, Variable};
+    use crate::defuzzify::polyline::Workspace;
+    use crate::defuzzify::{Joint, Strengths};
+    use crate::model::{Aggregation, Implication, MembershipFunction, Variable};
     use crate::table::centroid;
     use proptest::prelude::*;
 
     /// The partition of the example risks, an unsymmetric one, and one with plateaus and gaps.
     fn partitions() -> Vec<Variable> {
-        let triangle = |left, peak, right| Shape::Triangle { left, peak, right };
+        let triangle = |left, peak, right| MembershipFunction::Triangle { left, peak, right };
         vec![
             Variable::new("risk", 0.0, 100.0)
                 .term("very_low", triangle(-25.0, 0.0, 25.0))
@@ -156,7 +158,7 @@ mod tests {
             Variable::new("uneven", -3.0, 8.0)
                 .term(
                     "a",
-                    Shape::LeftShoulder {
+                    MembershipFunction::LeftShoulder {
                         top: -1.0,
                         foot: 0.0,
                     },
@@ -164,7 +166,7 @@ mod tests {
                 .term("b", triangle(-1.0, 0.0, 6.0))
                 .term(
                     "c",
-                    Shape::RightShoulder {
+                    MembershipFunction::RightShoulder {
                         foot: 0.0,
                         top: 6.0,
                     },
@@ -173,14 +175,14 @@ mod tests {
                 .term("a", triangle(0.0, 1.0, 2.0))
                 .term(
                     "b",
-                    Shape::Rectangle {
+                    MembershipFunction::Rectangle {
                         left: 3.0,
                         right: 4.0,
                     },
                 )
                 .term(
                     "c",
-                    Shape::Trapezoid {
+                    MembershipFunction::Trapezoid {
                         left: 5.0,
                         left_top: 6.0,
                         right_top: 7.0,
@@ -195,29 +197,29 @@ mod tests {
         #[test]
         fn polynomials_equal_pieces(
             which in 0..3usize,
-            heights in prop::collection::vec(
+            strengths in prop::collection::vec(
                 prop_oneof![Just(0.0), Just(0.5), Just(1.0), 0.0..=1.0, 1e-12..1e-9], 5),
         ) {
             let variable = &partitions()[which];
             let lines = Polylines::new(&variable.terms, variable.low, variable.high).unwrap();
             let count = variable.terms.len();
             let origin = 0.5 * (variable.low + variable.high);
-            let heights = &heights[..count];
-            let ramps = Ramps::new(&lines, count, origin).unwrap();
-            let mut ranked = vec![0.0; ramps.places()];
-            for (height, rank) in heights.iter().zip(ramps.ranks()) {
-                ranked[*rank] = *height;
+            let strengths = &strengths[..count];
+            let partition = Partition::new(&lines, count, origin).unwrap();
+            let mut ranked = vec![0.0; partition.strengths()];
+            for (strength, rank) in strengths.iter().zip(partition.ranks()) {
+                ranked[*rank] = *strength;
             }
-            let fast = Pair::integrals(ramps.pairs(), &ranked);
+            let fast = Pair::integrals(partition.pairs(), &ranked);
             let fast = centroid(fast.area, fast.moment, origin);
-            let places: Vec<usize> = (0..=count).collect();
+            let offsets: Vec<usize> = (0..=count).collect();
             let mut slow = Integrals::about(origin);
             let joint = Joint {
                 implication: Implication::Minimum,
                 aggregation: Aggregation::Maximum,
             };
-            let heights = Heights { heights, places: &places };
-            lines.pieces(heights, joint, &mut Room::new(count, 0), &mut |piece| slow.add(piece));
+            let strengths = Strengths { strengths, offsets: &offsets };
+            lines.pieces(strengths, joint, &mut Workspace::new(count, 0), &mut |piece| slow.add(piece));
             match (fast, slow.centroid()) {
                 (Some(fast), Some(slow)) => {
                     prop_assert!((fast - slow).abs() <= 1e-12 * (variable.high - variable.low));

@@ -1,0 +1,207 @@
+//! What is kept of each motor: its command, the same without yaw, and its noise.
+
+use crate::{
+    effort::{self, Efforts, Factors},
+    margin::{Side, margin},
+    verdict::Average,
+};
+
+/// Commands are averaged over times of this length, in seconds, before their noise is taken, so that it hardly depends on
+/// the rate of the log.
+pub(crate) const BIN_S: f64 = 0.1;
+
+/// The number of the bin that a time falls into.
+pub(crate) fn bin_of(t_s: f64) -> f64 {
+    const ROUNDING: f64 = 1e-6;
+    libm::floor(t_s / BIN_S + ROUNDING)
+}
+
+/// What is kept of one motor.
+#[derive(Debug, Clone, Copy)]
+pub struct Motor {
+    /// Its effective command in the latest sample; NaN is unknown.
+    pub(crate) command: f64,
+    /// The same without the part that turns the nose.
+    pub(crate) less_yaw: f64,
+    /// Its yaw factor, and how much of each effort a unit of its command is; zeros where the geometry is unknown.
+    yaw: f64,
+    share: Efforts,
+    /// The sum of its commands in this bin, and their mean in the bin before; NaN is unknown.
+    bin_sum: f64,
+    bin_before: f64,
+    /// How far it is from the mean of all motors, lately and as a trim.
+    pub(crate) difference: Average,
+    pub(crate) trim: Average,
+    /// Its margins while a level was reached, since it was first.
+    pub(crate) record: MotorRecord,
+}
+
+/// The margins of a motor over some time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MotorRecord {
+    pub(crate) samples: u32,
+    pub(crate) mean_margin: f64,
+    pub(crate) least_margin: f64,
+    pub(crate) side: Side,
+}
+
+/// What all motors do together at one time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Together {
+    pub(crate) efforts: Efforts,
+    /// The noise of the commands, known when a bin is complete; else NaN.
+    pub(crate) noise: f64,
+}
+
+/// The bin that the latest sample fell into.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bin {
+    index: f64,
+    samples: u32,
+}
+
+impl Motor {
+    /// Memory for a motor, all zeros.
+    pub(crate) const IDLE: Motor = Motor {
+        command: 0.0,
+        less_yaw: 0.0,
+        yaw: 0.0,
+        share: [0.0; 4],
+        bin_sum: 0.0,
+        bin_before: 0.0,
+        difference: Average::NONE,
+        trim: Average::NONE,
+        record: MotorRecord {
+            samples: 0,
+            mean_margin: 0.0,
+            least_margin: 0.0,
+            side: Side::Low,
+        },
+    };
+
+    /// A motor of which nothing is known yet.
+    pub const UNKNOWN: Motor = Motor {
+        command: f64::NAN,
+        less_yaw: f64::NAN,
+        bin_before: f64::NAN,
+        record: MotorRecord::NONE,
+        ..Motor::IDLE
+    };
+
+    /// A motor at an effective command.
+    #[cfg(test)]
+    pub(crate) fn at(command: f64) -> Motor {
+        Motor {
+            command,
+            less_yaw: command,
+            ..Motor::UNKNOWN
+        }
+    }
+}
+
+impl MotorRecord {
+    pub(crate) const NONE: MotorRecord = MotorRecord {
+        samples: 0,
+        mean_margin: 0.0,
+        least_margin: f64::INFINITY,
+        side: Side::High,
+    };
+
+    pub(crate) fn add(&mut self, e: f64) {
+        if !e.is_finite() {
+            return;
+        }
+        let margin = margin(e);
+        self.samples += 1;
+        self.mean_margin += (margin - self.mean_margin) / f64::from(self.samples);
+        if margin < self.least_margin {
+            self.least_margin = margin;
+            self.side = Side::of(e);
+        }
+    }
+}
+
+/// Gives each motor its factors. Without factors for every motor, or where they do not tell the efforts apart, yaw stays in.
+pub(crate) fn set_geometry(motors: &mut [Motor], factors: &[Factors]) {
+    let normal = effort::normal(factors.iter().copied());
+    let column = |factors| effort::column(&normal, factors);
+    let is_known = factors.len() == motors.len() && factors.iter().all(|f| column(f).is_some());
+    for (motor, factors) in motors.iter_mut().zip(factors) {
+        if let (true, Some(share)) = (is_known, column(factors)) {
+            (motor.yaw, motor.share) = (factors[2], share);
+        }
+    }
+}
+
+/// Forgets the commands, and keeps the geometry.
+pub(crate) fn clear(motors: &mut [Motor]) {
+    for motor in motors {
+        let Motor { yaw, share, .. } = *motor;
+        *motor = Motor {
+            yaw,
+            share,
+            record: motor.record,
+            ..Motor::UNKNOWN
+        };
+    }
+}
+
+/// Takes in the effective command of each motor at a time; values outside [0, 1] and missing ones are unknown.
+pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f64]) -> Together {
+    let noise = bin.begin(t_s, motors);
+    let commands = commands.iter().map(|e| match e {
+        0.0..=1.0 => *e,
+        _ => f64::NAN,
+    });
+    let commands = commands.chain(core::iter::repeat(f64::NAN));
+    let mut efforts = [0.0; 4];
+    let mut has_geometry = false;
+    for (motor, command) in motors.iter_mut().zip(commands) {
+        motor.command = command;
+        motor.bin_sum += command;
+        for (effort, share) in efforts.iter_mut().zip(motor.share) {
+            *effort += share * command;
+            has_geometry |= share != 0.0;
+        }
+    }
+    for motor in motors.iter_mut() {
+        motor.less_yaw = motor.command - motor.yaw * efforts[2];
+    }
+    if !has_geometry {
+        efforts = effort::UNKNOWN;
+    }
+    Together { efforts, noise }
+}
+
+impl Bin {
+    pub(crate) const NONE: Bin = Bin {
+        index: f64::NEG_INFINITY,
+        samples: 0,
+    };
+
+    /// The noise of the bin that a new one at a time completes: `sqrt(mean over motors of (step^2) / 2)`, with the steps
+    /// from the bin before.
+    fn begin(&mut self, t_s: f64, motors: &mut [Motor]) -> f64 {
+        let index = bin_of(t_s);
+        let mut noise = f64::NAN;
+        if index != self.index {
+            let (mut squares, mut known) = (0.0, 0.0);
+            for motor in motors.iter_mut() {
+                let mean = motor.bin_sum / f64::from(self.samples);
+                let step = mean - motor.bin_before;
+                if step.is_finite() {
+                    squares += step * step;
+                    known += 1.0;
+                }
+                motor.bin_before = mean;
+                motor.bin_sum = 0.0;
+            }
+            if known > 0.0 {
+                noise = libm::sqrt(squares / known / 2.0);
+            }
+            *self = Bin { index, samples: 0 };
+        }
+        self.samples += 1;
+        noise
+    }
+}

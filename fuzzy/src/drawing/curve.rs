@@ -1,0 +1,286 @@
+//! A value over time: as the data of an SVG path in the units of the data, and as text.
+
+use std::fmt::Write as _;
+
+use super::text::{block, number};
+
+/// The spans of time of a thinned curve; each keeps its first, smallest, largest and last value.
+const SPANS: usize = 500;
+
+/// The time that a picture shows, in seconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Its start.
+    pub start_s: f64,
+    /// Its end.
+    pub end_s: f64,
+}
+
+/// Seconds between ticks: the smallest step that gives few enough ticks is taken.
+const STEPS_S: [f64; 16] = [
+    0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0, 3600.0,
+    7200.0,
+];
+/// The most ticks that fit along the time, on a phone too.
+const MOST_TICKS: f64 = 7.0;
+
+impl Stretch {
+    /// Its length, at least a millisecond.
+    pub fn length_s(&self) -> f64 {
+        (self.end_s - self.start_s).max(1e-3)
+    }
+
+    /// The position of a time: 0 at the start, 1 at the end, within them.
+    pub fn share(&self, t_s: f64) -> f64 {
+        ((t_s - self.start_s) / self.length_s()).clamp(0.0, 1.0)
+    }
+
+    /// Whether a time lies within, ends included.
+    pub fn contains(&self, t_s: f64) -> bool {
+        (self.start_s..=self.end_s).contains(&t_s)
+    }
+
+    /// The times to mark, with their labels: whole steps, the last with its unit.
+    pub fn ticks(&self) -> Vec<(f64, String)> {
+        let fits = |step: &&f64| self.length_s() / **step <= MOST_TICKS;
+        let step_s = STEPS_S.iter().find(fits).copied();
+        let step_s = step_s.unwrap_or(self.length_s() / MOST_TICKS);
+        let first = (self.start_s / step_s).ceil();
+        let times = (0..=MOST_TICKS as usize).map(|i| (first + i as f64) * step_s);
+        let within = times.filter(|t_s| self.contains(*t_s));
+        let mut ticks: Vec<(f64, String)> = within.map(|t_s| (t_s, number(t_s, 1))).collect();
+        if let Some((_, last)) = ticks.last_mut() {
+            last.push_str(" s");
+        }
+        ticks
+    }
+}
+
+/// The data of an SVG path through `points` (time in seconds, value or NaN), which are in order of time.
+///
+/// Its x is the seconds since the start of the stretch, its y the value: what is drawn can be read back. The line is
+/// broken at unknown values and where there is no point for longer than `gap_s`. Many points are thinned; the smallest
+/// and the largest of each span stay.
+pub fn path(
+    points: impl Iterator<Item = (f64, f64)>,
+    stretch: Stretch,
+    gap_s: f64,
+    decimals: usize,
+) -> String {
+    let mut pen = Pen {
+        data: String::new(),
+        down: false,
+        decimals,
+    };
+    let span_s = stretch.length_s() / SPANS as f64;
+    let mut span = Span::default();
+    let mut last_s = f64::NEG_INFINITY;
+    for (t_s, value) in points.filter(|(t_s, _)| stretch.contains(*t_s)) {
+        let x = t_s - stretch.start_s;
+        let known = value.is_finite();
+        if !known || t_s - last_s > gap_s {
+            span.draw(&mut pen);
+            pen.down = false;
+        }
+        if known {
+            let index = (x / span_s) as usize;
+            if span.index != index {
+                span.draw(&mut pen);
+                span.index = index;
+            }
+            span.points.push((x, value));
+            last_s = t_s;
+        }
+    }
+    span.draw(&mut pen);
+    pen.data
+}
+
+#[derive(Default)]
+struct Span {
+    index: usize,
+    points: Vec<(f64, f64)>,
+}
+
+impl Span {
+    /// Draws the points that are kept, in order of time, and empties the span.
+    fn draw(&mut self, pen: &mut Pen) {
+        let indices = 0..self.points.len();
+        let value = |i: &usize| self.points.get(*i).map_or(f64::NAN, |point| point.1);
+        let by_value = |a: &usize, b: &usize| value(a).total_cmp(&value(b));
+        let mut kept = [
+            Some(0),
+            indices.clone().min_by(by_value),
+            indices.clone().max_by(by_value),
+            indices.last(),
+        ];
+        kept.sort_unstable();
+        let mut kept: Vec<usize> = kept.into_iter().flatten().collect();
+        kept.dedup();
+        for &(x, y) in kept.into_iter().filter_map(|i| self.points.get(i)) {
+            pen.to(x, y);
+        }
+        self.points.clear();
+    }
+}
+
+struct Pen {
+    data: String,
+    down: bool,
+    decimals: usize,
+}
+
+impl Pen {
+    fn to(&mut self, x: f64, y: f64) {
+        self.data.push(if self.down { 'L' } else { 'M' });
+        self.data += &number(x, 2);
+        self.data.push(' ');
+        self.data += &number(y, self.decimals);
+        if !self.down {
+            // A point on its own shows as a dot.
+            self.data += "h0";
+        }
+        self.down = true;
+    }
+}
+
+/// The rows of a picture as text.
+const ROWS: usize = 5;
+
+/// Values in percent over time as text, `width` columns wide.
+///
+/// A column shows the highest value of its span of time, so that no peak is lost; `·` marks spans in which all values
+/// are unknown, a blank column a span without points.
+pub fn over_time_text(points: &[(f64, Option<f64>)], width: usize) -> String {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else {
+        return String::new();
+    };
+    let (start_s, span_s) = (first.0, (last.0 - first.0).max(f64::MIN_POSITIVE));
+    let mut columns: Vec<Option<Option<f64>>> = vec![None; width];
+    for &(t_s, value) in points {
+        let column = ((t_s - start_s) / span_s * width as f64) as usize;
+        if let Some(cell) = columns.get_mut(column.min(width.saturating_sub(1))) {
+            let known = cell.flatten();
+            *cell = Some(match (known, value) {
+                (Some(a), Some(b)) => Some(a.max(b)),
+                (a, b) => a.or(b),
+            });
+        }
+    }
+
+    let mut text = String::new();
+    for row in (0..ROWS).rev() {
+        let label = match row {
+            r if r + 1 == ROWS => "100 % ┤",
+            0 => "  0 % ┤",
+            _ => "      │",
+        };
+        let line: String = columns.iter().map(|&column| cell(column, row)).collect();
+        let _ = writeln!(text, "{label}{}", line.trim_end());
+    }
+    let (from, to) = (
+        format!("{start_s:.0} s"),
+        format!("{:.0} s", start_s + span_s),
+    );
+    let _ = writeln!(text, "      └{}", "─".repeat(width));
+    let _ = writeln!(
+        text,
+        "       {from}{to:>rest$}",
+        rest = width.saturating_sub(from.chars().count())
+    );
+    text
+}
+
+/// The character of one column in one row, counted from the bottom.
+fn cell(column: Option<Option<f64>>, row: usize) -> char {
+    match column {
+        None => ' ',
+        Some(None) if row == 0 => '·',
+        Some(None) => ' ',
+        Some(Some(percent)) => {
+            // At least one eighth: 0 is a known value, and looks known.
+            let eighths = ((percent / 100.0 * (ROWS * 8) as f64).round() as usize).max(1);
+            block(eighths, row)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STRETCH: Stretch = Stretch {
+        start_s: 10.0,
+        end_s: 110.0,
+    };
+
+    #[test]
+    fn ticks_are_round_and_few() {
+        let ticks = |start_s, end_s| -> Vec<f64> {
+            let ticks = Stretch { start_s, end_s }.ticks().into_iter();
+            ticks.map(|(t_s, _)| t_s).collect()
+        };
+        assert_eq!(ticks(48.8, 178.0), [60.0, 80.0, 100.0, 120.0, 140.0, 160.0]);
+        for end_s in [0.2, 3.0, 61.0, 600.0, 5000.0, 1e6] {
+            let ticks = ticks(0.0, end_s);
+            assert!((2..=8).contains(&ticks.len()), "{end_s}: {ticks:?}");
+        }
+    }
+
+    #[test]
+    fn unknown_values_and_gaps_break_the_line() {
+        let points = [
+            (10.0, 1.0),
+            (11.0, 2.0),
+            (12.0, f64::NAN),
+            (13.0, 3.0),
+            (20.0, 4.0),
+        ];
+        let data = path(points.into_iter(), STRETCH, 2.0, 2);
+        assert_eq!(data, "M0 1h0L1 2M3 3h0M10 4h0");
+    }
+
+    #[test]
+    fn thinning_keeps_a_peak_of_one_sample() {
+        let points = (0..100_000).map(|i| {
+            let value = if i == 41_234 { 99.0 } else { f64::from(i % 7) };
+            (10.0 + f64::from(i) * 1e-3, value)
+        });
+        let data = path(points, STRETCH, 2.0, 1);
+        assert!(data.contains("L41.23 99"), "the peak is gone");
+        assert!(data.len() < 30_000, "{} bytes", data.len());
+    }
+
+    #[test]
+    fn what_lies_outside_is_not_drawn() {
+        assert_eq!(
+            path([(0.0, 1.0), (200.0, 1.0)].into_iter(), STRETCH, 2.0, 1),
+            ""
+        );
+    }
+
+    #[test]
+    fn a_peak_of_one_step_is_seen_and_the_unknown_is_marked() {
+        let mut points: Vec<(f64, Option<f64>)> =
+            (0..400).map(|i| (i as f64 * 0.1, Some(10.0))).collect();
+        points[200].1 = Some(100.0);
+        for point in &mut points[..40] {
+            point.1 = None;
+        }
+        insta::assert_snapshot!(over_time_text(&points, 40), @r"
+        100 % ┤                    █
+              │                    █
+              │                    █
+              │                    █
+          0 % ┤····▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄█▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄▄
+              └────────────────────────────────────────
+               0 s                                 40 s
+        ");
+    }
+
+    #[test]
+    fn nothing_to_draw_is_nothing() {
+        assert_eq!(over_time_text(&[], 40), "");
+        assert!(over_time_text(&[(3.0, Some(50.0))], 10).contains("3 s"));
+    }
+}

@@ -1,0 +1,255 @@
+//! The terms of a variable, and an evaluation with its reasons, as SVG.
+
+use super::{
+    colour::{Colour, distinct, distinct_line},
+    plot::{Plot, Series, draw},
+    scale::Scale,
+    sheet::{Anchor, Frame, LABEL_WIDTH, Sheet},
+    text::{number, short, titled, wrapped},
+};
+use crate::{
+    engine::{ExplainedOutput, Explanation},
+    model::{Model, Variable},
+};
+
+const WIDTH: f64 = 640.0;
+/// The height of the frame of a variable in an explanation, and of all that belongs to it.
+const FRAME: f64 = 96.0;
+const BLOCK: f64 = 166.0;
+/// The length of the bar of a rule of strength 1.
+const RULE_BAR: f64 = 60.0;
+/// The even steps at which a membership function is drawn.
+const STEPS: usize = 200;
+
+/// The SVG of the terms of a variable: their membership functions and, where a value is given, the degree of each there.
+pub fn terms_svg(variable: &Variable, at: Option<f64>) -> String {
+    let mut sheet = Sheet::new(WIDTH, 330.0);
+    let title = titled(&variable.name, variable.unit.as_deref());
+    let description = variable.description.as_deref().unwrap_or("");
+    sheet.heading(70.0, &title, description);
+    let frame = Frame {
+        left: 70.0,
+        top: 44.0,
+        width: 420.0,
+        height: 230.0,
+    };
+    terms(&mut sheet, &frame, variable, &[], at);
+    sheet.finish(&format!("the terms of {title}"))
+}
+
+/// The SVG of an explanation: the degrees of the inputs' terms, the aggregated set of each output, the rules that fired.
+///
+/// `model` is the rule set that was explained.
+pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
+    let written: Vec<Vec<String>> = explanation
+        .rules
+        .iter()
+        .map(|rule| {
+            let text = format!("{}: {}", rule.rule + 1, rule.text);
+            wrapped(&text, ((WIDTH - 100.0 - RULE_BAR) / LABEL_WIDTH) as usize)
+        })
+        .collect();
+    let blocks = explanation.inputs.len() + explanation.outputs.len();
+    let lines = written.iter().map(Vec::len).sum::<usize>() + written.len();
+    let rules_top = 60.0 + BLOCK * blocks as f64;
+    let mut sheet = Sheet::new(WIDTH, rules_top + 14.0 * lines as f64 + 20.0);
+    sheet.heading(70.0, &model.name, "");
+    let frame = |i: usize| Frame {
+        left: 70.0,
+        top: 62.0 + BLOCK * i as f64,
+        width: 400.0,
+        height: FRAME,
+    };
+    for (i, (input, variable)) in explanation.inputs.iter().zip(&model.inputs).enumerate() {
+        let mut title = format!("{} = {}", variable.name, short(input.given));
+        if input.given != input.value {
+            title += &format!(", outside the range, used as {}", short(input.value));
+        }
+        let at = (70.0, frame(i).top - 8.0);
+        sheet.text(at, Anchor::Start, "title", &title);
+        terms(&mut sheet, &frame(i), variable, &[], Some(input.value));
+    }
+    for (i, (output, written)) in explanation.outputs.iter().zip(&model.outputs).enumerate() {
+        let frame = frame(explanation.inputs.len() + i);
+        let at = (70.0, frame.top - 8.0);
+        sheet.text(
+            at,
+            Anchor::Start,
+            "title",
+            &answer(output, &written.variable),
+        );
+        if output.set.is_empty() {
+            let scale = Scale::new(written.variable.low, written.variable.high);
+            sheet.axes(&frame, (scale, ""), (Scale::new(0.0, 1.0), ""));
+            marker(&mut sheet, &frame, scale, output.value);
+        } else {
+            terms(
+                &mut sheet,
+                &frame,
+                &written.variable,
+                &output.set,
+                output.value,
+            );
+        }
+    }
+    let mut y = rules_top;
+    if !written.is_empty() {
+        sheet.text(
+            (70.0, y),
+            Anchor::Start,
+            "title",
+            "Rules that fired, with their firing strengths",
+        );
+    }
+    y += 20.0;
+    for (fired, lines) in explanation.rules.iter().zip(&written) {
+        let bar = Frame {
+            left: 110.0,
+            top: y - 8.0,
+            width: RULE_BAR,
+            height: 9.0,
+        };
+        let full = Frame {
+            width: RULE_BAR * fired.strength.clamp(0.0, 1.0),
+            ..bar
+        };
+        sheet.rect(bar, format_args!(r##"fill="#eee""##));
+        sheet.rect(full, format_args!(r#"fill="{}""#, distinct_line(1)));
+        sheet.text((104.0, y), Anchor::End, "label", &number(fired.strength, 3));
+        for line in lines {
+            sheet.text((bar.right() + 10.0, y), Anchor::Start, "label", line);
+            y += 14.0;
+        }
+        y += 4.0;
+    }
+    sheet.finish(&format!("{}: an evaluation with its reasons", model.name))
+}
+
+/// The value of an output in words.
+pub(super) fn answer(output: &ExplainedOutput, variable: &Variable) -> String {
+    let unit = variable.unit.iter().map(|unit| format!(" {unit}"));
+    let unit: String = unit.collect();
+    match output.value {
+        None => format!("{} is undefined: no rule fired", output.name),
+        Some(value) if output.is_default => {
+            format!(
+                "{} = {}{unit}, the default value: no rule fired",
+                output.name,
+                digits(value)
+            )
+        }
+        Some(value) => format!("{} = {}{unit}", output.name, digits(value)),
+    }
+}
+
+/// Eight significant digits, without trailing zeros.
+pub(super) fn digits(x: f64) -> String {
+    let rounded: f64 = format!("{x:.7e}").parse().unwrap_or(x);
+    rounded.to_string()
+}
+
+/// The terms of a variable in a frame: their membership functions, an aggregated set, a value and the degrees there.
+fn terms(
+    sheet: &mut Sheet,
+    frame: &Frame,
+    variable: &Variable,
+    set: &[(f64, f64)],
+    at: Option<f64>,
+) {
+    let (x, y) = (
+        Scale::new(variable.low, variable.high),
+        Scale::new(0.0, 1.0),
+    );
+    if let (Some(first), Some(last)) = (set.first(), set.last()) {
+        let ends = [(last.0, 0.0), (first.0, 0.0)];
+        let outline = set.iter().chain(&ends);
+        let outline = outline.map(|(value, degree)| frame.at(x.share(*value), y.share(*degree)));
+        let outline: Vec<(f64, f64)> = outline.collect();
+        let paint = format_args!(r#"fill="{}" fill-opacity=".45""#, distinct(0));
+        sheet.through("polygon", &outline, paint);
+    }
+    let series = variable.terms.iter().enumerate().map(|(i, term)| Series {
+        dash: "none",
+        ..Series::new(i, term.name.as_str(), membership(variable, i))
+    });
+    let plot = Plot {
+        title: String::new(),
+        x: (x, String::new()),
+        y: (y, "degree".into()),
+        series: series.collect(),
+    };
+    draw(sheet, frame, &plot);
+    marker(sheet, frame, x, at);
+    let keys = plot
+        .series
+        .iter()
+        .zip(&variable.terms)
+        .map(|(series, term)| {
+            let degree = at.map(|at| format!(" {}", number(term.membership(at), 3)));
+            (
+                series.colour,
+                format!("{}{}", term.name, degree.unwrap_or_default()),
+            )
+        });
+    let keys: Vec<(Colour, String)> = keys.collect();
+    sheet.keys(frame.right() + 14.0, frame.top, &keys);
+}
+
+/// A value, marked over the height of a frame.
+fn marker(sheet: &mut Sheet, frame: &Frame, x: Scale, value: Option<f64>) {
+    if let Some(value) = value {
+        let share = x.share(value).clamp(0.0, 1.0);
+        sheet.line(frame.at(share, 0.0), frame.at(share, 1.0), "marker");
+    }
+}
+
+/// The membership function of a term over the range: even steps, and both sides of each corner.
+fn membership(variable: &Variable, term: usize) -> Vec<(f64, f64)> {
+    let Some(term) = variable.terms.get(term) else {
+        return Vec::new();
+    };
+    let range = Scale::new(variable.low, variable.high);
+    let even = (0..=STEPS).map(|i| range.value(i as f64 / STEPS as f64));
+    let beside = 1e-9 * (range.high - range.low);
+    let corners = term.shape.corners().unwrap_or_default();
+    let corners = corners
+        .into_iter()
+        .flat_map(|(x, _)| [x - beside, x, x + beside]);
+    let within = corners.filter(|x| (range.low..=range.high).contains(x));
+    let mut xs: Vec<f64> = even.chain(within).collect();
+    xs.sort_by(f64::total_cmp);
+    xs.into_iter().map(|x| (x, term.membership(x))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::MembershipFunction;
+
+    #[test]
+    fn a_term_is_drawn_through_its_corners_and_names_cannot_be_markup() {
+        let variable = Variable::new("a<b", 0.0, 10.0)
+            .term(
+                "\"low\"",
+                MembershipFunction::Rectangle {
+                    left: 0.0,
+                    right: 3.33,
+                },
+            )
+            .term(
+                "high",
+                MembershipFunction::Triangle {
+                    left: 3.33,
+                    peak: 10.0,
+                    right: 10.0,
+                },
+            );
+        let points = membership(&variable, 0);
+        assert!(points.contains(&(3.33, 1.0)), "{points:?}");
+        let after = points.iter().find(|(x, _)| *x > 3.33);
+        assert!(after.is_some_and(|(x, degree)| *x < 3.331 && *degree == 0.0));
+        let svg = terms_svg(&variable, Some(2.0));
+        assert!(svg.contains("a&lt;b") && !svg.contains("a<b"));
+        assert!(svg.contains("&quot;low&quot; 1"));
+    }
+}

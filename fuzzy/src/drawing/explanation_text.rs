@@ -1,0 +1,117 @@
+//! An evaluation with its reasons, as text.
+
+use std::fmt::Write as _;
+
+use super::{
+    explanation::{answer, digits},
+    scale::Scale,
+    text::{bar, block},
+};
+use crate::{
+    engine::{Degree, ExplainedInput, ExplainedOutput, Explanation},
+    model::{Model, Variable},
+};
+
+/// The length of a bar of degree 1.
+const BAR: usize = 20;
+/// Columns and rows of the picture of an aggregated set.
+const COLUMNS: usize = 60;
+const ROWS: usize = 6;
+
+/// An explanation as text: the degrees of the inputs' terms, the rules that fired, the aggregated set of each output.
+///
+/// `model` is the rule set that was explained.
+pub fn explanation_text(model: &Model, explanation: &Explanation) -> String {
+    let mut text = format!("{}\n", model.name);
+    for (input, variable) in explanation.inputs.iter().zip(&model.inputs) {
+        add_input(&mut text, variable, input);
+    }
+    for (output, written) in explanation.outputs.iter().zip(&model.outputs) {
+        add_output(&mut text, &written.variable, output, explanation);
+    }
+    text
+}
+
+// Writing to a String cannot fail.
+fn add_input(text: &mut String, variable: &Variable, input: &ExplainedInput) {
+    let unit = variable.unit.iter().map(|unit| format!(" {unit}"));
+    let unit: String = unit.collect();
+    let _ = write!(text, "\n{} = {}{unit}", input.name, digits(input.given));
+    if input.given != input.value {
+        let _ = write!(text, ", outside the range, used as {}", digits(input.value));
+    }
+    text.push('\n');
+    add_degrees(text, &input.terms);
+}
+
+/// A line for each term: its degree as a number and as a bar.
+fn add_degrees(text: &mut String, terms: &[Degree]) {
+    let names = terms.iter().map(|term| term.term.chars().count());
+    let width = names.max().unwrap_or(0).max(4);
+    if !terms.is_empty() {
+        let _ = writeln!(
+            text,
+            "  {:width$}   degree  0{:>scale$}",
+            "term",
+            1,
+            scale = BAR - 1
+        );
+    }
+    for Degree { term, degree } in terms {
+        let _ = writeln!(text, "  {term:width$} {degree:>8.5}  {}", bar(*degree, BAR));
+    }
+}
+
+fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, all: &Explanation) {
+    let _ = writeln!(text, "\n{}", answer(output, variable));
+    let _ = writeln!(
+        text,
+        "  coverage {:.5}, the largest firing strength",
+        output.coverage
+    );
+    add_degrees(text, &output.terms);
+    if !output.rules.is_empty() {
+        text.push_str("\n  strength  share  rule\n");
+    }
+    for share in &output.rules {
+        let fired = all.rules.iter().find(|rule| rule.rule == share.rule);
+        let rule = fired.map_or("", |rule| rule.text.as_str());
+        let (number, percent) = (share.rule + 1, 100.0 * share.share);
+        let _ = writeln!(
+            text,
+            "  {:>8.5} {percent:>4.0} %  {number}: {rule}",
+            share.strength
+        );
+    }
+    if !output.set.is_empty() && !output.rules.is_empty() {
+        let _ = writeln!(text, "\n  aggregated set: degree over {}", output.name);
+        add_set(text, output, Scale::new(variable.low, variable.high));
+    }
+}
+
+/// The aggregated set, its degrees from 0 to 1 upwards, the value marked below.
+fn add_set(text: &mut String, output: &ExplainedOutput, range: Scale) {
+    let last = output.set.len() - 1;
+    let eighths = |column: usize| {
+        let point = output.set.get(column * last / (COLUMNS - 1));
+        point.map_or(0, |(_, degree)| {
+            (degree * (8 * ROWS) as f64).round() as usize
+        })
+    };
+    for row in (0..ROWS).rev() {
+        let label = if row + 1 == ROWS { "1" } else { " " };
+        let blocks: String = (0..COLUMNS)
+            .map(|column| block(eighths(column), row))
+            .collect();
+        let _ = writeln!(text, "  {label} │{}", blocks.trim_end());
+    }
+    let _ = writeln!(text, "  0 └{}", "─".repeat(COLUMNS));
+    if let Some(value) = output.value {
+        let column = (range.share(value) * (COLUMNS - 1) as f64).round().max(0.0);
+        let indent = " ".repeat(column as usize);
+        let _ = writeln!(text, "     {indent}▲ {}", digits(value));
+    }
+    let (low, high) = (digits(range.low), digits(range.high));
+    let gap = COLUMNS.saturating_sub(low.len() + high.len()) + 1;
+    let _ = writeln!(text, "    {low}{}{high}", " ".repeat(gap));
+}

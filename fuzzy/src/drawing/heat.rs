@@ -1,0 +1,221 @@
+//! A slice as a heat map with contour lines, or as a curve where it has one axis.
+
+use std::fmt::Write as _;
+
+use super::{
+    colour::{Colour, viridis},
+    contour,
+    scale::Scale,
+    sheet::{Anchor, Frame, Sheet, px},
+    slice::Slice,
+    text::short,
+};
+
+/// The colour of cells without a value.
+const UNKNOWN: Colour = Colour(0xd9, 0xd9, 0xd9);
+
+/// Colours differ in steps of this share of the range; finer steps only make the file larger.
+const COLOURS: f64 = 100.0;
+
+/// The SVG of a slice: a heat map with contour lines, or a curve where there is one axis.
+///
+/// Hatched cells (dashed parts of a curve) were filled in, grey cells have no value.
+pub fn map_svg(slice: &Slice) -> String {
+    let mut sheet = Sheet::map();
+    sheet.heading(Frame::MAP.left, &slice.title(), &slice.held_text());
+    match &slice.y {
+        Some(y) => {
+            cells(&mut sheet, slice, |i, j| {
+                Some(step_colour(slice.share(slice.cell(i, j).value?)))
+            });
+            contours(&mut sheet, slice);
+            axes(&mut sheet, slice, y.scale(), &y.title());
+            sheet.legend(slice);
+            sheet.notes(slice);
+        }
+        None => curve(&mut sheet, slice),
+    }
+    sheet.finish(&whole_title(slice))
+}
+
+/// The colour of a share of the range, in steps.
+pub(super) fn step_colour(share: f64) -> Colour {
+    viridis((share * COLOURS).round() / COLOURS)
+}
+
+/// What is drawn and where the other inputs are held.
+pub(super) fn whole_title(slice: &Slice) -> String {
+    [slice.title(), slice.held_text()]
+        .join(" ")
+        .trim_end()
+        .to_owned()
+}
+
+pub(super) fn axes(sheet: &mut Sheet, slice: &Slice, y: Scale, y_title: &str) {
+    sheet.axes(
+        &Frame::MAP,
+        (slice.x.scale(), &slice.x.title()),
+        (y, y_title),
+    );
+}
+
+/// Fills the frame cell by cell, and hatches the cells that were filled in.
+pub(super) fn cells(
+    sheet: &mut Sheet,
+    slice: &Slice,
+    colour: impl Fn(usize, usize) -> Option<Colour>,
+) {
+    // A cell reaches half way to its neighbours; those at the ends are cut by the frame.
+    let edge = |i: usize, count: usize| {
+        if i == count {
+            return 1.0;
+        }
+        ((i as f64 - 0.5) / (count - 1).max(1) as f64).clamp(0.0, 1.0)
+    };
+    let (columns, rows) = (slice.columns(), slice.rows());
+    let area = |column: usize, row: usize, length: usize| {
+        let (left, bottom) = Frame::MAP.at(edge(column, columns), edge(row, rows));
+        let (right, top) = Frame::MAP.at(edge(column + length, columns), edge(row + 1, rows));
+        Frame {
+            left,
+            top,
+            width: right - left,
+            height: bottom - top,
+        }
+    };
+    runs(columns, rows, colour, |column, row, length, colour| {
+        let area = area(column, row, length);
+        // A little larger, so that no seam shows between neighbours.
+        let area = Frame {
+            width: area.width + 0.3,
+            height: area.height + 0.3,
+            ..area
+        };
+        sheet.rect(
+            area,
+            format_args!(r#"fill="{}""#, colour.unwrap_or(UNKNOWN)),
+        );
+    });
+    let mut outline = String::new();
+    let is_filled = |i: usize, j: usize| slice.cell(i, j).filled_from.is_some();
+    runs(
+        columns,
+        rows,
+        is_filled,
+        |column, row, length, is_filled| {
+            if is_filled {
+                let area = area(column, row, length);
+                let [x, y, width, height] = [area.left, area.top, area.width, area.height].map(px);
+                // Writing to a String cannot fail.
+                let _ = write!(outline, "M{x} {y}h{width}v{height}h-{width}z");
+            }
+        },
+    );
+    if !outline.is_empty() {
+        sheet.push(format_args!(
+            r#"<path d="{outline}" fill="url(#hatch)" fill-opacity=".75"/>"#
+        ));
+    }
+}
+
+/// Calls `draw` with column, row, length and look of each run of cells in a row that look the same.
+pub fn runs<L: PartialEq + Copy>(
+    columns: usize,
+    rows: usize,
+    look: impl Fn(usize, usize) -> L,
+    mut draw: impl FnMut(usize, usize, usize, L),
+) {
+    for row in 0..rows {
+        let looks: Vec<L> = (0..columns).map(|column| look(column, row)).collect();
+        let mut column = 0;
+        for run in looks.chunk_by(|a, b| a == b) {
+            draw(column, row, run.len(), run[0]);
+            column += run.len();
+        }
+    }
+}
+
+fn contours(sheet: &mut Sheet, slice: &Slice) {
+    let frame = Frame::MAP;
+    let (columns, rows) = (slice.columns(), slice.rows());
+    let share = |(i, j): (f64, f64)| (i / (columns - 1) as f64, j / (rows - 1) as f64);
+    let (low, high) = (slice.range.low, slice.range.high);
+    let levels = slice.range.ticks(5.0).into_iter();
+    for level in levels.filter(|level| *level > low && *level < high) {
+        let value = |i: usize, j: usize| slice.cell(i, j).value;
+        let mut lines = contour::lines(contour::pieces(columns, rows, value, level));
+        lines.sort_by_key(|line| std::cmp::Reverse(line.len()));
+        for line in &lines {
+            let points = line.iter().map(|point| share(*point));
+            let points: Vec<(f64, f64)> = points.map(|(x, y)| frame.at(x, y)).collect();
+            sheet.through("polyline", &points, format_args!(r#"class="halo""#));
+            sheet.through("polyline", &points, format_args!(r#"class="contour""#));
+        }
+        // The longest line of a level carries its number.
+        if let Some(line) = lines.first().filter(|line| line.len() > 4)
+            && let Some(middle) = line.get(line.len() / 2)
+        {
+            let (x, y) = share(*middle);
+            sheet.text_on(frame.label_at(x, y), &short(level));
+        }
+    }
+}
+
+/// The output over one input; filled parts are dashed.
+fn curve(sheet: &mut Sheet, slice: &Slice) {
+    const DRAWN: &str = r##"fill="none" stroke="#2a788e" stroke-width="2.5""##;
+    const DASHED: &str =
+        r##"fill="none" stroke="#d55e00" stroke-width="2.5" stroke-dasharray="6 4""##;
+    let frame = Frame::MAP;
+    sheet.grid(&frame, slice.range);
+    let mut piece: Vec<(f64, f64)> = Vec::new();
+    let mut style = DRAWN;
+    for (i, x) in slice.x.points.iter().enumerate() {
+        let cell = slice.cell(i, 0);
+        let this = if cell.filled_from.is_some() {
+            DASHED
+        } else {
+            DRAWN
+        };
+        let at = |value| frame.at(slice.x.scale().share(*x), slice.share(value));
+        let point = cell.value.map(at);
+        if this != style {
+            // The parts meet.
+            piece.extend(point);
+        }
+        if this != style || point.is_none() {
+            sheet.through("polyline", &piece, format_args!("{style}"));
+            piece.clear();
+            style = this;
+        }
+        piece.extend(point);
+    }
+    sheet.through("polyline", &piece, format_args!("{style}"));
+    axes(sheet, slice, slice.range, &slice.output_title());
+    if slice.any_filled() {
+        let note = format!(
+            "dashed: interpolated where no rule applies ({})",
+            slice.filling_text()
+        );
+        sheet.text((frame.left, 486.0), Anchor::Start, "label", &note);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_neighbours_become_one_run() {
+        let mut found = Vec::new();
+        runs(
+            4,
+            1,
+            |i, _| i / 3,
+            |column, row, length, look| {
+                found.push((column, row, length, look));
+            },
+        );
+        assert_eq!(found, [(0, 0, 3, 0), (3, 0, 1, 1)]);
+    }
+}

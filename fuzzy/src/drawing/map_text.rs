@@ -1,0 +1,142 @@
+//! A map as text: one character a cell.
+
+use std::fmt::Write as _;
+
+use super::{
+    colour::{Colour, distinct, viridis},
+    scale::thinned,
+    slice::{Cell, Slice},
+    text::short,
+};
+use crate::model::Model;
+
+/// The most columns and rows of a picture.
+const MOST_COLUMNS: usize = 61;
+const MOST_ROWS: usize = 26;
+
+/// A slice as text: a digit for the tenth of the range in which a value lies, a letter where it was filled in.
+///
+/// `paint` gives each cell its character and its colour on a terminal, or the character alone:
+/// `|cell, _| cell.to_string()`.
+pub fn map_text(slice: &Slice, paint: impl Fn(char, Option<Colour>) -> String) -> String {
+    let mut text = heading(slice, "");
+    picture(&mut text, slice, |cell| {
+        let Some(value) = cell.value else {
+            return paint('.', None);
+        };
+        let tenth = (slice.share(value) * 10.0).min(9.0) as u8;
+        let first = if cell.filled_from.is_some() {
+            b'a'
+        } else {
+            b'0'
+        };
+        paint(char::from(first + tenth), Some(viridis(slice.share(value))))
+    });
+    let (low, high) = (short(slice.range.low), short(slice.range.high));
+    let unit = slice.unit.as_deref().unwrap_or("");
+    line(
+        &mut text,
+        format_args!("\n0 to 9: tenths of {low} to {high} {unit}"),
+    );
+    if slice.any_filled() {
+        let method = slice.filling_text();
+        line(
+            &mut text,
+            format_args!("a to j: the same, interpolated where no rule applies ({method})"),
+        );
+    }
+    if slice.any_unknown() {
+        line(&mut text, format_args!(".: unknown, no rule fires"));
+    }
+    text
+}
+
+/// A slice as text: a character for the rule that dominates each cell, and the list of the rules.
+pub fn rules_text(
+    slice: &Slice,
+    model: &Model,
+    paint: impl Fn(char, Option<Colour>) -> String,
+) -> String {
+    let mut text = heading(slice, ", dominating rule");
+    let mut seen: Vec<usize> = Vec::new();
+    picture(&mut text, slice, |cell| {
+        let Some(rule) = cell.rule else {
+            return paint('.', None);
+        };
+        let i = seen.iter().position(|r| *r == rule).unwrap_or_else(|| {
+            seen.push(rule);
+            seen.len() - 1
+        });
+        let mark = if cell.filled_from.is_some() {
+            ' '
+        } else {
+            mark(i)
+        };
+        paint(mark, Some(distinct(i)))
+    });
+    text.push('\n');
+    for (i, rule) in seen.iter().enumerate() {
+        if let Some(written) = model.rules.get(*rule) {
+            let (mark, number) = (mark(i), rule + 1);
+            line(
+                &mut text,
+                format_args!("{mark} rule {number}: {}", written.rule),
+            );
+        }
+    }
+    if slice.any_filled() {
+        line(
+            &mut text,
+            format_args!("blank: no rule applies, the value is interpolated"),
+        );
+    }
+    text
+}
+
+fn heading(slice: &Slice, more: &str) -> String {
+    let held = slice.held_text();
+    let between = if held.is_empty() { "" } else { " " };
+    format!("{}{more}{between}{held}\n", slice.title())
+}
+
+/// Writing to a String cannot fail.
+fn line(text: &mut String, arguments: std::fmt::Arguments<'_>) {
+    let _ = writeln!(text, "{arguments}");
+}
+
+/// A character for the i-th rule; after 36 all the same.
+fn mark(i: usize) -> char {
+    let digit = u32::try_from(i).ok().and_then(|i| char::from_digit(i, 36));
+    digit.map_or('+', |c| c.to_ascii_uppercase())
+}
+
+fn picture(text: &mut String, slice: &Slice, mut draw: impl FnMut(Cell) -> String) {
+    let columns = thinned(slice.columns(), MOST_COLUMNS);
+    let rows = match &slice.y {
+        Some(y) => {
+            line(text, format_args!("{}", y.title()));
+            thinned(y.points.len(), MOST_ROWS)
+        }
+        None => vec![0],
+    };
+    for (i, &row) in rows.iter().enumerate().rev() {
+        let is_marked = [0, rows.len() / 2, rows.len() - 1].contains(&i);
+        let value = slice.y.as_ref().and_then(|y| y.points.get(row));
+        let label = value.filter(|_| is_marked).map(|y| short(*y));
+        let cells = columns.iter().map(|&column| draw(slice.cell(column, row)));
+        let cells: String = cells.collect();
+        line(
+            text,
+            format_args!("{:>8} |{cells}", label.unwrap_or_default()),
+        );
+    }
+    let scale = slice.x.scale();
+    let (low, high) = (short(scale.low), short(scale.high));
+    let gap = " ".repeat(columns.len().saturating_sub(low.len() + high.len()));
+    line(
+        text,
+        format_args!("{:>8} +{}", "", "-".repeat(columns.len())),
+    );
+    line(text, format_args!("{:>10}{low}{gap}{high}", ""));
+    line(text, format_args!("{:>10}{}", "", slice.x.title()));
+}

@@ -1,0 +1,56 @@
+//! Pictures of rule sets and of values over time, as SVG and as text.
+//!
+//! The drawing kit takes plain data and gives text: it opens no file, knows no terminal, and has no dependencies.
+//!
+//! | picture | as SVG | as text |
+//! |---|---|---|
+//! | the terms of a variable | [`terms_svg`] | |
+//! | an evaluation with its reasons | [`explanation_svg`] | [`explanation_text`] |
+//! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`] |
+//! | the rule that dominates each part of a map | [`rules_svg`] | [`rules_text`] |
+//! | lines over a number ([`Plot`]) | [`plots_svg`] | |
+//! | curves over time ([`Panel`]) | [`Panel::svg`] | [`over_time_text`] |
+//!
+//! Names and texts in a picture are escaped: no name can add markup.
+//!
+//! # Example: the terms of a variable, with the degree of each at 8
+//! ```
+//! use fuzzy::model::{MembershipFunction, Variable};
+//!
+//! let service = Variable::new("service", 0.0, 10.0)
+//!     .term("poor", MembershipFunction::Triangle { left: 0.0, peak: 0.0, right: 5.0 })
+//!     .term("good", MembershipFunction::Triangle { left: 0.0, peak: 5.0, right: 10.0 });
+//! let svg = fuzzy::drawing::terms_svg(&service, Some(8.0));
+//! assert!(svg.starts_with("<svg ") && svg.contains("good 0.4"));
+//! ```
+
+mod colour;
+mod contour;
+mod curve;
+mod explanation;
+mod explanation_text;
+mod heat;
+mod map_text;
+mod panel;
+mod plot;
+mod regions;
+mod scale;
+mod sheet;
+mod slice;
+mod surface;
+mod text;
+
+pub use colour::{Colour, distinct, reds, viridis};
+pub use curve::{Stretch, over_time_text, path};
+pub use explanation::{explanation_svg, terms_svg};
+pub use explanation_text::explanation_text;
+pub use heat::{map_svg, runs};
+pub use map_text::{map_text, rules_text};
+pub use panel::{CSS, Line, Mark, Panel, Phase, Size, Timeline};
+pub use plot::{Plot, Series, plots_svg};
+pub use regions::rules_svg;
+pub use scale::Scale;
+pub use sheet::{Anchor, Frame, Sheet};
+pub use slice::{Axis, Cell, Slice};
+pub use surface::surface_svg;
+pub use text::{Escaped, bar, number, short};

@@ -1,0 +1,264 @@
+//! Curves over time on one scale, with what goes on behind and over them.
+
+use std::fmt::Write as _;
+
+use super::{
+    curve::Stretch,
+    scale::Scale,
+    sheet::Frame,
+    text::{Escaped, number},
+};
+
+/// The styles of curves over time. The colours of lines, marks and alerts are yours: `--c` of their classes.
+pub const CSS: &str = include_str!("panel.css");
+
+/// What all panels of one course of events have in common.
+#[derive(Debug, Clone)]
+pub struct Timeline {
+    /// The time that is shown.
+    pub stretch: Stretch,
+    /// What goes on behind the curves.
+    pub phases: Vec<Phase>,
+    /// Stretches marked along the upper edge, each with a class of the style sheet; the last is on top.
+    pub alerts: Vec<(Stretch, &'static str)>,
+    /// Single events, in order of time.
+    pub events: Vec<(f64, String)>,
+}
+
+/// A phase of a course of events, shaded behind the curves.
+#[derive(Debug, Clone)]
+pub struct Phase {
+    /// When it is.
+    pub stretch: Stretch,
+    /// What it is called.
+    pub name: String,
+    /// Which of the different kinds of phases it is: phases of one kind have one shade.
+    pub kind: usize,
+}
+
+/// One curve.
+#[derive(Debug, Clone)]
+pub struct Line {
+    /// Its class in the style sheet, which gives it its colour.
+    pub class: &'static str,
+    /// What it is called.
+    pub name: String,
+    /// The data of its path, from [`path`](super::path()).
+    pub data: String,
+}
+
+/// A value that is marked over all of the time.
+#[derive(Debug, Clone)]
+pub struct Mark {
+    /// The value.
+    pub value: f64,
+    /// Its class in the style sheet.
+    pub class: &'static str,
+    /// What it is; empty where the panel need not name it.
+    pub name: String,
+}
+
+/// Curves over time on one scale.
+#[derive(Debug, Clone)]
+pub struct Panel {
+    /// What it shows.
+    pub title: String,
+    /// The unit of the values.
+    pub unit: &'static str,
+    /// The range of values that is shown.
+    pub scale: Scale,
+    /// How high it is.
+    pub size: Size,
+    /// The curves.
+    pub lines: Vec<Line>,
+    /// Values marked over all of the time.
+    pub marks: Vec<Mark>,
+    /// Shaded ranges of values.
+    pub zones: Vec<Scale>,
+}
+
+/// How high a panel is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Size {
+    /// The main one.
+    Large,
+    /// With a scale of its own.
+    Medium,
+    /// One of many below each other: only the ends of its scale are named.
+    Small,
+}
+
+impl Line {
+    /// A curve of a class, from the data of its path.
+    pub fn new(class: &'static str, name: impl Into<String>, data: String) -> Line {
+        let name = name.into();
+        Line { class, name, data }
+    }
+}
+
+impl Panel {
+    /// Curves on a scale of a unit, without marks and zones.
+    pub fn new(
+        title: impl Into<String>,
+        (scale, unit): (Scale, &'static str),
+        size: Size,
+        lines: Vec<Line>,
+    ) -> Panel {
+        Panel {
+            title: title.into(),
+            unit,
+            scale,
+            size,
+            lines,
+            marks: Vec::new(),
+            zones: Vec::new(),
+        }
+    }
+
+    /// Whether there is anything to draw.
+    pub fn has_data(&self) -> bool {
+        self.lines.iter().any(|line| !line.data.is_empty())
+    }
+
+    /// The values to mark: round numbers, or the ends of a small panel's scale.
+    fn ticks(&self) -> Vec<f64> {
+        match self.size {
+            Size::Small => vec![self.scale.low, self.scale.high],
+            Size::Large | Size::Medium => self.scale.ticks(4.0),
+        }
+    }
+
+    /// The values to mark with their labels, the highest with the unit.
+    pub fn labels(&self) -> Vec<(f64, String)> {
+        let labels = self.ticks().into_iter();
+        let mut labels: Vec<(f64, String)> =
+            labels.map(|value| (value, number(value, 3))).collect();
+        if let Some((_, highest)) = labels.last_mut().filter(|_| !self.unit.is_empty()) {
+            // Writing to a String cannot fail.
+            let _ = write!(highest, " {}", self.unit);
+        }
+        labels
+    }
+
+    /// The curves as an SVG element without labels: x is seconds since the start, y the value, upwards.
+    ///
+    /// `attributes` are those of the element: its position and size within another SVG document, or none.
+    pub fn plot(&self, timeline: &Timeline, attributes: &str) -> String {
+        let Scale { low, high } = self.scale;
+        let (length, height) = (timeline.stretch.length_s(), high - low);
+        let (length, height) = (number(length, 3), number(height, 6));
+        let mut svg = format!(
+            r#"<svg class="plot" {attributes} viewBox="0 {} {length} {height}" preserveAspectRatio="none"><g transform="scale(1 -1)">"#,
+            number(-high, 6),
+        );
+        let since_start = |t_s: f64| (t_s - timeline.stretch.start_s).max(0.0);
+        let mut rectangle = |class: &str, from: f64, to: f64, bottom: f64, top: f64| {
+            let _ = write!(
+                svg,
+                r#"<rect class="{class}" x="{}" y="{}" width="{}" height="{}"/>"#,
+                number(from, 2),
+                number(bottom, 4),
+                number(to - from, 2),
+                number(top - bottom, 4),
+            );
+        };
+        let ends = |stretch: &Stretch| (since_start(stretch.start_s), since_start(stretch.end_s));
+        for phase in &timeline.phases {
+            let (from, to) = ends(&phase.stretch);
+            rectangle(&format!("phase{}", phase.kind % 4), from, to, low, high);
+        }
+        for zone in &self.zones {
+            rectangle(
+                "zone",
+                0.0,
+                timeline.stretch.length_s(),
+                zone.low,
+                zone.high,
+            );
+        }
+        if self.size != Size::Small {
+            let strip = (high - low) * 0.04;
+            for (stretch, class) in &timeline.alerts {
+                let (from, to) = ends(stretch);
+                rectangle(class, from, to, high - strip, high);
+            }
+        }
+        let levels = self.ticks().into_iter().map(|value| (value, "grid"));
+        let marks = self.marks.iter().map(|mark| (mark.value, mark.class));
+        for (value, class) in levels.chain(marks) {
+            let _ = write!(
+                svg,
+                r#"<path class="{class}" d="M0 {}H{length}"/>"#,
+                number(value, 4)
+            );
+        }
+        let (bottom, top) = (number(low, 4), number(high, 4));
+        for (t_s, text) in &timeline.events {
+            let _ = write!(
+                svg,
+                r#"<path class="event" d="M{} {bottom}V{top}"><title>{}</title></path>"#,
+                number(since_start(*t_s), 2),
+                Escaped(text),
+            );
+        }
+        for line in self.lines.iter().filter(|line| !line.data.is_empty()) {
+            let _ = write!(
+                svg,
+                r#"<path class="line {}" d="{}"/>"#,
+                line.class, line.data
+            );
+        }
+        let _ = write!(
+            svg,
+            r#"<path class="cursor" d="M-1 {bottom}V{top}"/></g></svg>"#
+        );
+        svg
+    }
+
+    /// The panel with its labels as a part of an SVG document, the curves within `frame`.
+    ///
+    /// It needs 48 pixels on the left of the frame, and 24 above and below.
+    pub fn svg(&self, timeline: &Timeline, frame: Frame) -> String {
+        let Frame {
+            left,
+            top,
+            width,
+            height,
+        } = frame;
+        let [x, y, across, down] = [left, top, width, height].map(|length| number(length, 1));
+        let place = format!(r#"x="{x}" y="{y}" width="{across}" height="{down}""#);
+        let mut svg = self.plot(timeline, &place);
+        let mut text = |class: &str, x: f64, y: f64, words: &str| {
+            let (x, y) = (number(x, 1), number(y, 1));
+            let _ = write!(
+                svg,
+                r#"<text class="{class}" x="{x}" y="{y}">{}</text>"#,
+                Escaped(words)
+            );
+        };
+        for (value, label) in self.labels() {
+            let (_, y) = frame.at(0.0, self.scale.share(value));
+            text("y", left - 6.0, y + 4.0, &label);
+        }
+        for (t_s, label) in timeline.stretch.ticks() {
+            let (x, y) = frame.at(timeline.stretch.share(t_s), 0.0);
+            text("x", x, y + 16.0, &label);
+        }
+        // About 7 pixels a character.
+        let length = |words: &str| words.chars().count() as f64 * 7.0;
+        for Phase { stretch, name, .. } in &timeline.phases {
+            let from = timeline.stretch.share(stretch.start_s);
+            let room = (timeline.stretch.share(stretch.end_s) - from) * width;
+            // A name that does not fit would lie over the next one.
+            if length(name) < room {
+                text("phase", left + width * from + 4.0, top + 24.0, name);
+            }
+        }
+        let mut x = left;
+        for line in &self.lines {
+            text(&format!("key {}", line.class), x, top - 8.0, &line.name);
+            x += length(&line.name) + 24.0;
+        }
+        svg
+    }
+}

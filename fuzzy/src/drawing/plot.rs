@@ -1,0 +1,110 @@
+//! Lines over a number, in a frame with two scales.
+
+use super::{
+    colour::{Colour, distinct_line},
+    scale::Scale,
+    sheet::{Anchor, Frame, LABEL_WIDTH, Sheet},
+    text::cut,
+};
+
+/// Lines over a number, in a frame with two scales.
+#[derive(Debug, Clone)]
+pub struct Plot {
+    /// What it shows.
+    pub title: String,
+    /// The scale and the title of the horizontal axis.
+    pub x: (Scale, String),
+    /// The scale and the title of the vertical axis.
+    pub y: (Scale, String),
+    /// The lines; the last is on top.
+    pub series: Vec<Series>,
+}
+
+/// One line of a plot.
+#[derive(Debug, Clone)]
+pub struct Series {
+    /// Its name in the legend; a line without a name is not in it.
+    pub name: String,
+    /// Its colour.
+    pub colour: Colour,
+    /// Its dashes as SVG writes them: `7 3`; `none` for a solid line.
+    pub dash: &'static str,
+    /// Whether each point is marked by a dot.
+    pub dots: bool,
+    /// Its points, in the units of the axes.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Series {
+    /// The i-th line of a plot: lines differ in colour and in dashes.
+    pub fn new(i: usize, name: impl Into<String>, points: Vec<(f64, f64)>) -> Series {
+        const DASHES: [&str; 4] = ["none", "7 3", "2 3", "9 3 2 3"];
+        Series {
+            name: name.into(),
+            colour: distinct_line(i),
+            dash: DASHES[i % DASHES.len()],
+            dots: false,
+            points,
+        }
+    }
+
+    fn paint(&self) -> String {
+        let Series { colour, dash, .. } = self;
+        format!(r#"class="series" stroke="{colour}" stroke-dasharray="{dash}""#)
+    }
+}
+
+/// The side of a plot, the room around it, and the width of the legend.
+const SIDE: f64 = 360.0;
+const LEFT: f64 = 70.0;
+const TOP: f64 = 44.0;
+const LEGEND: f64 = 260.0;
+
+/// The SVG of plots side by side, with one legend: the lines of the first plot.
+pub fn plots_svg(title: &str, plots: &[Plot]) -> String {
+    let keys = plots.first().map_or(&[][..], |plot| &plot.series);
+    let keys: Vec<&Series> = keys
+        .iter()
+        .filter(|series| !series.name.is_empty())
+        .collect();
+    let legend = plots.len() as f64 * (LEFT + SIDE) + 24.0;
+    let height = (TOP + SIDE + 56.0).max(TOP + keys.len() as f64 * 18.0 + 20.0);
+    let mut sheet = Sheet::new(legend + LEGEND, height);
+    for (i, plot) in plots.iter().enumerate() {
+        let frame = Frame {
+            left: LEFT + i as f64 * (LEFT + SIDE),
+            top: TOP,
+            width: SIDE,
+            height: SIDE,
+        };
+        let at = (frame.left + SIDE / 2.0, TOP - 16.0);
+        sheet.text(at, Anchor::Middle, "heading", &plot.title);
+        draw(&mut sheet, &frame, plot);
+    }
+    for (i, series) in keys.into_iter().enumerate() {
+        let y = TOP + 8.0 + 18.0 * i as f64;
+        let ends = [(legend, y), (legend + 28.0, y)];
+        sheet.through("polyline", &ends, format_args!("{}", series.paint()));
+        let name = cut(&series.name, ((LEGEND - 44.0) / LABEL_WIDTH) as usize);
+        sheet.text((legend + 36.0, y + 4.0), Anchor::Start, "label", &name);
+    }
+    sheet.finish(title)
+}
+
+/// Draws one plot into a frame of a sheet.
+pub(super) fn draw(sheet: &mut Sheet, frame: &Frame, plot: &Plot) {
+    let ((x, x_title), (y, y_title)) = (&plot.x, &plot.y);
+    sheet.grid(frame, *y);
+    for series in &plot.series {
+        let place = |(a, b): &(f64, f64)| frame.at(x.share(*a), y.share(*b));
+        let points: Vec<(f64, f64)> = series.points.iter().map(place).collect();
+        sheet.through("polyline", &points, format_args!("{}", series.paint()));
+        for (x, y) in points.into_iter().filter(|_| series.dots) {
+            sheet.push(format_args!(
+                r#"<circle cx="{x:.1}" cy="{y:.1}" r="3" fill="{}"/>"#,
+                series.colour
+            ));
+        }
+    }
+    sheet.axes(frame, (*x, x_title), (*y, y_title));
+}

@@ -1,0 +1,126 @@
+//! Texts in pictures: escaped for markup, short numbers, bars of characters.
+
+use std::fmt;
+
+/// A text, escaped for the content and the attributes of HTML and SVG.
+///
+/// A character that XML does not allow becomes U+FFFD, so that no text can make a broken file.
+pub struct Escaped<'a>(pub &'a str);
+
+impl fmt::Display for Escaped<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for character in self.0.chars() {
+            match character {
+                '&' => f.write_str("&amp;")?,
+                '<' => f.write_str("&lt;")?,
+                '>' => f.write_str("&gt;")?,
+                '"' => f.write_str("&quot;")?,
+                '\'' => f.write_str("&#39;")?,
+                '\n' | '\t' => write!(f, "{character}")?,
+                c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {
+                    f.write_str("\u{fffd}")?;
+                }
+                c => write!(f, "{c}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A number with at most so many decimals, without trailing zeros.
+pub fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => &text,
+    };
+    if text == "-0" { "0" } else { text }.to_owned()
+}
+
+/// A number with at most 6 decimals, without trailing zeros; empty where it is not finite.
+pub fn short(x: f64) -> String {
+    if x.is_finite() {
+        number(x, 6)
+    } else {
+        String::new()
+    }
+}
+
+/// The name and the unit of a variable: `margin [%]`.
+pub(super) fn titled(name: &str, unit: Option<&str>) -> String {
+    match unit {
+        Some(unit) => format!("{name} [{unit}]"),
+        None => name.to_owned(),
+    }
+}
+
+/// A bar of so many characters for a share from 0 to 1: `██████····`.
+pub fn bar(share: f64, width: usize) -> String {
+    let full = (share.clamp(0.0, 1.0) * width as f64).round() as usize;
+    "█".repeat(full) + &"·".repeat(width - full)
+}
+
+/// The character that a column of so many eighths of a row shows in a row, counted from the bottom.
+pub(super) fn block(eighths: usize, row: usize) -> char {
+    const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    EIGHTHS[eighths.saturating_sub(row * 8).min(8)]
+}
+
+/// Breaks a text between words into lines of at most so many characters; a longer word is cut.
+pub(super) fn wrapped(text: &str, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        let length = word.chars().count();
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + length <= most => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(cut(word, most)),
+        }
+    }
+    lines
+}
+
+/// The beginning of a text: at most so many characters, the last an ellipsis where the text is longer.
+pub(super) fn cut(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
+    kept + "…"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_of_a_log_can_be_markup() {
+        let text = Escaped("<script>alert(\"1\")</script> & 'x'\0\u{7}").to_string();
+        assert_eq!(
+            text,
+            "&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt; &amp; &#39;x&#39;\u{fffd}\u{fffd}"
+        );
+    }
+
+    #[test]
+    fn texts_fit_their_room() {
+        assert_eq!(wrapped("at a = 1, b = 2", 9), ["at a = 1,", "b = 2"]);
+        assert_eq!(wrapped("abcdefgh", 4), ["abc…"]);
+        assert_eq!((bar(0.25, 4), bar(7.0, 2)), ("█···".into(), "██".into()));
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, decimals, expected) in [
+            (1.50, 2, "1.5"),
+            (100.0, 1, "100"),
+            (100.0, 0, "100"),
+            (-0.001, 2, "0"),
+            (0.125, 2, "0.12"),
+        ] {
+            assert_eq!(number(value, decimals), expected);
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Terms whose degrees sum to 1 everywhere.
+
+use alloc::{string::String, vec::Vec};
+
+use super::{MembershipFunction, Term};
+
+/// Triangles between the peaks of their neighbours, shoulders at the ends: the degrees sum to 1 everywhere.
+pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
+    let peak = |i: usize| peaks.get(i).map(|(_, peak)| *peak);
+    let term = |(i, &(name, at)): (usize, &(&str, f64))| {
+        let left = i.checked_sub(1).and_then(peak);
+        let shape = match (left, peak(i + 1)) {
+            (Some(left), Some(right)) => MembershipFunction::Triangle {
+                left,
+                peak: at,
+                right,
+            },
+            (None, Some(foot)) => MembershipFunction::LeftShoulder { top: at, foot },
+            (Some(foot), None) => MembershipFunction::RightShoulder { foot, top: at },
+            (None, None) => MembershipFunction::Constant { value: 1.0 },
+        };
+        Term {
+            name: String::from(name),
+            shape,
+            height: 1.0,
+        }
+    };
+    peaks.iter().enumerate().map(term).collect()
+}
+
+/// The peaks of `count` terms evenly spaced from `low` to `high`.
+pub(crate) fn even_peaks(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> {
+    let last = count.saturating_sub(1).max(1) as f64;
+    (0..count).map(move |i| {
+        let part = i as f64 / last;
+        low * (1.0 - part) + high * part
+    })
+}

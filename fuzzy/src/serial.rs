@@ -1,0 +1,61 @@
+//! Models and results as serde sees them. In results rules count from 1, as in messages.
+
+use alloc::string::ToString;
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error, ser::SerializeStruct};
+
+use crate::{
+    diagnostic::Findings,
+    format,
+    model::Model,
+    table::{Outcome, State},
+    tree::Node,
+};
+
+/// The number of a rule.
+pub(crate) fn rule_number<S: Serializer>(index: &usize, serializer: S) -> Result<S::Ok, S::Error> {
+    (index + 1).serialize(serializer)
+}
+
+/// The numbers of rules.
+#[cfg(feature = "check")]
+pub(crate) fn rule_numbers<S: Serializer>(
+    indices: &[usize],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(indices.iter().map(|index| index + 1))
+}
+
+/// `{value, state, coverage, rule, clamped}`: `value` is null where there is none, `rule` is the number of the dominant
+/// rule.
+impl Serialize for Outcome {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let state = match self.state {
+            State::Defined(_) => "defined",
+            State::Default(_) => "default",
+            State::NoRuleFired => "no_rule_fired",
+            State::InputNotFinite => "input_not_finite",
+        };
+        let mut fields = serializer.serialize_struct("Outcome", 5)?;
+        fields.serialize_field("value", &self.value())?;
+        fields.serialize_field("state", state)?;
+        fields.serialize_field("coverage", &self.coverage)?;
+        fields.serialize_field("rule", &self.dominant.map(|index| index + 1))?;
+        fields.serialize_field("clamped", &self.clamped)?;
+        fields.end()
+    }
+}
+
+impl Serialize for Model {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        format::write(self).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Model {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let tree = Node::deserialize(deserializer)?;
+        let told = |findings| D::Error::custom(Findings(findings).to_string());
+        Ok(format::read(&tree).map_err(told)?.model)
+    }
+}

@@ -1,0 +1,119 @@
+//! The list of a table's arrays, and access to them one at a time.
+
+use super::{
+    Action, Axis, Coefficient, Conjunction, Conjunctions, Consequent, Curve, Dimension,
+    Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step,
+};
+
+/// Calls `$then!` with the given tokens and the arrays of a table, each as `name: Item,` with its documentation.
+///
+/// [`Table`], the engine's own copy, exports and the C interface are generated from this list. A new array is a line here, a
+/// line in the C header (a test compares the two), and its use. `Item` names a type of this module: plain data with the layout
+/// of C. Every bit pattern is a valid `Item`, except for `Hedge`.
+#[doc(hidden)] // Public for the exports and the C interface, which are in other packages.
+#[macro_export]
+macro_rules! table_arrays {
+    ($then:ident! $($given:tt)*) => {
+        $then! {
+            $($given)*
+            /// The inputs.
+            inputs: Input,
+            /// The bounds between the intervals of inputs and axes.
+            cuts: f64,
+            /// The index in `lines` of the first line of each interval.
+            starts: u32,
+            /// The terms of inputs, as straight lines on intervals.
+            lines: Line,
+            /// The terms of inputs that are curved or hedged.
+            curves: Curve,
+            /// The corners of piecewise linear curves.
+            points: Point,
+            /// The hedges of curves.
+            hedges: Hedge,
+            /// The inputs of a uniform table, in its order.
+            axes: Axis,
+            /// The inputs of a dense table, in its order.
+            dimensions: Dimension,
+            /// The index in `actions` of the first action of each cell of a dense table, and the end of the last cell's.
+            cells: u32,
+            /// The nodes of a trie.
+            nodes: Node,
+            /// The edges of a trie.
+            edges: Edge,
+            /// What rules do.
+            actions: Action,
+            /// The rules that are not plain ANDs.
+            programs: Program,
+            /// The steps of programs.
+            steps: Step,
+            /// The outputs.
+            outputs: Output,
+            /// The closed forms of partitions.
+            pairs: Pair,
+            /// The closed forms of sums of products.
+            moments: Moment,
+            /// The Takagi-Sugeno consequents.
+            consequents: Consequent,
+            /// The coefficients of consequents.
+            coefficients: Coefficient,
+        }
+    };
+}
+pub use table_arrays as arrays;
+
+macro_rules! define {
+    ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+        /// A compiled rule set. See the [module](super).
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct Table<'a> {
+            /// AND.
+            pub and: Conjunction,
+            /// OR.
+            pub or: Disjunction,
+            /// How the rules that are plain ANDs are found.
+            pub conjunctions: Conjunctions,
+            /// The sizes of the scratch memory.
+            pub sizes: Sizes,
+            $($(#[$doc])* pub $array: &'a [$item],)*
+        }
+
+        /// The arrays of a table, one at a time. The engine evaluates through its own vectors: gathering all of them into a
+        /// [`Table`] would copy forty numbers for each evaluation.
+        pub(crate) trait Arrays {
+            fn and(&self) -> Conjunction;
+            fn or(&self) -> Disjunction;
+            fn conjunctions(&self) -> Conjunctions;
+            $(fn $array(&self) -> &[$item];)*
+        }
+    };
+}
+arrays!(define!);
+
+/// Implements [`Arrays`] for a structure that has fields of these names.
+macro_rules! arrays_from_fields {
+    ($owner:ty; $($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+        impl $crate::table::Arrays for $owner {
+            #[inline(always)]
+            fn and(&self) -> $crate::table::Conjunction {
+                self.and
+            }
+            #[inline(always)]
+            fn or(&self) -> $crate::table::Disjunction {
+                self.or
+            }
+            #[inline(always)]
+            fn conjunctions(&self) -> $crate::table::Conjunctions {
+                self.conjunctions
+            }
+            $(
+                #[inline(always)]
+                fn $array(&self) -> &[$item] {
+                    &self.$array
+                }
+            )*
+        }
+    };
+}
+pub(crate) use arrays_from_fields;
+
+arrays!(arrays_from_fields! Table<'_>;);

@@ -1,0 +1,192 @@
+//! A rule set in somebody's own configuration, read by the YAML organisation's serde crate; and our reader held against
+//! that crate.
+#![allow(clippy::unwrap_used, reason = "a test")]
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use fuzzy::{Engine, Model, yaml};
+use serde::{Deserialize, Serialize};
+
+/// What a program that uses the engine may have as its configuration.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Config {
+    listen: String,
+    every_s: u32,
+    rules: Model,
+    more: BTreeMap<String, Model>,
+}
+
+const CONFIG: &str = "
+listen: localhost:80
+every_s: 5
+rules:
+  fuzzy: 1
+  name: fan
+  inputs: {heat: {range: [0, 40], unit: °C, partition: [low, high]}}
+  outputs: {speed: {range: [0, 9], partition: [slow, fast], when_no_rule_fires: {value: 0}}}
+  rules:
+    - IF heat IS low THEN speed IS slow
+    - {rule: IF heat IS very high THEN speed IS fast WITH 0.5, note: 'it''s hot'}
+more: {}
+";
+
+#[test]
+fn a_model_is_part_of_another_configuration() {
+    let config: Config = serde_yaml::from_str(CONFIG).unwrap();
+    let engine = Engine::new(&config.rules).unwrap();
+    assert!(engine.evaluate(&[40.0]).unwrap()[0].value() > Some(4.5));
+    assert_eq!(config.rules.rules[1].note.as_deref(), Some("it's hot"));
+
+    let written = serde_yaml::to_string(&config).unwrap();
+    assert_eq!(serde_yaml::from_str::<Config>(&written).unwrap(), config);
+    let json = serde_json::to_string(&config).unwrap();
+    assert_eq!(serde_json::from_str::<Config>(&json).unwrap(), config);
+}
+
+#[test]
+fn a_mistake_inside_a_configuration_is_explained() {
+    let wrong = CONFIG.replace("IS very high", "IS very hihg");
+    let error = serde_yaml::from_str::<Config>(&wrong)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("input `heat` has no term `hihg`"), "{error}");
+    assert!(error.contains("did you mean `high`?"), "{error}");
+}
+
+#[test]
+fn outcomes_and_explanations_are_data() {
+    let config: Config = serde_yaml::from_str(CONFIG).unwrap();
+    let engine = Engine::new(&config.rules).unwrap();
+    let outcomes = engine.evaluate_named([("heat", 40.0)]).unwrap();
+    let outcomes = serde_json::to_value(&outcomes).unwrap();
+    assert_eq!(outcomes["speed"]["state"], "defined");
+    assert_eq!(outcomes["speed"]["rule"], 2, "rules count from 1");
+    assert_eq!(outcomes["speed"]["clamped"], false);
+    let explanation = serde_json::to_value(engine.explain(&[40.0]).unwrap()).unwrap();
+    assert_eq!(explanation["rules"][0]["rule"], 2);
+    assert_eq!(explanation["outputs"][0]["rules"][0]["term"], "fast");
+    let findings = "fuzzy: 2".parse::<Model>().unwrap_err();
+    let findings = serde_json::to_value(&findings).unwrap();
+    assert_eq!(findings[0]["code"], "unsupported-version");
+    assert_eq!(findings[0]["position"]["line"], 1);
+}
+
+#[test]
+fn structs_and_maps_are_inputs() {
+    #[derive(Serialize)]
+    struct Reading {
+        heat: Option<f32>,
+    }
+    let config: Config = serde_yaml::from_str(CONFIG).unwrap();
+    let engine = Engine::new(&config.rules).unwrap();
+    let by_name = engine.evaluate_named([("heat", 30.0)]).unwrap();
+    let heat = Some(30.0);
+    assert_eq!(engine.evaluate_struct(&Reading { heat }).unwrap(), by_name);
+    let map = BTreeMap::from([("heat", 30)]);
+    assert_eq!(engine.evaluate_struct(&map).unwrap(), by_name);
+    let message = |error: fuzzy::engine::EvaluateError| error.to_string();
+    let of = |value: serde_json::Value| engine.evaluate_struct(&value).map_err(message);
+    assert_eq!(of(serde_json::json!({"heat": 30})).unwrap(), by_name);
+    let refused = |value| of(value).unwrap_err();
+    assert_eq!(
+        refused(serde_json::json!([30])),
+        "expected a struct or map of numbers"
+    );
+    assert_eq!(
+        refused(serde_json::json!({"heat": "30"})),
+        "input `heat`: expected a number"
+    );
+    assert_eq!(
+        refused(serde_json::json!({"heat": null})),
+        "input `heat` has no value"
+    );
+    assert_eq!(
+        refused(serde_json::json!({"cold": 1})),
+        "there is no input `cold`"
+    );
+    let heat = None;
+    assert!(engine.evaluate_struct(&Reading { heat }).is_err());
+    let twice = engine.evaluate_named([("heat", 1.0), ("heat", 1.0)]);
+    assert_eq!(
+        twice.map_err(message).unwrap_err(),
+        "input `heat` has two values"
+    );
+}
+
+/// The YAML files below a folder of the repository.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("..")
+        .join(folder);
+    let mut found = Vec::new();
+    let mut folders = vec![root];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "yaml") {
+                found.push(path);
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn every_rule_set_of_the_repository_means_the_same_to_both() {
+    let (mut same, mut refused) = (0, 0);
+    for path in [files("rules"), files("tests")].concat() {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let text = fs::read_to_string(&path).unwrap();
+        let both = (text.parse::<Model>(), serde_yaml::from_str::<Model>(&text));
+        match both {
+            (Ok(ours), Ok(theirs)) => {
+                assert_eq!(ours, theirs, "{name}");
+                same += 1;
+            }
+            (Err(_), Err(_)) => refused += 1,
+            (Ok(_), Err(error)) => panic!("{name}: only we read it: {error}"),
+            (Err(findings), Ok(_)) => panic!("{name}: only they read it: {findings}"),
+        }
+    }
+    assert!(
+        same >= 15 && refused >= 80,
+        "{same} read, {refused} refused"
+    );
+}
+
+/// Where the two differ, and why.
+#[test]
+fn tags_duplicates_and_numbers() {
+    let rule_set = |name: &str| {
+        format!(
+            "fuzzy: 1\nname: {name}\ninputs: {{x: {{range: [0, 1], partition: [a, b]}}}}\n\
+             outputs: {{y: {{range: [0, 1], partition: [c, d]}}}}\nrules: [IF x IS a THEN y IS c]\n"
+        )
+    };
+    let ours = |text: &str| text.parse::<Model>().map(|model| model.name);
+    let theirs = |text: &str| serde_yaml::from_str::<Model>(text).map(|model| model.name);
+
+    // A name that looks like a number keeps its letters here; serde hands over a number.
+    let number = rule_set("1.50");
+    assert_eq!(
+        (ours(&number).unwrap(), theirs(&number).unwrap()),
+        ("1.50".into(), "1.5".into())
+    );
+    // Hexadecimal and octal numbers are text here, so that no range is one by accident.
+    let hexadecimal = rule_set("fan").replace("[0, 1], partition: [a", "[0x0, 0x1], partition: [a");
+    assert!(ours(&hexadecimal).is_err() && theirs(&hexadecimal).is_ok());
+    // A tag means nothing in a rule set.
+    assert!(ours(&rule_set("!!str fan")).is_err() && theirs(&rule_set("!!str fan")).is_ok());
+    // A key that stands twice is an error to both; here it is found together with all others, at its position.
+    let twice = rule_set("fan\nname: fun\nunknown: 1");
+    let findings = yaml::parse(&twice).unwrap_err();
+    let codes: Vec<&str> = findings.0.iter().map(|finding| finding.code).collect();
+    assert_eq!(codes, ["duplicate-key", "unknown-key"]);
+    assert!(theirs(&twice).is_err());
+}

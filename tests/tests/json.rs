@@ -1,0 +1,115 @@
+//! What commands print as JSON is what the schemas in `docs/schemas` describe.
+
+use std::fmt::Write as _;
+
+use flagred_tests::{
+    Folder, STEADY, flagred, schema,
+    vehicle::flight,
+    watch::fly_udp,
+    wire::{Link, Speed},
+};
+use serde_json::Value;
+
+const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml");
+
+/// Fails where a document is not of its schema.
+fn valid(name: &str, document: &Value) {
+    let errors = schema::errors(&schema::schema(name), document);
+    assert!(errors.is_empty(), "{name}: {}", errors.join("\n"));
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = flagred().args(arguments).output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {told}"))
+}
+
+/// A minute at 25 Hz with motors at their limits from 30 s on and the attitude off from 32 s on.
+fn trouble() -> String {
+    let mut text = String::from(
+        "t_s,motor1,motor2,motor3,motor4,roll_des_deg,roll_deg,pitch_des_deg,pitch_deg\n",
+    );
+    for i in 0..1500 {
+        let t_s = f64::from(i) / 25.0;
+        let motors = match t_s < 30.0 || i % 50 < 25 {
+            true => "0.5,0.5,0.5,0.5",
+            false => "1,0,1,0",
+        };
+        let roll_deg = if t_s < 32.0 { 0.1 } else { 20.0 };
+        writeln!(text, "{t_s},{motors},0,{roll_deg},0,0").unwrap();
+    }
+    text
+}
+
+#[test]
+fn assess() {
+    let folder = Folder::new();
+    let trouble = folder.file("trouble.csv", trouble());
+    let ground = folder.file("ground.csv", "t_s,motor1,in_air\n0,0.1,0\n1,0.1,0\n");
+    let documents = json(&["assess", "--json", STEADY, &trouble, &ground]);
+    let verdicts: Vec<&Value> = documents
+        .as_array()
+        .unwrap()
+        .iter()
+        .inspect(|document| valid("assess", document))
+        .map(|document| &document["verdict"])
+        .collect();
+    assert_eq!(verdicts, ["GOOD", "FAIL", "NA"]);
+    let finding = &documents[1]["findings"][0];
+    assert_eq!(finding["severity"], "FAIL");
+    assert_eq!(finding["output"], "motor1");
+    assert_eq!(finding["motor"]["number"], 1);
+}
+
+#[test]
+fn evaluate() {
+    let folder = Folder::new();
+    let trouble = folder.file("trouble.csv", trouble());
+    let document = json(&["evaluate", "--json", STEADY, &trouble]);
+    valid("evaluate", &document);
+    assert!(document["estimators"][0]["auc"].is_number());
+    assert!(document["records"][1]["critical"].as_u64() > Some(0));
+}
+
+#[test]
+fn inspect() {
+    let folder = Folder::new();
+    let ground = folder.file(
+        "ground.csv",
+        "# kind: idle\nt_s,motor1,in_air\n0,0.1,0\n1,0.1,0\n",
+    );
+    for log in [STEADY, &ground] {
+        valid("inspect", &json(&["inspect", "--json", log]));
+    }
+}
+
+#[test]
+fn explain_and_check() {
+    valid(
+        "explain",
+        &json(&["explain", "--json", PAPER, "margin=0.1", "spread=0.05"]),
+    );
+    valid("check", &json(&["check", "--json", PAPER]));
+    let folder = Folder::new();
+    let broken = folder.file("broken.yaml", "fuzzy: 1\nname: x\nrules: [nonsense]\n");
+    let document = json(&["check", "--json", &broken]);
+    valid("check", &document);
+    assert_eq!(document["model"], Value::Null);
+}
+
+#[test]
+fn watch() {
+    let folder = Folder::new();
+    let flight = flight(folder.file("trouble.csv", trouble()).as_ref());
+    let (said, _) = fly_udp(&flight, Link::default(), &[], Speed::Fastest);
+    for kind in [
+        "started", "found", "ready", "took_off", "risk", "level", "finding", "landed", "ended",
+    ] {
+        assert!(said.all(kind).next().is_some(), "no `{kind}`");
+    }
+    let schema = schema::schema("watch");
+    for line in &said.events {
+        assert_eq!(schema::errors(&schema, line), Vec::<String>::new());
+    }
+    assert_eq!(said.one("ended")["worst"], "FAIL");
+}
