@@ -260,7 +260,10 @@ pub unsafe extern "C" fn flagred_open_finding(
 /// `monitor` is null or from [`flagred_start`]; `ended` is null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
-pub unsafe extern "C" fn flagred_finish(monitor: *mut CMonitor, ended: *mut [Finding; ENDED]) -> i32 {
+pub unsafe extern "C" fn flagred_finish(
+    monitor: *mut CMonitor,
+    ended: *mut [Finding; ENDED],
+) -> i32 {
     // SAFETY: the caller's promise.
     let monitor = unsafe { monitor.as_mut() };
     let (Some(monitor), false) = (monitor, ended.is_null()) else {

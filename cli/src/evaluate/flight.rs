@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use flagred::{
-    flight::Finding,
     attitude::Attitude,
     evaluation::{BaselineObserver, ErrorRecord, Judged, Span, judge, upset_s},
+    flight::Finding,
     flight::{Assessor, Verdict},
     log,
     verdict::{Level, VerdictSettings},

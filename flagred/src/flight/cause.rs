@@ -49,10 +49,7 @@ pub struct Cause {
     /// The term, with its hedges.
     pub term: String,
     /// The rule's index in the model; serialised, rules count from 1.
-    #[cfg_attr(
-        feature = "serde",
-        serde(serialize_with = "crate::verdict::from_one")
-    )]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::verdict::from_one"))]
     pub rule: usize,
 }
 
@@ -111,8 +108,7 @@ fn centre(model: &Model, output: &str, term: &str) -> f64 {
     };
     let (mut area, mut moment) = (0.0, 0.0);
     for i in 0..=STEPS {
-        let x = variable.low
-            + (variable.high - variable.low) * f64::from(i) / f64::from(STEPS);
+        let x = variable.low + (variable.high - variable.low) * f64::from(i) / f64::from(STEPS);
         let degree = term.membership(x);
         area += degree;
         moment += degree * x;
@@ -129,10 +125,12 @@ fn distinguishing<'m>(
 ) -> Option<&'m Proposition> {
     let holds = |proposition: &&Proposition| {
         let input = inputs.iter().find(|i| i.name == proposition.variable.text);
-        let degree = input.zip(proposition.term.as_ref()).and_then(|(input, term)| {
-            let mut degrees = input.terms.iter();
-            degrees.find(|degree| degree.term == term.text)
-        });
+        let degree = input
+            .zip(proposition.term.as_ref())
+            .and_then(|(input, term)| {
+                let mut degrees = input.terms.iter();
+                degrees.find(|degree| degree.term == term.text)
+            });
         !proposition.hedges.is_empty() || degree.is_some_and(|degree| degree.degree > 0.0)
     };
     let rules_with = |proposition: &Proposition| {
@@ -181,7 +179,9 @@ impl Open {
             return Finding { found, cause: None };
         }
         let cause = self.worst.as_ref().and_then(|(_, cause)| cause.clone());
-        let is_motor = cause.as_ref().is_some_and(|cause| cause.is_motor(estimator));
+        let is_motor = cause
+            .as_ref()
+            .is_some_and(|cause| cause.is_motor(estimator));
         let motor = found.motor.filter(|_| is_motor);
         Finding {
             found: verdict::Finding { motor, ..found },
