@@ -159,7 +159,12 @@ impl Follower {
         };
         self.last_known_s = Some(t_s);
         let verdict = &self.settings.verdict;
-        if verdict.warn.raise.risk_pct.is_some_and(|high| said.risk_pct >= high) {
+        if verdict
+            .warn
+            .raise
+            .risk_pct
+            .is_some_and(|high| said.risk_pct >= high)
+        {
             self.last_high_s = Some(t_s);
         }
         let elevated = self.sum.push(room.risks, (t_s, held_s), said.risk_pct);
@@ -321,3 +326,6 @@ pub(crate) fn reading(
         _ => Ok(observation.value),
     }
 }
+
+#[cfg(all(test, feature = "std"))]
+mod tests;

@@ -33,6 +33,7 @@ pub mod attitude;
 pub mod board;
 #[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.
 pub mod channel;
+mod effort;
 #[cfg(feature = "std")]
 pub mod estimator;
 #[cfg(feature = "std")]
@@ -46,13 +47,12 @@ pub mod gap;
 pub mod learning;
 #[cfg(feature = "flightlog")]
 pub mod log;
-mod effort;
 mod lookup;
 pub mod margin;
 mod moments;
-mod motor;
 #[cfg(feature = "std")]
 pub mod monitor;
+mod motor;
 #[cfg(feature = "std")]
 pub mod profile;
 pub mod sample;

@@ -257,7 +257,10 @@ pub struct MotorFinding {
 
 /// An index as a number that counts from 1.
 #[cfg(feature = "serde")]
-pub(crate) fn from_one<S: serde::Serializer>(index: &usize, serializer: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn from_one<S: serde::Serializer>(
+    index: &usize,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     serde::Serialize::serialize(&(index + 1), serializer)
 }
 

@@ -147,7 +147,13 @@ fn sampling(fields: &Fields, found: &mut Found) -> Sampling {
             Least::Above0,
             found,
         ),
-        take_off_s: number(fields, "take_off_s", default.take_off_s, Least::From0, found),
+        take_off_s: number(
+            fields,
+            "take_off_s",
+            default.take_off_s,
+            Least::From0,
+            found,
+        ),
     }
 }
 
@@ -221,8 +227,9 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
     if statistic.is_of_bins() && motors == Motors::Pooled && signal.is_of_motors() {
         let message = format!("`{key}` needs one value for all motors");
         found.push(
-            Diagnostic::error("statistic", behind.span.clone(), message)
-                .help(format!("write for example `{{{key}: {{std: motor_command}}}}`")),
+            Diagnostic::error("statistic", behind.span.clone(), message).help(format!(
+                "write for example `{{{key}: {{std: motor_command}}}}`"
+            )),
         );
         return None;
     }
@@ -463,7 +470,9 @@ fn limit(fields: &Fields, key: &str, side: &str, found: &mut Found) -> Option<Li
     let what = format!("`{key}`");
     let fields = fields.get(key)?.fields(&what, &[side, "after_s"], found)?;
     let help = format!("write `{key}: {{{side}: 0.1, after_s: 3}}`");
-    let value = fields.require(side, &help, found)?.finite(&format!("`{side}`"), found)?;
+    let value = fields
+        .require(side, &help, found)?
+        .finite(&format!("`{side}`"), found)?;
     let after_s = number(&fields, "after_s", 0.0, Least::From0, found);
     Some(Limit { value, after_s })
 }

@@ -319,8 +319,7 @@ mod tests {
 
     #[test]
     fn just_after_take_off_only_fail_is_raised() {
-        for (risk_pct, elevated_pct, level) in
-            [(0.0, 60.0, Level::Good), (99.0, 60.0, Level::Fail)]
+        for (risk_pct, elevated_pct, level) in [(0.0, 60.0, Level::Good), (99.0, 60.0, Level::Fail)]
         {
             let mut flown = Flown::new([0.4, 0.95]);
             for i in 0..10 {

@@ -104,9 +104,7 @@ impl Notices {
             passed,
         );
         let reserve = self.reserve.known_after(RESERVE_S).zip(settings.reserve);
-        let passed = reserve
-            .filter(|(v, limit)| *v < limit.value)
-            .map(plain);
+        let passed = reserve.filter(|(v, limit)| *v < limit.value).map(plain);
         self.watches[1].push(
             t_s,
             (Level::Warn, Measure::Reserve),
@@ -147,12 +145,7 @@ fn plain((value, _): (f64, Limit)) -> Passed {
 
 /// The motor that is farthest from its own trim, where it is beyond the limit. The trim is the motor's mean difference from
 /// the mean of all; it stands still while a motor is half way to the limit.
-fn imbalance(
-    motors: &mut [Motor],
-    mean: f64,
-    held_s: f64,
-    limit: Option<Limit>,
-) -> Option<Passed> {
+fn imbalance(motors: &mut [Motor], mean: f64, held_s: f64, limit: Option<Limit>) -> Option<Passed> {
     let limit = limit?;
     let mut farthest: Option<(usize, f64)> = None;
     for (i, motor) in motors.iter_mut().enumerate() {
@@ -172,7 +165,11 @@ fn imbalance(
         value_pct: 100.0 * from_trim.abs(),
         motor: Some(MotorFinding {
             motor,
-            side: if from_trim > 0.0 { Side::High } else { Side::Low },
+            side: if from_trim > 0.0 {
+                Side::High
+            } else {
+                Side::Low
+            },
             mean_margin: margin,
             least_margin: margin,
         }),
