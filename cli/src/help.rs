@@ -43,7 +43,7 @@ pub(crate) const DATASET: &str = "\
 Examples:
   flagred dataset *.bin --profile flagred        a row for each flight
   flagred dataset *.bin --window 10              a row for every 10 seconds
-  flagred dataset *.bin --profile flagred --ahead 5 --skip kind=manoeuvre
+  flagred dataset *.bin --profile flagred --ahead 5 --every 0.25
 
 The table goes to standard output: flagred dataset *.bin > rows.csv";
 

@@ -17,7 +17,6 @@ mod failure;
 mod flights;
 mod help;
 mod inspect;
-mod json;
 mod learn;
 mod man;
 mod map;

@@ -33,6 +33,21 @@ impl Attitude {
         let pitch = short_way_deg(self.pitch_des_deg - self.pitch_deg);
         roll * roll + pitch * pitch
     }
+
+    /// How far the vehicle tilts from level, in degrees: `acos(cos(roll) cos(pitch))`.
+    pub fn tilt_deg(&self) -> f64 {
+        tilt_deg(self.roll_deg, self.pitch_deg)
+    }
+
+    /// How far the set point tilts from level, in degrees.
+    pub fn commanded_tilt_deg(&self) -> f64 {
+        tilt_deg(self.roll_des_deg, self.pitch_des_deg)
+    }
+}
+
+fn tilt_deg(roll_deg: f64, pitch_deg: f64) -> f64 {
+    let up = libm::cos(roll_deg.to_radians()) * libm::cos(pitch_deg.to_radians());
+    libm::acos(up.clamp(-1.0, 1.0)).to_degrees()
 }
 
 /// A difference of angles in [-180, 180].

@@ -11,7 +11,7 @@ pub type Factors = [f64; 3];
 /// Roll, pitch, yaw and thrust, in the unit of the commands.
 pub(crate) type Efforts = [f64; 4];
 
-const ROLL_PITCH_YAW_THRUST: usize = 4;
+pub(crate) const ROLL_PITCH_YAW_THRUST: usize = 4;
 
 /// What the efforts are where the geometry is unknown, or a motor is.
 pub(crate) const UNKNOWN: Efforts = [f64::NAN; ROLL_PITCH_YAW_THRUST];
@@ -19,10 +19,11 @@ pub(crate) const UNKNOWN: Efforts = [f64::NAN; ROLL_PITCH_YAW_THRUST];
 /// How much of each effort a unit of command of one motor is: its column of the pseudo-inverse. The columns of all motors
 /// come from the normal matrix of all of their factors.
 ///
-/// `None` where the efforts cannot be told apart, as with fewer than four motors.
+/// `None` where the efforts cannot be told apart, as with fewer than four motors, or where a factor is not finite.
 pub(crate) fn column(normal: &Normal, factors: &Factors) -> Option<Efforts> {
     let [roll, pitch, yaw] = *factors;
-    solve(normal, [roll, pitch, yaw, 1.0])
+    let shares = solve(normal, [roll, pitch, yaw, 1.0]);
+    shares.filter(|shares| shares.iter().all(|share| share.is_finite()))
 }
 
 /// The sums of the products of factors over all motors.
@@ -117,6 +118,15 @@ mod tests {
     #[test]
     fn three_motors_cannot_be_told_apart() {
         assert_eq!(efforts(&QUAD_X[..3], &[0.5; 3]), None);
+    }
+
+    #[test]
+    fn factors_that_are_not_finite_have_no_efforts() {
+        for odd in [f64::NAN, f64::INFINITY, f64::MAX] {
+            let mut factors = QUAD_X;
+            factors[2][1] = odd;
+            assert_eq!(efforts(&factors, &[0.5; 4]), None, "{odd}");
+        }
     }
 
     proptest! {

@@ -53,7 +53,7 @@ pub enum EstimatorError {
     /// The rule set does not compile.
     #[error("the rule set cannot be used: {0}")]
     Rules(#[from] Findings),
-    /// It cannot be evaluated at the places that gaps are filled from.
+    /// The rule set cannot be evaluated at the points that gaps are filled from.
     #[error("the rule set cannot be evaluated everywhere: {0}")]
     Evaluate(#[from] EvaluateError),
     /// The rule set has an input that the profile does not feed.

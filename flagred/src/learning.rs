@@ -99,6 +99,11 @@ pub enum ExamineError {
 
 /// A rule set read anywhere, its gaps filled.
 struct Predictor {
+    /// None where there are no rules: nothing is predicted then.
+    rules: Option<Rules>,
+}
+
+struct Rules {
     engine: Engine,
     scratch: Scratch,
     outcomes: Vec<Outcome>,
@@ -107,31 +112,45 @@ struct Predictor {
 
 impl Predictor {
     fn new(model: &Model, gap: &GapSettings) -> Result<Predictor, ExamineError> {
+        if model.rules.is_empty() {
+            return Ok(Predictor { rules: None });
+        }
         let engine = Engine::new(model)?;
-        Ok(Predictor {
+        let rules = Rules {
             scratch: engine.scratch(),
             outcomes: vec![Outcome::default(); model.outputs.len()],
             filling: Filling::new(&engine, model, 0, gap)?,
             engine,
-        })
+        };
+        Ok(Predictor { rules: Some(rules) })
     }
 
     /// What the rules themselves say.
     fn outcome(&mut self, inputs: &[f64]) -> Result<Outcome, ExamineError> {
-        let engine = &self.engine;
-        match engine.evaluate_with(&mut self.scratch, inputs, &mut self.outcomes) {
+        let Some(rules) = &mut self.rules else {
+            return Ok(Outcome::UNDEFINED);
+        };
+        let engine = &rules.engine;
+        match engine.evaluate_with(&mut rules.scratch, inputs, &mut rules.outcomes) {
             Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
             Err(error) => return Err(error.into()),
         }
-        Ok(self.outcomes.first().copied().unwrap_or_default())
+        Ok(rules.outcomes.first().copied().unwrap_or_default())
+    }
+
+    fn is_gap(&self, outcome: Outcome) -> bool {
+        let rules = self.rules.as_ref();
+        rules.is_none_or(|rules| rules.filling.is_gap(outcome.coverage))
     }
 
     fn predict(&mut self, inputs: &[f64]) -> Result<Option<f64>, ExamineError> {
         let outcome = self.outcome(inputs)?;
-        if !self.filling.is_gap(outcome.coverage) {
+        if !self.is_gap(outcome) {
             return Ok(outcome.value());
         }
-        Ok(self.filling.read(inputs).map(|reading| reading.value))
+        let rules = self.rules.as_ref();
+        let reading = rules.and_then(|rules| rules.filling.read(inputs));
+        Ok(reading.map(|reading| reading.value))
     }
 }
 
@@ -296,7 +315,7 @@ pub fn leave_one_rule_out(
         };
         let outcome = with_it.outcome(inputs)?;
         if let Some(rule) = outcome.dominant
-            && !with_it.filling.is_gap(outcome.coverage)
+            && !with_it.is_gap(outcome)
         {
             of_rule.entry(rule).or_default().push(row);
         }
@@ -321,7 +340,7 @@ pub fn leave_one_rule_out(
                 continue;
             };
             let outcome = any.outcome(inputs)?;
-            if !any.filling.is_gap(outcome.coverage) {
+            if !any.is_gap(outcome) {
                 continue;
             }
             in_the_gap += 1;

@@ -121,8 +121,9 @@ impl MotorRecord {
     }
 }
 
-/// Gives each motor its factors. Without factors for every motor, or where they do not tell the efforts apart, yaw stays in.
-pub(crate) fn set_geometry(motors: &mut [Motor], factors: &[Factors]) {
+/// Gives each motor its factors. Without factors for every motor, or where they do not tell the efforts apart, returns false
+/// and changes nothing: yaw stays in.
+pub(crate) fn set_geometry(motors: &mut [Motor], factors: &[Factors]) -> bool {
     let normal = effort::normal(factors.iter().copied());
     let column = |factors| effort::column(&normal, factors);
     let is_known = factors.len() == motors.len() && factors.iter().all(|f| column(f).is_some());
@@ -131,6 +132,7 @@ pub(crate) fn set_geometry(motors: &mut [Motor], factors: &[Factors]) {
             (motor.yaw, motor.share) = (factors[2], share);
         }
     }
+    is_known
 }
 
 /// Forgets the commands, and keeps the geometry.

@@ -137,9 +137,9 @@ pub struct VerdictSettings {
     pub fail: LevelSettings,
     /// A level is lowered when nothing has held it for this long, in seconds.
     pub clear_after_s: f64,
-    /// In the first seconds in the air only FAIL is raised.
+    /// In the first seconds in the air only FAIL is raised, and only when it is reached half as long again.
     pub quiet_after_take_off_s: f64,
-    /// What is raised in the last seconds before touching down is taken back.
+    /// What is raised in the last seconds before touching down is taken back; a FAIL only in the last half of them.
     pub quiet_before_landing_s: f64,
     /// While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle
     /// is on the ground, whatever the land detector says.

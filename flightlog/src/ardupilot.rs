@@ -2,6 +2,7 @@
 //! the range of their commands.
 
 use crate::geometry::tables;
+use crate::outputs::LONGEST_PULSE_US;
 use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
 
@@ -181,7 +182,7 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     };
     let own = parameters
         .pair("MOT_PWM_MIN", "MOT_PWM_MAX")
-        .filter(|(low, _)| *low > 0.0);
+        .filter(|(low, high)| *low > 0.0 && *high <= LONGEST_PULSE_US);
     if let Some(own) = own {
         return Some(range(own, "MOT_PWM_MIN/MAX".into()));
     }
@@ -190,6 +191,9 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
         None => (3, "is 3 by default"),
     };
     let radio = parameters.pair(&format!("RC{channel}_MIN"), &format!("RC{channel}_MAX"))?;
+    if radio.0 < 0.0 || radio.1 > LONGEST_PULSE_US {
+        return None;
+    }
     let source =
         format!("RC{channel}_MIN/MAX: MOT_PWM_MIN/MAX are not set, the throttle channel {from}");
     Some(range(radio, source))
@@ -205,7 +209,8 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
         unit: "1",
         source,
     };
-    if let Some((low, high)) = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
+    let spin = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX");
+    if let Some((low, high)) = spin.filter(|(low, high)| *low >= 0.0 && *high <= 1.0) {
         return range(low, high, "MOT_SPIN_MIN/MAX".into());
     }
     let low = parameters.get("THR_MIN").map(|value| value / 1000.0);
@@ -269,10 +274,12 @@ pub(crate) fn vehicle<'a>(
     let firmware = texts.clone().find(|text| kind_of_firmware(text).is_some());
     let class = parameters.get("FRAME_CLASS").map(|class| class as i64);
     let frame = texts
+        .clone()
         .filter_map(|text| text.strip_prefix("Frame: "))
         .map(str::to_owned)
         .next()
         .or_else(|| tables::name_of_class(class?).map(str::to_owned));
+    let id = texts.into_iter().find(|text| is_board_id(text));
     let (mut kind, mut source) = match firmware {
         Some(text) => (
             kind_of_firmware(text).unwrap_or_default(),
@@ -294,7 +301,16 @@ pub(crate) fn vehicle<'a>(
         motors: frame.as_deref().and_then(motors_of_frame),
         frame,
         firmware: firmware.map(str::to_owned),
+        id: id.map(str::to_owned),
     }
+}
+
+/// Whether a text names the board and the 96 bits of its serial number: `Pixhawk4 0047002B 34385105 36363539`.
+fn is_board_id(text: &str) -> bool {
+    let mut words = text.split(' ');
+    let name = words.next().is_some_and(|name| !name.is_empty());
+    let is_hex = |word: &str| word.len() == 8 && word.bytes().all(|b| b.is_ascii_hexdigit());
+    name && words.clone().count() == 3 && words.all(is_hex)
 }
 
 fn kind_of_firmware(text: &str) -> Option<VehicleKind> {
@@ -337,6 +353,19 @@ mod tests {
 
     fn parameters(pairs: &[(&str, f64)]) -> Parameters {
         pairs.iter().copied().collect()
+    }
+
+    #[test]
+    fn a_board_names_itself_by_its_serial_number() {
+        for (text, is_id) in [
+            ("Pixhawk4 0047002B 34385105 36363539", true),
+            ("ArduCopter V4.7.0-dev (15f9bed0)", false),
+            ("PX4: 11112222 NuttX: 33334444", false),
+            ("Pixhawk4 0047002B 34385105 3636353", false),
+        ] {
+            let vehicle = vehicle([text].into_iter(), &parameters(&[]));
+            assert_eq!(vehicle.id.as_deref(), is_id.then_some(text));
+        }
     }
 
     #[test]

@@ -101,6 +101,8 @@ pub struct Vehicle {
     pub motors: Option<u16>,
     /// Firmware with version.
     pub firmware: Option<String>,
+    /// What tells this vehicle from others of its kind: the serial number of the board, or `vehicle_id` of a flight CSV.
+    pub id: Option<String>,
 }
 
 /// One motor, and the output that drives it.

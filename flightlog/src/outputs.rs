@@ -6,7 +6,7 @@ use crate::signal::Order;
 /// Stands for an output that was not logged in a row, or is damaged.
 const MISSING: u16 = u16::MAX;
 /// Pulses longer than this are damaged, in us.
-const LONGEST_PULSE_US: f64 = 3000.0;
+pub(crate) const LONGEST_PULSE_US: f64 = 3000.0;
 
 /// Outputs that may be motors where nothing else names them. A motor has at least this standard
 /// deviation, in us, and this correlation with the mean of the first four outputs.

@@ -26,8 +26,8 @@ static void moment(const flagred_update *said) {
     printf(" %ld %d", (long)said->dominant_rule, (int)said->clamped);
 }
 
-static void findings(const flagred_finding ended[2]) {
-    for (int i = 0; i < 2; i++) {
+static void findings(const flagred_finding ended[FLAGRED_ENDED]) {
+    for (int i = 0; i < FLAGRED_ENDED; i++) {
         const flagred_finding *f = &ended[i];
         if (f->level == FLAGRED_LEVEL_NONE) {
             continue;
@@ -37,8 +37,10 @@ static void findings(const flagred_finding ended[2]) {
         printf(" ");
         bits(f->raised_s);
         printf(" ");
+        bits(f->failed_s);
+        printf(" ");
         bits(f->to_s);
-        printf(" %d ", (int)f->of_elevated_risk);
+        printf(" %d ", (int)f->measure);
         bits(f->threshold_pct);
         printf(" ");
         bits(f->peak_pct);
@@ -65,7 +67,7 @@ int main(int count, char **arguments) {
     double values[64], kind;
     flagred_monitor *monitor;
     flagred_update said;
-    flagred_finding ended[2];
+    flagred_finding ended[FLAGRED_ENDED];
     size_t size = flagred_memory_size(&PLAN, motors);
     if (size == 0 || size > sizeof memory) {
         fprintf(stderr, "%zu bytes are needed, and %zu are there\n", size, sizeof memory);

@@ -21,7 +21,7 @@ static int32_t start(const flagred_plan *plan, flagred_monitor **monitor) {
 int main(void) {
     flagred_monitor *monitor = NULL;
     flagred_update said;
-    flagred_finding ended[2];
+    flagred_finding ended[FLAGRED_ENDED];
     const flagred_plan *plan = &PLAN;
     double commands[MOTORS] = {0.5, 0.5, 0.5, 0.5};
 

@@ -1,5 +1,5 @@
 // The profile `flagred-battery` with the rule set `../flagred-battery.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 8600 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 62376 bytes of memory.
+// 8672 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 71800 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// Memory for a monitor of so many motors.
@@ -22,7 +22,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         follower::Settings,
         gap::FilledKnots,
         sample::Sampling,
-        verdict::{Idle, LevelSettings, Threshold, VerdictSettings},
+        verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings},
     };
     Plan {
         name: "flagred-battery",
@@ -106,9 +106,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         output: 0,
         order: &[0, 1, 2],
         channels: &[
-            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: None, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Named(0), motors: channel::Motors::Pooled, threshold: None, window_s: 2.0 },
+            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
+            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
+            channel::Channel { observed: channel::Observed::Named(0), motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
         ],
         inputs: &[
             channel::Input { channel: 0, statistic: channel::Statistic::Mean },
@@ -116,7 +116,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             channel::Input { channel: 2, statistic: channel::Statistic::Last },
         ],
         signals: 1,
-        settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 1.0, longest_gap_s: 2.0 }, elevated_risk: AccumulatorSettings { window_s: 10.0, high_pct: 50.0, low_pct: 20.0, rise_pct_per_s: 1.5, fall_pct_per_s: 2.0 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(50.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(25.0), elevated_risk_pct: Some(30.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(85.0), elevated_risk_pct: Some(90.0) }, after_s: 0.4, until: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(70.0) } }, clear_after_s: 10.0, quiet_after_take_off_s: 5.0, quiet_before_landing_s: 1.0, idle: Idle { command_below: 0.1, risk_at_most_pct: 60.0 } } },
+        settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 1.0, longest_gap_s: 2.0, take_off_s: 0.0 }, elevated_risk: AccumulatorSettings { window_s: 10.0, high_pct: 50.0, low_pct: 20.0, rise_pct_per_s: 1.5, fall_pct_per_s: 2.0 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(50.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(25.0), elevated_risk_pct: Some(30.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(85.0), elevated_risk_pct: Some(90.0) }, after_s: 0.4, until: Threshold { risk_pct: Some(67.0), elevated_risk_pct: Some(70.0) } }, clear_after_s: 10.0, quiet_after_take_off_s: 5.0, quiet_before_landing_s: 1.0, idle_below: 0.1, notices: NoticeSettings { noise: None, reserve: None, imbalance: None } } },
         coverage_below: 0.5,
         filled: Some(FilledKnots {
             coordinates: &[

@@ -229,7 +229,7 @@ pub fn moment(said: Option<&Estimate>) -> String {
     )
 }
 
-/// The findings of WARN and of FAIL as text.
+/// Findings as text.
 pub fn findings(ended: &Ended) -> String {
     ended
         .iter()
@@ -239,6 +239,7 @@ pub fn findings(ended: &Ended) -> String {
                 level,
                 from_s,
                 raised_s,
+                failed_s,
                 to_s,
                 measure,
                 threshold_pct,
@@ -250,10 +251,11 @@ pub fn findings(ended: &Ended) -> String {
             };
             let high = motor.is_some_and(|motor| motor.side == flagred::margin::Side::High);
             format!(
-                " [{} {} {} {} {} {} {} {} {} {} {}]",
+                " [{} {} {} {} {} {} {} {} {} {} {} {}]",
                 *level as i32,
                 bits(*from_s),
                 bits(*raised_s),
+                bits(failed_s.unwrap_or(f64::NAN)),
                 bits(*to_s),
                 *measure as i32,
                 bits(*threshold_pct),

@@ -6,6 +6,7 @@ pub mod log_writer;
 pub mod reference;
 pub mod schema;
 pub mod simulated;
+pub mod tuning;
 pub mod vehicle;
 pub mod watch;
 pub mod wire;

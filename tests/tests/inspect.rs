@@ -97,6 +97,36 @@ fn what_is_no_log_is_3() {
     }
 }
 
+/// Terminal commands in the texts of a log do not reach the terminal.
+#[test]
+fn control_characters_are_shown_as_such() {
+    let (code, stdout, _) = inspect(&[], &format!("# note: \u{1b}[31mred\u{202e}\u{7}\n{LOG}"));
+    assert_eq!(code, Some(0));
+    assert!(
+        stdout.contains("note: \u{fffd}[31mred\u{fffd}\u{fffd}"),
+        "{stdout}"
+    );
+}
+
+/// Limits that no vehicle has would hide a motor at its limit.
+#[test]
+fn limits_that_cannot_be_are_refused() {
+    for (header, said) in [
+        (
+            "# effective_low: -3\n# effective_high: 7\n",
+            "`effective_low` is -3, not in 0 to 1",
+        ),
+        (
+            "# pwm_low_us: -50000\n# pwm_high_us: 2000\n",
+            "`pwm_low_us` is -50000, not in 0 to 3000",
+        ),
+    ] {
+        let (code, _, stderr) = inspect(&[], &format!("{header}t_s,pwm1\n0,2000\n"));
+        assert_eq!(code, Some(3));
+        assert!(stderr.contains(said), "{stderr}");
+    }
+}
+
 #[test]
 fn a_plane_is_shown_and_is_3() {
     let (code, stdout, _) = inspect(&[], &format!("# vehicle_kind: plane\n{LOG}"));

@@ -166,6 +166,7 @@ fn a_flight_becomes_rows() {
     let names = [
         "file",
         "vehicle",
+        "kind",
         "from_s",
         "t_s",
         "margin",
@@ -176,22 +177,46 @@ fn a_flight_becomes_rows() {
     assert_eq!(header, names);
     assert_eq!(whole.len(), 1);
     let number = |text: &str| text.parse::<f64>().unwrap();
-    let margin = number(&whole[0][4]);
+    let margin = number(&whole[0][5]);
     assert!((0.3..0.45).contains(&margin), "{margin}");
     approx::assert_abs_diff_eq!(
-        number(&whole[0][7]),
-        20.0 * number(&whole[0][6]),
+        number(&whole[0][8]),
+        20.0 * number(&whole[0][7]),
         epsilon = 1e-3
     );
 
     let (_, windows) = rows(&["--window", "10"]);
     assert!((8..14).contains(&windows.len()), "{}", windows.len());
-    let mean = windows.iter().map(|row| number(&row[4])).sum::<f64>() / windows.len() as f64;
+    let mean = windows.iter().map(|row| number(&row[5])).sum::<f64>() / windows.len() as f64;
     approx::assert_abs_diff_eq!(mean, margin, epsilon = 0.01);
 
-    let (header, ahead) = rows(&["--ahead", "5", "--profile", "flagred"]);
-    assert_eq!(header[6], "unsteady_now");
+    let (header, ahead) = rows(&["--ahead", "5", "--profile", "flagred-paper"]);
+    let last = [
+        "error_last_5_s_deg",
+        "error_last_10_s_deg",
+        "att_rmse_deg",
+        "risk",
+    ];
+    assert_eq!(header[7..], last);
     assert!(ahead.len() > 180, "{}", ahead.len());
+    let (_, often) = rows(&[
+        "--ahead",
+        "5",
+        "--every",
+        "0.25",
+        "--profile",
+        "flagred-paper",
+    ]);
+    assert!((2 * ahead.len() - 1..=2 * ahead.len()).contains(&often.len()));
+    for row in &ahead {
+        let [air_s, t_s, last_5, last_10] = [3, 4, 7, 8].map(|column| number(&row[column]));
+        assert!(t_s >= air_s + 2.0 && last_5 <= last_10, "{row:?}");
+        // What comes within 5 s is behind 5 s later.
+        let later = ahead
+            .iter()
+            .find(|later| (number(&later[4]) - t_s - 5.0).abs() < 1e-6);
+        assert!(later.is_none_or(|later| later[7] == row[9]), "{row:?}");
+    }
 }
 
 #[test]
@@ -205,6 +230,13 @@ fn the_shipped_rules_are_what_the_documented_command_learns() {
         .arg(data)
         .arg(&out)
         .env("FLAGRED", flagred().get_program())
+        .env(
+            "TUNE",
+            concat!(
+                env!("CARGO"),
+                " run -q -p flagred-tests --example tune_rules --"
+            ),
+        )
         .output()
         .unwrap();
     assert!(

@@ -1,199 +1,95 @@
-//! What learned rules are worth on vehicles they were not learned from.
+//! What tuned rules are worth on vehicles they were not tuned on.
 //!
-//! Each vehicle is left out in turn, with its flights in changing conditions and in steady wind; the rules are learned
-//! from all others, exactly as `scripts/learn-flagred` learns them from all, and say what they think of the one left out.
-//! The scores of all turns are pooled. The terms, the windows and the thresholds of the verdict stay the same in every
-//! turn: they were chosen on these vehicles, so the figures are a little kinder than those of other vehicles would be.
+//! The vehicles of the real and the simulated flights are dealt out to five folds. For each fold the rules are tuned on the
+//! rows of all others, exactly as `scripts/learn-flagred` tunes them on all, and say what they think of the vehicles left
+//! out. The inputs, the windows and the thresholds of the verdict stay the same: they were chosen on these vehicles, so
+//! the figures are a little kinder than those of other vehicles would be.
 //!
 //! `FLAGRED_SHARED=... cargo test -p flagred-tests --test leave_vehicles_out -- --ignored --nocapture` prints the figures.
 
-use std::{collections::BTreeSet, fs, path::Path};
+use std::{fs, path::Path, process::Command};
 
 use flagred::{
     estimator::Estimator,
-    evaluation::{Answer, Interval, Judged, Prediction, Ranking, Span, judge},
-    profile::Profile,
+    evaluation::{Answer, Judged, Span, judge},
     shipped,
 };
 use flagred_tests::{
-    reference_data,
+    Folder, flagred, reference_data,
     simulated::{self, AS_FLOWN, Simulated, on_all_cores},
-};
-use fuzzy::{
-    Model,
-    learn::{Direction, Learner, Resolution, Settings},
+    tuning::{self, AREAS, Data, EXCESSES, Set, Votes},
 };
 
-/// A row to learn from: the inputs, the risk in %, the vehicle, and whether it was critical.
-struct Row {
-    values: Vec<f64>,
-    vehicle: String,
-    is_critical: bool,
-}
-
-fn settings() -> Settings {
-    let given = fuzzy::rule::parse("IF at_limit IS none THEN risk IS low").unwrap();
-    let rising = |name: &str| (name.to_owned(), Direction::Rising);
-    Settings {
-        resolution: Resolution::Mean,
-        min_support: 5,
-        complete: true,
-        monotone: vec![
-            rising("unsteady_now"),
-            rising("unsteady_lately"),
-            rising("load"),
-        ],
-        given: Some(given.condition),
-        ..Settings::default()
-    }
-}
-
-/// Learns from the rows of both sets but those of a vehicle; both sets count the same.
-fn learn(blank: &Model, sets: &[&[Row]], without: &str) -> Model {
-    let mut learner = Learner::new(blank, settings()).unwrap();
-    for set in sets {
-        let rows = || set.iter().filter(|row| row.vehicle != without);
-        let weight = 1.0 / rows().count() as f64;
-        for row in rows() {
-            learner.add(&row.values, weight).unwrap();
-        }
-    }
-    learner.finish().model
-}
-
-fn profile() -> Profile {
-    shipped::flagred().profile().clone()
-}
-
-/// The rows of the campaign in steady wind, a flight each.
-fn whole_flights(data: &Path) -> Vec<Row> {
-    let text = fs::read_to_string(data.join("sitl/runs.csv")).unwrap();
-    let mut lines = text.lines();
-    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let row = |line: &str| {
-        let cells: Vec<&str> = line.split(',').collect();
-        let cell = |name: &str| cells[header.iter().position(|h| *h == name).unwrap()];
-        let number = |name: &str| cell(name).parse::<f64>().unwrap();
-        let (low, high) = (number("c_limit_low"), number("c_limit_high"));
-        // The variance over all motors and times is that of the motors' mean over time plus the mean square of the
-        // spread between motors; what that has beyond the square of its mean is its variance over time.
-        let square =
-            number("c_std").powi(2) - number("c_std_time").powi(2) - number("c_std_motors").powi(2);
-        let unsteady = square.max(0.0).sqrt() / (high - low);
-        let load = (number("c_mean") - low) / (high - low);
-        let error_deg = number("att_rmse_deg");
-        let crashed = cell("crashed") == "1";
-        let risk = if crashed {
-            100.0
-        } else {
-            (error_deg * 20.0).min(100.0)
-        };
-        Row {
-            values: vec![unsteady, unsteady, load, number("sat_lim_frac"), risk],
-            vehicle: simulated::vehicle(cell("frame")),
-            is_critical: crashed || error_deg >= 5.0,
-        }
-    };
-    lines.map(row).collect()
-}
-
-/// The steps of a flight as rows.
-fn steps(flight: &Simulated, estimator: &Estimator) -> Vec<Row> {
-    let said = flight.replay(estimator, AS_FLOWN);
-    let steps = flight.steps.iter().zip(said.steps);
-    let row = |((t_s, is_critical), (mut values, _)): (&(f64, bool), (Vec<f64>, f64))| {
-        values.push((flight.error_ahead_deg(*t_s) * 20.0).min(100.0));
-        Row {
-            values,
-            vehicle: flight.vehicle.clone(),
-            is_critical: *is_critical,
-        }
-    };
-    steps.map(row).collect()
-}
-
-/// What rules that do not know a vehicle say of it.
-struct Turn {
-    /// Of its whole flights, and of the steps of its flights with their number.
-    rows: Vec<Prediction>,
-    steps: Vec<Prediction>,
-    /// Of each of its flights: its number, and what the warnings come to.
-    judged: Vec<(usize, Judged)>,
-}
+/// What each of [`AREAS`] must reach.
+const LEAST: [f64; 6] = [0.85, 0.68, 0.90, 0.80, 0.82, 0.85];
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
-fn rules_hold_on_vehicles_they_were_not_learned_from() {
+fn rules_hold_on_vehicles_they_were_not_tuned_on() {
     let data = reference_data();
-    let blank = fs::read_to_string("../rules/to-learn/flagred.yaml").unwrap();
-    let blank = fuzzy::yaml::parse(&blank).unwrap().model;
-    let all = shipped::flagred_rules();
-    let estimator = Estimator::new(&profile(), &all).unwrap();
-    let flights = simulated::flights(&data);
-    let whole = whole_flights(&data);
-    let of_flights = on_all_cores(&flights, |flight| match flight.kind.as_str() {
-        "manoeuvre" => Vec::new(),
-        _ => steps(flight, &estimator),
-    });
-    let of_steps: Vec<Row> = of_flights.into_iter().flatten().collect();
-    assert_eq!((whole.len(), of_steps.len()), (612, 44_369));
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let made = Folder::new();
+    let output = Command::new(workspace.join("scripts/learn-flagred"))
+        .args([&data, &made.path().join("none.yaml")])
+        .envs([("ROWS", made.path()), ("TUNE", Path::new("true"))])
+        .env("FLAGRED", flagred().get_program())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let template = fs::read_to_string(workspace.join("rules/to-learn/flagred.yaml")).unwrap();
+    let template = Votes::new(&fuzzy::yaml::parse(&template).unwrap().model).unwrap();
+    let [real, sitl2, sitl3] =
+        ["real", "sitl2", "sitl3"].map(|name| made.at(&format!("{name}.csv")));
+    let tables = Data {
+        sets: [
+            (Set::Real, Path::new(&real)),
+            (Set::Sitl2, Path::new(&sitl2)),
+            (Set::Sitl3, Path::new(&sitl3)),
+        ],
+        upsets: &data.join("real/index.csv"),
+    };
+    let rows = tuning::read(&tables, &template.names()).unwrap();
+    let folds = tuning::folds(&rows);
+    let tuned = tuning::tune_without(&template, &rows, &folds);
 
-    // From all of them: the shipped rules.
-    let learned = learn(&blank, &[&of_steps, &whole], "nobody");
-    let text = |model: &Model| {
-        model
-            .rules
+    let risks = rows
+        .iter()
+        .map(|row| tuned[folds[row.vehicle.as_str()]].risk_pct(&row.inputs));
+    let risks: Vec<f64> = risks.collect();
+    for (area, least) in AREAS.iter().zip(LEAST) {
+        let roc = tuning::judge(area, &rows, &risks).areas().unwrap().roc;
+        println!("{}: ROC area {roc:.3}", area.name);
+        assert!(roc >= least, "{}: {roc}", area.name);
+    }
+    for excess in &EXCESSES {
+        let of = rows
             .iter()
-            .map(|r| r.rule.to_string())
-            .collect::<Vec<_>>()
-    };
-    assert_eq!(text(&learned), text(&all));
-
-    let names = whole
-        .iter()
-        .chain(&of_steps)
-        .map(|row| row.vehicle.as_str());
-    let vehicles: Vec<&str> = names.collect::<BTreeSet<_>>().into_iter().collect();
-    let turns = on_all_cores(&vehicles, |vehicle| {
-        let rules = learn(&blank, &[&of_steps, &whole], vehicle);
-        turn(
-            vehicle,
-            &Estimator::new(&profile(), &rules).unwrap(),
-            &whole,
-            &flights,
-        )
-    });
-
-    let area = |name: &str, predictions: Vec<Prediction>| {
-        let ranking = Ranking::new(predictions);
-        let areas = ranking.areas().unwrap();
-        let Interval { low, high } = ranking.bootstrap(200, 1).unwrap().roc;
+            .zip(&risks)
+            .filter(|(row, _)| (excess.holds)(row));
+        let above: Vec<bool> = of.map(|(_, risk)| *risk > excess.above_pct).collect();
+        let share = above.iter().filter(|is| **is).count() as f64 / above.len() as f64;
         println!(
-            "{name}: area under ROC {:.4} [{low:.3}, {high:.3}], under precision-recall {:.3}, {} of {} critical",
-            areas.roc,
-            areas.precision_recall,
-            ranking.critical(),
-            ranking.len()
+            "{}: {:.1} % above {} %",
+            excess.name,
+            100.0 * share,
+            excess.above_pct
         );
-        areas.roc
-    };
-    println!("{} vehicles, each left out in turn", vehicles.len());
-    let rows = area(
-        "whole flights in steady wind",
-        turns.iter().flat_map(|t| t.rows.clone()).collect(),
-    );
-    let series = area(
-        "steps in changing conditions",
-        turns.iter().flat_map(|t| t.steps.clone()).collect(),
-    );
-    let judged: Vec<(&Simulated, &Judged)> = turns
+        assert!(share <= 0.15, "{}: {share}", excess.name);
+    }
+
+    let profile = shipped::flagred().profile().clone();
+    let estimators: Vec<Estimator> = tuned
         .iter()
-        .flat_map(|turn| &turn.judged)
-        .map(|(i, judged)| (&flights[*i], judged))
+        .map(|votes| Estimator::new(&profile, &votes.rule_set(&rows)).unwrap())
         .collect();
+    let flights = simulated::flights(&data);
+    let judged = on_all_cores(&flights, |flight| {
+        let said = flight.replay(&estimators[folds[flight.vehicle.as_str()]], AS_FLOWN);
+        let episodes = flight.errors.episodes();
+        judge(&said.warnings, episodes, &[flight.judged], flight.lost_s)
+    });
+    let judged: Vec<(&Simulated, &Judged)> = flights.iter().zip(&judged).collect();
     let warnings = warnings(&judged);
-    assert!(rows >= 0.96, "{rows}");
-    assert!(series >= 0.88, "{series}");
     assert!(warnings.ramps_announced >= 0.85);
     assert!(warnings.lead_s > 5.0);
     assert!(warnings.answer_s < 1.5 && warnings.answer_from_good_s < 1.5);
@@ -203,49 +99,6 @@ fn rules_hold_on_vehicles_they_were_not_learned_from() {
         warnings.false_per_hour
     );
     assert_eq!(warnings.of_calm, 0);
-}
-
-fn turn(vehicle: &str, estimator: &Estimator, whole: &[Row], flights: &[Simulated]) -> Turn {
-    let mut turn = Turn {
-        rows: Vec::new(),
-        steps: Vec::new(),
-        judged: Vec::new(),
-    };
-    for (i, row) in whole
-        .iter()
-        .enumerate()
-        .filter(|(_, row)| row.vehicle == vehicle)
-    {
-        turn.rows.push(Prediction {
-            score: estimator.at(&row.values[..4]).unwrap().risk_pct,
-            critical: row.is_critical,
-            group: i as u32,
-        });
-    }
-    for (i, flight) in flights
-        .iter()
-        .enumerate()
-        .filter(|(_, f)| f.vehicle == vehicle)
-    {
-        let said = flight.replay(estimator, AS_FLOWN);
-        if flight.kind != "manoeuvre" {
-            let steps = flight.steps.iter().zip(said.steps);
-            turn.steps
-                .extend(steps.map(|((_, critical), (_, score))| Prediction {
-                    score,
-                    critical: *critical,
-                    group: i as u32,
-                }));
-        }
-        let judged = judge(
-            &said.warnings,
-            flight.errors.episodes(),
-            &[flight.judged],
-            flight.lost_s,
-        );
-        turn.judged.push((i, judged));
-    }
-    turn
 }
 
 struct Figures {

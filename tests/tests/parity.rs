@@ -1,9 +1,6 @@
 //! Our results against those of other programs and of a closed form, where the reference files are at hand.
 
 use flagred_tests::reference_data;
-use std::path::PathBuf;
-
-use flagred_tests::shared_data;
 use fuzzy::model::{MembershipFunction, Model, Output, Sampling, SamplingRule, Variable};
 use fuzzy::rule::{Condition, Rule};
 use fuzzy::{Engine, engine::State};

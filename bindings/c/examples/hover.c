@@ -23,14 +23,20 @@ static void commands_at(int step, double commands[4]) {
 }
 
 static const char *word(int32_t level) {
-    return level == FLAGRED_FAIL ? "FAIL" : level == FLAGRED_WARN ? "WARN" : "GOOD";
+    static const char *const words[] = {"GOOD", "INFO", "WARN", "FAIL"};
+    return words[level];
 }
 
 int main(void) {
     /* MOT_PWM_MIN 1000, MOT_PWM_MAX 2000, MOT_SPIN_MIN 0.15, MOT_SPIN_MAX 0.95 */
     const flagred_limits limits[4] = {{1150, 1950}, {1150, 1950}, {1150, 1950}, {1150, 1950}};
+    /* Roll, pitch and yaw of motors in an X: front right, rear left, front left, rear right. */
+    const double geometry[4][3] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
     flagred_monitor *monitor;
     int32_t status = flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor);
+    if (status == FLAGRED_OK) {
+        status = flagred_set_geometry(monitor, geometry, 4);
+    }
     if (status != FLAGRED_OK) {
         printf("%s\n", flagred_status_text(status));
         return 1;
@@ -50,9 +56,9 @@ int main(void) {
                    said.elevated_risk_pct);
         }
     }
-    flagred_finding ended[2];
+    flagred_finding ended[FLAGRED_ENDED];
     flagred_finish(monitor, ended);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < FLAGRED_ENDED; i++) {
         if (ended[i].level != FLAGRED_LEVEL_NONE) {
             printf("%s from %.2f s to %.2f s, motor %d\n", word(ended[i].level), ended[i].from_s, ended[i].to_s,
                    (int)ended[i].motor + 1);

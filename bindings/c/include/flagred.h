@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_PLAN_FORMAT 2
+#define FLAGRED_PLAN_FORMAT 3
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -32,18 +32,29 @@ typedef enum flagred_status {
     FLAGRED_OK = 0,
     FLAGRED_NULL_POINTER = 1,   /* a required pointer is NULL */
     FLAGRED_OTHER_FORMAT = 2,   /* another version exported the plan: export it again */
-    FLAGRED_DAMAGED_PLAN = 3,   /* an index in the plan is out of bounds */
+    FLAGRED_DAMAGED_PLAN = 3,   /* an index in the plan is out of bounds, or a window has no length */
     FLAGRED_NO_MOTORS = 4,
     FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size returns, or not aligned to 16 bytes */
-    FLAGRED_BAD_LIMITS = 6      /* the lower limit of a motor is not below its upper limit */
+    FLAGRED_BAD_LIMITS = 6,     /* the lower limit of a motor is not below its upper limit */
+    FLAGRED_BAD_GEOMETRY = 7    /* the geometry does not tell roll, pitch, yaw and thrust of all motors apart */
 } flagred_status;
 
 typedef enum flagred_level {
     FLAGRED_LEVEL_NONE = -1,    /* on the ground, or unknown for a long time; as a change: no change */
     FLAGRED_GOOD = 0,
-    FLAGRED_WARN = 1,
-    FLAGRED_FAIL = 2
+    FLAGRED_INFO = 1,           /* of a finding only: worth knowing, and no danger */
+    FLAGRED_WARN = 2,
+    FLAGRED_FAIL = 3
 } flagred_level;
+
+/* The quantity that a threshold is on. */
+typedef enum flagred_measure {
+    FLAGRED_RISK = 0,
+    FLAGRED_ELEVATED_RISK = 1,
+    FLAGRED_COMMAND_NOISE = 2,  /* the noise of the motor commands, in % of their range */
+    FLAGRED_RESERVE = 3,        /* what the mean command leaves below the upper limit, in % of the range */
+    FLAGRED_IMBALANCE = 4       /* how far a motor is from its own part of the thrust earlier in the flight, in % */
+} flagred_measure;
 
 /* Why a risk is unknown. */
 typedef enum flagred_unknown {
@@ -74,19 +85,23 @@ typedef struct flagred_sample {
     int32_t in_air;             /* 0 on the ground */
 } flagred_sample;
 
-/* The cause of a level. */
+/* The number of findings that can end at one time: of the risk, the noise, the reserve and the imbalance. */
+#define FLAGRED_ENDED 4
+
+/* The cause of a level, or information. */
 typedef struct flagred_finding {
     double from_s;              /* when the threshold was first reached */
     double raised_s;            /* when the level was raised */
+    double failed_s;            /* when it became FLAGRED_FAIL; NAN where it did not */
     double to_s;                /* when the threshold was last reached */
     double threshold_pct;
-    double peak_pct;
-    double mean_margin;         /* of the motor with the least margin; NAN where no motor is known */
+    double peak_pct;            /* the worst value of the measure: of the reserve the least, else the largest */
+    double mean_margin;         /* of the motor; NAN where no motor is known */
     double least_margin;
     int32_t level;              /* flagred_level; FLAGRED_LEVEL_NONE where there is no finding */
-    int32_t of_elevated_risk;   /* 0: the risk reached the threshold; 1: the elevated risk */
-    int32_t motor;              /* the index of the motor; -1 where no motor is known */
-    int32_t at_high_limit;      /* 0: nearer to the lower limit; 1: to the upper limit */
+    int32_t measure;            /* flagred_measure: what reached the threshold */
+    int32_t motor;              /* the index of the motor with the least margin, or out of balance; -1 where none is known */
+    int32_t at_high_limit;      /* 0: nearer to the lower limit; 1: to the upper limit. Out of balance: below, above */
 } flagred_finding;
 
 /* What is known after a sample. */
@@ -96,7 +111,7 @@ typedef struct flagred_update {
     double elevated_risk_pct;   /* NAN where unknown */
     double coverage;            /* the largest firing strength of a rule, 0 to 1; NAN where the risk is unknown */
     double filled_from;         /* the distance to the nearest covered point, where the risk is interpolated; else NAN */
-    flagred_finding ended[2];   /* the findings that ended with this sample: of WARN, of FAIL */
+    flagred_finding ended[FLAGRED_ENDED]; /* the findings that ended with this sample */
     int32_t dominant_rule;      /* the index of the rule with the largest firing strength; -1 where none fired */
     int32_t clamped;            /* 1 where an input was outside its range and was clamped to it */
     int32_t level;              /* flagred_level */
@@ -124,14 +139,21 @@ size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
                       flagred_monitor **monitor);
 
+/* Gives each motor its roll, pitch and yaw factor, in the order of the commands, so that turning the nose is told from what
+ * pushes the vehicle around. Call it before the first sample. A factor is positive where more thrust of the motor rolls the
+ * vehicle to the right (a motor on the left), raises the nose (a motor in front), and turns the nose to the right (a
+ * propeller that turns counter-clockwise). The largest factor of each axis is 1; an axis that no motor acts on has zeros. An
+ * ArduPilot mixer has these factors. Without them, yaw counts as any other motion. */
+int32_t flagred_set_geometry(flagred_monitor *monitor, const double (*roll_pitch_yaw)[3], size_t motors);
+
 /* Takes the next sample and writes the update. */
 int32_t flagred_push(flagred_monitor *monitor, const flagred_sample *sample, flagred_update *update);
 
 /* The open finding of the current level; its level is FLAGRED_LEVEL_NONE while the level is good. */
 int32_t flagred_open_finding(const flagred_monitor *monitor, flagred_finding *finding);
 
-/* Ends the flight and writes the open findings of WARN and of FAIL. The next sample begins a new flight. */
-int32_t flagred_finish(flagred_monitor *monitor, flagred_finding ended[2]);
+/* Ends the flight and writes the open findings. The next sample begins a new flight. */
+int32_t flagred_finish(flagred_monitor *monitor, flagred_finding ended[FLAGRED_ENDED]);
 
 /* The risk at values of the profile's inputs, in its order, independent of the flight. Writes risk_pct, coverage,
  * filled_from, dominant_rule and clamped. */
@@ -216,7 +238,7 @@ typedef struct flagred_coefficient {
 
 typedef struct flagred_channel {
     double window_s, limit;
-    uint32_t observed, signal, motors, threshold;
+    uint32_t observed, signal, motors, threshold, in_bins;
 } flagred_channel;
 
 typedef struct flagred_source {
@@ -233,12 +255,17 @@ typedef struct flagred_level_settings {
     flagred_threshold until;
 } flagred_level_settings;
 
+typedef struct flagred_limit {
+    double value, after_s;                /* value NAN: none */
+} flagred_limit;
+
 typedef struct flagred_settings {
-    double warm_up_s, longest_gap_s;
+    double warm_up_s, longest_gap_s, take_off_s;
     double risk_window_s, high_pct, low_pct, rise_pct_per_s, fall_pct_per_s;
     flagred_level_settings warn, fail;
     double clear_after_s, quiet_after_take_off_s, quiet_before_landing_s;
-    double idle_command_below, idle_risk_at_most_pct;
+    double idle_below;
+    flagred_limit noise, reserve, imbalance;
     uint32_t min_samples;
 } flagred_settings;
 

@@ -12,7 +12,7 @@ use core::ffi::{CStr, c_char};
 
 use flagred::{
     board::{
-        Memory, Monitor,
+        Factors, Memory, Monitor,
         table::{Outcome, Partial, Strongest},
     },
     channel::Seen,
@@ -25,7 +25,7 @@ use flagred::{
 use memory::Block;
 use plan::{Array, Plan};
 use status::Status;
-use update::{Finding, Update, findings};
+use update::{ENDED, Finding, Update, findings};
 
 /// `struct flagred_limits`.
 #[derive(Debug, Clone, Copy)]
@@ -169,6 +169,30 @@ unsafe fn start(
     block.place(monitor).map(core::ptr::from_mut)
 }
 
+/// Gives each motor its factors.
+///
+/// # Safety
+/// `monitor` is null or from [`flagred_start`]; `roll_pitch_yaw` is null or has `motors` items.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub unsafe extern "C" fn flagred_set_geometry(
+    monitor: *mut CMonitor,
+    roll_pitch_yaw: *const Factors,
+    motors: usize,
+) -> i32 {
+    let factors = Array {
+        items: roll_pitch_yaw,
+        count: motors,
+    };
+    // SAFETY: the caller's promises; the factors are used in this call only.
+    let (monitor, factors) = unsafe { (monitor.as_mut(), factors.read()) };
+    let (Some(monitor), Ok(factors)) = (monitor, factors) else {
+        return Status::NullPointer as i32;
+    };
+    let set = monitor.monitor.set_geometry(factors);
+    set.map_or(Status::BadGeometry, |()| Status::Ok) as i32
+}
+
 /// Takes the next sample and writes the update.
 ///
 /// # Safety
@@ -236,7 +260,10 @@ pub unsafe extern "C" fn flagred_open_finding(
 /// `monitor` is null or from [`flagred_start`]; `ended` is null or writable.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
-pub unsafe extern "C" fn flagred_finish(monitor: *mut CMonitor, ended: *mut [Finding; 2]) -> i32 {
+pub unsafe extern "C" fn flagred_finish(
+    monitor: *mut CMonitor,
+    ended: *mut [Finding; ENDED],
+) -> i32 {
     // SAFETY: the caller's promise.
     let monitor = unsafe { monitor.as_mut() };
     let (Some(monitor), false) = (monitor, ended.is_null()) else {

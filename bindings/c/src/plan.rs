@@ -14,13 +14,13 @@ use flagred::{
     follower::Settings,
     gap::FilledKnots,
     sample::Sampling,
-    verdict::{Idle, LevelSettings, Threshold, VerdictSettings},
+    verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings},
 };
 
 use crate::{memory::Block, status::Status};
 
 /// The version of the data that this library reads.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// An array of C and its length.
 #[derive(Debug, Clone, Copy)]
@@ -57,6 +57,7 @@ struct CChannel {
     signal: u32,
     motors: u32,
     threshold: u32,
+    in_bins: u32,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -83,9 +84,17 @@ struct CLevelSettings {
 
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
+struct CLimit {
+    value: f64,
+    after_s: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
 struct CSettings {
     warm_up_s: f64,
     longest_gap_s: f64,
+    take_off_s: f64,
     risk_window_s: f64,
     high_pct: f64,
     low_pct: f64,
@@ -96,8 +105,10 @@ struct CSettings {
     clear_after_s: f64,
     quiet_after_take_off_s: f64,
     quiet_before_landing_s: f64,
-    idle_command_below: f64,
-    idle_risk_at_most_pct: f64,
+    idle_below: f64,
+    noise: CLimit,
+    reserve: CLimit,
+    imbalance: CLimit,
     min_samples: u32,
 }
 
@@ -287,6 +298,9 @@ impl CChannel {
                 2 => Observed::LowSide,
                 3 => Observed::HighSide,
                 4 => Observed::Named(self.signal as usize),
+                5 => Observed::CommandLessYaw,
+                6 => Observed::Effort(self.signal as usize),
+                7 => Observed::CommandNoise,
                 _ => return Err(Status::DamagedPlan),
             },
             motors: match self.motors {
@@ -303,6 +317,7 @@ impl CChannel {
                 2 => Some(channel::Threshold::Above(self.limit)),
                 _ => return Err(Status::DamagedPlan),
             },
+            in_bins: self.in_bins != 0,
             window_s: self.window_s,
         })
     }
@@ -327,19 +342,32 @@ impl CSource {
                 5 => Statistic::Last,
                 6 => Statistic::ShareBelow(limit),
                 7 => Statistic::ShareAbove(limit),
+                8 => Statistic::StdLessNoise,
+                9 => Statistic::Noise,
                 _ => return Err(Status::DamagedPlan),
             },
         })
     }
 }
 
+/// A limit; NaN is none.
+fn known(limit: f64) -> Option<f64> {
+    (!limit.is_nan()).then_some(limit)
+}
+
 impl CThreshold {
     fn read(&self) -> Threshold {
-        let known = |value: f64| (!value.is_nan()).then_some(value);
         Threshold {
             risk_pct: known(self.risk_pct),
             elevated_risk_pct: known(self.elevated_risk_pct),
         }
+    }
+}
+
+impl CLimit {
+    fn read(&self) -> Option<Limit> {
+        let CLimit { value, after_s } = *self;
+        known(value).map(|value| Limit { value, after_s })
     }
 }
 
@@ -360,6 +388,7 @@ impl CSettings {
                 min_samples: self.min_samples,
                 warm_up_s: self.warm_up_s,
                 longest_gap_s: self.longest_gap_s,
+                take_off_s: self.take_off_s,
             },
             elevated_risk: AccumulatorSettings {
                 window_s: self.risk_window_s,
@@ -374,9 +403,11 @@ impl CSettings {
                 clear_after_s: self.clear_after_s,
                 quiet_after_take_off_s: self.quiet_after_take_off_s,
                 quiet_before_landing_s: self.quiet_before_landing_s,
-                idle: Idle {
-                    command_below: self.idle_command_below,
-                    risk_at_most_pct: self.idle_risk_at_most_pct,
+                idle_below: self.idle_below,
+                notices: NoticeSettings {
+                    noise: self.noise.read(),
+                    reserve: self.reserve.read(),
+                    imbalance: self.imbalance.read(),
                 },
             },
         }

@@ -12,6 +12,7 @@ pub(crate) enum Status {
     NoMotors = 4,
     MemorySize = 5,
     BadLimits = 6,
+    BadGeometry = 7,
 }
 
 /// The text of a status.
@@ -24,6 +25,7 @@ pub(crate) fn text(status: i32) -> &'static CStr {
         4 => c"the number of motors is 0",
         5 => c"the memory is too small, or not aligned to 16 bytes",
         6 => c"the lower limit of a motor is not below its upper limit",
+        7 => c"the geometry does not tell roll, pitch, yaw and thrust of all motors apart",
         _ => c"unknown status",
     }
 }

@@ -3,8 +3,11 @@
 use flagred::{
     margin::Side,
     sample::{self, Estimate, Unknown},
-    verdict::{self, Ended, Level, Measure},
+    verdict::{self, Ended, Level},
 };
+
+/// `FLAGRED_ENDED`: the number of findings that can end at one time.
+pub(crate) const ENDED: usize = 4;
 
 /// `struct flagred_finding`.
 #[derive(Debug, Clone, Copy)]
@@ -12,13 +15,14 @@ use flagred::{
 pub struct Finding {
     from_s: f64,
     raised_s: f64,
+    failed_s: f64,
     to_s: f64,
     threshold_pct: f64,
     peak_pct: f64,
     mean_margin: f64,
     least_margin: f64,
     level: i32,
-    of_elevated_risk: i32,
+    measure: i32,
     motor: i32,
     at_high_limit: i32,
 }
@@ -32,7 +36,7 @@ pub struct Update {
     elevated_risk_pct: f64,
     coverage: f64,
     filled_from: f64,
-    ended: [Finding; 2],
+    ended: [Finding; ENDED],
     dominant_rule: i32,
     clamped: i32,
     level: i32,
@@ -45,13 +49,14 @@ impl Finding {
     const NONE: Finding = Finding {
         from_s: f64::NAN,
         raised_s: f64::NAN,
+        failed_s: f64::NAN,
         to_s: f64::NAN,
         threshold_pct: f64::NAN,
         peak_pct: f64::NAN,
         mean_margin: f64::NAN,
         least_margin: f64::NAN,
         level: -1,
-        of_elevated_risk: 0,
+        measure: 0,
         motor: -1,
         at_high_limit: 0,
     };
@@ -64,20 +69,21 @@ impl Finding {
         Finding {
             from_s: finding.from_s,
             raised_s: finding.raised_s,
+            failed_s: finding.failed_s.unwrap_or(f64::NAN),
             to_s: finding.to_s,
             threshold_pct: finding.threshold_pct,
             peak_pct: finding.peak_pct,
             mean_margin: motor.map_or(f64::NAN, |motor| motor.mean_margin),
             least_margin: motor.map_or(f64::NAN, |motor| motor.least_margin),
             level: level(Some(finding.level)),
-            of_elevated_risk: i32::from(finding.measure == Measure::ElevatedRisk),
+            measure: finding.measure as i32,
             motor: motor.map_or(-1, |motor| index(motor.motor)),
             at_high_limit: i32::from(motor.is_some_and(|motor| motor.side == Side::High)),
         }
     }
 }
 
-pub(crate) fn findings(ended: Ended) -> [Finding; 2] {
+pub(crate) fn findings(ended: Ended) -> [Finding; ENDED] {
     ended.map(Finding::of)
 }
 
@@ -113,7 +119,7 @@ impl Update {
             elevated_risk_pct: f64::NAN,
             coverage: known(|estimate| estimate.coverage),
             filled_from: known(|estimate| estimate.filled_from.unwrap_or(f64::NAN)),
-            ended: [Finding::NONE; 2],
+            ended: [Finding::NONE; ENDED],
             dominant_rule: estimate
                 .and_then(|estimate| estimate.dominant_rule)
                 .map_or(-1, index),
@@ -127,12 +133,7 @@ impl Update {
 }
 
 fn level(level: Option<Level>) -> i32 {
-    match level {
-        None => -1,
-        Some(Level::Good) => 0,
-        Some(Level::Warn) => 1,
-        Some(Level::Fail) => 2,
-    }
+    level.map_or(-1, |level| level as i32)
 }
 
 fn index(index: usize) -> i32 {

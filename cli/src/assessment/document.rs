@@ -7,14 +7,11 @@ use flagred::{
     flight::{Assessment, Finding, Step, Steps, Summary, Verdict},
     verdict::VerdictSettings,
 };
-use flightlog::Flight;
+use flightlog::{Flight, Motor, Range, Report};
 use serde::Serialize;
 
 use super::finding::Teller;
-use crate::{
-    failure::Failure,
-    json::{Motor, Range, Read},
-};
+use crate::failure::Failure;
 
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.assess/1";
@@ -25,7 +22,7 @@ pub(crate) struct Document<'a> {
     schema: &'static str,
     log: Log<'a>,
     vehicle: Vehicle<'a>,
-    read: Read<'a>,
+    read: &'a Report,
     profile: Profile<'a>,
     #[serde(flatten)]
     verdict: &'a Verdict,
@@ -45,9 +42,9 @@ struct Vehicle<'a> {
     kind: String,
     frame: Option<&'a str>,
     firmware: Option<&'a str>,
-    motors: Vec<Motor<'a>>,
-    range: Option<Range<'a>>,
-    effective_range: Range<'a>,
+    motors: &'a [Motor],
+    range: Option<&'a Range>,
+    effective_range: &'a Range,
 }
 
 /// What the verdict rests on beside the flight.
@@ -100,11 +97,11 @@ pub(crate) fn document<'a>(
             kind: flight.vehicle.kind.to_string(),
             frame: flight.vehicle.frame.as_deref(),
             firmware: flight.vehicle.firmware.as_deref(),
-            motors: flight.motors.iter().map(Motor::from).collect(),
-            range: flight.range.as_ref().map(Range::from),
-            effective_range: Range::from(&flight.effective),
+            motors: &flight.motors,
+            range: flight.range.as_ref(),
+            effective_range: &flight.effective,
         },
-        read: Read::from(&flight.report),
+        read: &flight.report,
         profile: Profile {
             name: &profile.name,
             rules: &profile.rules,

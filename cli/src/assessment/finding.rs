@@ -189,7 +189,10 @@ pub(crate) fn limit(side: Side) -> &'static str {
 
 /// A description up to its first comma, in small letters as inside a sentence.
 fn first_phrase(description: &str) -> String {
-    let phrase = description.split([',', '.', ';']).next().unwrap_or(description);
+    let phrase = description
+        .split([',', '.', ';'])
+        .next()
+        .unwrap_or(description);
     let mut letters = phrase.chars();
     match (letters.next(), letters.clone().next()) {
         (Some(first), Some(second)) if !second.is_uppercase() => {

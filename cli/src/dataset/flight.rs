@@ -2,17 +2,26 @@
 
 use flagred::{
     attitude::{Attitude, AttitudeError, risk_pct},
+    estimator::Estimator,
     evaluation::{ErrorRecord, Span},
     log,
-    source::{Observer, Source},
+    monitor::Monitor,
+    profile::Profile,
 };
 use flightlog::Flight;
+use fuzzy::{
+    Model,
+    model::{MembershipFunction, Output, Variable},
+    rule::{Condition, Rule},
+};
 
-use super::{Cut, Plan, Row, Rows};
+use super::{BEFORE_S, Cut, Plan, Row, Rows};
 use crate::{failure::Failure, flights::open_complete};
 
-/// How far apart the moments are from which [`Cut::Ahead`] looks ahead, in seconds.
-const STEP_S: f64 = 0.5;
+/// Rows that look ahead leave out so many seconds after take-off and before the end of a time in the air, where the
+/// header names no judged time.
+const AFTER_TAKE_OFF_S: f64 = 2.0;
+const BEFORE_END_S: f64 = 1.0;
 
 pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     let names = plan.profile.signals();
@@ -32,23 +41,25 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
         .help("`flagred inspect` lists the signals a log carries"));
     }
     let errors: Vec<(f64, Attitude)> = log::attitudes(&flight).collect();
-    let record = ErrorRecord::new(errors.iter().copied());
     let mut made = Rows {
         rows: Vec::new(),
         notes: Vec::new(),
     };
     let mut refused = 0;
-    for Span { from_s, to_s } in log::judged_spans(&flight, &plan.profile.verdict) {
-        let moments = moments(plan.cut, from_s, to_s);
+    for Part { air_s, span } in parts(&flight, plan) {
+        let moments = moments(plan.cut, span.from_s, span.to_s);
         let length_s = match plan.cut {
-            Cut::Flights => Some(to_s - from_s),
+            Cut::Flights => Some(span.length_s()),
             Cut::Windows { length_s } => Some(length_s),
             Cut::Ahead { .. } => None,
         };
-        let inputs = inputs(&flight, plan, &carried, length_s, &moments);
+        // Errors on the ground are none of the flight's.
+        let in_air = errors.iter().filter(|(t_s, _)| air_s.contains(*t_s));
+        let record = ErrorRecord::new(in_air.copied());
+        let inputs = inputs(&flight, plan, &carried, length_s, &moments)?;
         for (t_s, inputs) in moments.into_iter().zip(inputs) {
             let error_deg = match plan.cut {
-                Cut::Ahead { horizon_s } => record.largest_within(t_s, horizon_s),
+                Cut::Ahead { horizon_s, .. } => record.largest_within(t_s, horizon_s),
                 _ => rmse(&errors, t_s - length_s.unwrap_or(0.0), t_s),
             };
             let known = inputs.iter().all(|value| value.is_finite());
@@ -56,11 +67,17 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
                 refused += 1;
                 continue;
             };
+            let before = |before_s| record.largest_within(t_s - before_s, before_s);
             made.rows.push(Row {
                 vehicle: said("vehicle").unwrap_or("").to_owned(),
-                from_s: length_s.map(|length_s| t_s - length_s),
+                kind: said("kind").or(said("real_class")).unwrap_or("").to_owned(),
+                from_s: Some(length_s.map_or(air_s.from_s, |length_s| t_s - length_s)),
                 to_s: Some(t_s),
                 inputs,
+                errors_before_deg: match plan.cut {
+                    Cut::Ahead { .. } => BEFORE_S.map(before).to_vec(),
+                    _ => Vec::new(),
+                },
                 att_rmse_deg,
                 risk_pct: risk_pct(att_rmse_deg, plan.critical_deg),
             });
@@ -77,6 +94,41 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     Ok(made)
 }
 
+/// A part of a flight that rows are made of.
+struct Part {
+    /// The time in the air that it belongs to.
+    air_s: Span,
+    /// What of it counts.
+    span: Span,
+}
+
+fn parts(flight: &Flight, plan: &Plan) -> Vec<Part> {
+    let Cut::Ahead { .. } = plan.cut else {
+        let judged = log::judged_spans(flight, &plan.profile.verdict);
+        let parts = judged.into_iter().map(|span| Part { air_s: span, span });
+        return parts.collect();
+    };
+    let number = |key| log::header(flight, key).and_then(|text| text.parse::<f64>().ok());
+    let judged_s = number("judged_from_s").zip(number("judged_to_s"));
+    let air = flight.in_air.iter().flat_map(|air| &air.spans);
+    let parts = air.map(|air| {
+        let (from_s, to_s) = (air.start_s, air.end_s);
+        let span = match judged_s {
+            Some((judged_from_s, judged_to_s)) => Span {
+                from_s: judged_from_s.max(from_s),
+                to_s: judged_to_s.min(to_s),
+            },
+            None => Span {
+                from_s: from_s + AFTER_TAKE_OFF_S,
+                to_s: to_s - BEFORE_END_S,
+            },
+        };
+        let air_s = Span { from_s, to_s };
+        Part { air_s, span }
+    });
+    parts.collect()
+}
+
 /// The times at which rows are made, in order.
 fn moments(cut: Cut, from_s: f64, to_s: f64) -> Vec<f64> {
     let every = |first_s: f64, step_s: f64| {
@@ -87,59 +139,63 @@ fn moments(cut: Cut, from_s: f64, to_s: f64) -> Vec<f64> {
         Cut::Flights => vec![to_s],
         Cut::Windows { length_s } if from_s + length_s > to_s => Vec::new(),
         Cut::Windows { length_s } => every(from_s + length_s, length_s).collect(),
-        Cut::Ahead { .. } => every(from_s, STEP_S).collect(),
+        Cut::Ahead { step_s, .. } => every(from_s, step_s).collect(),
     }
 }
 
-/// The inputs at each moment, over windows of one length or over their own.
+/// The inputs at each moment as a monitor sees them, over windows of one length or over their own; NaN is unknown.
 fn inputs(
     flight: &Flight,
     plan: &Plan,
     carried: &[&str],
     length_s: Option<f64>,
     moments: &[f64],
-) -> Vec<Vec<f64>> {
-    let sources: Vec<Source> = plan
-        .profile
-        .inputs
-        .iter()
-        .map(|input| Source {
-            window_s: length_s.unwrap_or(input.source.window_s),
-            ..input.source.clone()
-        })
-        .collect();
-    let Ok(mut observer) = Observer::new(&sources, log::craft(flight, carried)) else {
-        return Vec::new();
-    };
-    let read = |observer: &Observer| {
-        let values = (0..sources.len()).map(|i| observer.value(i));
-        values
-            .map(|observed| observed.map_or(f64::NAN, |o| o.value))
-            .collect::<Vec<f64>>()
-    };
+) -> Result<Vec<Vec<f64>>, Failure> {
+    let mut profile = plan.profile.clone();
+    for input in &mut profile.inputs {
+        input.source.window_s = length_s.unwrap_or(input.source.window_s);
+    }
+    let refuse =
+        |error: String| Failure::unreadable(format!("profile `{}`: {error}", profile.name));
+    let estimator = Estimator::new(&profile, &any_rules(&profile))
+        .map_err(|error| refuse(error.to_string()))?;
+    let mut monitor = Monitor::new(&estimator, log::craft(flight, carried))
+        .map_err(|error| refuse(error.to_string()))?;
     let mut rows = Vec::with_capacity(moments.len());
-    let mut last_s = None;
-    let longest_gap_s = plan.profile.sampling.longest_gap_s;
+    let mut now = vec![f64::NAN; profile.inputs.len()];
     log::for_each_sample(flight, carried, |sample| {
         // The state at a moment is that after the newest sample up to it.
         while moments
             .get(rows.len())
             .is_some_and(|t_s| *t_s + 1e-6 < sample.t_s)
         {
-            rows.push(read(&observer));
+            rows.push(now.clone());
         }
-        let held_s = last_s.map_or(0.0, |last_s| sample.t_s - last_s);
-        last_s = Some(sample.t_s);
-        if !sample.in_air || held_s > longest_gap_s {
-            observer.clear();
-        } else if held_s > 0.0 {
-            observer.push(sample.t_s, held_s, sample.motors, sample.signals);
-        }
+        monitor.push(sample);
+        now.copy_from_slice(monitor.inputs());
     });
-    while rows.len() < moments.len() {
-        rows.push(read(&observer));
+    rows.resize(moments.len(), now);
+    Ok(rows)
+}
+
+/// Rules for a monitor that is asked for its inputs only: the profile's own may still have to be learned.
+fn any_rules(profile: &Profile) -> Model {
+    let any = |variable: Variable| {
+        let (top, foot) = (variable.low, variable.high);
+        variable.term("any", MembershipFunction::LeftShoulder { top, foot })
+    };
+    let mut model = Model::builder("any");
+    for input in &profile.inputs {
+        model = model
+            .input(any(Variable::new(&input.name, 0.0, 1.0)))
+            .rule(Rule::new(
+                Condition::is(&input.name, "any"),
+                &profile.output,
+                "any",
+            ));
     }
-    rows
+    let output = Output::new(any(Variable::new(&profile.output, 0.0, 100.0)));
+    model.output(output).build()
 }
 
 /// The root mean square over `(from_s, to_s]`.

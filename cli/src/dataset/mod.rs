@@ -30,12 +30,16 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "ahead")]
     window: Option<f64>,
 
-    /// Make a row for every half second: the inputs over the windows of the profile, and the largest 1 s attitude error
-    /// within the next so many seconds
+    /// What comes within so many seconds: the inputs over the windows of the profile, and the largest attitude error
+    /// over a second that follows
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     ahead: Option<f64>,
 
-    /// The attitude error of a risk of 100 %, in degrees
+    /// How far the rows of `--ahead` are apart
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value_t = 0.5, requires = "ahead")]
+    every: f64,
+
+    /// The attitude error that counts as 100 %, in degrees
     #[arg(long, value_name = "DEG", value_parser = seconds, default_value_t = CRITICAL_ERROR_DEG)]
     critical: f64,
 
@@ -71,16 +75,24 @@ enum Cut {
     Flights,
     /// One row for every so many seconds.
     Windows { length_s: f64 },
-    /// A row every half second, the truth in the seconds that follow.
-    Ahead { horizon_s: f64 },
+    /// A row every so many seconds, the truth in the seconds that follow.
+    Ahead { horizon_s: f64, step_s: f64 },
 }
+
+/// Over how many seconds before a row of [`Cut::Ahead`] the largest error is told.
+const BEFORE_S: [f64; 2] = [5.0, 10.0];
 
 /// One row of the data set.
 struct Row {
     vehicle: String,
+    /// What kind of flight it is, by the header.
+    kind: String,
+    /// Where the row begins; of [`Cut::Ahead`] where the time in the air does.
     from_s: Option<f64>,
     to_s: Option<f64>,
     inputs: Vec<f64>,
+    /// Of [`Cut::Ahead`]: the largest error in each of [`BEFORE_S`]; `None` is unknown.
+    errors_before_deg: Vec<Option<f64>>,
     att_rmse_deg: f64,
     risk_pct: f64,
 }
@@ -100,16 +112,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         profile: with_margin_and_spread(profile),
         cut: match (arguments.window, arguments.ahead) {
             (Some(length_s), _) => Cut::Windows { length_s },
-            (None, Some(horizon_s)) => Cut::Ahead { horizon_s },
+            (None, Some(horizon_s)) => Cut::Ahead {
+                horizon_s,
+                step_s: arguments.every,
+            },
             (None, None) => Cut::Flights,
         },
         critical_deg: arguments.critical,
         skip: arguments.skip.clone(),
     };
     let mut out = std::io::stdout().lock();
-    write!(out, "file,vehicle,from_s,t_s")?;
+    write!(out, "file,vehicle,kind,from_s,t_s")?;
     for input in &plan.profile.inputs {
         write!(out, ",{}", input.name)?;
+    }
+    if let Cut::Ahead { .. } = plan.cut {
+        for length_s in BEFORE_S {
+            write!(out, ",error_last_{length_s}_s_deg")?;
+        }
     }
     writeln!(out, ",att_rmse_deg,{}", plan.profile.output)?;
 
@@ -188,9 +208,16 @@ fn write_row(out: &mut impl Write, log: &str, row: &Row) -> std::io::Result<()> 
     };
     let time = |t_s: Option<f64>| t_s.map(|t_s| format!("{t_s:.3}")).unwrap_or_default();
     let (from, to) = (time(row.from_s), time(row.to_s));
-    write!(out, "{},{},{from},{to}", quoted(log), quoted(&row.vehicle))?;
+    for text in [log, &row.vehicle, &row.kind] {
+        write!(out, "{},", quoted(text))?;
+    }
+    write!(out, "{from},{to}")?;
     for value in &row.inputs {
         write!(out, ",{value:.8}")?;
+    }
+    for error_deg in &row.errors_before_deg {
+        let error_deg = error_deg.map(|error_deg| format!("{error_deg:.6}"));
+        write!(out, ",{}", error_deg.unwrap_or_default())?;
     }
     writeln!(out, ",{:.6},{:.5}", row.att_rmse_deg, row.risk_pct)
 }

@@ -40,6 +40,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
     let error = table.require(ERROR, help)?;
     let crashed = table.column("crashed");
     let vehicle = table.column("vehicle").or_else(|| table.column("frame"));
+    let kind = table.column("kind");
     let mut recipes = Vec::new();
     for input in &plan.profile.inputs {
         let recipe = recipe(&input.source).ok_or_else(|| {
@@ -66,13 +67,14 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
             .collect::<Result<Vec<f64>, BadCell>>()
             .map_err(refused)?;
         let has_crashed = crashed.is_some_and(|column| table.text(row, column) == "1");
+        let text = |column: Option<usize>| column.map_or("", |column| table.text(row, column));
         made.rows.push(Row {
-            vehicle: vehicle
-                .map_or("", |column| table.text(row, column))
-                .to_owned(),
+            vehicle: text(vehicle).to_owned(),
+            kind: text(kind).to_owned(),
             from_s: None,
             to_s: None,
             inputs,
+            errors_before_deg: Vec::new(),
             att_rmse_deg,
             // No attitude error stands for hitting the ground.
             risk_pct: if has_crashed {

@@ -7,7 +7,7 @@ use crate::{failure::Failure, profile};
 /// All that are compared; profiles first.
 pub(super) struct Estimators {
     pub(super) profiles: Vec<Named>,
-    pub(super) baselines: [Baseline; 6],
+    pub(super) baselines: [Baseline; 9],
 }
 
 /// A profile and what it goes by.
@@ -60,16 +60,6 @@ impl Estimators {
         names.sort_unstable();
         names.dedup();
         names
-    }
-
-    /// The baselines, those left out whose signal is not among `names`.
-    pub(super) fn carried_baselines(&self, names: &[&str]) -> Vec<Option<&Baseline>> {
-        let carried =
-            |baseline: &&Baseline| named(baseline).is_none_or(|name| names.contains(&name));
-        self.baselines
-            .iter()
-            .map(|b| Some(b).filter(carried))
-            .collect()
     }
 }
 

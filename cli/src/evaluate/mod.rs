@@ -1,5 +1,6 @@
 //! `flagred evaluate`: how good are the risks of profiles, beside predictors that need no rules?
 
+mod alarms;
 mod document;
 mod estimators;
 mod flight;
@@ -19,6 +20,7 @@ use crate::{
     failure::{Exit, Failure},
     output, parallel,
 };
+use alarms::Alarms;
 use estimators::Estimators;
 use flight::Record;
 use scores::{APART, Case, Evaluated};
@@ -26,7 +28,7 @@ use warnings::Warnings;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Flight logs with attitude, or folders of them: ArduPilot, PX4 or flight CSV, plain or gzipped
+    /// Flight logs with attitude (ArduPilot, PX4, tlog, flight CSV; plain or gzipped), and folders of them
     #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
     flights: Vec<PathBuf>,
 
@@ -58,6 +60,12 @@ fn horizon(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A file that is not among the flights, and why.
+struct LeftOut {
+    file: String,
+    reason: String,
+}
+
 /// What came of it all.
 struct Evaluation {
     /// What the cases are: `steps` or `flights`.
@@ -65,10 +73,11 @@ struct Evaluation {
     horizon_s: Option<f64>,
     flights: usize,
     critical: usize,
-    left_out: usize,
+    left_out: Vec<LeftOut>,
     estimators: Vec<Evaluated>,
     /// Of each profile: over all flights, and by kind.
     warnings: Vec<(Warnings, Vec<(String, Warnings)>)>,
+    alarms: Vec<Alarms>,
     records: Vec<Record>,
 }
 
@@ -97,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation, Exit), Failure> {
     let files = files(&arguments.flights)?;
     let mut records = Vec::new();
-    let (mut left_out, mut exit) = (0, Exit::Clean);
+    let (mut left_out, mut exit) = (Vec::new(), Exit::Clean);
     parallel::in_order(
         &files,
         "flights",
@@ -106,7 +115,12 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
             match evaluated {
                 Ok(record) => records.push(record),
                 Err(failure) => {
-                    left_out += 1;
+                    let path = file.path.display().to_string();
+                    let reason = failure.message().replace(&format!("`{path}`"), "");
+                    left_out.push(LeftOut {
+                        file: path,
+                        reason: reason.trim_start_matches([' ', ',']).to_owned(),
+                    });
                     // A folder may hold other things than flights.
                     if file.is_named {
                         failure.report();
@@ -121,12 +135,15 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
         .iter_mut()
         .zip(0..)
         .flat_map(|(record, group)| {
-            let (vehicle, kind) = (record.vehicle.clone(), record.kind.clone());
+            let vehicle = record.vehicle_name().to_owned();
+            let kind = record.kind.clone();
             record.steps.iter_mut().map(move |step| Case {
                 group,
                 vehicle: vehicle.clone(),
                 kind: kind.clone(),
                 is_critical: step.is_critical,
+                is_quiet: step.is_quiet,
+                is_onset: step.is_onset,
                 scores: std::mem::take(&mut step.scores),
             })
         })
@@ -144,6 +161,9 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
         left_out,
         warnings: (0..estimators.profiles.len())
             .map(|profile| Warnings::by_kind(profile, &records))
+            .collect(),
+        alarms: (0..estimators.profiles.len())
+            .map(|profile| Alarms::of(profile, &records))
             .collect(),
         records,
         ..Evaluation::of(estimators, &cases)
@@ -170,9 +190,10 @@ impl Evaluation {
             horizon_s: None,
             flights: main().count(),
             critical: main().filter(|case| case.is_critical).count(),
-            left_out: 0,
+            left_out: Vec::new(),
             estimators: scores::score(estimators.names(), estimators.profiles.len(), cases),
             warnings: Vec::new(),
+            alarms: Vec::new(),
             records: Vec::new(),
         }
     }

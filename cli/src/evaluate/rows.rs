@@ -92,7 +92,12 @@ pub(super) fn cases(
                 "margin_mean" => &[other],
                 name => &[name, other],
             };
-            (baseline, Column::of(&table, names, &baseline.source))
+            let column = match baseline.per_motor {
+                // A row says nothing of single motors.
+                Some(_) => None,
+                None => Column::of(&table, names, &baseline.source),
+            };
+            (baseline, column)
         })
         .collect();
 
@@ -136,6 +141,8 @@ pub(super) fn cases(
             vehicle: text(vehicle).to_owned(),
             kind: text(kind).to_owned(),
             is_critical: error_deg >= CRITICAL_ERROR_DEG || text(crashed) == "1",
+            is_quiet: false,
+            is_onset: false,
             scores,
         });
     }

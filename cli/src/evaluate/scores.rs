@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use flagred::evaluation::{Areas, Band, Intervals, Prediction, Ranking, RocPoint, reliability};
+use flagred::evaluation::{
+    Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
+};
 
 use crate::parallel;
 
@@ -10,8 +12,8 @@ use crate::parallel;
 pub(super) const APART: &str = "manoeuvre";
 
 /// How often whole flights are drawn for an interval, and from which seed.
-const RESAMPLES: usize = 1000;
-const SEED: u64 = 1;
+pub(super) const RESAMPLES: usize = 1000;
+pub(super) const SEED: u64 = 1;
 
 /// Steps along the curve that is drawn.
 const ROC_STEPS: u32 = 200;
@@ -23,6 +25,9 @@ pub(super) struct Case {
     pub(super) vehicle: String,
     pub(super) kind: String,
     pub(super) is_critical: bool,
+    /// No critical error in the 5 s before, and none in the 10 s before.
+    pub(super) is_quiet: bool,
+    pub(super) is_onset: bool,
     /// For each estimator; NaN is unknown.
     pub(super) scores: Vec<f64>,
 }
@@ -37,6 +42,22 @@ pub(super) struct Scores {
     /// `None` where all cases are critical, or none is.
     pub(super) areas: Option<Areas>,
     pub(super) intervals: Option<Intervals>,
+    /// Within single flights; `None` where none has critical cases and others.
+    pub(super) within: Option<WithinGroups>,
+}
+
+impl Scores {
+    /// Why there is no area; `cases` is what the cases are: `steps`.
+    pub(super) fn no_area(&self, cases: &str) -> Option<String> {
+        let case = cases.trim_end_matches('s');
+        match (self.areas, self.cases, self.critical) {
+            (Some(_), ..) => None,
+            (None, 0, _) if self.unknown == 0 => Some(format!("no {case}")),
+            (None, 0, _) => Some("unknown".to_owned()),
+            (None, _, 0) => Some(format!("no critical {case}")),
+            (None, ..) => Some(format!("only critical {cases}")),
+        }
+    }
 }
 
 /// An estimator under evaluation.
@@ -45,6 +66,9 @@ pub(super) struct Evaluated {
     pub(super) description: String,
     /// Over all kinds but the one apart.
     pub(super) all: Scores,
+    /// Over the quiet steps of those, and over the onsets.
+    pub(super) quiet: Scores,
+    pub(super) onset: Scores,
     pub(super) by_vehicle: Vec<(String, Scores)>,
     pub(super) by_kind: Vec<(String, Scores)>,
     /// Of risks in %; other scores have no scale.
@@ -80,10 +104,17 @@ fn evaluated(
 ) -> Evaluated {
     let main = || cases.iter().filter(|case| case.kind != APART);
     let ranking = Ranking::new(predictions(main(), i));
+    let part = |is_in: fn(&Case) -> bool| {
+        let cases = || main().filter(|case| is_in(case));
+        let ranking = Ranking::new(predictions(cases(), i));
+        scores(cases().count(), &ranking, RESAMPLES)
+    };
     Evaluated {
         name: name.to_owned(),
         description: description.to_owned(),
         all: scores(main().count(), &ranking, RESAMPLES),
+        quiet: part(|case| case.is_quiet),
+        onset: part(|case| case.is_onset),
         by_vehicle: grouped(main(), |case| &case.vehicle)
             .into_iter()
             .map(|(vehicle, cases)| {
@@ -121,6 +152,7 @@ fn scores(cases: usize, ranking: &Ranking, resamples: usize) -> Scores {
         critical: ranking.critical(),
         areas: ranking.areas(),
         intervals: ranking.bootstrap(resamples, SEED),
+        within: ranking.within_groups(resamples, SEED),
     }
 }
 
@@ -133,4 +165,14 @@ fn grouped<'a>(
         groups.entry(key(case)).or_default().push(case);
     }
     groups
+}
+
+pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let upper = *values.get(middle)?;
+    match values.len() % 2 {
+        1 => Some(upper),
+        _ => Some((values.get(middle - 1)? + upper) / 2.0),
+    }
 }

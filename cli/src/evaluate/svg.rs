@@ -78,16 +78,20 @@ mod tests {
             group: i,
         });
         let ranking = Ranking::new(cases.clone());
+        let scores = || Scores {
+            cases: 200,
+            unknown: 0,
+            critical: ranking.critical(),
+            areas: ranking.areas(),
+            intervals: None,
+            within: None,
+        };
         let evaluated = |name: &str, is_risk: bool| Evaluated {
             name: name.into(),
             description: String::new(),
-            all: Scores {
-                cases: 200,
-                unknown: 0,
-                critical: ranking.critical(),
-                areas: ranking.areas(),
-                intervals: None,
-            },
+            all: scores(),
+            quiet: scores(),
+            onset: scores(),
             by_vehicle: Vec::new(),
             by_kind: Vec::new(),
             reliability: is_risk.then(|| reliability(cases.clone())),
@@ -98,9 +102,10 @@ mod tests {
             horizon_s: None,
             flights: 200,
             critical: ranking.critical(),
-            left_out: 0,
+            left_out: Vec::new(),
             estimators: vec![evaluated("a<b", true), evaluated("spread", false)],
             warnings: Vec::new(),
+            alarms: Vec::new(),
             records: Vec::new(),
         };
         insta::assert_snapshot!(draw(&evaluation));

@@ -2,7 +2,11 @@
 
 use flagred::evaluation::Judged;
 
-use super::{flight::Record, scores::APART};
+use super::{
+    alarms::kinds,
+    flight::Record,
+    scores::{APART, median},
+};
 
 /// An episode that starts within so many seconds after another one ended belongs to the same group.
 const SAME_GROUP_S: f64 = 5.0;
@@ -42,13 +46,13 @@ impl Warnings {
         let mut sum = Warnings::default();
         let (mut leads, mut group_leads, mut answers, mut on_s) = (vec![], vec![], vec![], 0.0);
         for record in records {
-            let Some(Judged {
-                answers: of_flight,
-                warnings,
-            }) = record.judged.get(profile)
-            else {
+            let Some(said) = record.said.get(profile) else {
                 continue;
             };
+            let Judged {
+                answers: of_flight,
+                warnings,
+            } = &said.judged;
             sum.flights += 1;
             sum.hours += record.judged_s / 3600.0;
             sum.warnings += warnings.len();
@@ -88,26 +92,13 @@ impl Warnings {
         records: &[Record],
     ) -> (Warnings, Vec<(String, Warnings)>) {
         let main = records.iter().filter(|record| record.kind != APART);
-        let mut kinds: Vec<&str> = records.iter().map(|r| r.kind.as_str()).collect();
-        kinds.sort_unstable();
-        kinds.dedup();
         let of_kind = |kind: &str| {
             let records = records.iter().filter(|record| record.kind == kind);
             (kind.to_owned(), Warnings::of(profile, records))
         };
         (
             Warnings::of(profile, main),
-            kinds.into_iter().map(of_kind).collect(),
+            kinds(records).into_iter().map(of_kind).collect(),
         )
-    }
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    let upper = *values.get(middle)?;
-    match values.len() % 2 {
-        1 => Some(upper),
-        _ => Some((values.get(middle - 1)? + upper) / 2.0),
     }
 }

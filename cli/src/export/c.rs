@@ -206,9 +206,10 @@ fn channel(channel: &Channel) -> String {
         Some(Threshold::Above(limit)) => (2, limit),
     };
     format!(
-        "{{{}, {}, {observed}, {signal}, {motors}, {threshold}}}",
+        "{{{}, {}, {observed}, {signal}, {motors}, {threshold}, {}}}",
         number(channel.window_s),
-        number(limit)
+        number(limit),
+        u32::from(channel.in_bins)
     )
 }
 
@@ -242,9 +243,15 @@ fn settings(settings: &Settings) -> String {
         let (raise, until) = (threshold(&l.raise), threshold(&l.until));
         format!("{{{raise}, {}, {until}}}", number(l.after_s))
     };
+    let limit = |limit: Option<verdict::Limit>| {
+        let (value, after_s) = limit.map_or((f64::NAN, 0.0), |limit| (limit.value, limit.after_s));
+        format!("{{{}, {}}}", number(value), number(after_s))
+    };
+    let notices = &verdict.notices;
     let values = [
         number(sampling.warm_up_s),
         number(sampling.longest_gap_s),
+        number(sampling.take_off_s),
         number(elevated_risk.window_s),
         number(elevated_risk.high_pct),
         number(elevated_risk.low_pct),
@@ -256,6 +263,9 @@ fn settings(settings: &Settings) -> String {
         number(verdict.quiet_after_take_off_s),
         number(verdict.quiet_before_landing_s),
         number(verdict.idle_below),
+        limit(notices.noise),
+        limit(notices.reserve),
+        limit(notices.imbalance),
         sampling.min_samples.to_string(),
     ];
     format!("{{{}}}", values.join(", "))

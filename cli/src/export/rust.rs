@@ -41,7 +41,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
         follower::Settings,
         gap::FilledKnots,
         sample::Sampling,
-        verdict::{{Idle, LevelSettings, Threshold, VerdictSettings}},
+        verdict::{{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings}},
     }};
     Plan {{
         name: {:?},

@@ -32,6 +32,10 @@ pub(super) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Re
 }
 
 fn line(out: &mut impl Write, key: &str, value: &str) -> io::Result<()> {
+    // Texts of a log may hold terminal commands and turn the direction of writing.
+    let is_harmful =
+        |c: char| c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let value = value.replace(is_harmful, "\u{fffd}");
     writeln!(out, "  {key:<11}{value}")
 }
 

@@ -10,7 +10,10 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{charts, decision, panel::panel};
 use crate::{
-    assessment::{finding::{self, Teller}, words},
+    assessment::{
+        finding::{self, Teller},
+        words,
+    },
     profile::Loaded,
 };
 

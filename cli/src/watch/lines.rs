@@ -2,20 +2,12 @@
 
 use std::io;
 
-use flagred::{
-    estimator::Estimator,
-    flight::Verdict,
-    monitor::Update,
-    verdict::Level,
-};
-use flightlog::{Vehicle, mavlink::Setup};
+use flagred::{estimator::Estimator, flight::Verdict, monitor::Update, verdict::Level};
+use flightlog::{Motor, Range, Vehicle, mavlink::Setup};
 use serde::Serialize;
 
 use super::session::{Event, Session, Silent, View};
-use crate::{
-    assessment::{document::FindingDocument, finding::Teller, words::effective_range},
-    json::{Motor, Range},
-};
+use crate::assessment::{document::FindingDocument, finding::Teller, words::effective_range};
 
 /// Seconds of the vehicle's clock between two lines of risk in words.
 const STEP_S: f64 = 1.0;
@@ -181,9 +173,9 @@ pub(crate) enum EventLine<'a> {
     },
     NotAMultirotor(About<'a>),
     Ready {
-        motors: Vec<Motor<'a>>,
-        range: Range<'a>,
-        effective_range: Range<'a>,
+        motors: &'a [Motor],
+        range: &'a Range,
+        effective_range: &'a Range,
         assumed: &'a [String],
     },
     Note {
@@ -263,9 +255,9 @@ pub(crate) fn json(
             EventLine::NotAMultirotor(About::new(*system, vehicle))
         }
         Event::Ready { setup } => EventLine::Ready {
-            motors: setup.motors.iter().map(Motor::from).collect(),
-            range: Range::from(&setup.range),
-            effective_range: Range::from(&setup.effective),
+            motors: &setup.motors,
+            range: &setup.range,
+            effective_range: &setup.effective,
             assumed: &setup.assumed,
         },
         Event::Note { text } => EventLine::Note { text },

@@ -94,7 +94,8 @@ pub(crate) fn say(
             _ => format!(", motor {} {} limit", motor.number, limit(named.side)),
         })
     });
-    text += &motor.unwrap_or_else(|| cause(finding.cause.as_ref(), TEXT.saturating_sub(text.len())));
+    text +=
+        &motor.unwrap_or_else(|| cause(finding.cause.as_ref(), TEXT.saturating_sub(text.len())));
     text
 }
 

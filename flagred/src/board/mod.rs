@@ -29,14 +29,17 @@ use fuzzy::table::{Damaged, Outcome, Scratch, Table};
 
 use crate::{
     channel::{Channel, Input, Observed, Seen},
+    effort::ROLL_PITCH_YAW_THRUST,
     follower::{Follower, Room, Settings},
     gap::FilledKnots,
     lookup::Lookup,
+    motor,
     sample::{Estimate, Sample, Update},
     verdict::{Ended, Finding, Motor},
     window::Window,
 };
 
+pub use crate::effort::Factors;
 pub use fuzzy::table;
 
 mod storage;
@@ -80,6 +83,8 @@ pub enum Refused {
     NoMotors,
     /// The plan is damaged.
     Plan(Damaged),
+    /// The geometry does not have the factors of every motor, or they do not tell roll, pitch, yaw and thrust apart.
+    Geometry,
 }
 
 impl core::fmt::Display for Refused {
@@ -88,6 +93,9 @@ impl core::fmt::Display for Refused {
             Refused::Memory => f.write_str("the memory does not have the sizes of the plan"),
             Refused::NoMotors => f.write_str("the number of motors is 0"),
             Refused::Plan(damaged) => damaged.fmt(f),
+            Refused::Geometry => f.write_str(
+                "the geometry does not tell roll, pitch, yaw and thrust of all motors apart",
+            ),
         }
     }
 }
@@ -95,10 +103,10 @@ impl core::fmt::Display for Refused {
 impl core::error::Error for Refused {}
 
 impl Plan<'_> {
-    /// Verifies every index of the plan, so that no sample can make a monitor panic. Exported plans pass.
+    /// Verifies every index and window of the plan, so that no sample can make a monitor panic. Exported plans pass.
     ///
     /// # Errors
-    /// The first array with an index out of bounds.
+    /// The first array with an index out of bounds, or with a window that has no length.
     pub fn check(&self) -> Result<(), Damaged> {
         self.table.check()?;
         let require = |holds: bool, array| holds.then_some(()).ok_or(Damaged(array));
@@ -110,18 +118,24 @@ impl Plan<'_> {
             "order",
         )?;
         require(
-            self.inputs
-                .iter()
-                .all(|input| input.channel < self.channels.len()),
+            self.inputs.iter().all(|input| {
+                let channel = self.channels.get(input.channel);
+                channel.is_some_and(|channel| channel.in_bins == input.statistic.is_of_bins())
+            }),
             "inputs of the profile",
         )?;
         require(
-            self.channels.iter().all(|channel| match channel.observed {
-                Observed::Named(signal) => signal < self.signals as usize,
-                _ => true,
+            self.channels.iter().all(|channel| {
+                let is_known = match channel.observed {
+                    Observed::Named(signal) => signal < self.signals as usize,
+                    Observed::Effort(axis) => axis < ROLL_PITCH_YAW_THRUST,
+                    _ => true,
+                };
+                is_known && is_length(channel.window_s)
             }),
             "channels",
         )?;
+        require(is_length(self.settings.elevated_risk.window_s), "settings")?;
         require(
             self.filled
                 .is_none_or(|filled| filled.is_whole(self.table.inputs.len())),
@@ -228,6 +242,29 @@ impl<'a> Monitor<'a> {
         (fits && numbers.is_empty() && partials.is_empty()).then_some(monitor)
     }
 
+    /// Gives each motor its factors, in the order of the samples, so that turning the nose is told from what pushes the
+    /// vehicle around. Call it before the first sample.
+    ///
+    /// # Errors
+    /// There are not factors for every motor, or they do not tell roll, pitch, yaw and thrust apart. Then nothing changes.
+    ///
+    /// # Example: a quadrotor with motors in an X
+    /// ```
+    /// use flagred::{board::OwnedMemory, shipped};
+    ///
+    /// let estimator = shipped::flagred();
+    /// let plan = estimator.plan()?;
+    /// let mut memory = OwnedMemory::new(&plan, 4);
+    /// let mut monitor = memory.monitor(&plan)?;
+    /// // Front right, rear left, front left, rear right; the first two turn counter-clockwise.
+    /// monitor.set_geometry(&[[-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0], [-1.0, -1.0, -1.0]])?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn set_geometry(&mut self, factors: &[Factors]) -> Result<(), Refused> {
+        let is_known = motor::set_geometry(self.motors, factors);
+        is_known.then_some(()).ok_or(Refused::Geometry)
+    }
+
     /// Takes the next sample of the flight.
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let plan = self.plan;
@@ -269,6 +306,11 @@ impl<'a> Monitor<'a> {
             motors: self.motors,
         })
     }
+}
+
+/// Whether a window can have this length in seconds.
+fn is_length(window_s: f64) -> bool {
+    window_s.is_finite() && window_s > 0.0
 }
 
 /// Takes the first items off a slice.

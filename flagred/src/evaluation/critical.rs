@@ -111,6 +111,25 @@ impl ErrorRecord {
         Some(largest_deg > CRITICAL_ERROR_DEG)
     }
 
+    /// Whether no error in the `for_s` seconds up to `t_s` is critical; an unknown one is none.
+    pub fn is_quiet(&self, t_s: f64, for_s: f64) -> bool {
+        self.critical_within(t_s - for_s, for_s) != Some(true)
+    }
+
+    /// The largest error of all, in degrees; `None` where no error is known.
+    pub fn largest_deg(&self) -> Option<f64> {
+        let errors = self.errors.iter().map(|(_, error_deg)| *error_deg);
+        errors.reduce(f64::max)
+    }
+
+    /// The times within a span at which the error is over a limit.
+    pub fn times_over(&self, limit_deg: f64, span: Span) -> impl Iterator<Item = f64> + '_ {
+        let errors = self.errors.iter();
+        let over =
+            errors.filter(move |(t_s, error_deg)| span.contains(*t_s) && *error_deg > limit_deg);
+        over.map(|(t_s, _)| *t_s)
+    }
+
     /// The times over the limit, each for a second at least.
     pub fn episodes(&self) -> &[Span] {
         &self.episodes
@@ -178,6 +197,26 @@ mod tests {
         ] {
             assert_eq!(record.critical_within(t_s, 5.0), Some(critical), "{t_s}");
         }
+    }
+
+    #[test]
+    fn it_is_quiet_until_the_error_is_critical_and_again_a_while_after() {
+        let record = record(25, &[(10.0, 30.0)]);
+        let episode = record.episodes()[0];
+        for (t_s, is_quiet) in [
+            (5.0, true),
+            (episode.from_s - 0.04, true),
+            (episode.from_s, false),
+            (20.0, false),
+            (episode.to_s + 4.9, false),
+            (episode.to_s + 5.0, true),
+        ] {
+            assert_eq!(record.is_quiet(t_s, 5.0), is_quiet, "{t_s}");
+        }
+        assert_eq!(record.largest_deg(), Some(8.0));
+        let first_over = |limit_deg| record.times_over(limit_deg, episode).next();
+        assert_eq!(first_over(5.0), Some(episode.from_s));
+        assert_eq!(first_over(8.5), None);
     }
 
     #[test]

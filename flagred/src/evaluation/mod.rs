@@ -7,14 +7,20 @@
 
 mod announced;
 mod baseline;
+mod bootstrap;
 mod critical;
 mod random;
 mod ranking;
+mod upset;
 
 pub use announced::{Answer, Judged, Warning, judge};
-pub use baseline::Baseline;
+pub use baseline::{Baseline, BaselineObserver, PerMotor};
+pub use bootstrap::{Interval, bootstrap};
 pub use critical::ErrorRecord;
-pub use ranking::{Areas, Band, Interval, Intervals, Prediction, Ranking, RocPoint, reliability};
+pub use ranking::{
+    Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
+};
+pub use upset::{UpsetAlarm, upset_s};
 
 /// A time of a flight, both ends included, in seconds.
 ///
@@ -43,6 +49,26 @@ impl Span {
     /// Whether a time lies in it.
     pub fn contains(&self, t_s: f64) -> bool {
         (self.from_s..=self.to_s).contains(&t_s)
+    }
+
+    /// Spans in order of time, those that touch joined.
+    pub fn joined(spans: impl IntoIterator<Item = Span>) -> Vec<Span> {
+        let mut spans: Vec<Span> = spans.into_iter().collect();
+        spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+        spans.dedup_by(|next, kept| {
+            let touches = next.from_s <= kept.to_s;
+            if touches {
+                kept.to_s = kept.to_s.max(next.to_s);
+            }
+            touches
+        });
+        spans
+    }
+
+    /// The length that two spans share, in seconds; 0 where they share nothing.
+    pub fn shared_s(&self, other: &Span) -> f64 {
+        let to_s = self.to_s.min(other.to_s);
+        (to_s - self.from_s.max(other.from_s)).max(0.0)
     }
 
     /// Adds a time at which something is the case or not: the last of `spans` grows or ends, or a new one begins.
@@ -79,6 +105,15 @@ mod tests {
         }
         let span = |from_s, to_s| Span { from_s, to_s };
         assert_eq!(spans, [span(1.0, 2.0), span(4.0, 4.0)]);
+        let drawn = [
+            span(4.0, 5.0),
+            span(1.0, 3.0),
+            span(2.0, 2.5),
+            span(3.0, 3.5),
+        ];
+        assert_eq!(Span::joined(drawn), [span(1.0, 3.5), span(4.0, 5.0)]);
+        assert_eq!(spans[0].shared_s(&span(1.5, 9.0)), 0.5);
+        assert_eq!(spans[0].shared_s(&spans[1]), 0.0);
         assert!(spans[0].contains(1.0) && spans[0].contains(2.0) && !spans[0].contains(2.1));
     }
 }

@@ -2,7 +2,7 @@
 
 use alloc::{collections::BTreeMap, vec, vec::Vec};
 
-use super::random::Random;
+use super::bootstrap::{Interval, bootstrap};
 
 /// A score and the outcome.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +37,25 @@ pub struct Ranking {
     groups: usize,
 }
 
+/// What a group has counted so far, from the highest score down.
+#[derive(Debug, Clone, Copy, Default)]
+struct GroupCount {
+    critical: f64,
+    others: f64,
+    critical_of_tie: f64,
+    others_of_tie: f64,
+    pairs: f64,
+}
+
+impl GroupCount {
+    fn end_tie(&mut self) {
+        self.pairs += self.others_of_tie * (self.critical + self.critical_of_tie / 2.0);
+        self.critical += self.critical_of_tie;
+        self.others += self.others_of_tie;
+        (self.critical_of_tie, self.others_of_tie) = (0.0, 0.0);
+    }
+}
+
 #[derive(Debug, Clone, Copy)]
 struct Place {
     group: u32,
@@ -56,15 +75,6 @@ pub struct Areas {
     pub precision_recall: f64,
 }
 
-/// Both ends of a 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
-    /// 2.5 % of the resamples lie below.
-    pub low: f64,
-    /// 2.5 % of the resamples lie above.
-    pub high: f64,
-}
-
 /// The intervals of [`Areas`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intervals {
@@ -72,6 +82,17 @@ pub struct Intervals {
     pub roc: Interval,
     /// Of the average precision.
     pub precision_recall: Interval,
+}
+
+/// How well scores rank within groups, such as flights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WithinGroups {
+    /// The mean over the groups of the area under the receiver operating characteristic.
+    pub roc: f64,
+    /// Its interval; `None` without resamples.
+    pub interval: Option<Interval>,
+    /// The groups that have critical predictions and others.
+    pub groups: usize,
 }
 
 /// A point of the receiver operating characteristic.
@@ -135,22 +156,68 @@ impl Ranking {
     /// The same seed gives the same intervals. `None` as for [`Ranking::areas`]; resamples without critical predictions,
     /// or without others, are left out.
     pub fn bootstrap(&self, resamples: usize, seed: u64) -> Option<Intervals> {
-        let mut random = Random::new(seed);
-        let mut weights = vec![0_u32; self.groups];
-        let (mut roc, mut precision_recall) = (Vec::new(), Vec::new());
-        for _ in 0..resamples {
-            weights.fill(0);
-            for _ in 0..self.groups {
-                weights[random.below(self.groups)] += 1;
+        let [roc, precision_recall] = bootstrap(self.groups, resamples, seed, |weights| {
+            let areas = self.weighted_areas(weights)?;
+            Some([areas.roc, areas.precision_recall])
+        })?;
+        Some(Intervals {
+            roc,
+            precision_recall,
+        })
+    }
+
+    /// The area under the receiver operating characteristic within each group, and its mean over the groups that have
+    /// critical predictions and others: whether scores tell when, and not only in which group. `None` where no group has both.
+    ///
+    /// # Example: two flights that the score tells apart, but not their moments
+    /// ```
+    /// use flagred::evaluation::{Prediction, Ranking};
+    ///
+    /// let told = [(0.9, true, 0), (0.9, true, 0), (0.9, false, 0), (0.1, true, 1), (0.1, false, 1), (0.1, false, 1)];
+    /// let ranking = Ranking::new(told.map(|(score, critical, group)| Prediction { score, critical, group }));
+    /// assert!(ranking.areas().ok_or("needs both")?.roc > 0.6);
+    /// assert_eq!(ranking.within_groups(1000, 1).ok_or("needs both")?.roc, 0.5);
+    /// # Ok::<(), &str>(())
+    /// ```
+    pub fn within_groups(&self, resamples: usize, seed: u64) -> Option<WithinGroups> {
+        // Ties are those of all predictions: a group counts its own of each when the tie ends.
+        let mut counts = vec![GroupCount::default(); self.groups];
+        let mut tied = Vec::new();
+        for place in &self.places {
+            if let Some(count) = counts.get_mut(place.group as usize) {
+                if count.critical_of_tie + count.others_of_tie == 0.0 {
+                    tied.push(place.group);
+                }
+                match place.critical {
+                    true => count.critical_of_tie += 1.0,
+                    false => count.others_of_tie += 1.0,
+                }
             }
-            if let Some(areas) = self.weighted_areas(&weights) {
-                roc.push(areas.roc);
-                precision_recall.push(areas.precision_recall);
+            if place.ends_tie {
+                for group in tied.drain(..) {
+                    if let Some(count) = counts.get_mut(group as usize) {
+                        count.end_tie();
+                    }
+                }
             }
         }
-        Some(Intervals {
-            roc: interval(&mut roc)?,
-            precision_recall: interval(&mut precision_recall)?,
+        let areas: Vec<f64> = counts
+            .iter()
+            .filter(|count| count.critical > 0.0 && count.others > 0.0)
+            .map(|count| count.pairs / (count.critical * count.others))
+            .collect();
+        let mean = |weights: &[u32]| {
+            let drawn: u32 = weights.iter().sum();
+            let weighted = areas.iter().zip(weights).map(|(a, w)| a * f64::from(*w));
+            (drawn > 0).then(|| weighted.sum::<f64>() / f64::from(drawn))
+        };
+        let interval = bootstrap(areas.len(), resamples, seed, |weights| {
+            Some([mean(weights)?])
+        });
+        Some(WithinGroups {
+            roc: mean(&vec![1; areas.len()])?,
+            interval: interval.map(|[interval]| interval),
+            groups: areas.len(),
         })
     }
 
@@ -212,22 +279,6 @@ impl Ranking {
         }
         points
     }
-}
-
-/// The 2.5 % and 97.5 % quantiles, linear between values.
-fn interval(values: &mut [f64]) -> Option<Interval> {
-    values.sort_by(f64::total_cmp);
-    let quantile = |share: f64| {
-        let place = share * (values.len().checked_sub(1)?) as f64;
-        let (below, part) = (place as usize, place - libm::floor(place));
-        let low = *values.get(below)?;
-        let high = values.get(below + 1).copied().unwrap_or(low);
-        Some(low + part * (high - low))
-    };
-    Some(Interval {
-        low: quantile(0.025)?,
-        high: quantile(0.975)?,
-    })
 }
 
 /// How many predictions of a band of risk became critical.
@@ -360,6 +411,22 @@ mod tests {
         assert_eq!(counts[9], (2, 2));
         assert_eq!(bands[9].mean_risk_pct, Some(97.5));
         assert_eq!(bands[5].mean_risk_pct, None);
+    }
+
+    #[test]
+    fn the_area_within_groups_is_the_mean_of_their_own() {
+        let within = Ranking::new(predictions()).within_groups(200, 1).unwrap();
+        let areas: Vec<f64> = (0..10)
+            .filter_map(|group| {
+                let own = predictions().into_iter().filter(|p| p.group == group);
+                Ranking::new(own).areas().map(|areas| areas.roc)
+            })
+            .collect();
+        let mean = areas.iter().sum::<f64>() / areas.len() as f64;
+        assert_eq!(within.groups, areas.len());
+        approx::assert_abs_diff_eq!(within.roc, mean, epsilon = 1e-12);
+        let interval = within.interval.unwrap();
+        assert!(interval.low < mean && mean < interval.high);
     }
 
     proptest! {

@@ -130,7 +130,8 @@ mod tests {
     #[test]
     fn a_map_of_nothing_reads_as_unknown() {
         let mut model = crate::shipped::flagred_paper_rules();
-        model.rules.clear();
+        model.rules.truncate(1);
+        model.rules[0].rule.weight = 0.0;
         let map = filled(&model, GapMethod::Nearest);
         assert_eq!(map.read(&[0.1, 0.1]), None);
         assert_eq!((map.value(7), map.value(51 * 51)), (None, None));

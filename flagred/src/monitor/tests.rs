@@ -177,7 +177,8 @@ fn a_gap_is_filled_and_says_so() {
 #[test]
 fn no_rule_and_nothing_to_fill_from_is_unknown() {
     let mut model = rules(true);
-    model.rules.clear();
+    model.rules.truncate(1);
+    model.rules[0].rule.weight = 0.0;
     let estimator = Estimator::new(&profile(), &model).unwrap();
     let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
     let flight = fly(&mut monitor, 25.0, &[(3.0, 0.5, true)]);

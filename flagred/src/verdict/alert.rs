@@ -6,6 +6,9 @@ use crate::motor::{Motor, MotorRecord};
 /// Time stamps are sums of steps: a duration this much shorter, in seconds, is long enough.
 pub(super) const ROUNDING_S: f64 = 1e-6;
 
+/// Just after take-off a level has to be reached for so many times as long.
+const TAKE_OFF_FACTOR: f64 = 1.5;
+
 /// The level of a risk.
 #[derive(Debug, Clone)]
 pub(crate) struct Alert {
@@ -90,7 +93,12 @@ impl Alert {
                 finding.to_s = t_s;
             }
             let since_s = *self.reached_since_s[i].get_or_insert(t_s);
-            if level > self.level && t_s - since_s >= settings.after_s - ROUNDING_S {
+            // A take-off is a surge of thrust of its own.
+            let after_s = match takes_off {
+                true => TAKE_OFF_FACTOR * settings.after_s,
+                false => settings.after_s,
+            };
+            if level > self.level && t_s - since_s >= after_s - ROUNDING_S {
                 self.raise(t_s, since_s, level, (measure, threshold_pct));
                 step.change = Some(level);
                 held = level;
@@ -160,7 +168,12 @@ impl Alert {
         self.reached_since_s = [None; 2];
         let quiet_s = self.settings.quiet_before_landing_s;
         let finding = self.end_finding(motors);
-        let ended = finding.filter(|finding| !landed || t_s - finding.raised_s >= quiet_s);
+        // A FAIL just before the ground may be the fall itself.
+        let quiet_s = |finding: &Finding| match finding.level {
+            Level::Fail => quiet_s / 2.0,
+            _ => quiet_s,
+        };
+        let ended = finding.filter(|f| !landed || t_s - f.raised_s >= quiet_s(f));
         Step { change, ended }
     }
 
@@ -322,7 +335,7 @@ mod tests {
         for (risk_pct, elevated_pct, level) in [(0.0, 60.0, Level::Good), (99.0, 60.0, Level::Fail)]
         {
             let mut flown = Flown::new([0.4, 0.95]);
-            for i in 0..10 {
+            for i in 0..20 {
                 let now = Now {
                     t_s: f64::from(i) / 10.0,
                     risk_pct,

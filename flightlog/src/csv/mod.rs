@@ -10,6 +10,7 @@ use crate::error::io_error;
 use crate::flight::whole_range;
 use crate::geometry::{self, Declared, tables};
 use crate::input::Input;
+use crate::outputs::LONGEST_PULSE_US;
 use crate::signal::{Label, preferred};
 use crate::{
     Commands, Flight, Format, Intervals, Motor, Options, Range, ReadError, Report, Series,
@@ -361,7 +362,15 @@ fn apply_header(
             }
         }
     };
-    let pair = |low: &str, high: &str| -> Result<Option<(f64, f64)>, ReadError> {
+    let pair = |low: &str, high: &str, most: f64| -> Result<Option<(f64, f64)>, ReadError> {
+        for key in [low, high] {
+            if let Some(value) = value(key)?.filter(|value| !(0.0..=most).contains(value)) {
+                let line = header.iter().find(|entry| entry.key == key);
+                let text = format!("`{key}` is {value}, not in 0 to {most}");
+                let line = line.map_or(1, |entry| entry.line);
+                return Err(problem(line, text, "write the limit of the vehicle"));
+            }
+        }
         let (Some(low_value), Some(high_value)) = (value(low)?, value(high)?) else {
             return Ok(None);
         };
@@ -376,7 +385,7 @@ fn apply_header(
             "swap or correct the two",
         ))
     };
-    let pwm = pair("pwm_low_us", "pwm_high_us")?;
+    let pwm = pair("pwm_low_us", "pwm_high_us", LONGEST_PULSE_US)?;
     if layout.stem == "motor" && !layout.motors.is_empty() {
         flight.range = Some(Range {
             low: 0.0,
@@ -392,7 +401,7 @@ fn apply_header(
             source: "header pwm_low_us, pwm_high_us".into(),
         });
     }
-    flight.effective = match pair("effective_low", "effective_high")? {
+    flight.effective = match pair("effective_low", "effective_high", 1.0)? {
         Some((low, high)) => Range {
             low,
             high,
@@ -404,6 +413,7 @@ fn apply_header(
     for entry in &header {
         match entry.key.as_str() {
             "vehicle" => flight.vehicle.frame = Some(entry.value.clone()),
+            "vehicle_id" => flight.vehicle.id = Some(entry.value.clone()),
             "firmware" => flight.vehicle.firmware = Some(entry.value.clone()),
             "vehicle_kind" => {
                 flight.vehicle.kind = VehicleKind::from_name(&entry.value);

@@ -90,6 +90,9 @@ impl Flight {
         if let Some(frame) = &vehicle.frame {
             line(out, "vehicle", frame)?;
         }
+        if let Some(id) = &vehicle.id {
+            line(out, "vehicle_id", id)?;
+        }
         if vehicle.kind != VehicleKind::Unknown {
             line(out, "vehicle_kind", &vehicle.kind.to_string())?;
         }

@@ -52,10 +52,19 @@ pub(super) fn geometry(flight: &Flight, class: Option<i64>) -> Option<Geometry> 
     let (alike, others): (Vec<_>, Vec<_>) = shares
         .into_iter()
         .partition(|(share, ..)| share - least < 1e-6);
+    // Where nothing but the nose was turned, several layouts fit; what they say of yaw has to be the same.
+    let alike_in_yaw = |factors: &[[f64; 3]]| {
+        let (_, _, first) = alike.first()?;
+        let product = |a: &[[f64; 3]], b: &[[f64; 3]]| -> f64 {
+            a.iter().zip(b).map(|(a, b)| a[2] * b[2]).sum()
+        };
+        let norms = product(factors, factors) * product(first, first);
+        Some(product(factors, first).abs() > 0.999 * norms.sqrt())
+    };
     if least > FITS
-        || !others
-            .iter()
-            .all(|(share, ..)| is_clearly_more(*share, least))
+        || !others.iter().all(|(share, _, factors)| {
+            is_clearly_more(*share, least) || alike_in_yaw(factors) == Some(true)
+        })
     {
         return None;
     }

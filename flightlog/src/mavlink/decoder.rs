@@ -4,6 +4,7 @@
 use crate::field::{Kind, NumericField};
 use crate::geometry::Declared;
 use crate::mav_type::{MavType, mav_type};
+use crate::outputs::LONGEST_PULSE_US;
 use crate::parameters::Parameters;
 use crate::{Motor, Range, Vehicle, ardupilot, px4};
 
@@ -28,8 +29,6 @@ const STATUSTEXT: u32 = 253;
 
 /// Parameters that wait for the first heartbeat, at most: any vehicle has fewer.
 const MOST_WAITING: usize = 1 << 12;
-/// No limit of an output is longer, in us; what is longer is damaged.
-pub(crate) const LONGEST_PULSE_US: f64 = 3000.0;
 
 /// A payload with the zeros that version 2 leaves out at its end.
 pub(crate) type Payload = [u8; 255];

@@ -2,7 +2,7 @@
 
 use super::{
     Packet, Setup, Version,
-    decoder::{AUTOPILOT, Decoder, LONGEST_PULSE_US, Payload, ServoOutputs, Told, filled, number},
+    decoder::{AUTOPILOT, Decoder, Payload, ServoOutputs, Told, filled, number},
     servo::OUTPUTS_A_PORT,
     setup::missing,
 };
@@ -10,6 +10,7 @@ use crate::{
     Vehicle, VehicleKind,
     clock::{Checked, Clock},
     field::Kind,
+    outputs::LONGEST_PULSE_US,
 };
 
 const ATTITUDE: u32 = 30;

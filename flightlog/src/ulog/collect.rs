@@ -34,6 +34,7 @@ pub(super) struct Collector<'o> {
     system_type: Option<f64>,
     release: Option<u32>,
     hardware: String,
+    id: Option<String>,
     utc_at_zero_s: Option<f64>,
 }
 
@@ -55,6 +56,7 @@ impl<'o> Collector<'o> {
             system_type: None,
             release: None,
             hardware: String::new(),
+            id: None,
             utc_at_zero_s: None,
         }
     }
@@ -112,6 +114,11 @@ impl<'o> Collector<'o> {
         match key.rsplit(' ').next() {
             Some("ver_sw_release") => {
                 self.release = keyed_number(key, value).map(|(_, release)| release as u32);
+            }
+            Some("sys_uuid") => {
+                let id = String::from_utf8_lossy(value).into_owned();
+                // A board without a serial number writes zeros.
+                self.id = Some(id).filter(|id| id.bytes().any(|digit| digit != b'0'));
             }
             Some("ver_hw") => self.hardware = String::from_utf8_lossy(value).into_owned(),
             _ => {}
@@ -247,6 +254,7 @@ impl<'o> Collector<'o> {
         let mut flight = Flight::empty(Format::ULog);
         let firmware = self.release.map(px4::firmware);
         flight.vehicle = px4::vehicle(&self.parameters, self.system_type, firmware);
+        flight.vehicle.id = self.id.take();
         self.take_commands(&mut flight);
         self.series
             .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.topic == *name));

@@ -198,7 +198,7 @@ fn what_is_no_profile_says_so() {
             "flagred: 2\nname: x\nrules: y\ninputs: {a: {last: b}}",
             "version 1 only",
         ),
-        ("flagred: 1\nname: [", "no YAML"),
+        ("flagred: 1\nname: [", "invalid YAML"),
     ] {
         let message = text.parse::<Profile>().unwrap_err().to_string();
         assert!(message.contains(expected), "{text:?}: {message}");

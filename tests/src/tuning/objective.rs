@@ -1,0 +1,171 @@
+//! What tuned rules are to be good at.
+
+use super::{
+    rows::{Row, Set},
+    votes::{Input, Sum, Votes},
+};
+
+/// Rows over which the area under the ROC curve counts.
+#[derive(Debug, Clone, Copy)]
+pub struct Area {
+    /// Which rows they are.
+    pub name: &'static str,
+    /// Whether a row is one of them.
+    pub holds: fn(&Row) -> bool,
+    /// The area that is wanted.
+    pub target: f64,
+    /// What each 1 of area below the target costs.
+    slope: f64,
+}
+
+/// What 1 of any area is worth, above the target too.
+const WORTH: f64 = 0.3;
+
+/// The areas that count.
+pub const AREAS: [Area; 6] = [
+    Area {
+        name: "real",
+        holds: |row| row.set == Set::Real,
+        target: 0.87,
+        slope: 3.0,
+    },
+    Area {
+        name: "real, quiet for 5 s",
+        holds: |row| row.set == Set::Real && row.is_quiet_5_s,
+        target: 0.71,
+        slope: 3.0,
+    },
+    Area {
+        name: "sitl2 without manoeuvres",
+        holds: |row| row.set == Set::Sitl2 && row.kind != "manoeuvre",
+        target: 0.91,
+        slope: 3.0,
+    },
+    Area {
+        name: "sitl2 without manoeuvres, quiet for 10 s",
+        holds: |row| row.set == Set::Sitl2 && row.kind != "manoeuvre" && row.is_quiet_10_s,
+        target: 0.82,
+        slope: 1.0,
+    },
+    Area {
+        name: "sitl3",
+        holds: |row| row.set == Set::Sitl3,
+        target: 0.84,
+        slope: 3.0,
+    },
+    Area {
+        name: "sitl3, gusts and rising wind",
+        holds: |row| row.set == Set::Sitl3 && matches!(row.kind.as_str(), "gusts" | "rising"),
+        target: 0.89,
+        slope: 3.0,
+    },
+];
+
+/// Rows over which a high risk is one too many.
+#[derive(Debug, Clone, Copy)]
+pub struct Excess {
+    /// Which rows they are.
+    pub name: &'static str,
+    /// Whether a row is one of them.
+    pub holds: fn(&Row) -> bool,
+    /// The risk that may be reached, in %.
+    pub above_pct: f64,
+    /// What it costs to be 1 % above it on average.
+    cost: f64,
+}
+
+/// The excesses that count.
+pub const EXCESSES: [Excess; 3] = [
+    Excess {
+        name: "ordinary real flights",
+        holds: |row| row.set == Set::Real && row.kind == "ordinary",
+        above_pct: 50.0,
+        cost: 0.03,
+    },
+    Excess {
+        name: "sitl3 hover, yaw, mission and pilot, not critical",
+        holds: |row| {
+            let kinds = ["hover_noise", "yaw", "mission", "pilot"];
+            row.set == Set::Sitl3 && kinds.contains(&row.kind.as_str()) && !row.is_critical
+        },
+        above_pct: 50.0,
+        cost: 0.03,
+    },
+    Excess {
+        name: "sitl2 calm",
+        holds: |row| row.set == Set::Sitl2 && row.kind == "calm",
+        above_pct: 30.0,
+        cost: 0.02,
+    },
+];
+
+/// Rows as the search needs them: a column for each input that votes.
+pub(super) struct Problem {
+    pub(super) columns: Vec<Vec<f64>>,
+    /// For each row, to what degree votes count, and what the written rules come to.
+    given: Vec<(f64, Sum)>,
+    /// The rows of each of [`AREAS`]: those that became critical and the others.
+    areas: Vec<[Vec<u32>; 2]>,
+    /// The rows of each of [`EXCESSES`].
+    excesses: Vec<Vec<u32>>,
+}
+
+impl Problem {
+    pub(super) fn new(rows: &[&Row], votes: &Votes) -> Problem {
+        let column = |input: &Input| rows.iter().map(|row| row.inputs[input.place]).collect();
+        let which = |holds: &dyn Fn(&Row) -> bool| {
+            let all = rows.iter().enumerate().filter(|(_, row)| holds(row));
+            all.map(|(i, _)| i as u32).collect::<Vec<u32>>()
+        };
+        let area = |area: &Area| {
+            [true, false]
+                .map(|critical| which(&|row| (area.holds)(row) && row.is_critical == critical))
+        };
+        Problem {
+            columns: votes.inputs.iter().map(column).collect(),
+            given: rows.iter().map(|row| votes.given(&row.inputs)).collect(),
+            areas: AREAS.iter().map(area).collect(),
+            excesses: EXCESSES.iter().map(|excess| which(&excess.holds)).collect(),
+        }
+    }
+
+    /// What votes are worth, given their sums at each row.
+    pub(super) fn score(&self, sums: impl Iterator<Item = Sum>) -> f64 {
+        let risk = |((given, written), votes): (&(f64, Sum), Sum)| {
+            let weights = written.weights + given * votes.weights;
+            (written.values + given * votes.values) / weights.max(1e-9)
+        };
+        let risks: Vec<f64> = self.given.iter().zip(sums).map(risk).collect();
+        let mut score = 0.0;
+        for (area, rows) in AREAS.iter().zip(&self.areas) {
+            let roc = roc(&risks, rows);
+            score += area.slope * (roc - area.target).min(0.0) + WORTH * roc;
+        }
+        for (excess, rows) in EXCESSES.iter().zip(&self.excesses) {
+            let over = rows
+                .iter()
+                .map(|row| (risks[*row as usize] - excess.above_pct).max(0.0));
+            score -= excess.cost * over.sum::<f64>() / rows.len().max(1) as f64;
+        }
+        score
+    }
+}
+
+/// The area under the ROC curve, risks in steps of 0.05 %; 0 without both kinds of rows.
+fn roc(risks: &[f64], [critical, others]: &[Vec<u32>; 2]) -> f64 {
+    const STEPS: usize = 2000;
+    let count = |rows: &[u32]| {
+        let mut counts = [0_u32; STEPS];
+        for row in rows {
+            let step = (risks[*row as usize] * (STEPS as f64 / 100.0)) as usize;
+            counts[step.min(STEPS - 1)] += 1;
+        }
+        counts
+    };
+    let (mut below, mut pairs) = (0.0, 0.0);
+    for (critical, others) in count(critical).iter().zip(count(others)) {
+        pairs += f64::from(*critical) * (below + f64::from(others) / 2.0);
+        below += f64::from(others);
+    }
+    pairs / (critical.len().max(1) as f64 * others.len().max(1) as f64)
+}

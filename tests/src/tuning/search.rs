@@ -1,0 +1,162 @@
+//! Coordinate descent over round peaks, consequents and weights.
+
+use rayon::prelude::*;
+
+use super::{
+    objective::Problem,
+    rows::Row,
+    votes::{Input, Sum, Vote, Votes},
+};
+
+/// Weights that a rule may have; a rule of none is dropped.
+const WEIGHTS: [f64; 8] = [0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0];
+
+/// The first digits of round numbers.
+const DIGITS: [&str; 12] = [
+    "1", "1.2", "1.6", "2", "2.5", "3", "4", "5", "6", "7", "8", "9",
+];
+
+/// How many round numbers to either side of a peak are tried.
+const REACH: usize = 2;
+
+/// What a change must gain.
+const LEAST_GAIN: f64 = 1e-5;
+
+const ROUNDS: usize = 6;
+
+/// The orders in which changes are tried; the best result stays.
+const SEEDS: [u64; 2] = [0, 1];
+
+/// Tunes the votes on rows.
+pub fn tune(template: &Votes, rows: &[&Row]) -> Votes {
+    let problem = Problem::new(rows, template);
+    let tried: Vec<(Votes, f64)> = SEEDS
+        .par_iter()
+        .map(|seed| descend(template.clone(), &problem, *seed))
+        .collect();
+    let best = tried
+        .into_iter()
+        .reduce(|best, next| if next.1 > best.1 { next } else { best });
+    best.map_or_else(|| template.clone(), |(votes, _)| votes)
+}
+
+/// What may be changed: of an input, of a term.
+#[derive(Clone, Copy)]
+enum Part {
+    Peak,
+    Consequent,
+    Weight,
+}
+
+fn descend(mut votes: Votes, problem: &Problem, seed: u64) -> (Votes, f64) {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let consequents = votes.consequents.clone();
+    let of_input = |input: &Input, column: &[f64]| -> Vec<Sum> {
+        column.iter().map(|x| input.sum(*x, &consequents)).collect()
+    };
+    let mut sums: Vec<Vec<Sum>> = votes
+        .inputs
+        .iter()
+        .zip(&problem.columns)
+        .map(|(input, column)| of_input(input, column))
+        .collect();
+    let mut best = problem.score(total(&sums, usize::MAX).into_iter());
+    let mut coordinates: Vec<(usize, Part, usize)> = Vec::new();
+    for (i, input) in votes.inputs.iter().enumerate() {
+        for term in 0..input.peaks.len() {
+            coordinates.push((i, Part::Peak, term));
+            if input.votes[term].is_some() {
+                coordinates.push((i, Part::Consequent, term));
+                coordinates.push((i, Part::Weight, term));
+            }
+        }
+    }
+    for _ in 0..ROUNDS {
+        let before = best;
+        random.shuffle(&mut coordinates);
+        for &(i, part, term) in &coordinates {
+            let others = total(&sums, i);
+            let range = votes.range(&votes.inputs[i]);
+            for changed in changes(&votes.inputs[i], part, term, range, consequents.len()) {
+                let own = of_input(&changed, &problem.columns[i]);
+                let all = others.iter().zip(&own).map(|(a, b)| Sum {
+                    values: a.values + b.values,
+                    weights: a.weights + b.weights,
+                });
+                let score = problem.score(all);
+                if score > best + LEAST_GAIN {
+                    best = score;
+                    votes.inputs[i] = changed;
+                    sums[i] = own;
+                }
+            }
+        }
+        if best == before {
+            break;
+        }
+    }
+    (votes, best)
+}
+
+/// What all inputs but one come to, at each row.
+fn total(sums: &[Vec<Sum>], without: usize) -> Vec<Sum> {
+    let mut total = vec![Sum::default(); sums.first().map_or(0, Vec::len)];
+    for (_, sums) in sums.iter().enumerate().filter(|(i, _)| *i != without) {
+        for (total, sum) in total.iter_mut().zip(sums) {
+            total.values += sum.values;
+            total.weights += sum.weights;
+        }
+    }
+    total
+}
+
+/// The input with one of its parts changed, in all ways that are tried.
+fn changes(
+    input: &Input,
+    part: Part,
+    term: usize,
+    range: (f64, f64),
+    consequents: usize,
+) -> Vec<Input> {
+    let with = |change: &dyn Fn(&mut Input)| {
+        let mut changed = input.clone();
+        change(&mut changed);
+        changed
+    };
+    let all: Vec<Input> = match (part, input.votes[term]) {
+        (Part::Peak, _) => {
+            let peaks = near(input.peaks[term], range).into_iter();
+            peaks
+                .map(|peak| with(&|changed| changed.peaks[term] = peak))
+                .collect()
+        }
+        (Part::Consequent, Some(vote)) => {
+            let others = (0..consequents).filter(|consequent| *consequent != vote.consequent);
+            let others = others.map(|consequent| Vote { consequent, ..vote });
+            others
+                .map(|vote| with(&|changed| changed.votes[term] = Some(vote)))
+                .collect()
+        }
+        (Part::Weight, Some(vote)) => {
+            let others = WEIGHTS.into_iter().filter(|weight| *weight != vote.weight);
+            let others = others.map(|weight| Vote { weight, ..vote });
+            others
+                .map(|vote| with(&|changed| changed.votes[term] = Some(vote)))
+                .collect()
+        }
+        (_, None) => Vec::new(),
+    };
+    all.into_iter().filter(Input::is_sound).collect()
+}
+
+/// The round numbers around a peak and inside the range.
+fn near(peak: f64, (low, high): (f64, f64)) -> Vec<f64> {
+    let round = (-3..3).flat_map(|power| DIGITS.map(|digits| format!("{digits}e{power}")));
+    let round = round.filter_map(|text| text.parse::<f64>().ok());
+    let round: Vec<f64> = round.filter(|x| (low..high).contains(x)).collect();
+    let left = round.partition_point(|x| *x < peak);
+    let right = round.partition_point(|x| *x <= peak);
+    let below = round[left.saturating_sub(REACH)..left].iter();
+    let above = round[right..].iter().take(REACH);
+    below.chain(above).copied().collect()
+}

@@ -1,0 +1,309 @@
+//! A template's rules as votes, and what was tuned as a rule set again.
+
+use fuzzy::{
+    Model,
+    model::{MembershipFunction, Term},
+    rule::{Condition, Proposition},
+};
+
+use super::rows::Row;
+
+/// The rules of a template: what each says may be tuned, and those that stay as they were written.
+///
+/// A rule of two or more propositions, `input IS term AND other IS term`, is a vote of its first input and tuned; what
+/// stands behind the first proposition is the same in all votes. Other rules stay.
+#[derive(Debug, Clone)]
+pub struct Votes {
+    model: Model,
+    /// The inputs that vote.
+    pub(super) inputs: Vec<Input>,
+    /// What every vote is subject to: inputs and terms.
+    given: Vec<(usize, usize)>,
+    written: Vec<Written>,
+    /// The peaks of the output's terms.
+    pub(super) consequents: Vec<f64>,
+}
+
+/// An input that votes: a partition, and at most one vote for each of its terms.
+#[derive(Debug, Clone)]
+pub(super) struct Input {
+    /// Its place among the inputs of the model.
+    pub(super) place: usize,
+    /// The peaks of its terms.
+    pub(super) peaks: Vec<f64>,
+    pub(super) votes: Vec<Option<Vote>>,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Vote {
+    pub(super) rule: usize,
+    /// The term of the output.
+    pub(super) consequent: usize,
+    pub(super) weight: f64,
+}
+
+/// A rule that stays as it was written.
+#[derive(Debug, Clone)]
+struct Written {
+    condition: Vec<(usize, usize)>,
+    consequent: usize,
+    weight: f64,
+}
+
+/// A weighted sum of consequents, and the sum of the weights.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Sum {
+    pub(super) values: f64,
+    pub(super) weights: f64,
+}
+
+impl Sum {
+    pub(super) fn add(&mut self, weight: f64, value: f64) {
+        self.values += weight * value;
+        self.weights += weight;
+    }
+}
+
+impl Input {
+    /// What the input's votes come to at a value.
+    pub(super) fn sum(&self, x: f64, consequents: &[f64]) -> Sum {
+        let mut sum = Sum::default();
+        self.degrees(x, |term, degree| {
+            if let Some(vote) = self.votes[term] {
+                sum.add(degree * vote.weight, consequents[vote.consequent]);
+            }
+        });
+        sum
+    }
+
+    /// The terms whose degree is above 0, with it.
+    fn degrees(&self, x: f64, mut take: impl FnMut(usize, f64)) {
+        let right = self.peaks.partition_point(|peak| *peak < x);
+        if right == 0 || right == self.peaks.len() {
+            take(right.saturating_sub(1), 1.0);
+            return;
+        }
+        let (low, high) = (self.peaks[right - 1], self.peaks[right]);
+        let part = (x - low) / (high - low);
+        take(right - 1, 1.0 - part);
+        take(right, part);
+    }
+
+    /// Whether the peaks rise, no consequent falls from one term to the next, and a vote counts.
+    pub(super) fn is_sound(&self) -> bool {
+        let mut votes = self.votes.iter().flatten();
+        let consequents = votes.clone().map(|vote| vote.consequent);
+        self.peaks.is_sorted_by(|a, b| a < b)
+            && consequents.is_sorted()
+            && votes.any(|vote| vote.weight > 0.0)
+    }
+}
+
+impl Votes {
+    /// The votes of a template.
+    ///
+    /// # Errors
+    ///
+    /// A rule is none of those above, names what there is not, or two rules are votes of one term.
+    pub fn new(template: &Model) -> Result<Votes, String> {
+        let output = template.outputs.first().ok_or("no output")?;
+        let consequents = peaks(&output.variable.terms)?;
+        let mut votes = Votes {
+            model: template.clone(),
+            inputs: Vec::new(),
+            given: Vec::new(),
+            written: Vec::new(),
+            consequents,
+        };
+        for (rule, written) in template.rules.iter().enumerate() {
+            let text = written.rule.to_string();
+            let [said] = &written.rule.consequents[..] else {
+                return Err(format!("more than one consequent: {text}"));
+            };
+            let terms = &output.variable.terms;
+            let consequent = terms.iter().position(|term| term.name == said.term.text);
+            let consequent = consequent.ok_or_else(|| format!("unknown term: {text}"))?;
+            let weight = written.rule.weight;
+            let condition = propositions(template, &written.rule.condition)
+                .ok_or_else(|| format!("a rule is `IF input IS term AND ...`: {text}"))?;
+            let [(place, term), given @ ..] = &condition[..] else {
+                return Err(format!("no condition: {text}"));
+            };
+            if given.is_empty() {
+                votes.written.push(Written {
+                    condition,
+                    consequent,
+                    weight,
+                });
+                continue;
+            }
+            if votes.inputs.is_empty() {
+                votes.given = given.to_vec();
+            }
+            if votes.given != *given {
+                return Err(format!("other conditions than the rules before: {text}"));
+            }
+            let vote = Vote {
+                rule,
+                consequent,
+                weight,
+            };
+            let known = votes.inputs.iter().position(|input| input.place == *place);
+            let known = match known {
+                Some(known) => known,
+                None => {
+                    let terms = &template.inputs[*place].terms;
+                    votes.inputs.push(Input {
+                        place: *place,
+                        peaks: peaks(terms)?,
+                        votes: vec![None; terms.len()],
+                    });
+                    votes.inputs.len() - 1
+                }
+            };
+            if votes.inputs[known].votes[*term].replace(vote).is_some() {
+                return Err(format!("a second rule of this term: {text}"));
+            }
+        }
+        match votes.inputs.iter().all(Input::is_sound) {
+            true => Ok(votes),
+            false => {
+                Err("the consequents of an input fall, or its rules have no weight".to_owned())
+            }
+        }
+    }
+
+    /// The names of the inputs of the rule set.
+    pub fn names(&self) -> Vec<&str> {
+        self.model
+            .inputs
+            .iter()
+            .map(|input| input.name.as_str())
+            .collect()
+    }
+
+    /// The range of an input that votes.
+    pub(super) fn range(&self, input: &Input) -> (f64, f64) {
+        let variable = &self.model.inputs[input.place];
+        (variable.low, variable.high)
+    }
+
+    /// To what degree votes count at a row, and what the written rules come to.
+    pub(super) fn given(&self, inputs: &[f64]) -> (f64, Sum) {
+        let degree = |condition: &[(usize, usize)]| {
+            let degrees = condition.iter().map(|(place, term)| {
+                self.model.inputs[*place].terms[*term].membership(inputs[*place])
+            });
+            degrees.product::<f64>()
+        };
+        let mut sum = Sum::default();
+        for rule in &self.written {
+            let weight = degree(&rule.condition) * rule.weight;
+            sum.add(weight, self.consequents[rule.consequent]);
+        }
+        (degree(&self.given), sum)
+    }
+
+    /// The risk at a row, in %.
+    pub fn risk_pct(&self, inputs: &[f64]) -> f64 {
+        let (given, mut sum) = self.given(inputs);
+        for input in &self.inputs {
+            let votes = input.sum(inputs[input.place], &self.consequents);
+            sum.values += given * votes.values;
+            sum.weights += given * votes.weights;
+        }
+        sum.values / sum.weights.max(1e-9)
+    }
+
+    /// The rule set, without votes of no weight. Each vote's support is the sum of its antecedent's degrees over the rows,
+    /// and its note the share of that which became critical.
+    pub fn rule_set(&self, rows: &[Row]) -> Model {
+        let mut model = self.model.clone();
+        let mut dropped = Vec::new();
+        for input in &self.inputs {
+            let terms = &mut model.inputs[input.place].terms;
+            for (place, term) in terms.iter_mut().enumerate() {
+                term.shape = shape(&input.peaks, place);
+            }
+            let mut support = vec![[0.0; 2]; input.votes.len()];
+            for row in rows {
+                let (given, _) = self.given(&row.inputs);
+                input.degrees(row.inputs[input.place], |term, degree| {
+                    support[term][0] += given * degree;
+                    if row.is_critical {
+                        support[term][1] += given * degree;
+                    }
+                });
+            }
+            for (vote, [all, critical]) in input.votes.iter().zip(support) {
+                let Some(vote) = vote else { continue };
+                if vote.weight == 0.0 {
+                    dropped.push(vote.rule);
+                    continue;
+                }
+                let rule = &mut model.rules[vote.rule];
+                let terms = &model.outputs[0].variable.terms;
+                rule.rule.consequents[0].term = terms[vote.consequent].name.as_str().into();
+                rule.rule.weight = vote.weight;
+                rule.support = Some(all.round() as u64);
+                rule.note = Some(format!(
+                    "{:.1} % of them became critical",
+                    100.0 * critical / all
+                ));
+            }
+        }
+        let mut place = 0..;
+        model
+            .rules
+            .retain(|_| place.next().is_none_or(|place| !dropped.contains(&place)));
+        model
+    }
+}
+
+/// The propositions of a conjunction as inputs and terms.
+fn propositions(model: &Model, condition: &Condition) -> Option<Vec<(usize, usize)>> {
+    let find = |proposition: &Proposition| {
+        let name = &proposition.variable.text;
+        let place = model.inputs.iter().position(|input| input.name == *name)?;
+        let term = &proposition.term.as_ref()?.text;
+        let mut terms = model.inputs[place].terms.iter();
+        let term = terms.position(|known| known.name == *term)?;
+        proposition.hedges.is_empty().then_some((place, term))
+    };
+    match condition {
+        Condition::Is(proposition) => Some(vec![find(proposition)?]),
+        Condition::And(all) => {
+            let each = all.iter().map(|part| match part {
+                Condition::Is(proposition) => find(proposition),
+                _ => None,
+            });
+            each.collect()
+        }
+        Condition::Not(_) | Condition::Or(_) => None,
+    }
+}
+
+fn peaks(terms: &[Term]) -> Result<Vec<f64>, String> {
+    let peak = |term: &Term| match term.shape {
+        MembershipFunction::Triangle { peak, .. } => Ok(peak),
+        MembershipFunction::LeftShoulder { top, .. }
+        | MembershipFunction::RightShoulder { top, .. } => Ok(top),
+        _ => Err(format!("term `{}` is not of a partition", term.name)),
+    };
+    terms.iter().map(peak).collect()
+}
+
+/// The term at a place of the partition with these peaks.
+fn shape(peaks: &[f64], place: usize) -> MembershipFunction {
+    let top = peaks[place];
+    let left = place.checked_sub(1).map(|left| peaks[left]);
+    match (left, peaks.get(place + 1)) {
+        (None, Some(&foot)) => MembershipFunction::LeftShoulder { top, foot },
+        (Some(foot), None) => MembershipFunction::RightShoulder { foot, top },
+        (left, right) => MembershipFunction::Triangle {
+            left: left.unwrap_or(top),
+            peak: top,
+            right: right.copied().unwrap_or(top),
+        },
+    }
+}
