@@ -17,7 +17,8 @@ use crate::{
 ///
 /// let of = |statistic| -> Result<f64, String> {
 ///     # let wind = Source { statistic, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 1.0 };
-///     # let mut observer = Observer::new([&wind], &["wind_m_s"])?;
+///     # let craft = flagred::monitor::Craft::new(1).with_signals(&["wind_m_s"]);
+///     # let mut observer = Observer::new([&wind], craft)?;
 ///     # for i in 1..=8 { observer.push(f64::from(i) * 0.125, 0.125, &[], &[if i <= 4 { 2.0 } else { 4.0 }]); }
 ///     let observed = observer.value(0).ok_or("nothing observed")?;
 ///     Ok(observed.value)
@@ -69,7 +70,7 @@ impl Statistic {
 ///
 /// let of = |statistic, motors| -> Result<f64, String> {
 ///     # let source = Source { statistic, motors, signal: Signal::MotorCommand, window_s: 1.0 };
-///     # let mut observer = Observer::new([&source], &[])?;
+///     # let mut observer = Observer::new([&source], flagred::monitor::Craft::new(2))?;
 ///     # for i in 1..=8 { observer.push(f64::from(i) * 0.125, 0.125, &[0.25, 0.75], &[]); }
 ///     let observed = observer.value(0).ok_or("nothing observed")?;
 ///     Ok(observed.value)
@@ -124,7 +125,7 @@ pub enum Observed {
 /// use flagred::channel::{Statistic, Threshold};
 ///
 /// let plan = estimator.plan()?;
-/// let at_limit = plan.inputs[3];
+/// let at_limit = plan.inputs[5];
 /// assert_eq!(at_limit.statistic, Statistic::ShareBelow(0.006));
 /// assert_eq!(plan.channels[at_limit.channel].threshold, Some(Threshold::Below(0.006)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -363,10 +364,10 @@ pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Obs
 ///
 /// # Example: a second of a window of five
 /// ```
-/// use flagred::source::{Motors, Observation, Observer, Signal, Source, Statistic};
+/// use flagred::{monitor::Craft, source::{Motors, Observation, Observer, Signal, Source, Statistic}};
 ///
 /// let load = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorCommand, window_s: 5.0 };
-/// let mut observer = Observer::new([&load], &[])?;
+/// let mut observer = Observer::new([&load], Craft::new(4))?;
 /// for i in 1..=4 {
 ///     observer.push(f64::from(i) * 0.25, 0.25, &[0.5; 4], &[]);
 /// }

@@ -326,3 +326,6 @@ pub(crate) fn reading(
         _ => Ok(observation.value),
     }
 }
+
+#[cfg(all(test, feature = "std"))]
+mod tests;

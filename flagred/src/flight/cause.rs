@@ -199,3 +199,80 @@ impl Open {
 pub(super) fn is_of_risk(found: &verdict::Finding) -> bool {
     matches!(found.measure, Measure::Risk | Measure::ElevatedRisk)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{profile::Profile, shipped};
+    use alloc::format;
+
+    const RULES: &str = "
+fuzzy: 1
+name: shaken
+inputs:
+  shake: {range: [0, 1], partition: {calm: 0, violent: 1}}
+  at_limit: {range: [0, 1], partition: {none: 0, much: 1}}
+outputs: {risk: {range: [0, 100], partition: [low, medium, high]}}
+operators: {and: product, or: maximum, implication: product, aggregation: sum}
+rules:
+  - IF at_limit IS much THEN risk IS high
+  - IF shake IS calm AND at_limit IS none THEN risk IS low
+  - IF at_limit IS none AND shake IS violent THEN risk IS high
+  - IF shake IS very violent AND at_limit IS none THEN risk IS medium
+";
+
+    fn cause(inputs: [f64; 2]) -> (Cause, bool) {
+        let profile = "
+flagred: 1
+name: shaken
+rules: shaken
+inputs:
+  at_limit: {share_below: 0.01, of: motor_margin}
+  shake: {std: {mean: motor_command}}
+"
+        .parse::<Profile>()
+        .unwrap();
+        let rules = fuzzy::yaml::parse(RULES).unwrap().model;
+        let estimator = Estimator::new(&profile, &rules).unwrap();
+        let estimate = estimator.at(&inputs).unwrap();
+        let cause = Cause::of(&estimator, &inputs, &estimate).unwrap();
+        let is_motor = cause.is_motor(&estimator);
+        (cause, is_motor)
+    }
+
+    #[test]
+    fn the_cause_is_the_rule_that_raises_the_risk_most_without_its_guard() {
+        for (inputs, expected, motor) in [
+            ([0.0, 0.6], "shake 0.6 violent, rule 2", false),
+            ([0.1, 0.9], "shake 0.9 violent, rule 2", false),
+            ([0.9, 0.5], "at_limit 0.9 much, rule 0", true),
+            ([0.0, 0.0], "shake 0 calm, rule 1", false),
+        ] {
+            let (cause, is_motor) = cause(inputs);
+            let Cause {
+                input,
+                value,
+                term,
+                rule,
+            } = cause;
+            assert_eq!(format!("{input} {value} {term}, rule {rule}"), expected);
+            assert_eq!(is_motor, motor, "{expected}");
+        }
+    }
+
+    #[test]
+    fn a_term_is_told_with_its_hedges() {
+        let rules = fuzzy::yaml::parse(RULES).unwrap().model;
+        let condition = &rules.rules[3].rule.condition;
+        assert_eq!(term(propositions(condition)[0]), "very violent");
+    }
+
+    #[test]
+    fn an_interpolated_risk_has_no_cause() {
+        let estimator = shipped::flagred_paper();
+        let inputs = [0.0, 0.0];
+        let estimate = estimator.at(&inputs).unwrap();
+        assert!(estimate.filled_from.is_some());
+        assert_eq!(Cause::of(&estimator, &inputs, &estimate), None);
+    }
+}

@@ -130,6 +130,66 @@ fn judged_time_leaves_out_take_off_and_landing() {
     assert_eq!(judged_span(hop, false, &settings), None);
 }
 
+/// The paper's inputs, with the rules' part about the spread fed by something that is no motor at its limit.
+#[test]
+fn a_motor_is_named_only_where_motors_near_a_limit_are_the_cause() {
+    let paper = shipped::flagred_paper();
+    let mut profile = paper.profile().clone();
+    for (signal, names_motor) in [("motor_margin", true), ("slack", false)] {
+        profile.inputs[0].source.signal = crate::source::Signal::named(signal);
+        let estimator = Estimator::new(&profile, paper.model()).unwrap();
+        let craft = Craft::new(4).with_signals(&["slack"]);
+        let mut assessor = Assessor::new(&estimator, craft, None).unwrap();
+        for i in 0..1150 {
+            let (motors, slack) = if i < 1000 { (HOVER, 0.5) } else { (LIMIT, 0.0) };
+            assessor.push(&Sample {
+                t_s: f64::from(i) * 0.02,
+                motors: &motors,
+                in_air: true,
+                signals: &[slack],
+            });
+        }
+        let open = assessor.open_finding().unwrap();
+        assert_eq!(open.motor.is_some(), names_motor);
+        let cause = open.cause.clone().unwrap();
+        assert_eq!(
+            (cause.input.as_str(), cause.term.as_str()),
+            ("margin", "very_low")
+        );
+        assert_eq!(assessor.ended(), []);
+        assert_eq!(assessor.end_findings().len(), 1);
+        let findings = assessor.finish().findings;
+        assert_eq!(findings.len(), 1);
+        assert_eq!(findings[0].cause, open.cause);
+    }
+}
+
+#[test]
+fn a_flight_with_information_alone_is_good() {
+    let mut profile = shipped::flagred_paper().profile().clone();
+    profile.verdict.notices.noise = Some(crate::verdict::Limit {
+        value: 0.04,
+        after_s: 3.0,
+    });
+    let paper = shipped::flagred_paper();
+    let estimator = Estimator::new(&profile, paper.model()).unwrap();
+    let mut assessor = Assessor::new(&estimator, Craft::new(4), None).unwrap();
+    for i in 0..300 {
+        let e = if i % 2 == 0 { 0.45 } else { 0.55 };
+        assessor.push(&Sample {
+            t_s: f64::from(i) * 0.1,
+            motors: &[e; 4],
+            in_air: true,
+            signals: &[],
+        });
+    }
+    let flown = assessor.finish();
+    assert_eq!(flown.verdict, Verdict::Known(Level::Good));
+    let levels: Vec<Level> = flown.findings.iter().map(|f| f.level).collect();
+    assert_eq!(levels, [Level::Info]);
+    assert_eq!(flown.findings[0].cause, None);
+}
+
 #[cfg(feature = "serde")]
 #[test]
 fn an_assessment_is_serde_data() {
@@ -141,6 +201,14 @@ fn an_assessment_is_serde_data() {
     assert_eq!(finding["severity"], "FAIL");
     assert_eq!(finding["motor"]["number"], 1);
     assert_eq!(finding["motor"]["side"], "lower");
+    assert!(finding["failed_s"].is_number());
+    let cause = &finding["cause"];
+    assert_eq!(
+        (&cause["input"], &cause["term"]),
+        (&"margin".into(), &"very_low".into())
+    );
+    assert_eq!(cause["rule"], 9);
+    assert!(cause["value"].as_f64() < Some(0.1));
     let first = &json["steps"][0];
     assert!(first["risk"].is_null() && first["inputs"]["margin"].is_null());
     let hovering = &json["steps"][100];

@@ -26,12 +26,16 @@ window_s: 3
 min_samples: 7
 warm_up_s: 0.5
 longest_gap_s: 4
+take_off_s: 2.5
 inputs:
   a: {std: {std: motor_command}, window_s: 30}
   b: {share_below: 0.02, of: {min: motor_margin}}
   c: {share_above: 0.9, of: battery_v, window_s: 1}
   d: {last: battery_v}
   e: {rms: motor_margin_high_side}
+  f: {std_less_noise: {std: motor_command_less_yaw}}
+  g: {noise: roll_effort}
+  h: {mean: command_noise}
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
@@ -41,8 +45,9 @@ verdict:
   quiet_after_take_off_s: 3
   quiet_before_landing_s: 4
   idle_below: 0.2
-  noise: {above: 0.05, after_s: 4}
-  reserve: {below: 0.2}
+  noise: {above: 0.04, after_s: 10}
+  reserve: {below: 0.1, after_s: 3}
+  imbalance: {above: 0.25}
 "
     .parse::<Profile>()
     .unwrap();
@@ -57,7 +62,7 @@ verdict:
             min_samples: 7,
             warm_up_s: 0.5,
             longest_gap_s: 4.0,
-            take_off_s: 0.0,
+            take_off_s: 2.5,
         }
     );
     let source = |statistic, motors, signal: &str, window_s| Source {
@@ -85,6 +90,14 @@ verdict:
                 "motor_margin_high_side",
                 3.0
             ),
+            &source(
+                Statistic::StdLessNoise,
+                Motors::Std,
+                "motor_command_less_yaw",
+                3.0
+            ),
+            &source(Statistic::Noise, Motors::Pooled, "roll_effort", 3.0),
+            &source(Statistic::Mean, Motors::Pooled, "command_noise", 3.0),
         ]
     );
     assert_eq!(
@@ -104,6 +117,7 @@ verdict:
         risk_pct,
         elevated_risk_pct,
     };
+    let limit = |value, after_s| Some(Limit { value, after_s });
     assert_eq!(
         profile.verdict,
         VerdictSettings {
@@ -122,15 +136,9 @@ verdict:
             quiet_before_landing_s: 4.0,
             idle_below: 0.2,
             notices: NoticeSettings {
-                noise: Some(Limit {
-                    value: 0.05,
-                    after_s: 4.0,
-                }),
-                reserve: Some(Limit {
-                    value: 0.2,
-                    after_s: 0.0,
-                }),
-                imbalance: None,
+                noise: limit(0.04, 10.0),
+                reserve: limit(0.1, 3.0),
+                imbalance: limit(0.25, 0.0),
             },
         }
     );
@@ -154,6 +162,27 @@ inputs:
 gap: {method: neerest, coverage_below: -1}
 elevated_risk: {high: 20, low: 80, rise_per_s: fast}
 verdict: {warn: {risk: 50, until: {risk: 60}}, fail: {risk: 150}, clear_after_s: .nan}
+";
+    let findings = text.parse::<Profile>().unwrap_err();
+    insta::assert_snapshot!(findings);
+}
+
+#[test]
+fn mistakes_in_statistics_without_noise_and_in_notices_are_told() {
+    let text = "flagred: 1
+name: wrong
+rules: flagred
+take_off_s: -1
+inputs:
+  pooled: {std_less_noise: motor_command}
+  noise: {noise: motor_margin}
+  battery: {std_less_noise: {std: battery_v}}
+  both: {std_less_noise: {std: motor_command}, noise: {std: motor_command}}
+verdict:
+  idle_below: low
+  noise: 0.04
+  reserve: {above: 0.1}
+  imbalance: {above: 0.25, after_s: -3}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);

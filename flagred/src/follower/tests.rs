@@ -1,0 +1,247 @@
+use alloc::vec::Vec;
+
+use crate::{
+    estimator::Estimator,
+    margin::Side,
+    monitor::{Craft, Monitor, Sample, Unknown, Update},
+    profile::Profile,
+    shipped,
+    verdict::{Finding, Level, LevelSettings, Limit, Measure, NoticeSettings, Threshold},
+};
+
+const HOVER: [f64; 4] = [0.5; 4];
+const LIMIT: [f64; 4] = [0.0, 1.0, 0.0, 1.0];
+const IDLE: [f64; 4] = [0.0; 4];
+
+/// A monitor and its clock, at 50 Hz.
+struct Flown {
+    monitor: Monitor,
+    samples: u32,
+}
+
+impl Flown {
+    fn new(estimator: &Estimator) -> Flown {
+        Flown {
+            monitor: Monitor::new(estimator, Craft::new(4)).unwrap(),
+            samples: 0,
+        }
+    }
+
+    fn fly(&mut self, seconds: f64, in_air: bool, motors: [f64; 4]) -> Vec<Update> {
+        self.fly_with(seconds, in_air, |_| motors)
+    }
+
+    fn fly_with(
+        &mut self,
+        seconds: f64,
+        in_air: bool,
+        motors: impl Fn(f64) -> [f64; 4],
+    ) -> Vec<Update> {
+        let mut updates = Vec::new();
+        for _ in 0..(seconds * 50.0).round() as u32 {
+            let t_s = f64::from(self.samples) / 50.0;
+            updates.push(self.monitor.push(&Sample {
+                t_s,
+                motors: &motors(t_s),
+                in_air,
+                signals: &[],
+            }));
+            self.samples += 1;
+        }
+        updates
+    }
+}
+
+fn ended(updates: &[Update]) -> Vec<Finding> {
+    updates.iter().flat_map(|u| u.ended).flatten().collect()
+}
+
+fn last(updates: &[Update]) -> Update {
+    *updates.last().unwrap()
+}
+
+/// A flight that became FAIL.
+fn failed() -> Flown {
+    let mut flown = Flown::new(&shipped::flagred_paper());
+    flown.fly(10.0, true, HOVER);
+    let updates = flown.fly(3.0, true, LIMIT);
+    assert_eq!(last(&updates).level, Some(Level::Fail));
+    flown
+}
+
+#[test]
+fn a_land_detector_that_flickers_for_less_than_a_second_ends_nothing() {
+    let mut flown = failed();
+    let flicker = flown.fly(0.9, false, LIMIT);
+    assert_eq!(ended(&flicker), []);
+    assert_eq!(last(&flicker).risk, Err(Unknown::OnGround));
+    assert_eq!(last(&flicker).level, Some(Level::Fail));
+    let again = flown.fly(0.1, true, LIMIT);
+    assert_eq!(ended(&again), []);
+    // No window begins anew.
+    assert!(again[0].risk.is_ok());
+    assert_eq!(last(&again).level, Some(Level::Fail));
+
+    let landed = flown.fly(1.1, false, LIMIT);
+    let [finding] = ended(&landed)[..] else {
+        panic!("{landed:?}")
+    };
+    assert_eq!(finding.level, Level::Fail);
+    assert_eq!(last(&landed).level, None);
+}
+
+#[test]
+fn idling_on_the_ground_raises_nothing() {
+    let mut flown = Flown::new(&shipped::flagred_paper());
+    let idle = flown.fly(30.0, true, IDLE);
+    assert!(idle.iter().all(|u| u.risk == Err(Unknown::OnGround)));
+    assert!(idle.iter().all(|u| u.level.is_none()));
+    // The first seconds in the air count from where the motors leave idle.
+    let off = flown.fly(4.0, true, HOVER);
+    assert!(off.iter().all(|update| !update.judged));
+    assert_eq!(flown.monitor.finish(), [None; 4]);
+}
+
+#[test]
+fn idling_after_a_calm_landing_holds_nothing() {
+    let mut flown = failed();
+    flown.fly(5.0, true, HOVER);
+    assert_eq!(last(&flown.fly(0.02, true, HOVER)).level, Some(Level::Fail));
+    let idle = flown.fly(1.1, true, IDLE);
+    assert_eq!(ended(&idle).len(), 1);
+    assert_eq!(last(&idle).level, None);
+}
+
+#[test]
+fn motors_at_idle_after_a_high_risk_are_no_landing() {
+    let mut flown = failed();
+    let falling = flown.fly(5.0, true, IDLE);
+    assert_eq!(ended(&falling), []);
+    assert!(falling.iter().all(|update| update.risk.is_ok()));
+    assert_eq!(last(&falling).level, Some(Level::Fail));
+}
+
+#[test]
+fn long_windows_drop_the_take_off() {
+    const TEXT: &str = "
+flagred: 1
+name: long
+rules: flagred-paper
+inputs:
+  margin: {mean: motor_margin, window_s: 20}
+  spread: {std: motor_command, window_s: 2}
+";
+    for (take_off_s, drops) in [(0.0, false), (3.0, true)] {
+        let mut profile = TEXT.parse::<Profile>().unwrap();
+        profile.sampling.take_off_s = take_off_s;
+        let rules = shipped::flagred_paper_rules();
+        let mut flown = Flown::new(&Estimator::new(&profile, &rules).unwrap());
+        flown.fly(5.0, false, IDLE);
+        flown.fly(2.0, true, [0.9; 4]);
+        // Until the window covers `warm_up_s` of what follows, the take-off stays in it.
+        flown.fly(1.9, true, HOVER);
+        assert!(flown.monitor.inputs()[0] < 0.4);
+        flown.fly(0.2, true, HOVER);
+        match drops {
+            true => assert_eq!(flown.monitor.inputs(), [0.5, 0.0]),
+            false => assert!(flown.monitor.inputs()[0] < 0.4),
+        }
+    }
+}
+
+/// Only notices are told.
+fn noticing(notices: NoticeSettings) -> Flown {
+    let mut profile = shipped::flagred_paper().profile().clone();
+    let never = LevelSettings {
+        raise: Threshold::default(),
+        after_s: 0.0,
+        until: Threshold::default(),
+    };
+    profile.verdict.warn = never;
+    profile.verdict.fail = never;
+    profile.verdict.notices = notices;
+    let estimator = Estimator::new(&profile, &shipped::flagred_paper_rules()).unwrap();
+    Flown::new(&estimator)
+}
+
+fn limit(value: f64, after_s: f64) -> Option<Limit> {
+    Some(Limit { value, after_s })
+}
+
+#[test]
+fn little_reserve_is_told_while_it_lasts_and_ends_with_the_flight() {
+    let mut flown = noticing(NoticeSettings {
+        reserve: limit(0.1, 3.0),
+        ..NoticeSettings::default()
+    });
+    let calm = flown.fly(20.0, true, [0.85; 4]);
+    assert!(calm.iter().all(|update| update.level <= Some(Level::Good)));
+    let heavy = flown.fly(15.0, true, [0.96; 4]);
+    let change = heavy.iter().find_map(|u| Some((u.t_s, u.change?)));
+    let (warned_s, Level::Warn) = change.unwrap() else {
+        panic!("{change:?}")
+    };
+    assert!((23.0..28.0).contains(&warned_s), "{warned_s}");
+    let open = flown.monitor.open_finding().unwrap();
+    assert_eq!((open.level, open.measure), (Level::Warn, Measure::Reserve));
+    assert_eq!(open.threshold_pct, 10.0);
+    assert!((4.0..6.0).contains(&open.peak_pct), "{}", open.peak_pct);
+
+    let light = flown.fly(5.0, true, HOVER);
+    assert_eq!(last(&light).level, Some(Level::Warn));
+    let landed = flown.fly(2.0, false, IDLE);
+    assert_eq!(ended(&landed).len(), 1);
+    let change = landed.iter().find_map(|update| update.change);
+    assert_eq!(change, Some(Level::Good));
+}
+
+#[test]
+fn a_motor_that_leaves_its_own_part_is_told_and_one_that_always_had_it_is_not() {
+    let notices = NoticeSettings {
+        imbalance: limit(0.25, 3.0),
+        ..NoticeSettings::default()
+    };
+    let mut flown = noticing(notices);
+    flown.fly(40.0, true, HOVER);
+    flown.fly(20.0, true, [0.4, 0.9, 0.4, 0.4]);
+    let [.., Some(finding)] = flown.monitor.finish() else {
+        panic!("no imbalance")
+    };
+    assert_eq!(
+        (finding.level, finding.measure),
+        (Level::Warn, Measure::Imbalance)
+    );
+    assert!((40.0..55.0).contains(&finding.from_s), "{finding:?}");
+    let motor = finding.motor.unwrap();
+    assert_eq!((motor.motor, motor.side), (1, Side::High));
+
+    let mut flown = noticing(notices);
+    flown.fly(60.0, true, [0.4, 0.9, 0.4, 0.4]);
+    assert_eq!(flown.monitor.finish(), [None; 4]);
+}
+
+#[test]
+fn noise_is_information_and_changes_no_level() {
+    // The steps between times of 0.1 s are 0.1, so the noise is 0.1 / sqrt(2).
+    let shaken = |t_s: f64| {
+        let even = ((t_s * 10.0 + 1e-6) as u32).is_multiple_of(2);
+        [if even { 0.45 } else { 0.55 }; 4]
+    };
+    for (above, is_told) in [(0.04, true), (0.08, false)] {
+        let mut flown = noticing(NoticeSettings {
+            noise: limit(above, 3.0),
+            ..NoticeSettings::default()
+        });
+        let updates = flown.fly_with(30.0, true, shaken);
+        assert!(updates.iter().all(|update| update.change.is_none()));
+        let [_, noise, ..] = flown.monitor.finish();
+        assert_eq!(noise.is_some(), is_told, "{noise:?}");
+        if let Some(noise) = noise {
+            assert_eq!(
+                (noise.level, noise.measure),
+                (Level::Info, Measure::CommandNoise)
+            );
+            assert!((6.0..7.2).contains(&noise.peak_pct), "{noise:?}");
+        }
+    }
+}
