@@ -93,6 +93,15 @@ struct Counted {
     on_s: f64,
 }
 
+/// The column of a verdict in counts of GOOD, WARN and FAIL.
+fn column(level: Level) -> usize {
+    match level {
+        Level::Good | Level::Info => 0,
+        Level::Warn => 1,
+        Level::Fail => 2,
+    }
+}
+
 impl SmallErrors {
     /// Of a profile over the flights whose error never passes `limit_deg`.
     pub(super) fn of<'a>(
@@ -113,7 +122,7 @@ impl SmallErrors {
                 not_assessed += 1;
                 continue;
             };
-            verdicts[verdict as usize] += 1;
+            verdicts[column(verdict)] += 1;
             let on_s = record.air.iter().flat_map(|air| {
                 let alarms = said.alarms.iter();
                 alarms.map(|alarm| alarm.shared_s(air))
@@ -226,7 +235,7 @@ impl Verdicts {
         self.hours += record.air_s() / 3600.0;
         self.counts.resize(record.said.len(), [0; 4]);
         for (counts, said) in self.counts.iter_mut().zip(&record.said) {
-            counts[said.verdict.map_or(3, |level: Level| level as usize)] += 1;
+            counts[said.verdict.map_or(3, column)] += 1;
         }
     }
 }

@@ -248,14 +248,17 @@ mod tests {
     #[test]
     fn a_map_shows_where_its_terms_change_and_where_the_flight_was() {
         let model = flagred::shipped::flagred_rules();
-        assert_eq!(focus(&model, "unsteady_now", 0, &[]), Scale::new(0.0, 0.05));
+        assert_eq!(
+            focus(&model, "unsteady_now", 0, &[]),
+            Scale::new(0.0025, 0.05)
+        );
         let far = Step {
             inputs: vec![0.2],
             ..Step::default()
         };
         assert_eq!(
             focus(&model, "unsteady_now", 0, &[far]),
-            Scale::new(0.0, 0.2)
+            Scale::new(0.0025, 0.2)
         );
     }
 }
