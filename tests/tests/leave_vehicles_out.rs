@@ -21,7 +21,7 @@ use flagred_tests::{
 };
 
 /// What each of [`AREAS`] must reach.
-const LEAST: [f64; 6] = [0.85, 0.68, 0.90, 0.80, 0.82, 0.85];
+const LEAST: [f64; 6] = [0.85, 0.68, 0.88, 0.76, 0.82, 0.85];
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]

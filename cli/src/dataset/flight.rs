@@ -11,7 +11,7 @@ use flagred::{
 use flightlog::Flight;
 use fuzzy::{
     Model,
-    model::{MembershipFunction, Output, Variable},
+    model::{Output, Variable},
     rule::{Condition, Rule},
 };
 
@@ -180,22 +180,16 @@ fn inputs(
 
 /// Rules for a monitor that is asked for its inputs only: the profile's own may still have to be learned.
 fn any_rules(profile: &Profile) -> Model {
-    let any = |variable: Variable| {
-        let (top, foot) = (variable.low, variable.high);
-        variable.term("any", MembershipFunction::LeftShoulder { top, foot })
-    };
+    let terms = ["low", "high"];
     let mut model = Model::builder("any");
     for input in &profile.inputs {
+        let condition = Condition::is(&input.name, "low");
         model = model
-            .input(any(Variable::new(&input.name, 0.0, 1.0)))
-            .rule(Rule::new(
-                Condition::is(&input.name, "any"),
-                &profile.output,
-                "any",
-            ));
+            .input(Variable::new(&input.name, 0.0, 1.0).partition(terms))
+            .rule(Rule::new(condition, &profile.output, "low"));
     }
-    let output = Output::new(any(Variable::new(&profile.output, 0.0, 100.0)));
-    model.output(output).build()
+    let output = Variable::new(&profile.output, 0.0, 100.0).partition(terms);
+    model.output(Output::new(output)).build()
 }
 
 /// The root mean square over `(from_s, to_s]`.

@@ -30,16 +30,16 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "ahead")]
     window: Option<f64>,
 
-    /// What comes within so many seconds: the inputs over the windows of the profile, and the largest attitude error
-    /// over a second that follows
+    /// Make rows that look ahead: the inputs over the windows of the profile, and the largest 1 s attitude error within the
+    /// next so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     ahead: Option<f64>,
 
-    /// How far the rows of `--ahead` are apart
+    /// The time between the rows of `--ahead`
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value_t = 0.5, requires = "ahead")]
     every: f64,
 
-    /// The attitude error that counts as 100 %, in degrees
+    /// The attitude error of a risk of 100 %, in degrees
     #[arg(long, value_name = "DEG", value_parser = seconds, default_value_t = CRITICAL_ERROR_DEG)]
     critical: f64,
 

@@ -221,10 +221,12 @@ impl Votes {
         let mut model = self.model.clone();
         let mut dropped = Vec::new();
         for input in &self.inputs {
-            let terms = &mut model.inputs[input.place].terms;
-            for (place, term) in terms.iter_mut().enumerate() {
-                term.shape = shape(&input.peaks, place);
-            }
+            let variable = &mut model.inputs[input.place];
+            let terms = std::mem::take(&mut variable.terms);
+            let names = terms.iter().map(|term| term.name.as_str());
+            *variable = variable
+                .clone()
+                .partition_at(names.zip(input.peaks.iter().copied()));
             let mut support = vec![[0.0; 2]; input.votes.len()];
             for row in rows {
                 let (given, _) = self.given(&row.inputs);
@@ -291,19 +293,4 @@ fn peaks(terms: &[Term]) -> Result<Vec<f64>, String> {
         _ => Err(format!("term `{}` is not of a partition", term.name)),
     };
     terms.iter().map(peak).collect()
-}
-
-/// The term at a place of the partition with these peaks.
-fn shape(peaks: &[f64], place: usize) -> MembershipFunction {
-    let top = peaks[place];
-    let left = place.checked_sub(1).map(|left| peaks[left]);
-    match (left, peaks.get(place + 1)) {
-        (None, Some(&foot)) => MembershipFunction::LeftShoulder { top, foot },
-        (Some(foot), None) => MembershipFunction::RightShoulder { foot, top },
-        (left, right) => MembershipFunction::Triangle {
-            left: left.unwrap_or(top),
-            peak: top,
-            right: right.copied().unwrap_or(top),
-        },
-    }
 }
