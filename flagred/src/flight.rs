@@ -178,14 +178,14 @@ pub fn judged_span(air: Span, ends_with_log: bool, settings: &VerdictSettings) -
 
 /// Assesses flights sample by sample.
 ///
-/// # Example: a motor at its limit
+/// # Example: motors at their limits
 /// ```
 /// use flagred::{flight::Assessor, monitor::{Craft, Sample}, shipped};
 ///
 /// let mut assessor = Assessor::new(&shipped::flagred(), Craft::new(4), Some(0.5))?;
 /// for i in 0..1500 {
 ///     let t_s = f64::from(i) * 0.02;
-///     let motors = if t_s < 20.0 { [0.5; 4] } else { [1.0, 0.2, 0.9, 0.1] };
+///     let motors = if t_s < 20.0 { [0.5; 4] } else { [1.0, 0.0, 1.0, 0.0] };
 ///     assessor.push(&Sample { t_s, motors: &motors, in_air: true, signals: &[] });
 /// }
 /// let assessment = assessor.finish();

@@ -30,9 +30,12 @@ extern crate alloc;
 pub mod accumulator;
 #[cfg(feature = "std")]
 pub mod attitude;
+mod average;
 pub mod board;
 #[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.
 pub mod channel;
+#[cfg(feature = "std")]
+mod craft;
 mod effort;
 #[cfg(feature = "std")]
 pub mod estimator;

@@ -1,9 +1,9 @@
 //! What is kept of each motor: its command, the same without yaw, and its noise.
 
 use crate::{
+    average::Average,
     effort::{self, Efforts, Factors},
     margin::{Side, margin},
-    verdict::Average,
 };
 
 /// Commands are averaged over times of this length, in seconds, before their noise is taken, so that it hardly depends on

@@ -5,7 +5,7 @@ use alloc::{string::String, vec, vec::Vec};
 pub use crate::channel::{Motors, Observation, Statistic};
 use crate::{
     channel::{Channel, Input, Now, Observed, Seen, Threshold, push, value},
-    monitor::Craft,
+    craft::Craft,
     motor::{Bin, Motor, clear, set_geometry, take},
 };
 

@@ -10,7 +10,7 @@ mod notices;
 
 pub use crate::motor::Motor;
 pub(crate) use alert::{Alert, Now};
-pub(crate) use notices::{Average, Notices};
+pub(crate) use notices::Notices;
 
 /// How risky it is, or was.
 ///

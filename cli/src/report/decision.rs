@@ -247,18 +247,12 @@ mod tests {
 
     #[test]
     fn a_map_shows_where_its_terms_change_and_where_the_flight_was() {
-        let model = flagred::shipped::flagred_rules();
-        assert_eq!(
-            focus(&model, "unsteady_now", 0, &[]),
-            Scale::new(0.0025, 0.05)
-        );
+        let model = flagred::shipped::flagred_paper_rules();
+        assert_eq!(focus(&model, "spread", 1, &[]), Scale::new(0.0, 0.2));
         let far = Step {
-            inputs: vec![0.2],
+            inputs: vec![0.1, 0.4],
             ..Step::default()
         };
-        assert_eq!(
-            focus(&model, "unsteady_now", 0, &[far]),
-            Scale::new(0.0025, 0.2)
-        );
+        assert_eq!(focus(&model, "spread", 1, &[far]), Scale::new(0.0, 0.4));
     }
 }

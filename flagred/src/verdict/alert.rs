@@ -350,11 +350,13 @@ mod tests {
 
     #[test]
     fn a_landing_takes_back_what_was_raised_just_before_it() {
-        let (_, _, mut flown) = run(&[(2.0, 0.0, 90.0)]);
-        let mut later = flown.clone();
-        // It is a FAIL, of which only the last half of the quiet time is taken back.
-        assert_eq!(flown.end(1.4, true).ended, None);
-        assert!(later.end(1.6, true).ended.is_some());
+        // Raised at 0.5 s. A WARN is taken back for 2 s, a FAIL for 1 s.
+        for (elevated_pct, taken_back_s) in [(60.0, 2.0), (90.0, 1.0)] {
+            let (_, _, mut flown) = run(&[(1.0, 0.0, elevated_pct)]);
+            let mut later = flown.clone();
+            assert_eq!(flown.end(0.4 + taken_back_s, true).ended, None);
+            assert!(later.end(0.6 + taken_back_s, true).ended.is_some());
+        }
         // A link that is lost is no landing.
         let (_, _, mut flown) = run(&[(2.0, 0.0, 90.0)]);
         assert!(flown.end(2.0, false).ended.is_some());

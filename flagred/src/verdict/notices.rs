@@ -4,6 +4,7 @@
 
 use super::{Finding, Level, Limit, Measure, MotorFinding, NoticeSettings, alert::ROUNDING_S};
 use crate::{
+    average::Average,
     margin::{Side, margin},
     motor::Motor,
 };
@@ -27,13 +28,6 @@ pub(crate) struct Notices {
     watches: [Watch; 3],
 }
 
-/// A moving average; until its time constant has passed, the plain mean.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Average {
-    value: f64,
-    known_s: f64,
-}
-
 /// Since when a limit is passed, and the finding that is open.
 #[derive(Debug, Clone, Copy)]
 struct Watch {
@@ -45,25 +39,6 @@ struct Watch {
 struct Passed {
     value_pct: f64,
     motor: Option<MotorFinding>,
-}
-
-impl Average {
-    pub(crate) const NONE: Average = Average {
-        value: 0.0,
-        known_s: 0.0,
-    };
-
-    fn add(&mut self, value: f64, held_s: f64, constant_s: f64) {
-        if value.is_finite() && held_s > 0.0 {
-            self.known_s += held_s;
-            let share = held_s / self.known_s.min(constant_s).max(held_s);
-            self.value += (value - self.value) * share;
-        }
-    }
-
-    fn known_after(&self, least_s: f64) -> Option<f64> {
-        (self.known_s >= least_s).then_some(self.value)
-    }
 }
 
 impl Notices {

@@ -116,22 +116,40 @@ impl<'e> Bench<'e> {
 
     /// Hovers at 25 Hz from a time of the vehicle's clock on.
     pub(crate) fn hover(&mut self, from_s: f64, seconds: f64, pulse: u16) {
+        self.fly(from_s, seconds, |i| {
+            let wiggle = (i % 5) as u16;
+            [pulse + wiggle, pulse, pulse - wiggle, pulse]
+        });
+    }
+
+    /// Flies at 25 Hz from a time of the vehicle's clock on, with the pulses of each sample.
+    fn fly(&mut self, from_s: f64, seconds: f64, pulses: impl Fn(u32) -> [u16; 4]) {
         for i in 0..(seconds * 25.0) as u32 {
             if i % 25 == 0 {
                 self.beat(true);
             }
             let t_s = from_s + f64::from(i) / 25.0;
-            let wiggle = (i % 5) as u16;
+            let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] = pulses(i);
             self.hear(&MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
                 time_usec: ((t_s * 1e6) as u64 % (1 << 32)) as u32,
-                servo1_raw: pulse + wiggle,
-                servo2_raw: pulse,
-                servo3_raw: pulse - wiggle,
-                servo4_raw: pulse,
+                servo1_raw,
+                servo2_raw,
+                servo3_raw,
+                servo4_raw,
                 ..SERVO_OUTPUT_RAW_DATA::default()
             }));
             self.wait(0.03);
         }
+    }
+
+    /// What was said of the latest level.
+    fn said(&self) -> &str {
+        let mut events = self.events.iter().rev();
+        let text = events.find_map(|event| match event {
+            Event::Level { text, .. } => Some(text.as_str()),
+            _ => None,
+        });
+        text.expect("a level was told")
     }
 
     fn setups(&self) -> Vec<&Setup> {
@@ -227,23 +245,50 @@ fn a_flight_at_the_limit_is_told_once_a_level() {
     bench.hover(10.0, 10.0, 1500);
     let texts = |message: &MavMessage| matches!(message, MavMessage::STATUSTEXT(_));
     assert_eq!(bench.count_sent(texts), 0, "calm");
-    bench.hover(20.0, 20.0, 1895);
+    bench.fly(20.0, 20.0, |_| [1100, 1900, 1100, 1900]);
     let levels = bench.count(|event| matches!(event, Event::Level { .. }));
     assert!((1..=2).contains(&levels), "{levels}");
     assert_eq!(bench.count_sent(texts), levels);
-    let Some(Event::Level { text, .. }) = bench
-        .events
-        .iter()
-        .rfind(|event| matches!(event, Event::Level { .. }))
-    else {
-        panic!("no level");
-    };
-    assert!(text.contains("upper limit") && text.len() <= 50, "{text}");
+    let text = bench.said();
+    assert!(text.starts_with("FLAGRED: FAIL risk "), "{text}");
+    assert!(text.ends_with(" %, motor 1 lower limit"), "{text}");
     // Sent for half a minute of the receiver's clock, twice a second.
     let values = bench.count_sent(|message| matches!(message, MavMessage::NAMED_VALUE_FLOAT(_)));
     assert!((80..=130).contains(&values), "{values}");
     let mut out = Out::default();
     assert!(bench.session.finish(&mut out) > Some(Level::Good));
+}
+
+#[test]
+fn a_risk_that_no_motor_at_its_limit_raises_is_told_with_its_input_and_term() {
+    let estimator = shipped::flagred();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    bench.hover(10.0, 10.0, 1500);
+    // Rolls for one second of two.
+    bench.fly(20.0, 10.0, |i| {
+        let roll = if i % 50 < 25 { 0 } else { 200 };
+        let [left, right] = [1500 - roll, 1500 + roll];
+        [left, right, right, left]
+    });
+    let text = bench.said().to_owned();
+    assert!(
+        text.starts_with("FLAGRED: WARN risk ") || text.starts_with("FLAGRED: FAIL risk "),
+        "{text}"
+    );
+    assert!(text.contains(" %, unsteady_") && text.len() <= 50, "{text}");
+    let mut out = Out::default();
+    bench.session.finish(&mut out);
+    let ended = out.events.iter().find_map(|event| match event {
+        Event::Ended { finding } => Some(finding),
+        _ => None,
+    });
+    let cause = ended.unwrap().cause.as_ref().unwrap();
+    assert!(
+        text.ends_with(&format!(", {} {}", cause.input, cause.term)),
+        "{text}"
+    );
 }
 
 #[test]
