@@ -10,13 +10,13 @@ use std::{
 };
 
 use flagred::{
-    board::{self, OwnedMemory, Plan, table},
+    board::{self, Factors, OwnedMemory, Plan, table},
     estimator::Estimator,
     monitor::{Craft, Monitor},
 };
 use flagred_tests::{
     Folder, STEADY,
-    board::{Moment, PROFILES, estimator, findings, logs, moment, moments, points, told},
+    board::{Moment, PROFILES, estimator, findings, geometry, logs, moment, moments, points, told},
     flagred,
 };
 
@@ -51,11 +51,13 @@ fn with_monitor<R>(
 }
 
 /// The updates of the monitor for each sample of a flight, and the findings at its end.
-fn by_the_monitor(estimator: &Estimator, flight: &[Moment]) -> Vec<String> {
+fn by_the_monitor(estimator: &Estimator, geometry: &[Factors], flight: &[Moment]) -> Vec<String> {
     let signals = estimator.profile().signals();
     let mut monitor = Monitor::new(
         estimator,
-        Craft::new(flight[0].motors.len()).with_signals(&signals),
+        Craft::new(flight[0].motors.len())
+            .with_signals(&signals)
+            .with_geometry(geometry),
     )
     .unwrap();
     let said = flight
@@ -66,8 +68,11 @@ fn by_the_monitor(estimator: &Estimator, flight: &[Moment]) -> Vec<String> {
     said
 }
 
-fn on_board(plan: &Plan<'_>, flight: &[Moment]) -> Vec<String> {
+fn on_board(plan: &Plan<'_>, geometry: &[Factors], flight: &[Moment]) -> Vec<String> {
     with_monitor(plan, flight[0].motors.len(), |monitor| {
+        if !geometry.is_empty() {
+            monitor.set_geometry(geometry).unwrap();
+        }
         let said = flight
             .iter()
             .map(|moment| told(&monitor.push(&moment.sample())));
@@ -90,7 +95,8 @@ fn along(estimator: &Estimator) -> usize {
     match estimator.profile().inputs.len() {
         0..=2 => 203,
         3 => 53,
-        _ => 19,
+        4 => 19,
+        _ => 7,
     }
 }
 
@@ -146,6 +152,7 @@ fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs()
         assert!(known > 30_000, "{name}: {known}");
         // The rules of `flagred` have no gap.
         assert_eq!(filled > 0, name != "flagred", "{name}: {filled}");
+        assert_eq!(plan.filled.is_some(), name != "flagred", "{name}");
     }
 }
 
@@ -156,12 +163,39 @@ fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
         let lent = estimator.plan().unwrap();
         for log in logs() {
             let flight = moments(&log, &estimator.profile().signals());
-            let what = format!("{name}, {}", log.display());
-            let expected = by_the_monitor(&estimator, &flight);
-            assert_same(&expected, &on_board(&lent, &flight), &what);
-            assert_same(&expected, &on_board(plan, &flight), &what);
+            for geometry in [&[][..], &geometry(&log)] {
+                let what = format!("{name}, {} factors, {}", geometry.len(), log.display());
+                let expected = by_the_monitor(&estimator, geometry, &flight);
+                assert_same(&expected, &on_board(&lent, geometry, &flight), &what);
+                assert_same(&expected, &on_board(plan, geometry, &flight), &what);
+            }
         }
     }
+}
+
+#[test]
+fn a_geometry_that_tells_nothing_apart_is_refused_and_changes_nothing() {
+    let estimator = estimator("flagred");
+    let plan = estimator.plan().unwrap();
+    let log = &logs()[0];
+    let flight = moments(log, &[]);
+    let known = geometry(log);
+    let alike = vec![[1.0, 1.0, 1.0]; known.len()];
+    let mut odd = known.clone();
+    odd[0][2] = f64::NAN;
+    with_monitor(&plan, known.len(), |monitor| {
+        for wrong in [&alike, &odd, &known[1..].to_vec(), &vec![]] {
+            assert_eq!(monitor.set_geometry(wrong), Err(board::Refused::Geometry));
+        }
+        let said = flight
+            .iter()
+            .map(|moment| told(&monitor.push(&moment.sample())));
+        let mut said: Vec<String> = said.collect();
+        said.push(findings(&monitor.finish()));
+        assert_same(&by_the_monitor(&estimator, &[], &flight), &said, "refused");
+    });
+    let with_it = by_the_monitor(&estimator, &known, &flight);
+    assert!(with_it != by_the_monitor(&estimator, &[], &flight));
 }
 
 #[test]
@@ -327,18 +361,24 @@ fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs
         let estimator = estimator(profile);
         for log in logs() {
             let flight = moments(&log, &estimator.profile().signals());
-            let mut doubles = Vec::new();
-            for moment in &flight {
-                doubles.extend([0.0, moment.t_s, f64::from(u8::from(moment.in_air))]);
-                doubles.extend(&moment.motors);
-                doubles.extend(&moment.signals);
+            for geometry in [&[][..], &geometry(&log)] {
+                let mut doubles = Vec::new();
+                if !geometry.is_empty() {
+                    doubles.push(3.0);
+                    doubles.extend(geometry.iter().flatten());
+                }
+                for moment in &flight {
+                    doubles.extend([0.0, moment.t_s, f64::from(u8::from(moment.in_air))]);
+                    doubles.extend(&moment.motors);
+                    doubles.extend(&moment.signals);
+                }
+                doubles.push(2.0);
+                let mut command = Command::new(folder.at(name));
+                command.arg(flight[0].motors.len().to_string());
+                let expected = by_the_monitor(&estimator, geometry, &flight);
+                let what = format!("{name} in C, {} factors, {}", geometry.len(), log.display());
+                assert_same(&expected, &written(command, &doubles), &what);
             }
-            doubles.push(2.0);
-            let mut command = Command::new(folder.at(name));
-            command.arg(flight[0].motors.len().to_string());
-            let expected = by_the_monitor(&estimator, &flight);
-            let what = format!("{name} in C, {}", log.display());
-            assert_same(&expected, &written(command, &doubles), &what);
         }
         let points = points(&estimator, along(&estimator));
         let doubles = points
