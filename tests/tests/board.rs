@@ -173,6 +173,99 @@ fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
     }
 }
 
+/// A profile with every signal of motors, every statistic and every notice, and the file of it.
+fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
+    const SOURCES: [&str; 12] = [
+        "{std_less_noise: {std: motor_command_less_yaw}}",
+        "{std_less_noise: {mean: motor_command_less_yaw}, window_s: 9}",
+        "{noise: {max: motor_command}}",
+        "{noise: yaw_effort}",
+        "{std: roll_effort}",
+        "{rms: pitch_effort}",
+        "{std_less_noise: thrust_effort}",
+        "{mean: command_noise, window_s: 9}",
+        "{max: motor_command_less_yaw}",
+        "{min: {min: motor_margin_low_side}}",
+        "{share_above: 0.02, of: command_noise, window_s: 9}",
+        "{share_below: 0.5, of: {max: motor_margin_high_side}}",
+    ];
+    let (mut inputs, mut sources, mut rules) = (String::new(), String::new(), String::new());
+    for (i, source) in SOURCES.iter().enumerate() {
+        let width = if source.contains("mean") || source.contains("noise") {
+            0.05
+        } else {
+            0.5
+        };
+        inputs += &format!("  x{i}: {{range: [0, 1], partition: {{low: 0, high: {width}}}}}\n");
+        sources += &format!("  x{i}: {source}\n");
+        rules += &format!(
+            "  - IF x{i} IS low THEN risk IS low\n  - IF x{i} IS high THEN risk IS high\n"
+        );
+    }
+    let rules = format!(
+        "fuzzy: 1\nname: every-signal\ninputs:\n{inputs}outputs:\n  risk: {{range: [0, 100], partition: [low, high]}}\n\
+         operators: {{and: product, or: maximum, implication: product, aggregation: sum}}\nrules:\n{rules}"
+    );
+    let profile = format!(
+        "flagred: 1\nname: every-signal\nrules: every-signal.yaml\ntake_off_s: 4\ninputs:\n{sources}\
+         verdict:\n  warn: {{risk: 45, after_s: 0.2}}\n  fail: {{risk: 60, after_s: 0.2}}\n  idle_below: 0.05\n  \
+         noise: {{above: 0.001, after_s: 0}}\n  reserve: {{below: 0.6, after_s: 0.5}}\n  \
+         imbalance: {{above: 0.01, after_s: 0.1}}\n"
+    );
+    let model = fuzzy::yaml::parse(&rules).unwrap().model;
+    let estimator = Estimator::new(&profile.parse().unwrap(), &model).unwrap();
+    folder.file("every-signal.yaml", rules);
+    (estimator, folder.file("every-signal-profile.yaml", profile))
+}
+
+#[test]
+fn every_signal_statistic_and_notice_is_the_same_lent_and_in_c() {
+    let folder = Folder::new();
+    let (estimator, file) = profile_of_every_signal(&folder);
+    let plan = estimator.plan().unwrap();
+    let exported = Some((&*file, "every_signal"));
+    let built = program("tests/c/follow.c", "every-signal", exported);
+    let (mut known, mut measures) = (0, std::collections::BTreeSet::new());
+    for log in logs() {
+        let flight = moments(&log, &[]);
+        let geometry = geometry(&log);
+        let expected = by_the_monitor(&estimator, &geometry, &flight);
+        let what = format!("every signal, {}", log.display());
+        assert_same(&expected, &on_board(&plan, &geometry, &flight), &what);
+        with_monitor(&plan, geometry.len(), |monitor| {
+            let mut whole = Monitor::new(
+                &estimator,
+                Craft::new(geometry.len()).with_geometry(&geometry),
+            )
+            .unwrap();
+            monitor.set_geometry(&geometry).unwrap();
+            let bits = |inputs: &[f64]| inputs.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
+            let mut ended = Vec::new();
+            for moment in &flight {
+                let update = whole.push(&moment.sample());
+                known += usize::from(update.risk.is_ok());
+                ended.extend(update.ended.into_iter().flatten());
+                monitor.push(&moment.sample());
+                assert_eq!(bits(whole.inputs()), bits(monitor.inputs()), "{what}");
+            }
+            ended.extend(whole.finish().into_iter().flatten());
+            measures.extend(ended.iter().map(|finding| finding.measure.to_string()));
+        });
+        if let Some((_, folder)) = &built {
+            let mut command = Command::new(folder.at("every-signal"));
+            command.arg(geometry.len().to_string());
+            let found = written(command, &doubles(&geometry, &flight));
+            assert_same(&expected, &found, &format!("{what} in C"));
+        }
+    }
+    assert!(known > 1000, "{known}");
+    let expected = ["command noise", "imbalance", "reserve", "risk"];
+    assert!(
+        measures.iter().map(String::as_str).eq(expected),
+        "{measures:?}"
+    );
+}
+
 #[test]
 fn a_geometry_that_tells_nothing_apart_is_refused_and_changes_nothing() {
     let estimator = estimator("flagred");
@@ -335,6 +428,22 @@ fn the_header_has_the_arrays_of_a_table() {
     assert_eq!(arrays[..], listed);
 }
 
+/// A geometry and a flight as input of `tests/c/follow.c`.
+fn doubles(geometry: &[Factors], flight: &[Moment]) -> Vec<f64> {
+    let mut doubles = Vec::new();
+    if !geometry.is_empty() {
+        doubles.push(3.0);
+        doubles.extend(geometry.iter().flatten());
+    }
+    for moment in flight {
+        doubles.extend([0.0, moment.t_s, f64::from(u8::from(moment.in_air))]);
+        doubles.extend(&moment.motors);
+        doubles.extend(&moment.signals);
+    }
+    doubles.push(2.0);
+    doubles
+}
+
 /// The output of a program for doubles as its input.
 fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
     let mut child = program
@@ -362,22 +471,15 @@ fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs
         for log in logs() {
             let flight = moments(&log, &estimator.profile().signals());
             for geometry in [&[][..], &geometry(&log)] {
-                let mut doubles = Vec::new();
-                if !geometry.is_empty() {
-                    doubles.push(3.0);
-                    doubles.extend(geometry.iter().flatten());
-                }
-                for moment in &flight {
-                    doubles.extend([0.0, moment.t_s, f64::from(u8::from(moment.in_air))]);
-                    doubles.extend(&moment.motors);
-                    doubles.extend(&moment.signals);
-                }
-                doubles.push(2.0);
                 let mut command = Command::new(folder.at(name));
                 command.arg(flight[0].motors.len().to_string());
                 let expected = by_the_monitor(&estimator, geometry, &flight);
                 let what = format!("{name} in C, {} factors, {}", geometry.len(), log.display());
-                assert_same(&expected, &written(command, &doubles), &what);
+                assert_same(
+                    &expected,
+                    &written(command, &doubles(geometry, &flight)),
+                    &what,
+                );
             }
         }
         let points = points(&estimator, along(&estimator));
