@@ -1,4 +1,4 @@
-/* Damages each word of a plan's table in turn. A monitor refuses the plan, or assesses samples without a panic: the library
+/* Damages each word of a plan in turn. A monitor refuses the plan, or assesses samples without a panic: the library
  * stops at a panic, and the alarm ends the program. Arguments: the size of an item of each array of the table. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +10,8 @@
 static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(1) + (1 << 20)];
 static flagred_plan plan;
 static long tried, accepted;
+/* The samples of each monitor. */
+static int samples = 1;
 
 static void try_plan(void) {
     flagred_monitor *monitor;
@@ -28,7 +30,11 @@ static void try_plan(void) {
     }
     double command = 0.5;
     flagred_sample sample = {.t_s = 1.0, .commands = &command, .motors = 1, .in_air = 1};
-    flagred_push(monitor, &sample, &result);
+    for (int i = 0; i < samples; i++) {
+        flagred_push(monitor, &sample, &result);
+        sample.t_s += 0.03 * (i % 3);
+        command = 0.25 * (i % 5);
+    }
 }
 
 static void damage(unsigned char *word) {
@@ -42,31 +48,47 @@ static void damage(unsigned char *word) {
     memcpy(word, &kept, sizeof kept);
 }
 
+/* An array of a plan. */
+typedef struct { void *items; size_t count; } array;
+
+/* Shortens an array of the plan, then damages each word of its items. */
+static void damage_array(unsigned char *field, size_t size) {
+    array found;
+    memcpy(&found, field, sizeof found);
+    size_t items = found.count, bytes = items * size;
+    unsigned char *copy = malloc(bytes + 1);
+    if (bytes > 0) {
+        memcpy(copy, found.items, bytes);
+        found.items = copy;
+    }
+    for (found.count = 0; found.count < items; found.count++) {
+        memcpy(field, &found, sizeof found);
+        try_plan();
+    }
+    memcpy(field, &found, sizeof found);
+    for (size_t word = 0; word < bytes; word += 4) {
+        damage(copy + word);
+    }
+}
+
 int main(int count, char **sizes) {
-    struct { void *items; size_t count; } array;
     alarm(120);
     plan = PLAN;
     for (unsigned char *word = (unsigned char *)&plan.and_operator; word <= (unsigned char *)&plan.signals; word += 4) {
         damage(word);
     }
     unsigned char *field = (unsigned char *)&plan.inputs;
-    for (int i = 1; i < count; i++, field += sizeof array) {
-        memcpy(&array, field, sizeof array);
-        size_t items = array.count, bytes = items * (size_t)atol(sizes[i]);
-        unsigned char *copy = malloc(bytes + 1);
-        if (bytes > 0) {
-            memcpy(copy, array.items, bytes);
-            array.items = copy;
-        }
-        for (array.count = 0; array.count < items; array.count++) {
-            memcpy(field, &array, sizeof array);
-            try_plan();
-        }
-        memcpy(field, &array, sizeof array);
-        for (size_t word = 0; word < bytes; word += 4) {
-            damage(copy + word);
-        }
+    for (int i = 1; i < count; i++, field += sizeof(array)) {
+        damage_array(field, (size_t)atol(sizes[i]));
     }
+    samples = 200;
+    unsigned char *settings = (unsigned char *)&plan.settings;
+    for (size_t word = 0; word < sizeof plan.settings; word += 4) {
+        damage(settings + word);
+    }
+    damage_array((unsigned char *)&plan.order, sizeof *plan.order);
+    damage_array((unsigned char *)&plan.channels, sizeof *plan.channels);
+    damage_array((unsigned char *)&plan.sources, sizeof *plan.sources);
     printf("%ld of %ld\n", accepted, tried);
     return 0;
 }

@@ -1,6 +1,6 @@
 /* Assesses flights with an exported profile and writes the results bit for bit. PROFILE is the exported file, PLAN the name
- * of its plan. Standard input has doubles: 0 and a sample (t_s, in_air, motors, signals), 1 and a point (inputs), or 2 at the
- * end of a flight. */
+ * of its plan. Standard input has doubles: 0 and a sample (t_s, in_air, motors, signals), 1 and a point (inputs), 2 at the end
+ * of a flight, or 3 before one and the factors of each motor. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,6 +93,9 @@ int main(int count, char **arguments) {
         } else if (kind == 1.0 && fread(values, sizeof *values, inputs, stdin) == inputs) {
             is(flagred_evaluate(monitor, values, inputs, &said));
             moment(&said);
+        } else if (kind == 3.0 && fread(values, sizeof *values, 3 * motors, stdin) == 3 * motors) {
+            is(flagred_set_geometry(monitor, (const flagred_factors *)values, motors));
+            continue;
         } else if (kind == 2.0) {
             is(flagred_finish(monitor, ended));
             findings(ended);

@@ -1,5 +1,6 @@
 /* Invalid arguments return a status and do not crash. Prints the line of the first failure. */
 #include <stdio.h>
+#include <string.h>
 
 #include PROFILE
 
@@ -79,6 +80,40 @@ int main(void) {
     damaged = *plan;
     damaged.strengths = 0;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+
+    flagred_channel channels[16];
+    CHECK(plan->channels_count > 0 && plan->channels_count <= 16);
+    for (int mistake = 0; mistake < 8; mistake++) {
+        memcpy(channels, plan->channels, plan->channels_count * sizeof *channels);
+        damaged = *plan;
+        damaged.channels = channels;
+        switch (mistake) {
+        case 0: channels[0].observed = 6; channels[0].signal = 4; break; /* the efforts are 0 to 3 */
+        case 1: channels[0].observed = 8; break;
+        case 2: channels[0].observed = 4; channels[0].signal = plan->signals; break;
+        case 3: channels[0].in_bins = !channels[0].in_bins; break;
+        case 4: channels[0].window_s = 0; break;
+        case 5: channels[0].window_s = NAN; break;
+        case 6: channels[0].window_s = INFINITY; break;
+        case 7: damaged.settings.risk_window_s = -1; break;
+        }
+        CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
+    }
+
+    /* The geometry. */
+    flagred_factors geometry[MOTORS] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
+    CHECK(start(plan, &monitor) == FLAGRED_OK);
+    CHECK(flagred_set_geometry(NULL, geometry, MOTORS) == FLAGRED_NULL_POINTER);
+    CHECK(flagred_set_geometry(monitor, NULL, MOTORS) == FLAGRED_NULL_POINTER);
+    CHECK(flagred_set_geometry(monitor, geometry, MOTORS) == FLAGRED_OK);
+    CHECK(flagred_set_geometry(monitor, geometry, MOTORS - 1) == FLAGRED_BAD_GEOMETRY);
+    CHECK(flagred_set_geometry(monitor, NULL, 0) == FLAGRED_BAD_GEOMETRY);
+    geometry[1].yaw = NAN;
+    CHECK(flagred_set_geometry(monitor, geometry, MOTORS) == FLAGRED_BAD_GEOMETRY);
+    for (int motor = 0; motor < MOTORS; motor++) {
+        geometry[motor].roll = geometry[motor].pitch = geometry[motor].yaw = motor;
+    }
+    CHECK(flagred_set_geometry(monitor, geometry, MOTORS) == FLAGRED_BAD_GEOMETRY);
 
     /* Samples. */
     CHECK(start(plan, &monitor) == FLAGRED_OK && monitor != NULL);

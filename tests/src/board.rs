@@ -3,6 +3,7 @@
 use std::{fmt::Write, path::PathBuf};
 
 use flagred::{
+    board::Factors,
     estimator::Estimator,
     profile::Profile,
     sample::{Estimate, Sample, Update},
@@ -95,6 +96,26 @@ pub fn logs() -> Vec<PathBuf> {
         .collect();
     logs.sort();
     logs
+}
+
+/// The factors of the motors of a flight; without known ones, of motors on a circle.
+///
+/// # Panics
+///
+/// The log cannot be read.
+#[expect(
+    clippy::unwrap_used,
+    reason = "a flight that cannot be read fails the test"
+)]
+pub fn geometry(log: &std::path::Path) -> Vec<Factors> {
+    let flight = flightlog::open(log, &Options::default()).unwrap();
+    let motors = flight.motors.len();
+    let on_a_circle = |i: usize| {
+        let (sin, cos) = (std::f64::consts::TAU * (i as f64 + 0.5) / motors as f64).sin_cos();
+        [-sin, cos, if i.is_multiple_of(2) { 1.0 } else { -1.0 }]
+    };
+    let known = flight.geometry.map(|geometry| geometry.factors);
+    known.unwrap_or_else(|| (0..motors).map(on_a_circle).collect())
 }
 
 /// The samples of a flight with the signals of a profile, followed by samples that no log has: time stamps that repeat or

@@ -10,13 +10,13 @@ use std::{
 };
 
 use flagred::{
-    board::{self, OwnedMemory, Plan, table},
+    board::{self, Factors, OwnedMemory, Plan, table},
     estimator::Estimator,
     monitor::{Craft, Monitor},
 };
 use flagred_tests::{
     Folder, STEADY,
-    board::{Moment, PROFILES, estimator, findings, logs, moment, moments, points, told},
+    board::{Moment, PROFILES, estimator, findings, geometry, logs, moment, moments, points, told},
     flagred,
 };
 
@@ -51,11 +51,13 @@ fn with_monitor<R>(
 }
 
 /// The updates of the monitor for each sample of a flight, and the findings at its end.
-fn by_the_monitor(estimator: &Estimator, flight: &[Moment]) -> Vec<String> {
+fn by_the_monitor(estimator: &Estimator, geometry: &[Factors], flight: &[Moment]) -> Vec<String> {
     let signals = estimator.profile().signals();
     let mut monitor = Monitor::new(
         estimator,
-        Craft::new(flight[0].motors.len()).with_signals(&signals),
+        Craft::new(flight[0].motors.len())
+            .with_signals(&signals)
+            .with_geometry(geometry),
     )
     .unwrap();
     let said = flight
@@ -66,8 +68,11 @@ fn by_the_monitor(estimator: &Estimator, flight: &[Moment]) -> Vec<String> {
     said
 }
 
-fn on_board(plan: &Plan<'_>, flight: &[Moment]) -> Vec<String> {
+fn on_board(plan: &Plan<'_>, geometry: &[Factors], flight: &[Moment]) -> Vec<String> {
     with_monitor(plan, flight[0].motors.len(), |monitor| {
+        if !geometry.is_empty() {
+            monitor.set_geometry(geometry).unwrap();
+        }
         let said = flight
             .iter()
             .map(|moment| told(&monitor.push(&moment.sample())));
@@ -90,7 +95,8 @@ fn along(estimator: &Estimator) -> usize {
     match estimator.profile().inputs.len() {
         0..=2 => 203,
         3 => 53,
-        _ => 19,
+        4 => 19,
+        _ => 7,
     }
 }
 
@@ -146,6 +152,7 @@ fn a_plan_and_an_exported_plan_say_what_the_estimator_says_all_over_the_inputs()
         assert!(known > 30_000, "{name}: {known}");
         // The rules of `flagred` have no gap.
         assert_eq!(filled > 0, name != "flagred", "{name}: {filled}");
+        assert_eq!(plan.filled.is_some(), name != "flagred", "{name}");
     }
 }
 
@@ -156,12 +163,132 @@ fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
         let lent = estimator.plan().unwrap();
         for log in logs() {
             let flight = moments(&log, &estimator.profile().signals());
-            let what = format!("{name}, {}", log.display());
-            let expected = by_the_monitor(&estimator, &flight);
-            assert_same(&expected, &on_board(&lent, &flight), &what);
-            assert_same(&expected, &on_board(plan, &flight), &what);
+            for geometry in [&[][..], &geometry(&log)] {
+                let what = format!("{name}, {} factors, {}", geometry.len(), log.display());
+                let expected = by_the_monitor(&estimator, geometry, &flight);
+                assert_same(&expected, &on_board(&lent, geometry, &flight), &what);
+                assert_same(&expected, &on_board(plan, geometry, &flight), &what);
+            }
         }
     }
+}
+
+/// A profile with every signal of motors, every statistic and every notice, and the file of it.
+fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
+    const SOURCES: [&str; 12] = [
+        "{std_less_noise: {std: motor_command_less_yaw}}",
+        "{std_less_noise: {mean: motor_command_less_yaw}, window_s: 9}",
+        "{noise: {max: motor_command}}",
+        "{noise: yaw_effort}",
+        "{std: roll_effort}",
+        "{rms: pitch_effort}",
+        "{std_less_noise: thrust_effort}",
+        "{mean: command_noise, window_s: 9}",
+        "{max: motor_command_less_yaw}",
+        "{min: {min: motor_margin_low_side}}",
+        "{share_above: 0.02, of: command_noise, window_s: 9}",
+        "{share_below: 0.5, of: {max: motor_margin_high_side}}",
+    ];
+    let (mut inputs, mut sources, mut rules) = (String::new(), String::new(), String::new());
+    for (i, source) in SOURCES.iter().enumerate() {
+        let width = if source.contains("mean") || source.contains("noise") {
+            0.05
+        } else {
+            0.5
+        };
+        inputs += &format!("  x{i}: {{range: [0, 1], partition: {{low: 0, high: {width}}}}}\n");
+        sources += &format!("  x{i}: {source}\n");
+        rules += &format!(
+            "  - IF x{i} IS low THEN risk IS low\n  - IF x{i} IS high THEN risk IS high\n"
+        );
+    }
+    let rules = format!(
+        "fuzzy: 1\nname: every-signal\ninputs:\n{inputs}outputs:\n  risk: {{range: [0, 100], partition: [low, high]}}\n\
+         operators: {{and: product, or: maximum, implication: product, aggregation: sum}}\nrules:\n{rules}"
+    );
+    let profile = format!(
+        "flagred: 1\nname: every-signal\nrules: every-signal.yaml\ntake_off_s: 4\ninputs:\n{sources}\
+         verdict:\n  warn: {{risk: 45, after_s: 0.2}}\n  fail: {{risk: 60, after_s: 0.2}}\n  idle_below: 0.05\n  \
+         noise: {{above: 0.001, after_s: 0}}\n  reserve: {{below: 0.6, after_s: 0.5}}\n  \
+         imbalance: {{above: 0.01, after_s: 0.1}}\n"
+    );
+    let model = fuzzy::yaml::parse(&rules).unwrap().model;
+    let estimator = Estimator::new(&profile.parse().unwrap(), &model).unwrap();
+    folder.file("every-signal.yaml", rules);
+    (estimator, folder.file("every-signal-profile.yaml", profile))
+}
+
+#[test]
+fn every_signal_statistic_and_notice_is_the_same_lent_and_in_c() {
+    let folder = Folder::new();
+    let (estimator, file) = profile_of_every_signal(&folder);
+    let plan = estimator.plan().unwrap();
+    let exported = Some((&*file, "every_signal"));
+    let built = program("tests/c/follow.c", "every-signal", exported);
+    let (mut known, mut measures) = (0, std::collections::BTreeSet::new());
+    for log in logs() {
+        let flight = moments(&log, &[]);
+        let geometry = geometry(&log);
+        let expected = by_the_monitor(&estimator, &geometry, &flight);
+        let what = format!("every signal, {}", log.display());
+        assert_same(&expected, &on_board(&plan, &geometry, &flight), &what);
+        with_monitor(&plan, geometry.len(), |monitor| {
+            let mut whole = Monitor::new(
+                &estimator,
+                Craft::new(geometry.len()).with_geometry(&geometry),
+            )
+            .unwrap();
+            monitor.set_geometry(&geometry).unwrap();
+            let bits = |inputs: &[f64]| inputs.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
+            let mut ended = Vec::new();
+            for moment in &flight {
+                let update = whole.push(&moment.sample());
+                known += usize::from(update.risk.is_ok());
+                ended.extend(update.ended.into_iter().flatten());
+                monitor.push(&moment.sample());
+                assert_eq!(bits(whole.inputs()), bits(monitor.inputs()), "{what}");
+            }
+            ended.extend(whole.finish().into_iter().flatten());
+            measures.extend(ended.iter().map(|finding| finding.measure.to_string()));
+        });
+        if let Some((_, folder)) = &built {
+            let mut command = Command::new(folder.at("every-signal"));
+            command.arg(geometry.len().to_string());
+            let found = written(command, &doubles(&geometry, &flight));
+            assert_same(&expected, &found, &format!("{what} in C"));
+        }
+    }
+    assert!(known > 1000, "{known}");
+    let expected = ["command noise", "imbalance", "reserve", "risk"];
+    assert!(
+        measures.iter().map(String::as_str).eq(expected),
+        "{measures:?}"
+    );
+}
+
+#[test]
+fn a_geometry_that_tells_nothing_apart_is_refused_and_changes_nothing() {
+    let estimator = estimator("flagred");
+    let plan = estimator.plan().unwrap();
+    let log = &logs()[0];
+    let flight = moments(log, &[]);
+    let known = geometry(log);
+    let alike = vec![[1.0, 1.0, 1.0]; known.len()];
+    let mut odd = known.clone();
+    odd[0][2] = f64::NAN;
+    with_monitor(&plan, known.len(), |monitor| {
+        for wrong in [&alike, &odd, &known[1..].to_vec(), &vec![]] {
+            assert_eq!(monitor.set_geometry(wrong), Err(board::Refused::Geometry));
+        }
+        let said = flight
+            .iter()
+            .map(|moment| told(&monitor.push(&moment.sample())));
+        let mut said: Vec<String> = said.collect();
+        said.push(findings(&monitor.finish()));
+        assert_same(&by_the_monitor(&estimator, &[], &flight), &said, "refused");
+    });
+    let with_it = by_the_monitor(&estimator, &known, &flight);
+    assert!(with_it != by_the_monitor(&estimator, &[], &flight));
 }
 
 #[test]
@@ -301,6 +428,22 @@ fn the_header_has_the_arrays_of_a_table() {
     assert_eq!(arrays[..], listed);
 }
 
+/// A geometry and a flight as input of `tests/c/follow.c`.
+fn doubles(geometry: &[Factors], flight: &[Moment]) -> Vec<f64> {
+    let mut doubles = Vec::new();
+    if !geometry.is_empty() {
+        doubles.push(3.0);
+        doubles.extend(geometry.iter().flatten());
+    }
+    for moment in flight {
+        doubles.extend([0.0, moment.t_s, f64::from(u8::from(moment.in_air))]);
+        doubles.extend(&moment.motors);
+        doubles.extend(&moment.signals);
+    }
+    doubles.push(2.0);
+    doubles
+}
+
 /// The output of a program for doubles as its input.
 fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
     let mut child = program
@@ -327,18 +470,17 @@ fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs
         let estimator = estimator(profile);
         for log in logs() {
             let flight = moments(&log, &estimator.profile().signals());
-            let mut doubles = Vec::new();
-            for moment in &flight {
-                doubles.extend([0.0, moment.t_s, f64::from(u8::from(moment.in_air))]);
-                doubles.extend(&moment.motors);
-                doubles.extend(&moment.signals);
+            for geometry in [&[][..], &geometry(&log)] {
+                let mut command = Command::new(folder.at(name));
+                command.arg(flight[0].motors.len().to_string());
+                let expected = by_the_monitor(&estimator, geometry, &flight);
+                let what = format!("{name} in C, {} factors, {}", geometry.len(), log.display());
+                assert_same(
+                    &expected,
+                    &written(command, &doubles(geometry, &flight)),
+                    &what,
+                );
             }
-            doubles.push(2.0);
-            let mut command = Command::new(folder.at(name));
-            command.arg(flight[0].motors.len().to_string());
-            let expected = by_the_monitor(&estimator, &flight);
-            let what = format!("{name} in C, {}", log.display());
-            assert_same(&expected, &written(command, &doubles), &what);
         }
         let points = points(&estimator, along(&estimator));
         let doubles = points

@@ -27,11 +27,13 @@ static const char *word(int32_t level) {
     return words[level];
 }
 
+static const char *const measures[] = {"risk", "elevated risk", "command noise", "reserve", "imbalance"};
+
 int main(void) {
     /* MOT_PWM_MIN 1000, MOT_PWM_MAX 2000, MOT_SPIN_MIN 0.15, MOT_SPIN_MAX 0.95 */
     const flagred_limits limits[4] = {{1150, 1950}, {1150, 1950}, {1150, 1950}, {1150, 1950}};
     /* Roll, pitch and yaw of motors in an X: front right, rear left, front left, rear right. */
-    const double geometry[4][3] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
+    const flagred_factors geometry[4] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
     flagred_monitor *monitor;
     int32_t status = flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor);
     if (status == FLAGRED_OK) {
@@ -59,10 +61,15 @@ int main(void) {
     flagred_finding ended[FLAGRED_ENDED];
     flagred_finish(monitor, ended);
     for (int i = 0; i < FLAGRED_ENDED; i++) {
-        if (ended[i].level != FLAGRED_LEVEL_NONE) {
-            printf("%s from %.2f s to %.2f s, motor %d\n", word(ended[i].level), ended[i].from_s, ended[i].to_s,
-                   (int)ended[i].motor + 1);
+        if (ended[i].level == FLAGRED_LEVEL_NONE) {
+            continue;
         }
+        printf("%s from %.2f s to %.2f s: %s", word(ended[i].level), ended[i].from_s, ended[i].to_s,
+               measures[ended[i].measure]);
+        if (ended[i].motor >= 0) {
+            printf(", motor %d", (int)ended[i].motor + 1);
+        }
+        printf("\n");
     }
     return 0;
 }

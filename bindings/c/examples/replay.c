@@ -15,8 +15,11 @@ static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(4)];
 int main(void) {
     /* The full range: MOT_SPIN_MIN 0, MOT_SPIN_MAX 1. */
     const flagred_limits limits[4] = {{1000, 2000}, {1000, 2000}, {1000, 2000}, {1000, 2000}};
+    /* Roll, pitch and yaw of motors in an X: FRAME_CLASS 1, FRAME_TYPE 1. */
+    const flagred_factors geometry[4] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
     flagred_monitor *monitor;
-    if (flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor) != FLAGRED_OK) {
+    if (flagred_start(&flagred_plan_flagred, 4, limits, memory, sizeof memory, &monitor) != FLAGRED_OK ||
+        flagred_set_geometry(monitor, geometry, 4) != FLAGRED_OK) {
         return 1;
     }
     char line[1024];

@@ -74,6 +74,13 @@ typedef struct flagred_limits {
     double high;
 } flagred_limits;
 
+/* The factors of a motor in the mixer. The largest of each axis is 1; an axis that no motor acts on has zeros. */
+typedef struct flagred_factors {
+    double roll;                /* positive where more thrust rolls the vehicle to the right: a motor on the left */
+    double pitch;               /* positive where it raises the nose: a motor in front */
+    double yaw;                 /* positive where it turns the nose to the right: a counter-clockwise propeller */
+} flagred_factors;
+
 /* A sample of a flight. */
 typedef struct flagred_sample {
     double t_s;                 /* seconds; must increase */
@@ -139,12 +146,9 @@ size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
                       flagred_monitor **monitor);
 
-/* Gives each motor its roll, pitch and yaw factor, in the order of the commands, so that turning the nose is told from what
- * pushes the vehicle around. Call it before the first sample. A factor is positive where more thrust of the motor rolls the
- * vehicle to the right (a motor on the left), raises the nose (a motor in front), and turns the nose to the right (a
- * propeller that turns counter-clockwise). The largest factor of each axis is 1; an axis that no motor acts on has zeros. An
- * ArduPilot mixer has these factors. Without them, yaw counts as any other motion. */
-int32_t flagred_set_geometry(flagred_monitor *monitor, const double (*roll_pitch_yaw)[3], size_t motors);
+/* Gives each motor its factors, in the order of the commands, so that turning the nose is told from what pushes the vehicle
+ * around. Call it before the first sample. Without it, yaw counts as any other motion. */
+int32_t flagred_set_geometry(flagred_monitor *monitor, const flagred_factors *factors, size_t motors);
 
 /* Takes the next sample and writes the update. */
 int32_t flagred_push(flagred_monitor *monitor, const flagred_sample *sample, flagred_update *update);

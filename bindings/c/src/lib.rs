@@ -172,16 +172,16 @@ unsafe fn start(
 /// Gives each motor its factors.
 ///
 /// # Safety
-/// `monitor` is null or from [`flagred_start`]; `roll_pitch_yaw` is null or has `motors` items.
+/// `monitor` is null or from [`flagred_start`]; `factors` is null or has `motors` items.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "foreign memory")]
 pub unsafe extern "C" fn flagred_set_geometry(
     monitor: *mut CMonitor,
-    roll_pitch_yaw: *const Factors,
+    factors: *const Factors,
     motors: usize,
 ) -> i32 {
     let factors = Array {
-        items: roll_pitch_yaw,
+        items: factors,
         count: motors,
     };
     // SAFETY: the caller's promises; the factors are used in this call only.

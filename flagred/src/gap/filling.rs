@@ -5,8 +5,8 @@ use alloc::{vec, vec::Vec};
 use fuzzy::{Engine, Model, engine::EvaluateError};
 
 use super::{
-    FilledKnots, GapMethod, GapSettings, Reading, field::Field, harmonic, inverse_distance, is_gap,
-    knots::Knots, metric, neighbours::Tree, thin_plate,
+    FilledKnots, GapMethod, GapSettings, Reading, complete::has_no_gap, field::Field, harmonic,
+    inverse_distance, is_gap, knots::Knots, metric, neighbours::Tree, thin_plate,
 };
 
 /// What is said where no rule applies.
@@ -17,7 +17,7 @@ use super::{
 /// rule can tell one place from another, nothing changes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Filling {
-    /// As [`FilledKnots`] has them; the values are empty where nothing is covered, or there are too many inputs.
+    /// As [`FilledKnots`] has them; the values are empty where all is covered, nothing is, or there are too many inputs.
     places: Vec<f64>,
     starts: Vec<u32>,
     values: Vec<f64>,
@@ -39,13 +39,13 @@ impl Filling {
         settings: &GapSettings,
     ) -> Result<Filling, EvaluateError> {
         let outputs = engine.output_names().len();
-        let Some(variable) = model.outputs.get(output).filter(|_| output < outputs) else {
+        let Some(modelled) = model.outputs.get(output).filter(|_| output < outputs) else {
             return Err(EvaluateError::WrongNumberOfOutputs {
                 expected: outputs,
                 got: output,
             });
         };
-        let variable = &variable.variable;
+        let variable = &modelled.variable;
         let coverage_below = settings.coverage_below(model);
         let ask = |knots: &Knots| -> Result<Vec<Option<f64>>, EvaluateError> {
             let columns = knots.columns();
@@ -58,7 +58,8 @@ impl Filling {
             });
             Ok(covered.collect())
         };
-        let Some(inner) = Knots::of(model) else {
+        let is_needed = !has_no_gap(model, modelled, coverage_below);
+        let Some(inner) = Knots::of(model).filter(|_| is_needed) else {
             return Ok(Filling {
                 places: Vec::new(),
                 starts: Vec::new(),
@@ -97,7 +98,7 @@ impl Filling {
     }
 
     /// What is said at a place in the gap, with a coordinate for each input; beyond the outermost peaks, as there.
-    /// `None` where the rules cover nothing to fill from, there are more inputs than can be filled over (over 15 of two
+    /// `None` where the rules leave no gap or cover nothing to fill from, there are more inputs than can be filled over (over 15 of two
     /// terms each), the point has another number of coordinates, or one is not a
     /// number.
     pub fn read(&self, point: &[f64]) -> Option<Reading> {

@@ -8,6 +8,8 @@
 //! two, where the gap of a missing rule ends ([`Filling`]). So it does not depend on how finely a map is drawn.
 
 #[cfg(feature = "std")]
+mod complete;
+#[cfg(feature = "std")]
 mod field;
 mod filled;
 #[cfg(feature = "std")]
