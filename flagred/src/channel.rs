@@ -4,7 +4,7 @@
 use crate::{
     margin::margin,
     moments::Moments,
-    motor::{Motor, Together, bin_of},
+    motor::{BIN_S, Motor, Together, bin_of},
     window::Window,
 };
 
@@ -316,6 +316,11 @@ pub(crate) fn push(
         };
         before = Some((channel, now));
         seen.last = now.mean();
+        // A noise is known once in a bin, and stands for all of it.
+        let held_s = match channel.observed {
+            Observed::CommandNoise => held_s.max(BIN_S),
+            _ => held_s,
+        };
         if channel.in_bins {
             seen.push_into_bin((t_s, held_s), now.mean());
         } else if now.weight() > 0.0 {

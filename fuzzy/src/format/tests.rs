@@ -449,7 +449,10 @@ proptest! {
         let outputs = model.outputs.iter().map(|output| &output.variable);
         let texts = model.inputs.iter().chain(outputs).flat_map(|v| [&v.unit, &v.description]);
         let texts = texts.chain(model.rules.iter().map(|rule| &rule.note)).flatten();
-        prop_assume!(texts.chain([&model.name]).all(|text| !text.trim_matches('\n').is_empty()));
+        // The two fold the line separators of YAML 1.1 in different ways.
+        let separators = ['\u{85}', '\u{2028}', '\u{2029}'];
+        let is_alike = |text: &String| !text.trim_matches('\n').is_empty() && !text.contains(separators);
+        prop_assume!(texts.chain([&model.name]).all(is_alike));
         let theirs = serde_yaml::to_string(&model).unwrap();
         let read = theirs.parse::<Model>();
         prop_assert_eq!(read.as_ref(), Ok(&model), "{}", theirs);
