@@ -327,5 +327,6 @@ pub(crate) fn reading(
     }
 }
 
-#[cfg(all(test, feature = "std"))]
+#[cfg(test)]
+#[cfg(feature = "std")]
 mod tests;
