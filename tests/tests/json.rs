@@ -31,7 +31,7 @@ fn trouble() -> String {
     );
     for i in 0..1500 {
         let t_s = f64::from(i) / 25.0;
-        let motors = match t_s < 30.0 || i % 50 < 25 {
+        let motors = match t_s < 30.0 {
             true => "0.5,0.5,0.5,0.5",
             false => "1,0,1,0",
         };
