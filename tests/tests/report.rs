@@ -170,7 +170,7 @@ fn saturating_log() -> String {
         String::from("## pwm_low_us: 1000\n## pwm_high_us: 2000\nt_s,pwm1,pwm2,pwm3,pwm4,in_air\n");
     for i in 0..2100 {
         let from_limit = match i {
-            1000..1100 => 125,
+            1000..1100 => 110,
             1600.. => 0,
             _ => 500,
         };
