@@ -27,13 +27,14 @@ fn json(arguments: &[&str]) -> Value {
 /// A minute at 25 Hz with motors at their limits from 30 s on and the attitude off from 32 s on.
 fn trouble() -> String {
     let mut text = String::from(
-        "t_s,motor1,motor2,motor3,motor4,roll_des_deg,roll_deg,pitch_des_deg,pitch_deg\n",
+        "## pwm_low_us: 1000\n## pwm_high_us: 2000\n\
+         t_s,pwm1,pwm2,pwm3,pwm4,roll_des_deg,roll_deg,pitch_des_deg,pitch_deg\n",
     );
     for i in 0..1500 {
         let t_s = f64::from(i) / 25.0;
-        let motors = match t_s < 30.0 || i % 50 < 25 {
-            true => "0.5,0.5,0.5,0.5",
-            false => "1,0,1,0",
+        let motors = match t_s < 30.0 {
+            true => "1500,1500,1500,1500",
+            false => "2000,1000,2000,1000",
         };
         let roll_deg = if t_s < 32.0 { 0.1 } else { 20.0 };
         writeln!(text, "{t_s},{motors},0,{roll_deg},0,0").unwrap();

@@ -124,7 +124,7 @@ fn ten_minutes_of_an_octocopter_stay_small() {
     let log = folder.file("log.csv", long_log(600, 25));
     let html = report(&[&log], &folder);
     assert!(html.len() < 1_500_000, "{} bytes", html.len());
-    assert_eq!(html.matches("<figure class=\"panel small\"").count(), 8 + 4);
+    assert_eq!(html.matches("<figure class=\"panel small\"").count(), 8 + 6);
 }
 
 /// Who can write into a log must not be able to write into the page that shows it.
@@ -164,20 +164,22 @@ fn nothing_in_a_log_is_markup() {
     );
 }
 
-/// Calm, and then two motors each at a limit, in turns: WARN and, within it, FAIL.
+/// Calm, then two motors for 4 s near a limit and, 20 s later, at it, in turns: to the paper's rules WARN and FAIL.
 fn saturating_log() -> String {
     let mut log =
         String::from("## pwm_low_us: 1000\n## pwm_high_us: 2000\nt_s,pwm1,pwm2,pwm3,pwm4,in_air\n");
-    for i in 0..1500 {
-        let (high, low) = if i % 20 < 10 {
-            (2000, 1000)
-        } else {
-            (1000, 2000)
+    for i in 0..2100 {
+        let from_limit = match i {
+            1000..1100 => 110,
+            1600.. => 0,
+            _ => 500,
         };
-        let _ = match i {
-            0..1000 => writeln!(log, "{},1500,1510,1490,1500,1", f64::from(i) * 0.04),
-            _ => writeln!(log, "{},{high},{low},{high},{low},1", f64::from(i) * 0.04),
+        let (high, low) = match i % 20 < 10 {
+            true => (2000 - from_limit, 1000 + from_limit),
+            false => (1000 + from_limit, 2000 - from_limit),
         };
+        let t_s = f64::from(i) * 0.04;
+        let _ = writeln!(log, "{t_s},{high},{low},{high},{low},1");
     }
     log
 }
@@ -185,7 +187,8 @@ fn saturating_log() -> String {
 #[test]
 fn the_gravest_finding_is_on_top_and_scales_have_units() {
     let folder = Folder::new();
-    let html = report(&[&folder.file("log.csv", saturating_log())], &folder);
+    let log = folder.file("log.csv", saturating_log());
+    let html = report(&[&log, "--profile", "flagred-paper"], &folder);
     let risk = html.split("Risk over time").nth(1).unwrap();
     let warn = risk.find("<rect class=\"warn\"").unwrap();
     let fail = risk.find("<rect class=\"fail\"").unwrap();
@@ -193,6 +196,13 @@ fn the_gravest_finding_is_on_top_and_scales_have_units() {
     for said in ["WARN from 67 %", "FAIL from 85 %", ">100 %<"] {
         assert!(risk.contains(said), "no `{said}`");
     }
+    // One cause, one line, with the motor at its limit.
+    let told = html.matches("2 times, worst ").count();
+    assert_eq!(told, 1);
+    assert!(html.contains(
+        "margin is very_low (mean distance of the normalised motor commands from saturation"
+    ));
+    assert!(html.contains("motor 1 (output pwm1) near its"));
 }
 
 #[test]
