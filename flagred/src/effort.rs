@@ -62,8 +62,9 @@ fn solve(matrix: &Normal, mut right: Efforts) -> Option<Efforts> {
         right.swap(step, pivot);
         for below in step + 1..ROLL_PITCH_YAW_THRUST {
             let factor = rows[below][step] / rows[step][step];
-            for column in step..ROLL_PITCH_YAW_THRUST {
-                rows[below][column] -= factor * rows[step][column];
+            let above = rows[step];
+            for (value, above) in rows[below].iter_mut().zip(above).skip(step) {
+                *value -= factor * above;
             }
             right[below] -= factor * right[step];
         }

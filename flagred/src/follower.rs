@@ -327,5 +327,6 @@ pub(crate) fn reading(
     }
 }
 
-#[cfg(all(test, feature = "std"))]
+#[cfg(feature = "std")]
+#[cfg(test)]
 mod tests;

@@ -106,8 +106,8 @@ impl Notices {
 
     /// The worst open finding but information.
     pub(crate) fn open(&self) -> Option<Finding> {
-        let open = self.watches.iter().filter_map(|watch| watch.finding);
-        open.filter(|finding| finding.level > Level::Info).last()
+        let mut open = self.watches.iter().filter_map(|watch| watch.finding);
+        open.rfind(|finding| finding.level > Level::Info)
     }
 }
 
