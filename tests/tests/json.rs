@@ -58,7 +58,7 @@ fn assess() {
     assert_eq!(verdicts, ["GOOD", "FAIL", "NA"]);
     let finding = &documents[1]["findings"][0];
     assert_eq!(finding["severity"], "FAIL");
-    assert_eq!(finding["output"], "motor1");
+    assert_eq!(finding["output"], "pwm1");
     assert_eq!(finding["motor"]["number"], 1);
 }
 

@@ -61,12 +61,15 @@ fn without_a_word_the_picture_shows_where_the_rules_to_fly_with_decide() {
     insta::assert_snapshot!(format!("{text}\n{notes}"));
 
     // What was asked for needs no note.
-    let asked = ["--fix", "load=0.5", "--fix", "at_limit=0"];
+    let asked = [
+        "--fix=throttle_activity=0.0025",
+        "--fix=load=0.5",
+        "--fix=spread=0.25",
+        "--fix=at_limit=0",
+    ];
     let axes = [
-        "--x",
-        "unsteady_now:0..0.1",
-        "--y",
-        "unsteady_lately:0..0.1",
+        "--x=unsteady_now:0..0.07375",
+        "--y=unsteady_lately:0..0.056",
     ];
     let (_, same, notes) = map(&[&[FLAGRED, "--points", "26"][..], &asked, &axes].concat());
     assert_eq!((same, notes.as_str()), (text, ""));
@@ -108,16 +111,16 @@ fn a_table_of_all_cells() {
     assert!(at(0.02, 0.01) >= 75.0);
 
     let (code, text, _) = map(&[FLAGRED, "--csv", "--points", "5"]);
-    assert_eq!((code, text.lines().count()), (Some(0), 1 + 5usize.pow(4)));
+    assert_eq!((code, text.lines().count()), (Some(0), 1 + 5usize.pow(6)));
 }
 
 #[test]
 fn pictures_are_well_formed_and_complete() {
     let fixed = [
-        "--fix",
-        "load=0.5",
-        "--fix",
-        "at_limit=0",
+        "--fix=throttle_activity=0",
+        "--fix=load=0.5",
+        "--fix=spread=0.01",
+        "--fix=at_limit=0",
         "--x",
         "unsteady_now:0..0.08",
     ];
@@ -149,19 +152,18 @@ fn pictures_are_well_formed_and_complete() {
             [&[FLAGRED][..], &fixed].concat(),
             vec![
                 "unsteady_lately",
-                "flagred: risk [%] at load = 0.5, at_limit = 0",
-                "at load = 0.5, at_limit = 0",
+                "flagred: risk [%] at throttle_activity = 0",
+                "at_limit = 0",
             ],
         ),
         (
             vec![
                 FLAGRED,
-                "--fix",
-                "load=0.5",
-                "--fix",
-                "at_limit=0",
-                "--fix",
-                "unsteady_now=0",
+                "--fix=throttle_activity=0",
+                "--fix=load=0.5",
+                "--fix=spread=0.01",
+                "--fix=at_limit=0",
+                "--fix=unsteady_now=0",
             ],
             vec!["unsteady_lately"],
         ),
