@@ -152,8 +152,7 @@ fn pictures_are_well_formed_and_complete() {
             [&[FLAGRED][..], &fixed].concat(),
             vec![
                 "unsteady_lately",
-                "flagred: risk [%] at throttle_activity = 0",
-                "at_limit = 0",
+                "flagred: risk [%] at throttle_activity = 0, load = 0.5, spread = 0.01, at_limit = 0",
             ],
         ),
         (
