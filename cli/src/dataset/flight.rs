@@ -27,12 +27,6 @@ pub(super) fn rows(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     let names = plan.profile.signals();
     let flight = open_complete(log, &names, "makes no rows")?;
     let said = |key: &str| log::header(&flight, key);
-    if let Some((key, value)) = plan.skip.iter().find(|(k, v)| said(k) == Some(v)) {
-        return Ok(Rows {
-            rows: Vec::new(),
-            notes: vec![format!("left out: {key} is {value}")],
-        });
-    }
     let carried = log::carried(&flight, &names);
     if let Some(lacking) = names.iter().find(|name| !carried.contains(name)) {
         return Err(Failure::unreadable(format!(

@@ -42,10 +42,6 @@ pub(crate) struct Arguments {
     /// The attitude error of a risk of 100 %, in degrees
     #[arg(long, value_name = "DEG", value_parser = seconds, default_value_t = CRITICAL_ERROR_DEG)]
     critical: f64,
-
-    /// Leave out flights with this line in their header: `kind=manoeuvre`
-    #[arg(long, value_name = "KEY=VALUE", value_parser = pair)]
-    skip: Vec<(String, String)>,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -65,7 +61,6 @@ struct Plan {
     profile: Profile,
     cut: Cut,
     critical_deg: f64,
-    skip: Vec<(String, String)>,
 }
 
 /// How a flight is cut into rows.
@@ -119,7 +114,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             (None, None) => Cut::Flights,
         },
         critical_deg: arguments.critical,
-        skip: arguments.skip.clone(),
     };
     let mut out = std::io::stdout().lock();
     write!(out, "file,vehicle,kind,from_s,t_s")?;

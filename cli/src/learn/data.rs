@@ -31,7 +31,6 @@ pub(super) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
         rows: Vec::new(),
         refused: Vec::new(),
     };
-    let mut firsts = Vec::new();
     let mut groups: BTreeMap<String, u32> = BTreeMap::new();
     for path in &arguments.data {
         let table = Table::read(path)?;
@@ -51,7 +50,6 @@ pub(super) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
         };
         let weight = optional(&arguments.weight)?;
         let group = optional(&arguments.group_by)?;
-        let first = data.rows.len();
         for row in 0..table.len() {
             let mut bad = Vec::new();
             let mut number = |column: usize| {
@@ -82,23 +80,6 @@ pub(super) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
             };
             data.rows.push((row, place));
         }
-        firsts.push(first);
-    }
-    if arguments.balance {
-        balance(&mut data.rows, &firsts);
     }
     Ok(data)
-}
-
-/// Scales weights so that each file, its rows from one of `firsts` to the next, counts the same, and a row 1 on average.
-fn balance(rows: &mut [(Row, String)], firsts: &[usize]) {
-    let count = rows.len();
-    let ends = firsts.iter().skip(1).copied().chain([count]);
-    for (first, end) in firsts.iter().zip(ends) {
-        let rows = rows.get_mut(*first..end).unwrap_or_default();
-        let total: f64 = rows.iter().map(|(row, _)| row.weight).sum();
-        for (row, _) in rows {
-            row.weight *= count as f64 / firsts.len() as f64 / total;
-        }
-    }
 }

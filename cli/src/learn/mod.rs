@@ -17,7 +17,6 @@ use fuzzy::{
     Engine, Model,
     learn::{Direction, Learned, Learner, Resolution, Settings},
     map::{DecisionMap, Grid},
-    rule::Condition,
 };
 
 use crate::{
@@ -63,17 +62,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "INPUT")]
     falling: Vec<String>,
 
-    /// A condition added to every learned rule: `at_limit IS none`
-    #[arg(long, value_name = "CONDITION")]
-    given: Option<String>,
-
     /// Add the learned rules to those of MODEL
     #[arg(long)]
     keep_rules: bool,
-
-    /// Give every file the same weight
-    #[arg(long)]
-    balance: bool,
 
     /// Read a variable from a column of another name: `margin=margin_mean`
     #[arg(long, value_name = "NAME=COLUMN", value_parser = super::dataset::pair)]
@@ -140,7 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if !arguments.keep_rules {
         model.rules.clear();
     }
-    let settings = settings(arguments, &model)?;
+    let settings = settings(arguments);
     let mut learner = Learner::new(&model, settings.clone()).map_err(|error| {
         Failure::usage(format!("`{name}`: {error}"))
             .help("name inputs and terms as the rule set does")
@@ -197,14 +188,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-fn settings(arguments: &Arguments, model: &Model) -> Result<Settings, Failure> {
+fn settings(arguments: &Arguments) -> Settings {
     let directed = |names: &[String], direction| {
         let names = names.iter().cloned();
         names.map(move |name| (name, direction)).collect::<Vec<_>>()
     };
     let mut monotone = directed(&arguments.rising, Direction::Rising);
     monotone.extend(directed(&arguments.falling, Direction::Falling));
-    Ok(Settings {
+    Settings {
         resolution: match arguments.resolve {
             Resolve::Strongest => Resolution::Strongest,
             Resolve::Heaviest => Resolution::Heaviest,
@@ -214,26 +205,7 @@ fn settings(arguments: &Arguments, model: &Model) -> Result<Settings, Failure> {
         min_degree: arguments.min_degree,
         complete: arguments.complete,
         monotone,
-        given: match &arguments.given {
-            Some(text) => Some(condition(text, model)?),
-            None => None,
-        },
-    })
-}
-
-/// Reads a condition by making a rule of it.
-fn condition(text: &str, model: &Model) -> Result<Condition, Failure> {
-    let output = model.outputs.first().map(|o| &o.variable);
-    let word = output
-        .and_then(|o| o.terms.first())
-        .map_or("x", |t| &t.name);
-    let output = output.map_or("x", |o| &o.name);
-    let rule = format!("IF {text} THEN \"{output}\" IS \"{word}\"");
-    let rule = fuzzy::rule::parse(&rule).map_err(|finding| {
-        Failure::usage(format!("`--given {text}`: {}", finding.message))
-            .help("write `input IS term`, joined by AND")
-    })?;
-    Ok(rule.condition)
+    }
 }
 
 fn bad_rows(refused: &[String]) -> Failure {

@@ -8,7 +8,7 @@
 //!
 //! Sums are in fixed point, so the result does not depend on the order of the samples.
 
-use alloc::{boxed::Box, collections::BTreeMap, string::ToString, vec, vec::Vec};
+use alloc::{boxed::Box, collections::BTreeMap, vec, vec::Vec};
 
 use crate::{
     model::{MembershipFunction, Model, Variable},
@@ -54,10 +54,6 @@ pub use settings::{Direction, LearnError, Refusal, Resolution, Settings};
 pub struct Learner {
     model: Model,
     settings: Settings,
-    /// The indices of the inputs that rules are learned over.
-    learned: Vec<usize>,
-    /// The given antecedent: indices of inputs and of their terms.
-    given: Vec<(usize, usize)>,
     /// The peak of each term of the output.
     peaks: Vec<f64>,
     samples: u64,
@@ -140,24 +136,14 @@ impl Learner {
                 variable: bare.name.clone(),
             });
         }
-        let given = match &settings.given {
-            Some(condition) => given(model, condition)?,
-            None => Vec::new(),
-        };
-        let learned: Vec<usize> = (0..model.inputs.len())
-            .filter(|input| given.iter().all(|(known, _)| known != input))
-            .collect();
         for (name, _) in &settings.monotone {
-            let found = learned.iter().filter_map(|input| model.inputs.get(*input));
-            if !found.into_iter().any(|input| input.name == *name) {
+            if model.inputs.iter().all(|input| input.name != *name) {
                 return Err(LearnError::NoInput { name: name.clone() });
             }
         }
         Ok(Learner {
             model: model.clone(),
             settings,
-            learned,
-            given,
             peaks: output
                 .variable
                 .terms
@@ -193,28 +179,15 @@ impl Learner {
             check(variable, *value)?;
         }
         let mut degree = weight;
-        let mut antecedent = vec![0; self.learned.len()];
-        for (index, input) in antecedent.iter_mut().zip(&self.learned) {
-            let (Some(variable), Some(value)) = (self.model.inputs.get(*input), inputs.get(*input))
-            else {
-                continue;
-            };
+        let mut antecedent = vec![0; inputs.len()];
+        let variables = self.model.inputs.iter().zip(inputs);
+        for (index, (variable, value)) in antecedent.iter_mut().zip(variables) {
             let (term, membership) = highest(variable, *value).ok_or_else(|| Refusal::NoTerm {
                 variable: variable.name.clone(),
                 value: *value,
             })?;
             *index = term;
             degree *= membership;
-        }
-        for (input, term) in &self.given {
-            let term = self
-                .model
-                .inputs
-                .get(*input)
-                .and_then(|i| i.terms.get(*term));
-            if let (Some(term), Some(value)) = (term, inputs.get(*input)) {
-                degree *= term.height * term.shape.membership(*value);
-            }
         }
         let vote = match (highest(consequent, *output), self.settings.resolution) {
             (Some(vote), Resolution::Mean) => (vote.0, 1.0),
@@ -253,33 +226,6 @@ impl Learner {
     /// Derives the rules.
     pub fn finish(&self) -> Learned {
         resolve::resolve(self)
-    }
-}
-
-/// The indices of the inputs and terms of `a IS x AND b IS y`.
-fn given(model: &Model, condition: &Condition) -> Result<Vec<(usize, usize)>, LearnError> {
-    match condition {
-        Condition::And(all) => {
-            let parts = all.iter().map(|part| given(model, part));
-            Ok(parts.collect::<Result<Vec<_>, _>>()?.concat())
-        }
-        Condition::Is(proposition) if proposition.hedges.is_empty() => {
-            let name = &proposition.variable.text;
-            let input = model.inputs.iter().position(|input| input.name == *name);
-            let input = input.ok_or_else(|| LearnError::NoInput { name: name.clone() })?;
-            let word = proposition.term.as_ref().map_or("", |term| &term.text);
-            let terms = model.inputs.get(input).map(|i| i.terms.as_slice());
-            let term = terms
-                .unwrap_or_default()
-                .iter()
-                .position(|term| term.name == word);
-            let term = term.ok_or_else(|| LearnError::NoTerm {
-                variable: name.clone(),
-                term: word.to_string(),
-            })?;
-            Ok(vec![(input, term)])
-        }
-        _ => Err(LearnError::Given),
     }
 }
 
@@ -332,22 +278,13 @@ fn peak(variable: &Variable, shape: &MembershipFunction) -> f64 {
     (first + last) / 2.0
 }
 
-/// `a IS x AND b IS y` for terms of the learned inputs.
+/// `a IS x AND b IS y` for a term of each input.
 fn antecedent(learner: &Learner, terms: &[u16]) -> Option<Condition> {
-    let model = &learner.model;
-    let learned = learner
-        .learned
-        .iter()
-        .zip(terms.iter().map(|t| usize::from(*t)));
-    let given = learner.given.iter().map(|(input, term)| (input, *term));
-    // In the order of the model's inputs.
-    let mut all: Vec<(usize, usize)> = learned.chain(given).map(|(i, t)| (*i, t)).collect();
-    all.sort_unstable();
-    let parts: Vec<Condition> = all
-        .into_iter()
+    let inputs = learner.model.inputs.iter();
+    let parts: Vec<Condition> = inputs
+        .zip(terms)
         .filter_map(|(input, term)| {
-            let input = model.inputs.get(input)?;
-            let term = input.terms.get(term)?;
+            let term = input.terms.get(usize::from(*term))?;
             Some(Condition::Is(crate::rule::Proposition {
                 variable: Name::from(input.name.as_str()),
                 hedges: Vec::new(),

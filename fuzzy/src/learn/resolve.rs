@@ -39,9 +39,9 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
         return learned;
     };
     let shape: Vec<u16> = learner
-        .learned
+        .model
+        .inputs
         .iter()
-        .filter_map(|input| model.inputs.get(*input))
         .map(|input| u16::try_from(input.terms.len()).unwrap_or(u16::MAX))
         .collect();
     let antecedents = shape
@@ -257,11 +257,12 @@ fn complete(shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) -> u6
 /// Averages neighbours that contradict the direction until none does.
 fn make_monotone(learner: &Learner, shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) {
     let directions: Vec<Option<Direction>> = learner
-        .learned
+        .model
+        .inputs
         .iter()
         .map(|input| {
-            let name = &learner.model.inputs.get(*input)?.name;
-            let found = learner.settings.monotone.iter().find(|(n, _)| n == name);
+            let mut monotone = learner.settings.monotone.iter();
+            let found = monotone.find(|(name, _)| *name == input.name);
             found.map(|(_, direction)| *direction)
         })
         .collect();

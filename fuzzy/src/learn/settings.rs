@@ -2,8 +2,6 @@
 
 use alloc::{string::String, vec::Vec};
 
-use crate::rule::Condition;
-
 /// How the consequent is chosen where samples of one antecedent disagree.
 ///
 /// # Example: one clear sample against two
@@ -84,9 +82,6 @@ pub struct Settings {
     pub complete: bool,
     /// Inputs in which the output is made monotone, by averaging neighbouring antecedents that contradict it.
     pub monotone: Vec<(String, Direction)>,
-    /// An antecedent that every learned rule has in addition, joined by AND. Its inputs are not learned over. Its degree
-    /// weights each sample.
-    pub given: Option<Condition>,
 }
 
 /// Why a model and settings cannot be learned with.
@@ -103,20 +98,11 @@ pub enum LearnError {
         /// The variable.
         variable: String,
     },
-    /// A setting names something that is not an input, or an input of the given antecedent.
+    /// A setting names something that is not an input.
     NoInput {
         /// The name.
         name: String,
     },
-    /// The given antecedent names a term that its input does not have.
-    NoTerm {
-        /// The input.
-        variable: String,
-        /// The term.
-        term: String,
-    },
-    /// The given antecedent is not made of propositions joined by AND.
-    Given,
 }
 
 impl core::fmt::Display for LearnError {
@@ -127,12 +113,6 @@ impl core::fmt::Display for LearnError {
             }
             LearnError::NoTerms { variable } => write!(f, "`{variable}` has no terms"),
             LearnError::NoInput { name } => write!(f, "`{name}` is not an input to learn over"),
-            LearnError::NoTerm { variable, term } => {
-                write!(f, "`{variable}` has no term `{term}`")
-            }
-            LearnError::Given => {
-                f.write_str("the given antecedent is not of the form `input IS term AND ...`")
-            }
         }
     }
 }
