@@ -352,7 +352,9 @@ fn the_shipped_rules_on_the_simulated_flights() {
         data.join("sitl2/timeseries").to_str().unwrap(),
     ]));
     assert_eq!(series["steps"], 44_369);
-    for (document, least) in [(&rows, 0.96), (&series, 0.88)] {
+    // The table of whole flights lacks what the inputs of the rules to fly with need.
+    assert!(estimator(&rows, "flagred")["auc"].is_null());
+    for (document, least) in [(&series, 0.90)] {
         let flagred = estimator(document, "flagred")["auc"].as_f64().unwrap();
         assert!(flagred >= least, "{flagred}");
         for other in document["estimators"].as_array().unwrap() {
