@@ -6,6 +6,7 @@ Starts `FLAGRED watch` on a free port, flies a made-up flight whose motors satur
 comes back. In MAVLink 2 it sends signed packets at the end, which are to be left out with a note.
 """
 
+import atexit
 import json
 import math
 import os
@@ -23,10 +24,12 @@ from pymavlink import mavutil  # noqa: E402  the version is chosen by the enviro
 PARAMETERS = {f"SERVO{n}_FUNCTION": 0 for n in range(1, 17)}
 PARAMETERS |= {f"SERVO{n}_FUNCTION": 32 + n for n in range(1, 5)}
 PARAMETERS |= {"MOT_PWM_MIN": 1000, "MOT_PWM_MAX": 2000, "MOT_SPIN_MIN": 0.15, "MOT_SPIN_MAX": 0.95}
+PARAMETERS |= {"FRAME_CLASS": 1, "FRAME_TYPE": 1}
 
 watch = subprocess.Popen(
     [flagred, "watch", "udpin:127.0.0.1:0", "--jsonl"], stdout=subprocess.PIPE, text=True
 )
+atexit.register(watch.kill)  # a watch left behind would hold the pipes of whoever runs this
 started = json.loads(watch.stdout.readline())
 address = started["endpoint"].removeprefix("listening at ")
 link = mavutil.mavlink_connection(f"udpout:{address}", source_system=3, source_component=1)
