@@ -137,7 +137,7 @@ pub struct VerdictSettings {
     pub fail: LevelSettings,
     /// A level is lowered when nothing has held it for this long, in seconds.
     pub clear_after_s: f64,
-    /// In the first seconds in the air only FAIL is raised, and only when it is reached half as long again.
+    /// In the first seconds in the air only FAIL is raised.
     pub quiet_after_take_off_s: f64,
     /// What is raised in the last seconds before touching down is taken back; a FAIL only in the last half of them.
     pub quiet_before_landing_s: f64,

@@ -6,9 +6,6 @@ use crate::motor::{Motor, MotorRecord};
 /// Time stamps are sums of steps: a duration this much shorter, in seconds, is long enough.
 pub(super) const ROUNDING_S: f64 = 1e-6;
 
-/// Just after take-off a level has to be reached for so many times as long.
-const TAKE_OFF_FACTOR: f64 = 1.5;
-
 /// The level of a risk.
 #[derive(Debug, Clone)]
 pub(crate) struct Alert {
@@ -93,12 +90,7 @@ impl Alert {
                 finding.to_s = t_s;
             }
             let since_s = *self.reached_since_s[i].get_or_insert(t_s);
-            // A take-off is a surge of thrust of its own.
-            let after_s = match takes_off {
-                true => TAKE_OFF_FACTOR * settings.after_s,
-                false => settings.after_s,
-            };
-            if level > self.level && t_s - since_s >= after_s - ROUNDING_S {
+            if level > self.level && t_s - since_s >= settings.after_s - ROUNDING_S {
                 self.raise(t_s, since_s, level, (measure, threshold_pct));
                 step.change = Some(level);
                 held = level;
