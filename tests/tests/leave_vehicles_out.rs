@@ -21,7 +21,7 @@ use flagred_tests::{
 };
 
 /// What each of [`AREAS`] must reach.
-const LEAST: [f64; 6] = [0.85, 0.68, 0.88, 0.76, 0.82, 0.85];
+const LEAST: [f64; 6] = [0.85, 0.68, 0.90, 0.78, 0.82, 0.85];
 
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
@@ -90,7 +90,7 @@ fn rules_hold_on_vehicles_they_were_not_tuned_on() {
     });
     let judged: Vec<(&Simulated, &Judged)> = flights.iter().zip(&judged).collect();
     let warnings = warnings(&judged);
-    assert!(warnings.ramps_announced >= 0.85);
+    assert!(warnings.ramps_announced >= 0.9);
     assert!(warnings.lead_s > 5.0);
     assert!(warnings.answer_s < 1.5 && warnings.answer_from_good_s < 1.5);
     assert!(

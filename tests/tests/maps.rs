@@ -62,15 +62,12 @@ fn without_a_word_the_picture_shows_where_the_rules_to_fly_with_decide() {
 
     // What was asked for needs no note.
     let asked = [
-        "--fix=throttle_activity=0.0025",
+        "--fix=throttle_activity=0.012",
         "--fix=load=0.5",
         "--fix=spread=0.25",
         "--fix=at_limit=0",
     ];
-    let axes = [
-        "--x=unsteady_now:0..0.07375",
-        "--y=unsteady_lately:0..0.056",
-    ];
+    let axes = ["--x=unsteady_now:0..0.073", "--y=unsteady_lately:0..0.056"];
     let (_, same, notes) = map(&[&[FLAGRED, "--points", "26"][..], &asked, &axes].concat());
     assert_eq!((same, notes.as_str()), (text, ""));
 }

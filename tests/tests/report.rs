@@ -71,7 +71,7 @@ fn the_curves_hold_the_values_of_the_json_document() {
         "the rules in full"
     );
     assert!(
-        html.contains("quiet_after_take_off_s: 5"),
+        html.contains("quiet_after_take_off_s: 3"),
         "the profile in full"
     );
     assert!((48.0..50.0).contains(&start_s));

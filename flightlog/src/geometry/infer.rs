@@ -15,7 +15,7 @@ const FITS: f64 = 0.05;
 /// From this share on a layout does not fit.
 const FITS_NOT: f64 = 0.2;
 /// A share is clearly larger than another one times the first plus the second of these.
-const CLEARLY: (f64, f64) = (5.0, 0.01);
+const CLEARLY: (f64, f64) = (5.0, 0.002);
 /// Correlation of effort and output of the rate controller from which a layout is right, and how far
 /// it must be above that of others. Right layouts have 0.44 to 1, and more than any other.
 const FOLLOWS: f64 = 0.4;
