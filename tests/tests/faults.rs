@@ -1,0 +1,112 @@
+//! How soon the shipped rules tell a fault or an upset: the simulated flights of `sitl3` by what was done to them.
+//!
+//! `FLAGRED_SHARED=... cargo test -p flagred-tests --test faults -- --ignored --nocapture` prints the table.
+
+use std::collections::BTreeMap;
+
+use flagred_tests::{flagred, reference_data, simulated::on_all_cores};
+use serde_json::Value;
+
+/// One flight: what was done to it, and when its error was first over 5 degrees.
+struct Flight {
+    id: String,
+    what: String,
+    over_s: Option<f64>,
+}
+
+/// What the flights with one kind of fault got.
+#[derive(Default)]
+struct Told {
+    in_time: usize,
+    late: Vec<String>,
+    small: usize,
+    alarms_of_small: usize,
+}
+
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn faults_and_upsets_are_told_within_a_second() {
+    let data = reference_data().join("sitl3");
+    let mut index = csv::Reader::from_path(data.join("index.csv")).unwrap();
+    let flights: Vec<Flight> = index
+        .deserialize::<BTreeMap<String, String>>()
+        .map(Result::unwrap)
+        .filter(|row| matches!(row["kind"].as_str(), "fault" | "upset"))
+        .map(|row| {
+            let seconds = |name: &str| row[name].parse::<f64>().ok();
+            let times = [seconds("first_over5_s"), seconds("crash_time_s")];
+            Flight {
+                id: row["id"].clone(),
+                what: row["subkind"].clone(),
+                over_s: times.into_iter().flatten().reduce(f64::min),
+            }
+        })
+        .collect();
+    assert!(flights.len() > 50);
+
+    let alarms = on_all_cores(&flights, |flight| {
+        let path = data.join(format!("timeseries/{}.csv.gz", flight.id));
+        let mut assess = flagred();
+        assess.arg("assess").arg(path);
+        let output = assess
+            .args(["--json", "--fail-on", "never"])
+            .output()
+            .unwrap();
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let findings = document["findings"].as_array().unwrap();
+        let alarms = findings.iter().filter(|f| f["severity"] != "INFO");
+        let seconds = |value: &Value| value.as_f64().unwrap();
+        alarms
+            .map(|f| (seconds(&f["raised_s"]), seconds(&f["to_s"])))
+            .collect::<Vec<(f64, f64)>>()
+    });
+
+    let mut table: BTreeMap<&str, Told> = BTreeMap::new();
+    for (flight, alarms) in flights.iter().zip(&alarms) {
+        let told = table.entry(&flight.what).or_default();
+        let Some(over_s) = flight.over_s else {
+            told.small += 1;
+            told.alarms_of_small += usize::from(!alarms.is_empty());
+            continue;
+        };
+        let is_told =
+            |(raised_s, to_s): &(f64, f64)| *raised_s <= over_s + 1.0 && *to_s >= over_s - 10.0;
+        match alarms.iter().any(is_told) {
+            true => told.in_time += 1,
+            false => {
+                let raised_s = alarms.iter().map(|(raised_s, _)| *raised_s);
+                let after = raised_s.filter(|raised_s| *raised_s > over_s);
+                let delay = after.map(|raised_s| raised_s - over_s).reduce(f64::min);
+                told.late.push(match delay {
+                    Some(delay_s) => format!("{} after {delay_s:.1} s", flight.id),
+                    None => format!("{} never", flight.id),
+                });
+            }
+        }
+    }
+    println!(
+        "what, told within 1 s, told later or never; flights without an error over 5 degrees, with an alarm"
+    );
+    for (what, told) in &table {
+        println!(
+            "{what:14} {:3} {:?}; {:3} {:3}",
+            told.in_time, told.late, told.small, told.alarms_of_small
+        );
+    }
+    let share = |what: &[&str]| {
+        let of = || what.iter().map(|what| &table[what]);
+        let in_time: usize = of().map(|told| told.in_time).sum();
+        let late: usize = of().map(|told| told.late.len()).sum();
+        in_time as f64 / (in_time + late) as f64
+    };
+    // A bump is over before a window of two seconds shows it.
+    let faults = [
+        "dead_motor",
+        "motor_partial",
+        "motor_total",
+        "weak_motor",
+        "wrong_order",
+    ];
+    assert!(share(&faults) >= 0.85, "{}", share(&faults));
+    assert_eq!(share(&["motor_total", "dead_motor"]), 1.0);
+}
