@@ -4,6 +4,7 @@ use std::io;
 
 use flagred::{estimator::Estimator, flight::Verdict, monitor::Update, verdict::Level};
 use flightlog::{Motor, Range, Vehicle, mavlink::Setup};
+use fuzzy::drawing::visible;
 use serde::Serialize;
 
 use super::session::{Event, Session, Silent, View};
@@ -45,7 +46,7 @@ impl Words {
 
 /// A line of words with the receiver's time.
 pub(crate) fn words(at_s: f64, text: &str) -> String {
-    format!("{at_s:8.1} s  {text}\n")
+    format!("{at_s:8.1} s  {}\n", visible(text))
 }
 
 /// An event in words; a risk is described with how things stand, by [`Words`].

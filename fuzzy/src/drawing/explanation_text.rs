@@ -34,7 +34,10 @@ pub fn explanation_text(model: &Model, explanation: &Explanation) -> String {
 
 // Writing to a String cannot fail.
 fn add_input(text: &mut String, variable: &Variable, input: &ExplainedInput) {
-    let unit = variable.unit.iter().map(|unit| format!(" {}", visible(unit)));
+    let unit = variable
+        .unit
+        .iter()
+        .map(|unit| format!(" {}", visible(unit)));
     let unit: String = unit.collect();
     let _ = write!(
         text,
@@ -91,7 +94,11 @@ fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, 
         );
     }
     if !output.set.is_empty() && !output.rules.is_empty() {
-        let _ = writeln!(text, "\n  aggregated set: degree over {}", visible(&output.name));
+        let _ = writeln!(
+            text,
+            "\n  aggregated set: degree over {}",
+            visible(&output.name)
+        );
         add_set(text, output, Scale::new(variable.low, variable.high));
     }
 }

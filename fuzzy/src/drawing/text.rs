@@ -158,10 +158,7 @@ mod tests {
             assert_eq!(visible(text), shown);
         }
         let lines = "one\ntwo\r\n\tthree\rfour\u{1b}";
-        assert_eq!(
-            visible_lines(lines),
-            "one\ntwo\r\n\tthree\\u{d}four\\u{1b}"
-        );
+        assert_eq!(visible_lines(lines), "one\ntwo\r\n\tthree\\u{d}four\\u{1b}");
     }
 
     #[test]
