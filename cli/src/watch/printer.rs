@@ -51,7 +51,7 @@ impl Printer {
 
     /// Whether nothing can be printed any more.
     pub(crate) fn is_closed(&self) -> bool {
-        self.pieces.is_none()
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
     /// How many pieces nobody read in time.
