@@ -16,11 +16,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use serde::Serialize;
+
 use crate::{
     failure::{Exit, Failure},
     output, parallel,
 };
 use alarms::Alarms;
+use document::Document;
 use estimators::Estimators;
 use flight::Record;
 use scores::{APART, Case, Evaluated};
@@ -61,6 +64,7 @@ fn horizon(text: &str) -> Result<f64, String> {
 }
 
 /// A file that is not among the flights, and why.
+#[derive(Serialize)]
 struct LeftOut {
     file: String,
     reason: String,
@@ -92,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let mut out = anstream::stdout().lock();
     if arguments.json {
-        let document = document::document(&evaluation);
+        let document = Document::new(&evaluation);
         serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
         writeln!(out)?;
     } else {

@@ -181,7 +181,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Box::new(anstream::stdout())
     };
     if arguments.json {
-        writeln!(out, "{:#}", report::json(arguments, &outcome))?;
+        let document = report::Document::new(arguments, &outcome);
+        serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
+        writeln!(out)?;
     } else {
         report::words(&mut out, arguments, &outcome)?;
     }
