@@ -35,12 +35,12 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
     flights: Vec<PathBuf>,
 
-    /// Evaluate a table with a row for each flight instead: `att_rmse_deg`, `c_mean`, `c_std`, ..., or from `flagred dataset`
+    /// Evaluate a table with a row for each flight instead of logs, as `flagred dataset` writes it
     #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
     rows: Option<PathBuf>,
 
-    /// Another profile to compare, a file; may be repeated
-    #[arg(long = "profile", value_name = "NAME|FILE")]
+    /// A profile to compare with the built-in ones, a file; may be repeated
+    #[arg(long = "profile", value_name = "FILE")]
     profiles: Vec<String>,
 
     /// How many seconds ahead the risk should predict

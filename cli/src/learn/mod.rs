@@ -82,7 +82,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "group_by")]
     no_validation: bool,
 
-    /// Skip unusable rows
+    /// Skip rows that cannot be used, instead of stopping at them
     #[arg(long)]
     skip_bad_rows: bool,
 
