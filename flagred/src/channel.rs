@@ -269,8 +269,7 @@ impl Seen {
         }
     }
 
-    fn push_into_bin(&mut self, (t_s, held_s): (f64, f64), value: Option<f64>) {
-        let index = bin_of(t_s);
+    fn push_into_bin(&mut self, index: f64, (t_s, held_s): (f64, f64), value: Option<f64>) {
         if self.bin.samples > 0 && self.bin.index != index {
             let before = self.bin.mean();
             self.window
@@ -307,6 +306,7 @@ pub(crate) fn push(
     (t_s, held_s): (f64, f64),
     observed: &Now<'_>,
 ) {
+    let bin = bin_of(t_s);
     let mut before: Option<(&Channel, Moments)> = None;
     for (channel, seen) in channels.iter().zip(seen) {
         // Neighbours often differ in their windows alone.
@@ -322,7 +322,7 @@ pub(crate) fn push(
             _ => held_s,
         };
         if channel.in_bins {
-            seen.push_into_bin((t_s, held_s), now.mean());
+            seen.push_into_bin(bin, (t_s, held_s), now.mean());
         } else if now.weight() > 0.0 {
             // A sample weighs its time, however many motors it knows.
             let moments = now.scaled(held_s / now.weight());

@@ -89,7 +89,7 @@ pub struct Sampling {
     /// After a longer time without a sample, in seconds, the state is reset.
     pub longest_gap_s: f64,
     /// What was before this time in the air, in seconds, is dropped from longer windows once they cover `warm_up_s` of
-    /// what follows: the take-off itself says nothing about the flight. 0 keeps it.
+    /// what follows, because the take-off is not typical of the flight. 0 keeps it.
     pub take_off_s: f64,
 }
 

@@ -35,7 +35,7 @@ use session::{Event, Out, Session};
 
 /// The version of the lines' layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.watch/1";
-/// The component that is spoken as: the first of those for onboard computers.
+/// The default component id: the first of those for onboard computers.
 const COMPONENT: u8 = 191;
 /// The largest datagram there is.
 const DATAGRAM: usize = 65_536;
@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "ENDPOINT")]
     endpoint: Endpoint,
 
-    /// Profile: inputs, rule set and thresholds. A built-in name or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
@@ -63,7 +63,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     no_send: bool,
 
-    /// Send as this component of the vehicle's system
+    /// The MAVLink component id to send as
     #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
     component: u8,
 

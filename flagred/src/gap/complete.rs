@@ -62,7 +62,7 @@ fn least_degrees(input: &Variable) -> Least {
     let corners: Vec<_> = input
         .terms
         .iter()
-        .map(|term| term.shape.corners())
+        .map(|term| term.membership_function.corners())
         .collect();
     let all = corners.iter().flatten().flatten().map(|(x, _)| *x);
     let mut cuts: Vec<f64> = all.chain([input.low, input.high]).collect();
@@ -81,7 +81,8 @@ fn least_degrees(input: &Variable) -> Least {
             let jumps = |corners: &Vec<(f64, f64)>| corners.windows(2).any(|c| c[0].0 == c[1].0);
             match corners {
                 Some(corners) if !jumps(corners) => {
-                    let [start, end] = [pair[0], pair[1]].map(|x| term.shape.membership(x));
+                    let [start, end] =
+                        [pair[0], pair[1]].map(|x| term.membership_function.membership(x));
                     term.height * start.min(end)
                 }
                 _ => 0.0,
