@@ -332,9 +332,11 @@ mod tests {
         let sources = [
             source(Statistic::Mean, Motors::Pooled, "motor_command"),
             source(Statistic::Last, Motors::Min, "motor_command"),
+            // The geometry is unknown.
+            source(Statistic::Mean, Motors::Pooled, "motor_command_less_yaw"),
         ];
         let found = observe(&sources, &[[0.2, f64::NAN], [f64::NAN; 2]]);
-        assert_eq!(found, [Some(0.2), None]);
+        assert_eq!(found, [Some(0.2), None, Some(0.2)]);
     }
 
     #[test]
