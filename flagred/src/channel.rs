@@ -46,11 +46,12 @@ pub enum Statistic {
     ShareBelow(f64),
     /// The share of time, in [0, 1], spent above a value; over motors, the mean of their shares.
     ShareAbove(f64),
-    /// The standard deviation without noise: `sqrt(max(0, std^2 - noise^2))`. What is left is what successive values
-    /// share.
+    /// The standard deviation without noise: `sqrt(max(0, std^2 - noise^2))`, both of the means of bins. What is left is
+    /// what successive values share.
     StdLessNoise,
     /// The standard deviation of the noise: `sqrt(mean(step^2) / 2)`, with the steps between the means of successive
-    /// times of 0.1 s (of successive samples where they are rarer). White noise has `noise = std`, slow movement 0.
+    /// bins of 0.1 s (of successive samples where they are rarer). White noise has `noise = std`, slow movement 0.
+    /// docs/profiles.md defines the bins. The first one has no step before it, and counts with a step of 0.
     Noise,
 }
 
