@@ -14,6 +14,7 @@ use flagred_tests::{
     wire::{Link, Speed, Wire},
 };
 use flightlog::mavlink::Version;
+use serde_json::json;
 
 #[test]
 fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
@@ -57,8 +58,19 @@ fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
         first["risk"].is_null() && first["unknown"].is_string(),
         "{first}"
     );
-    // The flight is over with the reboot.
-    assert_eq!(said.all("landed").count(), 1);
+    // The flight is over with the reboot, and nobody saw it land.
+    assert_eq!(said.all("landed").count(), 0);
+    let lost = said.one("lost_in_air");
+    assert_eq!(
+        (&lost["why"], &lost["verdict"]),
+        (&json!("reboot"), &json!("NA"))
+    );
+    assert_eq!(lost["level_seen"], "GOOD");
+    assert!(lost["t_s"].as_f64().unwrap() > air.start_s + 79.0, "{lost}");
+    assert_eq!(
+        (said.one("ended")["worst"].as_str(), said.code),
+        (Some("NA"), Some(3))
+    );
     check_texts(&said, &vehicle.heard);
 }
 
@@ -313,4 +325,45 @@ fn a_connection_that_breaks_is_opened_again() {
         2
     );
     said.one("found");
+}
+
+#[test]
+fn nothing_known_is_no_good() {
+    let watch = Watch::udp(&[]);
+    let said = watch.end();
+    let ended = said.one("ended");
+    assert_eq!(
+        (&ended["worst"], &ended["reason"]),
+        (&json!("NA"), &json!("no flight was seen"))
+    );
+    assert_eq!(said.code, Some(3));
+}
+
+/// A link that is killed in the air is no landing; a watch that is ended there is none either, but has seen all.
+#[test]
+fn a_flight_whose_end_nobody_saw_is_not_landed() {
+    let flight = flight(Path::new(STEADY));
+    let air = flight.in_air.as_ref().unwrap().spans[0];
+    for (silent_ms, event, why, verdict, code) in [
+        (2300, "lost_in_air", "link", "NA", 3),
+        (0, "left_in_air", "watch_ended", "GOOD", 0),
+    ] {
+        let watch = Watch::udp(&[]);
+        let mut vehicle = watch.vehicle(&flight, Link::default());
+        vehicle.meet();
+        vehicle.fly(&flight, Speed::Fastest, air.start_s, air.start_s + 30.0);
+        vehicle.linger(Duration::from_millis(silent_ms));
+        let said = watch.end();
+        assert_eq!(said.all("landed").count(), 0);
+        let end = said.one(event);
+        assert_eq!(
+            (&end["why"], &end["verdict"]),
+            (&json!(why), &json!(verdict))
+        );
+        assert!(end["risk_max"].as_f64().is_some(), "{end}");
+        assert_eq!(
+            (said.one("ended")["worst"].as_str(), said.code),
+            (Some(verdict), Some(code))
+        );
+    }
 }

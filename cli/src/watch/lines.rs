@@ -2,11 +2,16 @@
 
 use std::io;
 
-use flagred::{estimator::Estimator, flight::Verdict, monitor::Update, verdict::Level};
+use flagred::{
+    estimator::Estimator,
+    flight::{Reason, Verdict},
+    monitor::Update,
+    verdict::Level,
+};
 use flightlog::{Motor, Range, Vehicle, mavlink::Setup};
 use serde::Serialize;
 
-use super::session::{Event, Session, Silent, View};
+use super::session::{End, Event, Flown, Left, Lost, Session, Silent, View};
 use crate::assessment::{document::FindingDocument, finding::Teller, words::effective_range};
 
 /// Seconds of the vehicle's clock between two lines of risk in words.
@@ -88,12 +93,35 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             let text = teller(view.as_ref(), estimator).finding(finding);
             format!("{} of {text}", finding.level)
         }
-        Event::Landed { verdict } => match verdict {
-            Verdict::Known(level) => format!("{level}: the flight is over"),
-            Verdict::NotAvailable(reason) => {
-                format!("NA: the flight is over; no verdict: {reason}")
-            }
-        },
+        Event::Over { end, flown } => over(*end, flown),
+    }
+}
+
+fn over(end: End, flown: &Flown) -> String {
+    let mut text = match end {
+        End::Landed => format!("{}: the flight is over", flown.verdict),
+        End::Lost(lost) => format!("{}: LOST IN THE AIR, {}", flown.verdict, cause_of(lost)),
+        End::Left(Left::WatchEnded) => format!("{}: the watch ends in the air", flown.verdict),
+        End::Left(Left::SetUpAnew) => format!(
+            "{}: the flight so far; motors or limits are known better, the rest is assessed anew",
+            flown.verdict
+        ),
+    };
+    match (&flown.verdict, flown.level_seen) {
+        (Verdict::NotAvailable(Reason::LostInAir), Some(level)) => {
+            text += &format!("; {level} until then");
+        }
+        (Verdict::NotAvailable(reason), _) => text += &format!("; no verdict: {reason}"),
+        (Verdict::Known(_), _) => {}
+    }
+    text
+}
+
+fn cause_of(lost: Lost) -> &'static str {
+    match lost {
+        Lost::Link => "nothing is heard of the vehicle",
+        Lost::MotorCommands => "motor commands do not come any more",
+        Lost::Reboot => "the vehicle rebooted",
     }
 }
 
@@ -199,10 +227,13 @@ pub(crate) enum EventLine<'a> {
         text: &'a str,
     },
     Finding(FindingDocument<'a>),
-    Landed(&'a Verdict),
+    Landed(FlownLine<'a, ()>),
+    LostInAir(FlownLine<'a, Lost>),
+    LeftInAir(FlownLine<'a, Left>),
     Ended {
-        /// `None` without a flight that has a verdict.
-        worst: Option<Level>,
+        worst: String,
+        /// Why there is no verdict.
+        reason: Option<String>,
         skipped_bytes: u64,
         bad_checksums: u64,
         unknown_messages: u64,
@@ -230,6 +261,31 @@ pub(crate) struct Risk<'a> {
     motors: &'a [f64],
     /// Why the risk is unknown.
     unknown: Option<String>,
+}
+
+/// What was seen of a flight.
+#[derive(Serialize)]
+pub(crate) struct FlownLine<'a, W> {
+    t_s: Option<f64>,
+    #[serde(flatten)]
+    verdict: &'a Verdict,
+    /// Why the end was not seen; absent from a landing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    why: Option<W>,
+    level_seen: Option<Level>,
+    risk_max: Option<f64>,
+}
+
+impl<'a, W> FlownLine<'a, W> {
+    fn new(flown: &'a Flown, why: Option<W>) -> Self {
+        FlownLine {
+            t_s: flown.t_s,
+            verdict: &flown.verdict,
+            why,
+            level_seen: flown.level_seen,
+            risk_max: flown.risk_max,
+        }
+    }
 }
 
 /// A line with the receiver's time.
@@ -290,7 +346,11 @@ pub(crate) fn json(
             let teller = teller(view.as_ref(), estimator);
             EventLine::Finding(FindingDocument::new(finding, teller))
         }
-        Event::Landed { verdict } => EventLine::Landed(verdict),
+        Event::Over { end, flown } => match end {
+            End::Landed => EventLine::Landed(FlownLine::new(flown, None)),
+            End::Lost(lost) => EventLine::LostInAir(FlownLine::new(flown, Some(*lost))),
+            End::Left(left) => EventLine::LeftInAir(FlownLine::new(flown, Some(*left))),
+        },
     };
     json_line(at_s, line).map(Some)
 }
@@ -312,5 +372,13 @@ impl<'a> About<'a> {
             frame: vehicle.frame.as_deref(),
             firmware: vehicle.firmware.as_deref(),
         }
+    }
+}
+
+/// Why a verdict is NA.
+pub(crate) fn reason(verdict: &Verdict) -> Option<String> {
+    match verdict {
+        Verdict::Known(_) => None,
+        Verdict::NotAvailable(reason) => Some(reason.to_string()),
     }
 }

@@ -19,10 +19,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-use flagred::{estimator::Estimator, verdict::Level};
+use flagred::{estimator::Estimator, flight::Verdict};
 use flightlog::mavlink::{Skipped, Stream};
 
 use crate::{
+    assess::{FailOn, exit_of},
     failure::{Exit, Failure},
     profile,
 };
@@ -161,12 +162,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         skipped: stream.skipped(),
         unsent: port.unsent(),
     };
-    display.end(now_s, worst, &totals)?;
-    Ok(if worst > Some(Level::Good) {
-        Exit::Findings
-    } else {
-        Exit::Clean
-    })
+    display.end(now_s, &worst, &totals)?;
+    Ok(exit_of(&worst, FailOn::Warn))
 }
 
 /// What the link cost.
@@ -294,10 +291,11 @@ impl Display {
         Ok(())
     }
 
-    fn end(mut self, at_s: f64, worst: Option<Level>, totals: &Totals) -> Result<(), Failure> {
+    fn end(mut self, at_s: f64, worst: &Verdict, totals: &Totals) -> Result<(), Failure> {
         let last = if let Face::Json = self.face {
             let ended = EventLine::Ended {
-                worst,
+                worst: worst.to_string(),
+                reason: lines::reason(worst),
                 skipped_bytes: totals.skipped.bytes,
                 bad_checksums: totals.skipped.checksums,
                 unknown_messages: totals.skipped.unknown,
@@ -307,10 +305,8 @@ impl Display {
             };
             lines::json_line(at_s, ended)?
         } else {
-            let worst = worst.map_or("no flight with a verdict".to_owned(), |level| {
-                format!("{level} at worst")
-            });
-            lines::words(at_s, &format!("{worst}; {}", totals.words()))
+            let why = lines::reason(worst).map_or(String::new(), |reason| format!(": {reason}"));
+            lines::words(at_s, &format!("{worst} at worst{why}; {}", totals.words()))
         };
         self.leave();
         self.printer.print(last)

@@ -5,7 +5,7 @@
 
 use flagred::{
     estimator::Estimator,
-    flight::{Finding, Verdict},
+    flight::{Finding, Reason, Verdict},
     monitor::{Sample, Unknown, Update},
     verdict::Level,
 };
@@ -57,8 +57,50 @@ pub(crate) enum Event {
     },
     /// A finding ended.
     Ended { finding: Finding },
-    /// A flight ended, or what was seen of it.
-    Landed { verdict: Verdict },
+    /// A flight is over, or what was seen of it.
+    Over { end: End, flown: Flown },
+}
+
+/// How a flight, or what was seen of it, ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    /// The vehicle landed.
+    Landed,
+    /// It was in the air when it was last known.
+    Lost(Lost),
+    /// It is still in the air, and is heard.
+    Left(Left),
+}
+
+/// What was lost in the air.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Lost {
+    Link,
+    MotorCommands,
+    /// The vehicle rebooted.
+    Reboot,
+}
+
+/// Why a flight is not followed to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Left {
+    /// The watch ended.
+    WatchEnded,
+    /// Motors or limits became known better: the rest is assessed as a flight of its own.
+    SetUpAnew,
+}
+
+/// What was seen of a flight.
+#[derive(Debug, Clone)]
+pub(crate) struct Flown {
+    /// The latest time of the vehicle's clock.
+    pub(crate) t_s: Option<f64>,
+    pub(crate) verdict: Verdict,
+    /// The level of what was seen; `None` where too little was.
+    pub(crate) level_seen: Option<Level>,
+    pub(crate) risk_max: Option<f64>,
 }
 
 /// What fell silent.
@@ -86,8 +128,8 @@ pub(crate) struct Session<'e> {
     tracked: Option<Tracked>,
     others: Vec<u8>,
     heartbeat_s: Option<f64>,
-    /// The worst level of the flights with a verdict.
-    worst: Option<Level>,
+    /// The worst verdict of the flights so far.
+    worst: Verdict,
 }
 
 impl<'e> Session<'e> {
@@ -99,7 +141,7 @@ impl<'e> Session<'e> {
             tracked: None,
             others: Vec::new(),
             heartbeat_s: None,
-            worst: None,
+            worst: Verdict::NotAvailable(Reason::NoFlight),
         }
     }
 
@@ -120,8 +162,8 @@ impl<'e> Session<'e> {
         }
         match tracked.telemetry.receive(packet) {
             News::Rebooted => {
-                let worst = tracked.start_anew(now_s, out);
-                self.worst = self.worst.max(worst);
+                let verdict = tracked.start_anew(now_s, out);
+                add(&mut self.worst, verdict);
             }
             News::Commands { t_s } => self.assess(now_s, t_s, out),
             _ => {}
@@ -136,17 +178,19 @@ impl<'e> Session<'e> {
         let Some(tracked) = &mut self.tracked else {
             return;
         };
-        let worst = tracked.set_up(now_s, self.sender.is_some(), self.estimator, out);
-        self.worst = self.worst.max(worst);
+        let verdict = tracked.set_up(now_s, self.sender.is_some(), self.estimator, out);
         tracked.listen(now_s, out);
+        add(&mut self.worst, verdict);
     }
 
-    /// Ends the watch and the flight that is still on. Gives the worst level of the flights with a verdict.
-    pub(crate) fn finish(&mut self, out: &mut Out) -> Option<Level> {
-        if let Some(tracked) = &mut self.tracked {
-            self.worst = self.worst.max(tracked.end_flight(out));
-        }
-        self.worst
+    /// Ends the watch and the flight that is still on. Gives the worst verdict of the flights.
+    pub(crate) fn finish(&mut self, out: &mut Out) -> Verdict {
+        let verdict = self
+            .tracked
+            .as_mut()
+            .and_then(|tracked| tracked.finish(out));
+        add(&mut self.worst, verdict);
+        self.worst.clone()
     }
 
     fn meet(&mut self, now_s: f64, packet: &Packet<'_>, vehicle: Vehicle, out: &mut Out) {
@@ -243,7 +287,8 @@ impl<'e> Session<'e> {
             watch.is_flying = true;
             out.events.push(Event::TookOff { t_s });
         } else if !in_air {
-            self.worst = self.worst.max(watch.end_flight(out));
+            let verdict = watch.end_flight(End::Landed, out);
+            add(&mut self.worst, verdict);
         }
         out.events.push(Event::Risk { update });
         if let Some(level) = update.change.filter(|_| in_air) {
@@ -277,6 +322,13 @@ impl<'e> Session<'e> {
     /// How things stand, for a screen.
     pub(crate) fn view(&self) -> Option<View<'_>> {
         self.tracked.as_ref().map(Tracked::view)
+    }
+}
+
+/// Keeps the graver verdict.
+fn add(worst: &mut Verdict, verdict: Option<Verdict>) {
+    if let Some(verdict) = verdict {
+        *worst = verdict.worst(worst.clone());
     }
 }
 
