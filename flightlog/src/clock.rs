@@ -119,6 +119,13 @@ impl Clock {
         follows
     }
 
+    /// Whether a time stamp follows the latest accepted one; the first of all does.
+    #[cfg(feature = "mavlink")]
+    pub(crate) fn is_next(&self, t_s: f64) -> bool {
+        self.last_s
+            .is_none_or(|last_s| (BACK_S..=self.longest_s).contains(&(t_s - last_s)))
+    }
+
     fn boot(&mut self, last_s: f64) {
         self.offset_s += last_s;
         self.boots_s.push(self.offset_s);

@@ -11,7 +11,7 @@ use flagred::{
 use flightlog::{Motor, Range, Vehicle, mavlink::Setup};
 use serde::Serialize;
 
-use super::session::{End, Event, Flown, Left, Lost, Session, Silent, View};
+use super::session::{Doubt, Doubts, End, Event, Flown, Left, Lost, Session, Silent, Source, View};
 use crate::assessment::{document::FindingDocument, finding::Teller, words::effective_range};
 
 /// Seconds of the vehicle's clock between two lines of risk in words.
@@ -57,6 +57,37 @@ pub(crate) fn words(at_s: f64, text: &str) -> String {
 pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimator) -> String {
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
+        Event::Locked { system, source } => format!(
+            "motor commands of vehicle {system} come{}: it is believed, and nobody else in its name",
+            from(*source)
+        ),
+        Event::GivenUp { system } => {
+            format!("vehicle {system} is given up: it is silent, or sends no motor commands")
+        }
+        Event::SenderChanged { system, to, .. } => format!(
+            "vehicle {system} is heard{} now; it is followed there",
+            from(*to)
+        ),
+        Event::Doubt {
+            what,
+            system,
+            component,
+            source,
+        } => match what {
+            Doubt::SecondSender => format!(
+                "something else{} speaks as vehicle {system}: it is not believed",
+                from(*source)
+            ),
+            Doubt::OtherComponent => format!(
+                "component {component} of vehicle {system} sends parameters: they are not taken for those of the autopilot"
+            ),
+            Doubt::ClockJump => format!(
+                "a time stamp of vehicle {system} jumps while its clock goes on: it is left out"
+            ),
+        },
+        Event::AnotherWatch {
+            component, speaks, ..
+        } => another_watch(*component, *speaks),
         Event::Another { system } => {
             format!("another vehicle is on the link, {system}: it is not followed")
         }
@@ -95,6 +126,25 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
         }
         Event::Over { end, flown } => over(*end, flown),
     }
+}
+
+/// Where something came from, if that is known.
+fn from(source: Source) -> String {
+    source.map_or(String::new(), |address| format!(" from {address}"))
+}
+
+fn another_watch(component: Option<u8>, speaks: bool) -> String {
+    let (what, so) = match (component, speaks) {
+        (None, _) => return "no other watch is heard any more".to_owned(),
+        (Some(1), false) => ("the autopilot itself sends the risk".to_owned(), "nothing"),
+        (Some(number), false) => (format!("component {number} watches it too"), "nothing"),
+        (Some(number), true) => (format!("component {number} watches it too"), "all"),
+    };
+    let help = match speaks {
+        false => "; `--send-anyway` sends both",
+        true => "",
+    };
+    format!("{what}: this watch says {so}{help}")
 }
 
 fn over(end: End, flown: &Flown) -> String {
@@ -196,6 +246,29 @@ pub(crate) enum EventLine<'a> {
         profile: &'a str,
     },
     Found(About<'a>),
+    Locked {
+        system: u8,
+        address: Source,
+    },
+    GivenUp {
+        system: u8,
+    },
+    SenderChanged {
+        system: u8,
+        from: Source,
+        to: Source,
+    },
+    Doubt {
+        what: Doubt,
+        system: u8,
+        component: u8,
+        address: Source,
+    },
+    AnotherWatch {
+        system: u8,
+        component: Option<u8>,
+        speaks: bool,
+    },
     AnotherVehicle {
         system: u8,
     },
@@ -238,6 +311,9 @@ pub(crate) enum EventLine<'a> {
         bad_checksums: u64,
         unknown_messages: u64,
         signed: u64,
+        unsigned: u64,
+        bad_signatures: u64,
+        not_believed: Doubts,
         unsent: u64,
         dropped_lines: u64,
     },
@@ -306,6 +382,36 @@ pub(crate) fn json(
     let view = session.view();
     let line = match event {
         Event::Found { system, vehicle } => EventLine::Found(About::new(*system, vehicle)),
+        Event::Locked { system, source } => EventLine::Locked {
+            system: *system,
+            address: *source,
+        },
+        Event::GivenUp { system } => EventLine::GivenUp { system: *system },
+        Event::SenderChanged { system, from, to } => EventLine::SenderChanged {
+            system: *system,
+            from: *from,
+            to: *to,
+        },
+        Event::Doubt {
+            what,
+            system,
+            component,
+            source,
+        } => EventLine::Doubt {
+            what: *what,
+            system: *system,
+            component: *component,
+            address: *source,
+        },
+        Event::AnotherWatch {
+            system,
+            component,
+            speaks,
+        } => EventLine::AnotherWatch {
+            system: *system,
+            component: *component,
+            speaks: *speaks,
+        },
         Event::Another { system } => EventLine::AnotherVehicle { system: *system },
         Event::NotAMultirotor { system, vehicle } => {
             EventLine::NotAMultirotor(About::new(*system, vehicle))

@@ -10,8 +10,9 @@ mod tlog;
 mod voice;
 
 use std::{
-    io::{self, IsTerminal},
-    path::PathBuf,
+    fs::File,
+    io::{self, IsTerminal, Read},
+    path::{Path, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -20,7 +21,7 @@ use std::{
 };
 
 use flagred::{estimator::Estimator, flight::Verdict};
-use flightlog::mavlink::{Skipped, Stream};
+use flightlog::mavlink::{Key, Sender, Skipped, Stream};
 
 use crate::{
     assess::{FailOn, exit_of},
@@ -32,12 +33,14 @@ use lines::EventLine;
 use port::{Port, Received};
 use printer::Printer;
 use screen::Screen;
-use session::{Event, Out, Session};
+use session::{Doubts, Event, Out, Session};
 
 /// The version of the lines' layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.watch/1";
 /// The component that is spoken as: the first of those for onboard computers.
 const COMPONENT: u8 = 191;
+/// The most that is read of a key file: digits and some white space.
+const KEY_FILE: u64 = 256;
 /// The largest datagram there is.
 const DATAGRAM: usize = 65_536;
 /// How often the screen is drawn, and how many frames may wait for the terminal.
@@ -60,9 +63,17 @@ pub(crate) struct Arguments {
     #[arg(long)]
     jsonl: bool,
 
+    /// Believe only packets signed with the key in this file (32 bytes, or 64 hexadecimal digits), and sign those sent
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
+
     /// Only listen: send neither requests nor warnings
     #[arg(long)]
     no_send: bool,
+
+    /// Send warnings although another watch of the vehicle does
+    #[arg(long, conflicts_with = "no_send")]
+    send_anyway: bool,
 
     /// Send as this component of the vehicle's system
     #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
@@ -98,10 +109,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(path) => Some(tlog::Recording::create(path)?),
         None => None,
     };
-    let mut session = Session::new(
-        &estimator,
-        (!arguments.no_send).then_some(arguments.component),
-    );
+    let key = arguments.key.as_deref().map(read_key).transpose()?;
+    let sender = (!arguments.no_send).then(|| {
+        let sender = Sender::new(arguments.component);
+        match &key {
+            Some(key) => sender.signed(key.clone()),
+            None => sender,
+        }
+    });
+    let mut session = Session::new(&estimator, sender, arguments.send_anyway);
     let title = match port.listens_at() {
         Some(address) if matches!(arguments.endpoint, Endpoint::UdpIn(_) | Endpoint::TcpIn(_)) => {
             format!("listening at {address}")
@@ -109,7 +125,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         _ => arguments.endpoint.to_string(),
     };
     let mut display = Display::new(arguments.jsonl, &title, &estimator)?;
-    let mut stream = Stream::new();
+    let mut stream = key.map_or_else(Stream::new, Stream::with_key);
     let mut buffer = vec![0; DATAGRAM];
     let mut out = Out::default();
     let start = Instant::now();
@@ -128,6 +144,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 out.events.push(Event::Note { text });
             }
             Received::Closed(why) => {
+                session.closed();
                 let text = format!("the link is closed: {why}; waiting for it to come back");
                 out.events.push(Event::Note { text });
             }
@@ -136,7 +153,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             if let Some(recording) = &mut recording {
                 recording.add(packet.bytes)?;
             }
-            if session.receive(now_s, &packet, &mut out) {
+            if session.receive(now_s, port.source(), &packet, &mut out) {
                 port.answer();
             }
             // At once: what is sent must not wait for what is shown.
@@ -160,28 +177,58 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     display.show(now_s, &mut out.events, &session, &estimator)?;
     let totals = Totals {
         skipped: stream.skipped(),
+        doubts: session.doubts(),
         unsent: port.unsent(),
     };
     display.end(now_s, &worst, &totals)?;
     Ok(exit_of(&worst, FailOn::Warn))
 }
 
+/// The key of MAVLink signatures in a file.
+fn read_key(path: &Path) -> Result<Key, Failure> {
+    let name = path.display();
+    // A key is short: no more is read of a file that is none.
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(KEY_FILE).read_to_end(&mut bytes))
+        .map_err(|error| Failure::unreadable(format!("`{name}` cannot be read: {error}")))?;
+    Key::from_bytes(&bytes).ok_or_else(|| {
+        Failure::unreadable(format!("`{name}` is no key"))
+            .help("a key is 32 bytes, or 64 hexadecimal digits")
+    })
+}
+
 /// What the link cost.
 struct Totals {
     skipped: Skipped,
+    doubts: Doubts,
     unsent: u64,
 }
 
 impl Totals {
     fn words(&self) -> String {
-        format!(
+        let mut text = format!(
             "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets ignored, {} packets not sent",
             self.skipped.bytes,
             self.skipped.checksums,
             self.skipped.unknown,
             self.skipped.signed,
             self.unsent
-        )
+        );
+        if self.skipped.unsigned + self.skipped.bad_signatures > 0 {
+            text += &format!(
+                ", {} unsigned packets and {} with a wrong signature refused",
+                self.skipped.unsigned, self.skipped.bad_signatures
+            );
+        }
+        let doubts = self.doubts;
+        if doubts != Doubts::default() {
+            text += &format!(
+                "; not believed: {} packets of a second sender, {} parameters of other components, {} jumps of the clock",
+                doubts.second_sender, doubts.other_component, doubts.clock_jumps
+            );
+        }
+        text
     }
 }
 
@@ -259,7 +306,17 @@ impl Display {
             (
                 told.signed,
                 now.signed,
-                "signed packets are left out: without the key nobody can tell whether they are genuine",
+                "signed packets are left out: without the key (`--key`) nobody can tell whether they are genuine",
+            ),
+            (
+                told.unsigned,
+                now.unsigned,
+                "packets that are not signed are refused",
+            ),
+            (
+                told.bad_signatures,
+                now.bad_signatures,
+                "packets whose signature is not that of the key, or that came before, are refused",
             ),
             (
                 told.unknown,
@@ -300,6 +357,9 @@ impl Display {
                 bad_checksums: totals.skipped.checksums,
                 unknown_messages: totals.skipped.unknown,
                 signed: totals.skipped.signed,
+                unsigned: totals.skipped.unsigned,
+                bad_signatures: totals.skipped.bad_signatures,
+                not_believed: totals.doubts,
                 unsent: totals.unsent,
                 dropped_lines: self.printer.dropped(),
             };

@@ -6,7 +6,7 @@ use flagred::{
     verdict::{Level, Measure},
 };
 use flightlog::mavlink::{
-    Setup,
+    Packet, Setup,
     dialect::{
         HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavSeverity, MavState, MavType,
         NAMED_VALUE_FLOAT_DATA, STATUSTEXT_DATA,
@@ -23,16 +23,43 @@ pub(crate) const NOBODY: u8 = 255;
 /// The longest text of a STATUSTEXT.
 const TEXT: usize = 50;
 
-/// The heartbeat of an onboard computer.
-pub(crate) fn heartbeat() -> MavMessage {
+/// The first byte of `custom_mode` in the heartbeats of a watch. The others are its age in tenths of a second: of two
+/// watches of one vehicle the older speaks.
+const WATCH: u32 = 0xf1 << 24;
+const AGE: u32 = (1 << 24) - 1;
+
+/// The heartbeat of an onboard computer that has been watching for so long.
+pub(crate) fn heartbeat(age_s: f64) -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-        custom_mode: 0,
+        custom_mode: WATCH | ((age_s * 10.0) as u32).min(AGE),
         mavtype: MavType::MAV_TYPE_ONBOARD_CONTROLLER,
         autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
         base_mode: MavModeFlag::empty(),
         system_status: MavState::MAV_STATE_ACTIVE,
         mavlink_version: 3,
     })
+}
+
+/// The age in a heartbeat of another watch, in seconds.
+pub(crate) fn age_of(packet: &Packet<'_>) -> Option<f64> {
+    if packet.id != 0 || packet.component == 1 {
+        return None;
+    }
+    let &[a, b, c, d, kind, autopilot, ..] = packet.payload else {
+        return None;
+    };
+    let mode = u32::from_le_bytes([a, b, c, d]);
+    let is_watch = mode & !AGE == WATCH
+        && kind == MavType::MAV_TYPE_ONBOARD_CONTROLLER as u8
+        && autopilot == MavAutopilot::MAV_AUTOPILOT_INVALID as u8;
+    is_watch.then(|| f64::from(mode & AGE) / 10.0)
+}
+
+/// Whether a packet is the risk that another watch, or a program on the autopilot, sends.
+pub(crate) fn is_risk(packet: &Packet<'_>) -> bool {
+    // Time and value come before the name.
+    packet.id == 251
+        && (packet.payload.get(8..)).is_some_and(|name| name.starts_with(RISK.as_bytes()))
 }
 
 /// A value at a time of the vehicle's clock.

@@ -10,7 +10,7 @@ use flightlog::{
     mavlink::{Packet, Requests, Setup, Telemetry, Version, parameters_known},
 };
 
-use super::{End, Event, Flown, Left, Lost, Out, Silent};
+use super::{End, Event, Flown, Left, Lost, Out, Silent, Source};
 
 /// A link, or the motor commands on it, that are silent for this long are lost.
 const SILENT_S: f64 = 2.0;
@@ -20,6 +20,12 @@ const LISTEN_S: f64 = 10.0;
 /// A vehicle that is followed.
 pub(super) struct Tracked {
     pub(super) telemetry: Telemetry,
+    /// Where its packets come from.
+    pub(super) source: Source,
+    /// Motor commands came, with a clock that goes on.
+    pub(super) is_proved: bool,
+    /// The connection that it was heard on is closed.
+    pub(super) is_gone: bool,
     pub(super) requests: Requests,
     pub(super) found_s: f64,
     pub(super) heard_s: f64,
@@ -63,9 +69,12 @@ pub(crate) struct View<'a> {
 
 impl Tracked {
     /// Starts to follow the vehicle that a heartbeat told of.
-    pub(super) fn new(telemetry: Telemetry, now_s: f64) -> Tracked {
+    pub(super) fn new(telemetry: Telemetry, source: Source, now_s: f64) -> Tracked {
         Tracked {
             telemetry,
+            source,
+            is_proved: false,
+            is_gone: false,
             requests: Requests::new(),
             found_s: now_s,
             heard_s: now_s,
@@ -122,7 +131,13 @@ impl Tracked {
         }
     }
 
+    /// Whether nothing comes from it any more.
+    pub(super) fn is_silent(&self) -> bool {
+        self.link_lost || self.is_gone
+    }
+
     pub(super) fn hear(&mut self, now_s: f64, out: &mut Out) {
+        self.is_gone = false;
         if self.link_lost {
             self.link_lost = false;
             self.sequence = None;
