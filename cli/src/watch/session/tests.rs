@@ -11,6 +11,7 @@ use flightlog::mavlink::{
 
 use super::*;
 
+mod flood;
 mod outputs;
 mod trust;
 
