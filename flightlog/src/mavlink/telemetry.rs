@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     Vehicle,
-    clock::{Checked, Clock},
+    clock::{Checked, Clock, seconds_of},
     field::Kind,
     outputs::LONGEST_PULSE_US,
 };
@@ -255,7 +255,7 @@ impl Telemetry {
         if clock.stamp.replace(outputs.time_us) == Some(outputs.time_us) {
             return News::Nothing;
         }
-        let t_s = seconds(outputs.time_us, clock.clock.now_s());
+        let t_s = seconds_of(outputs.time_us, clock.clock.now_s());
         let Some(t_s) = clock.check(t_s, now_s, &mut self.clock_jumps) else {
             return News::Nothing;
         };
@@ -336,13 +336,4 @@ impl LiveClock {
         self.heard_s = Some(now_s);
         Some(t_s)
     }
-}
-
-/// Seconds since boot from microseconds in 32 bits, which start over after 71 minutes: the time nearest to the last
-/// one that was believed.
-fn seconds(micros: u32, last_s: Option<f64>) -> f64 {
-    const ROUND_S: f64 = 4_294.967_296;
-    let t_s = f64::from(micros) * 1e-6;
-    let rounds = last_s.map_or(0.0, |last_s| ((last_s - t_s) / ROUND_S).round().max(0.0));
-    t_s + rounds * ROUND_S
 }
