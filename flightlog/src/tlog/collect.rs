@@ -93,7 +93,8 @@ impl<'o> Collector<'o> {
 }
 
 impl Heard {
-    /// Takes in a message of the system; `true` when a row was dropped because times go back.
+    /// Takes in a message of the system; `true` when a row was dropped because times go back. On the vehicle's clock that
+    /// is a packet that comes late or twice, and no damage.
     fn message(&mut self, received_s: f64, packet: &Packet<'_>, options: &Options) -> bool {
         let payload = filled(packet);
         let t_s = self.time.other(received_s, packet.id, &payload);
@@ -102,7 +103,8 @@ impl Heard {
             Told::Outputs(outputs) => return self.commands(received_s, outputs),
             Told::Text(text) => self.texts.push(Event::new(t_s, text)),
             Told::Nothing if packet.component == AUTOPILOT => {
-                return self.signals(t_s, packet.id, &payload, options);
+                let dropped = self.signals(t_s, packet.id, &payload, options);
+                return dropped && !self.time.is_known();
             }
             Told::Nothing | Told::Parameter => {}
         }
@@ -114,10 +116,11 @@ impl Heard {
         if let Some(ahead_s) = timed.ahead_s {
             self.shift(ahead_s);
         }
-        let rows = timed.rows.iter().flatten();
-        rows.fold(timed.dropped, |dropped, (t_s, outputs)| {
-            self.servos(*t_s, outputs) || dropped
-        })
+        let mut dropped = timed.dropped;
+        for (t_s, outputs) in timed.rows.iter().flatten() {
+            dropped |= self.servos(*t_s, outputs) && !self.time.is_known();
+        }
+        dropped
     }
 
     /// Brings what came before the first motor commands to the vehicle's clock.

@@ -74,6 +74,11 @@ impl VehicleTime {
         })
     }
 
+    /// Whether the vehicle's clock is known.
+    pub(super) fn is_known(&self) -> bool {
+        self.latest.is_some()
+    }
+
     /// The start of each boot but the first.
     pub(super) fn boots_s(&self) -> &[f64] {
         self.clock.boots_s()
