@@ -1,6 +1,7 @@
 //! `flagred watch`: the risk of a flight while it is flown.
 
 mod endpoint;
+mod jsonl;
 mod lines;
 mod port;
 mod printer;
@@ -29,7 +30,7 @@ use crate::{
     profile,
 };
 use endpoint::Endpoint;
-use lines::EventLine;
+use jsonl::EventLine;
 use port::{Port, Received};
 use printer::Printer;
 use screen::Screen;
@@ -257,7 +258,7 @@ impl Display {
                 endpoint: title,
                 profile,
             };
-            printer.print(lines::json_line(0.0, started)?)?;
+            printer.print(jsonl::json_line(0.0, started)?)?;
             Face::Json
         } else if is_screen {
             let title = format!("{title}, profile {profile}");
@@ -285,7 +286,7 @@ impl Display {
     ) -> Result<(), Failure> {
         for event in events.drain(..) {
             let line = match &mut self.face {
-                Face::Json => lines::json(at_s, &event, session, estimator)?,
+                Face::Json => jsonl::json(at_s, &event, session, estimator)?,
                 Face::Words(words) => words.line(at_s, &event, session, estimator),
                 Face::Screen(screen) => {
                     screen.add(at_s, &event, session, estimator);
@@ -363,7 +364,7 @@ impl Display {
                 unsent: totals.unsent,
                 dropped_lines: self.printer.dropped(),
             };
-            lines::json_line(at_s, ended)?
+            jsonl::json_line(at_s, ended)?
         } else {
             let why = lines::reason(worst).map_or(String::new(), |reason| format!(": {reason}"));
             lines::words(at_s, &format!("{worst} at worst{why}; {}", totals.words()))

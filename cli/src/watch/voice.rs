@@ -28,6 +28,10 @@ const TEXT: usize = 50;
 const WATCH: u32 = 0xf1 << 24;
 const AGE: u32 = (1 << 24) - 1;
 
+/// Numbers of messages.
+const HEARTBEAT: u32 = 0;
+const NAMED_VALUE_FLOAT: u32 = 251;
+
 /// The heartbeat of an onboard computer that has been watching for so long.
 pub(crate) fn heartbeat(age_s: f64) -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
@@ -42,24 +46,23 @@ pub(crate) fn heartbeat(age_s: f64) -> MavMessage {
 
 /// The age in a heartbeat of another watch, in seconds.
 pub(crate) fn age_of(packet: &Packet<'_>) -> Option<f64> {
-    if packet.id != 0 || packet.component == 1 {
+    // The message is read only where it may be one.
+    if packet.id != HEARTBEAT || packet.component == 1 {
         return None;
     }
-    let &[a, b, c, d, kind, autopilot, ..] = packet.payload else {
+    let Some(MavMessage::HEARTBEAT(beat)) = packet.message() else {
         return None;
     };
-    let mode = u32::from_le_bytes([a, b, c, d]);
-    let is_watch = mode & !AGE == WATCH
-        && kind == MavType::MAV_TYPE_ONBOARD_CONTROLLER as u8
-        && autopilot == MavAutopilot::MAV_AUTOPILOT_INVALID as u8;
-    is_watch.then(|| f64::from(mode & AGE) / 10.0)
+    let is_watch = beat.custom_mode & !AGE == WATCH
+        && beat.mavtype == MavType::MAV_TYPE_ONBOARD_CONTROLLER
+        && beat.autopilot == MavAutopilot::MAV_AUTOPILOT_INVALID;
+    is_watch.then(|| f64::from(beat.custom_mode & AGE) / 10.0)
 }
 
 /// Whether a packet is the risk that another watch, or a program on the autopilot, sends.
 pub(crate) fn is_risk(packet: &Packet<'_>) -> bool {
-    // Time and value come before the name.
-    packet.id == 251
-        && (packet.payload.get(8..)).is_some_and(|name| name.starts_with(RISK.as_bytes()))
+    packet.id == NAMED_VALUE_FLOAT
+        && matches!(packet.message(), Some(MavMessage::NAMED_VALUE_FLOAT(value)) if value.name.to_str() == Ok(RISK))
 }
 
 /// A value at a time of the vehicle's clock.

@@ -1,6 +1,6 @@
-use flagred::shipped;
+use flagred::{shipped, verdict::Level};
 use flightlog::mavlink::{
-    Next,
+    Next, Setup,
     dialect::{
         COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd,
         MavLandedState, MavMessage, MavModeFlag, MavParamType, MavResult, MavState, MavType,
