@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Profile: inputs, rule set and thresholds. A built-in name or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     csv: bool,
 
-    /// Tell every finding, and what is behind it
+    /// List every finding with its measurements
     #[arg(short, long, conflicts_with_all = ["json", "csv"])]
     verbose: bool,
 

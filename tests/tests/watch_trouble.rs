@@ -277,7 +277,10 @@ fn ports_that_cannot_be_had_are_told_with_what_to_do() {
         "{told}"
     );
     let (code, told) = refused("somewhere", &[]);
-    assert!(code == Some(2) && told.contains("is no endpoint"), "{told}");
+    assert!(
+        code == Some(2) && told.contains("is not an endpoint"),
+        "{told}"
+    );
     let (code, told) = refused("udpout:127.0.0.1:9", &["--no-send"]);
     assert!(code == Some(2) && told.contains("sends first"), "{told}");
 }

@@ -38,7 +38,7 @@ use session::{Doubts, Event, Out, Session};
 
 /// The version of the lines' layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.watch/1";
-/// The component that is spoken as: the first of those for onboard computers.
+/// The default component id: the first of those for onboard computers.
 const COMPONENT: u8 = 191;
 /// The most that is read of a key file: digits and some white space.
 const KEY_FILE: u64 = 256;
@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "ENDPOINT")]
     endpoint: Endpoint,
 
-    /// Profile: inputs, rule set and thresholds. A built-in name or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
@@ -76,7 +76,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "no_send")]
     send_anyway: bool,
 
-    /// Send as this component of the vehicle's system
+    /// The MAVLink component id to send as
     #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
     component: u8,
 
