@@ -183,7 +183,7 @@ fn with_a_key_only_signed_packets_are_believed_and_those_sent_are_signed() {
     let wrong = folder.file("wrong", "secret");
     let (code, told) = refused("udpin:127.0.0.1:0", &["--key", &wrong]);
     assert!(
-        code == Some(3) && told.contains("is no key") && told.contains("64 hex"),
+        code == Some(3) && told.contains("is not a key") && told.contains("64 hex"),
         "{told}"
     );
 }

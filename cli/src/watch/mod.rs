@@ -194,7 +194,7 @@ fn read_key(path: &Path) -> Result<Key, Failure> {
         .and_then(|file| file.take(KEY_FILE).read_to_end(&mut bytes))
         .map_err(|error| Failure::unreadable(format!("`{name}` cannot be read: {error}")))?;
     Key::from_bytes(&bytes).ok_or_else(|| {
-        Failure::unreadable(format!("`{name}` is no key"))
+        Failure::unreadable(format!("`{name}` is not a key"))
             .help("a key is 32 bytes, or 64 hexadecimal digits")
     })
 }
