@@ -120,7 +120,15 @@ fn watch() {
     let flight = flight(folder.file("trouble.csv", trouble()).as_ref());
     let (said, _) = fly_udp(&flight, Link::default(), &[], Speed::Fastest);
     for kind in [
-        "started", "found", "ready", "took_off", "risk", "level", "finding", "landed", "ended",
+        "started",
+        "found",
+        "ready",
+        "took_off",
+        "risk",
+        "level",
+        "finding",
+        "left_in_air",
+        "ended",
     ] {
         assert!(said.all(kind).next().is_some(), "no `{kind}`");
     }
