@@ -64,7 +64,7 @@ fn fll(model: &Model) -> String {
             text += "  aggregation: Maximum\n  defuzzifier: Centroid 100\n  default: nan\n  lock-previous: false\n";
         }
         for term in &v.terms {
-            let shape = match term.shape {
+            let shape = match term.membership_function {
                 MembershipFunction::Triangle { left, peak, right } => {
                     format!("Triangle {left} {peak} {right}")
                 }

@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Profile: inputs, rule set and thresholds. A built-in name or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     csv: bool,
 
-    /// Tell every finding, and what is behind it
+    /// List every finding with its measurements
     #[arg(short, long, conflicts_with_all = ["json", "csv"])]
     verbose: bool,
 
@@ -61,7 +61,7 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum FailOn {
+pub(crate) enum FailOn {
     Warn,
     Fail,
     Never,
@@ -151,7 +151,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         |log, read: Result<(Flight, Assessment), ReadError>| {
             match read {
                 Ok((flight, assessed)) => {
-                    exit = exit.max(exit_of(&assessed, arguments.fail_on));
+                    exit = exit.max(exit_of(&assessed.verdict, arguments.fail_on));
                     shown = show(log, flight, assessed);
                 }
                 Err(error) => {
@@ -229,8 +229,8 @@ fn write_json(out: &mut impl Write, document: &impl serde::Serialize) -> Result<
 }
 
 /// An unknown risk is an exit code of its own, so that nobody takes it for GOOD.
-fn exit_of(assessed: &Assessment, fail_on: FailOn) -> Exit {
-    match (&assessed.verdict, fail_on) {
+pub(crate) fn exit_of(verdict: &Verdict, fail_on: FailOn) -> Exit {
+    match (verdict, fail_on) {
         (Verdict::NotAvailable(_), _) => Exit::Unreadable,
         (Verdict::Known(Level::Fail), FailOn::Warn | FailOn::Fail) => Exit::Findings,
         (Verdict::Known(Level::Warn), FailOn::Warn) => Exit::Findings,

@@ -69,10 +69,7 @@ pub(crate) const EXPORT: &str = "\
 Examples:
   flagred export --rust --output profile.rs
   flagred export --c --output profile.h flagred-paper
-  flagred export --c my-profile.yaml
-
-The exported constants are for the crate `flagred` with default-features = false in Rust, and
-for the library flagred-c with the header flagred.h in C.";
+  flagred export --c my-profile.yaml";
 
 pub(crate) const INSPECT: &str = "\
 Examples:

@@ -34,10 +34,10 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use failure::{Exit, Failure};
 
-/// Estimates the risk that a multirotor loses control from its motor commands; checks, explains and learns fuzzy rule sets.
+/// Estimates from its motor commands the risk that a multirotor loses control; checks, explains and learns fuzzy rule sets.
 ///
-/// Exit codes: 0 no findings, 1 findings, 2 wrong usage or an output that cannot be written, 3 no answer: the input is
-/// unreadable or not a multirotor.
+/// Exit codes: 0 no findings, 1 findings, 2 wrong usage or an output that cannot be written, 3 no answer: the input cannot
+/// be read or is not of a multirotor.
 #[derive(Parser)]
 #[command(name = "flagred", version, max_term_width = 100, after_help = help::FLAGRED)]
 struct Arguments {
@@ -50,68 +50,68 @@ enum Command {
     /// Assess the risk of a flight: verdict, findings, risk over time
     #[command(after_help = help::ASSESS)]
     Assess(assess::Arguments),
-    /// Find errors, gaps and conflicts in a rule set
-    #[command(after_help = help::CHECK)]
-    Check(check::Arguments),
-    /// Convert a flight log to flight CSV
-    #[command(after_help = help::CONVERT)]
-    Convert(convert::Arguments),
-    /// Print completions for a shell
-    #[command(after_help = help::COMPLETIONS)]
-    Completions(completions::Arguments),
-    /// Evaluate a rule set at the points of a CSV file
-    #[command(after_help = help::EVAL)]
-    Eval(eval::Arguments),
-    /// Explain the outputs of a rule set at one point: degrees, rules, result
-    #[command(after_help = help::EXPLAIN)]
-    Explain(explain::Arguments),
-    /// Export a profile and its rule set as Rust or C constants for firmware
-    #[command(after_help = help::EXPORT)]
-    Export(export::Arguments),
-    /// Make a table of flights for `learn`: inputs, attitude error, risk
-    #[command(after_help = help::DATASET)]
-    Dataset(dataset::Arguments),
-    /// Measure how well profiles predict attitude errors, compared with simple baselines
-    #[command(after_help = help::EVALUATE)]
-    Evaluate(evaluate::Arguments),
-    /// Show the contents of a flight log and the source of each value
-    #[command(after_help = help::INSPECT)]
-    Inspect(inspect::Arguments),
-    /// Learn the rules of a rule set from a table
-    #[command(after_help = help::LEARN)]
-    Learn(learn::Arguments),
-    /// Draw the output of a rule set over its inputs
-    #[command(after_help = help::MAP)]
-    Map(map::Arguments),
-    /// Print a manual page
-    #[command(after_help = help::MAN)]
-    Man(man::Arguments),
     /// Assess a flight live over MAVLink and send warnings to the ground station
     #[command(after_help = help::WATCH)]
     Watch(watch::Arguments),
+    /// Show the contents of a flight log and the source of each value
+    #[command(after_help = help::INSPECT)]
+    Inspect(inspect::Arguments),
+    /// Convert a flight log to flight CSV
+    #[command(after_help = help::CONVERT)]
+    Convert(convert::Arguments),
     /// Write a commented rule set to start from
     #[command(after_help = help::NEW)]
     New(new::Arguments),
+    /// Find errors, gaps and conflicts in a rule set
+    #[command(after_help = help::CHECK)]
+    Check(check::Arguments),
+    /// Explain the outputs of a rule set at one point: degrees, rules, result
+    #[command(after_help = help::EXPLAIN)]
+    Explain(explain::Arguments),
+    /// Evaluate a rule set at the points of a CSV file
+    #[command(after_help = help::EVAL)]
+    Eval(eval::Arguments),
+    /// Draw the output of a rule set over its inputs
+    #[command(after_help = help::MAP)]
+    Map(map::Arguments),
+    /// Make a table of flights for `learn`: inputs, attitude error and risk of each
+    #[command(after_help = help::DATASET)]
+    Dataset(dataset::Arguments),
+    /// Learn rules from a table of inputs and outputs
+    #[command(after_help = help::LEARN)]
+    Learn(learn::Arguments),
+    /// Measure how well profiles predict attitude errors, compared with simple baselines
+    #[command(after_help = help::EVALUATE)]
+    Evaluate(evaluate::Arguments),
+    /// Export a profile and its rule set as Rust or C constants for firmware
+    #[command(after_help = help::EXPORT)]
+    Export(export::Arguments),
+    /// Print completions for a shell
+    #[command(after_help = help::COMPLETIONS)]
+    Completions(completions::Arguments),
+    /// Print a manual page
+    #[command(after_help = help::MAN)]
+    Man(man::Arguments),
 }
 
 impl Command {
     fn run(self) -> Result<Exit, Failure> {
         match self {
             Command::Assess(arguments) => assess::run(&arguments),
-            Command::Check(arguments) => check::run(&arguments),
-            Command::Convert(arguments) => convert::run(&arguments),
-            Command::Completions(arguments) => completions::run(&arguments),
-            Command::Eval(arguments) => eval::run(&arguments),
-            Command::Explain(arguments) => explain::run(&arguments),
-            Command::Export(arguments) => export::run(&arguments),
-            Command::Dataset(arguments) => dataset::run(&arguments),
-            Command::Evaluate(arguments) => evaluate::run(&arguments),
-            Command::Inspect(arguments) => inspect::run(&arguments),
-            Command::Learn(arguments) => learn::run(&arguments),
-            Command::Map(arguments) => map::run(&arguments),
-            Command::Man(arguments) => man::run(&arguments),
             Command::Watch(arguments) => watch::run(&arguments),
+            Command::Inspect(arguments) => inspect::run(&arguments),
+            Command::Convert(arguments) => convert::run(&arguments),
             Command::New(arguments) => new::run(&arguments),
+            Command::Check(arguments) => check::run(&arguments),
+            Command::Explain(arguments) => explain::run(&arguments),
+            Command::Eval(arguments) => eval::run(&arguments),
+            Command::Map(arguments) => map::run(&arguments),
+            Command::Dataset(arguments) => dataset::run(&arguments),
+            Command::Learn(arguments) => learn::run(&arguments),
+            Command::Evaluate(arguments) => evaluate::run(&arguments),
+            Command::Export(arguments) => export::run(&arguments),
+            Command::Completions(arguments) => completions::run(&arguments),
+            Command::Man(arguments) => man::run(&arguments),
         }
     }
 }

@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             .find(|command| command.get_name() == name)
             .ok_or_else(|| {
                 let names: Vec<&str> = commands().map(Command::get_name).collect();
-                Failure::usage(format!("`{name}` is no command"))
+                Failure::usage(format!("there is no command `{name}`"))
                     .help(format!("the commands are {}", names.join(", ")))
             })?,
     };

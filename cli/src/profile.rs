@@ -93,7 +93,7 @@ fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String, String), F
         .map(|known| (known.file.to_owned(), known.text.to_owned()))
         .ok_or_else(|| {
             Failure::unreadable(format!(
-                "profile `{}` names the rule set `{}`, which is no file beside it and not shipped",
+                "profile `{}` names the rule set `{}`, which is neither a file beside it nor built in",
                 profile.name, profile.rules
             ))
         })

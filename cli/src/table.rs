@@ -11,7 +11,7 @@ pub(crate) struct Table {
     records: Vec<(u64, csv::StringRecord)>,
 }
 
-/// A cell that is no finite number.
+/// A cell that is not a finite number.
 pub(crate) struct BadCell {
     pub(crate) line: u64,
     pub(crate) column: String,
@@ -103,9 +103,9 @@ impl Table {
         let text = self.text(row, column);
         let problem = match text.parse::<f64>() {
             Ok(number) if number.is_finite() => return Ok(number),
-            Ok(_) => format!("`{text}` is no finite number"),
+            Ok(_) => format!("`{text}` is not a finite number"),
             Err(_) if text.is_empty() => "the cell is empty".to_owned(),
-            Err(_) => format!("`{text}` is no number"),
+            Err(_) => format!("`{text}` is not a number"),
         };
         Err(self.bad(row, column, problem))
     }
@@ -131,7 +131,7 @@ fn broken(file: &str, error: &csv::Error) -> Failure {
         ))
         .help("every row has as many cells as the header"),
         csv::ErrorKind::Utf8 { .. } => {
-            Failure::unreadable(format!("`{file}`, line {line}: this is no UTF-8 text"))
+            Failure::unreadable(format!("`{file}`, line {line}: invalid UTF-8"))
                 .help("the file must be CSV text, a header first")
         }
         _ => Failure::unreadable(format!("`{file}` cannot be read: {error}")),

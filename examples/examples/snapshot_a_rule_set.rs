@@ -5,8 +5,8 @@
 use std::error::Error;
 
 use fuzzy::{
-    Engine,
-    map::{DecisionMap, Grid, picture},
+    Engine, drawing,
+    map::{DecisionMap, Grid},
 };
 
 const RULES: &str = "
@@ -28,7 +28,8 @@ fn decisions() -> Result<String, Box<dyn Error>> {
     let model = fuzzy::yaml::parse(RULES)?.model;
     let engine = Engine::new(&model)?;
     let map = DecisionMap::new(&engine, Grid::new(&engine, 41)?, 0)?;
-    Ok(picture(&map))
+    let slice = drawing::Slice::new(&model, &map).ok_or("fix inputs until one or two are left")?;
+    Ok(drawing::map_text(&slice, |cell, _| cell.to_string()) + &drawing::values_text(&slice))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

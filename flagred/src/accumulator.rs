@@ -9,7 +9,8 @@
 //! ```
 //!
 //! The paper gives no time step and no values. Ours are rates in % per second, so the result does not depend
-//! on the sample rate.
+//! on the sample rate. Between two samples the risk is a straight line, which counts in `sigma`, and so is the rate; the
+//! first risk and the first rate stand for the time before them.
 
 use crate::{moments::Moments, window::Window};
 

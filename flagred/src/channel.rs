@@ -46,11 +46,12 @@ pub enum Statistic {
     ShareBelow(f64),
     /// The share of time, in [0, 1], spent above a value; over motors, the mean of their shares.
     ShareAbove(f64),
-    /// The standard deviation without noise: `sqrt(max(0, std^2 - noise^2))`. What is left is what successive values
-    /// share.
+    /// The standard deviation without noise: `sqrt(max(0, std^2 - noise^2))`, both of the means of bins. What is left is
+    /// what successive values share.
     StdLessNoise,
     /// The standard deviation of the noise: `sqrt(mean(step^2) / 2)`, with the steps between the means of successive
-    /// times of 0.1 s (of successive samples where they are rarer). White noise has `noise = std`, slow movement 0.
+    /// bins of 0.1 s (of successive samples where they are rarer). White noise has `noise = std`, slow movement 0.
+    /// docs/profiles.md defines the bins. The first one has no step before it, and counts with a step of 0.
     Noise,
 }
 
@@ -269,8 +270,7 @@ impl Seen {
         }
     }
 
-    fn push_into_bin(&mut self, (t_s, held_s): (f64, f64), value: Option<f64>) {
-        let index = bin_of(t_s);
+    fn push_into_bin(&mut self, index: f64, (t_s, held_s): (f64, f64), value: Option<f64>) {
         if self.bin.samples > 0 && self.bin.index != index {
             let before = self.bin.mean();
             self.window
@@ -307,6 +307,7 @@ pub(crate) fn push(
     (t_s, held_s): (f64, f64),
     observed: &Now<'_>,
 ) {
+    let bin = bin_of(t_s);
     let mut before: Option<(&Channel, Moments)> = None;
     for (channel, seen) in channels.iter().zip(seen) {
         // Neighbours often differ in their windows alone.
@@ -322,7 +323,7 @@ pub(crate) fn push(
             _ => held_s,
         };
         if channel.in_bins {
-            seen.push_into_bin((t_s, held_s), now.mean());
+            seen.push_into_bin(bin, (t_s, held_s), now.mean());
         } else if now.weight() > 0.0 {
             // A sample weighs its time, however many motors it knows.
             let moments = now.scaled(held_s / now.weight());

@@ -52,6 +52,45 @@ pub enum Verdict {
     NotAvailable(Reason),
 }
 
+impl Verdict {
+    /// The verdict of two flights: the graver one. A flight that was lost in the air is graver than GOOD; one without
+    /// a verdict for another reason counts only where nothing else is known.
+    ///
+    /// ```
+    /// use flagred::{flight::{Reason, Verdict}, verdict::Level};
+    ///
+    /// let good = Verdict::Known(Level::Good);
+    /// let short = Verdict::NotAvailable(Reason::NoCommands);
+    /// assert_eq!(good.clone().worst(short), good);
+    /// assert_eq!(good.clone().worst(good.clone().lost_in_air()).to_string(), "NA");
+    /// ```
+    pub fn worst(self, other: Verdict) -> Verdict {
+        match self.gravity() >= other.gravity() {
+            true => self,
+            false => other,
+        }
+    }
+
+    /// The same for a flight whose end nobody saw: what was seen of it is not GOOD for that.
+    pub fn lost_in_air(self) -> Verdict {
+        match self {
+            Verdict::Known(level) if level > Level::Info => self,
+            _ => Verdict::NotAvailable(Reason::LostInAir),
+        }
+    }
+
+    fn gravity(&self) -> u8 {
+        match self {
+            Verdict::NotAvailable(Reason::NoFlight) => 0,
+            Verdict::NotAvailable(Reason::LostInAir) => 3,
+            Verdict::NotAvailable(_) => 1,
+            Verdict::Known(Level::Good | Level::Info) => 2,
+            Verdict::Known(Level::Warn) => 4,
+            Verdict::Known(Level::Fail) => 5,
+        }
+    }
+}
+
 impl fmt::Display for Verdict {
     /// `GOOD`, `WARN`, `FAIL` or `NA`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -86,6 +125,12 @@ pub enum Reason {
     /// There was hardly a motor command in the air.
     #[error("hardly any motor command was known in the air")]
     NoCommands,
+    /// The vehicle was in the air when it was last heard, or rebooted there.
+    #[error("the vehicle was lost in the air")]
+    LostInAir,
+    /// No flight was watched.
+    #[error("no flight was seen")]
+    NoFlight,
 }
 
 impl Reason {
@@ -98,7 +143,10 @@ impl Reason {
                 Some("`flagred inspect` lists the signals that a log carries")
             }
             Reason::RiskUnknown { help, .. } => *help,
-            Reason::Monitor(_) | Reason::NoCommands => None,
+            Reason::LostInAir => {
+                Some("the log on board tells how the flight ended: `flagred assess`")
+            }
+            Reason::Monitor(_) | Reason::NoCommands | Reason::NoFlight => None,
         }
     }
 }

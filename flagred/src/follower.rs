@@ -126,6 +126,7 @@ impl Follower {
         self.last_s = Some(t_s);
         let together = motor::take(room.motors, &mut self.bin, t_s, sample.motors);
         if !sample.in_air || self.rests(t_s, room.motors) {
+            room.inputs.fill(f64::NAN);
             if self.in_air_since_s.is_some() {
                 let down_since_s = *self.down_since_s.get_or_insert(t_s);
                 if t_s - down_since_s >= TOUCH_S {

@@ -23,6 +23,7 @@ pub struct Row {
 
 /// Errors of predictions on rows, in the unit of the output, weighted by row. NaN where no row was compared.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Errors {
     /// The rows compared.
     pub rows: usize,
@@ -266,6 +267,7 @@ pub struct GapComparison {
 
 /// Errors over all rows, and the mean over rules of the errors of their rows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MethodErrors {
     /// Each row counts.
     pub by_row: Errors,

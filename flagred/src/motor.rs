@@ -166,8 +166,10 @@ pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f6
             has_geometry |= share != 0.0;
         }
     }
+    // Without a geometry nothing is taken out, not even where a motor is unknown.
+    let yaw = if has_geometry { efforts[2] } else { 0.0 };
     for motor in motors.iter_mut() {
-        motor.less_yaw = motor.command - motor.yaw * efforts[2];
+        motor.less_yaw = motor.command - motor.yaw * yaw;
     }
     if !has_geometry {
         efforts = effort::UNKNOWN;

@@ -84,12 +84,13 @@ pub enum Unknown {
 pub struct Sampling {
     /// The fewest samples a window must hold.
     pub min_samples: u32,
-    /// How much time a window must cover before it counts, in seconds, or its whole length where that is less.
+    /// How much time a window must cover before it counts, in seconds, or its whole length where that is less; 99 % of it
+    /// is enough.
     pub warm_up_s: f64,
     /// After a longer time without a sample, in seconds, the state is reset.
     pub longest_gap_s: f64,
-    /// What was before this time in the air, in seconds, is dropped from longer windows once they cover `warm_up_s` of
-    /// what follows: the take-off itself says nothing about the flight. 0 keeps it.
+    /// What was before this time in the air, in seconds, is dropped from longer windows `warm_up_s` later, and the elevated
+    /// risk begins anew, because the take-off is not typical of the flight. 0 keeps it.
     pub take_off_s: f64,
 }
 

@@ -15,7 +15,8 @@ pub enum Signal {
     /// The effective command `e` of each motor: 0 at its lower limit, 1 at its upper one.
     MotorCommand,
     /// The command of each motor without the part that turns the nose: `e_i - y_i yaw`, with the yaw factor `y_i` of the
-    /// motor and the yaw effort of all. The command itself where the geometry is unknown.
+    /// motor and the yaw effort of all. The command itself where the geometry is unknown; with a geometry, unknown while
+    /// one motor is.
     MotorCommandLessYaw,
     /// The margin `min(e, 1 - e)` of each motor, 0 to 0.5.
     MotorMargin,
@@ -332,9 +333,11 @@ mod tests {
         let sources = [
             source(Statistic::Mean, Motors::Pooled, "motor_command"),
             source(Statistic::Last, Motors::Min, "motor_command"),
+            // The geometry is unknown.
+            source(Statistic::Mean, Motors::Pooled, "motor_command_less_yaw"),
         ];
         let found = observe(&sources, &[[0.2, f64::NAN], [f64::NAN; 2]]);
-        assert_eq!(found, [Some(0.2), None]);
+        assert_eq!(found, [Some(0.2), None, Some(0.2)]);
     }
 
     #[test]

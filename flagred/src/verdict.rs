@@ -135,14 +135,15 @@ pub struct VerdictSettings {
     pub warn: LevelSettings,
     /// When it fails.
     pub fail: LevelSettings,
-    /// A level is lowered when nothing has held it for this long, in seconds.
+    /// A level is lowered when nothing has held it for this long, in seconds: to the level that is held then.
     pub clear_after_s: f64,
-    /// In the first seconds in the air only FAIL is raised.
+    /// In the first seconds in the air only FAIL is raised; WARN does not count as reached.
     pub quiet_after_take_off_s: f64,
     /// What is raised in the last seconds before touching down is taken back; a FAIL only in the last half of them.
     pub quiet_before_landing_s: f64,
     /// While their mean effective command is below this, the motors idle: before take-off and after landing the vehicle
-    /// is on the ground, whatever the land detector says.
+    /// is on the ground, whatever the land detector says. Motors that begin to idle within 2 s after a risk that reaches
+    /// WARN do not rest.
     pub idle_below: f64,
     /// What is told beside the risk.
     pub notices: NoticeSettings,

@@ -16,10 +16,10 @@ const TIME_RESOLUTION_S: f64 = 1e-6;
 ///
 /// Memory is fixed whatever the sample rate, and a sample costs the same whatever the length, on average (the
 /// worst single one about a hundred merges): the window is cut into 128 slots of time, the samples of a slot
-/// are merged, and the slots form a queue of two stacks with running totals. Up to 128 samples a window
-/// (64 Hz at 2 s) every sample has a slot of its own and the statistics are exact; above that only the oldest
-/// slot, of which a part has already left the window, is counted in proportion to the part inside, and the
-/// extremes may remember it for 1/128 of the length too long.
+/// are merged, and the slots form a queue of two stacks with running totals. Up to 128 evenly spaced samples
+/// a window (64 Hz at 2 s) every sample has a slot of its own and the statistics are exact; where samples share a
+/// slot, only the oldest slot, of which a part has already left the window, is counted in proportion to the part
+/// inside, and the extremes may remember it for 1/128 of the length too long.
 ///
 /// It is memory to be lent to a [`board::Monitor`](crate::board::Monitor), and what a
 /// [`source::Observer`](crate::source::Observer) keeps.

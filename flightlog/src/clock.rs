@@ -63,6 +63,11 @@ impl Clock {
         &self.boots_s
     }
 
+    /// What is added to the times of this boot.
+    pub(crate) fn offset_s(&self) -> f64 {
+        self.offset_s
+    }
+
     /// The first accepted time.
     pub(crate) fn first_s(&self) -> Option<f64> {
         self.first_s
@@ -119,10 +124,26 @@ impl Clock {
         follows
     }
 
+    /// Whether a time stamp follows the latest accepted one; the first of all does.
+    #[cfg(feature = "mavlink")]
+    pub(crate) fn is_next(&self, t_s: f64) -> bool {
+        self.last_s
+            .is_none_or(|last_s| (BACK_S..=self.longest_s).contains(&(t_s - last_s)))
+    }
+
     fn boot(&mut self, last_s: f64) {
         self.offset_s += last_s;
         self.boots_s.push(self.offset_s);
     }
+}
+
+/// Seconds since boot from microseconds in 32 bits, which start over after 71 minutes: the time nearest to the last
+/// one that was believed.
+pub(crate) fn seconds_of(micros: u32, last_s: Option<f64>) -> f64 {
+    const ROUND_S: f64 = 4_294.967_296;
+    let t_s = f64::from(micros) * 1e-6;
+    let rounds = last_s.map_or(0.0, |last_s| ((last_s - t_s) / ROUND_S).round().max(0.0));
+    t_s + rounds * ROUND_S
 }
 
 /// The latest time of a log whose messages may be late, but not far ahead of all others.

@@ -223,8 +223,8 @@ impl<T> Event<T> {
 /// A flight, read from a log.
 ///
 /// Times are in seconds on the log's own clock and never decrease within a series:
-/// since boot for ArduPilot and PX4 logs, since the first packet for telemetry, as
-/// written for CSV. Where a log holds several boots of the autopilot, the clock continues
+/// since boot for ArduPilot and PX4 logs and for telemetry (since the first packet where motor
+/// commands carry no time), as written for CSV. Where a log holds several boots of the autopilot, the clock continues
 /// at the end of the boot before; [`Flight::boots_s`] has the start of each.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

@@ -66,6 +66,11 @@ impl Outputs {
         order != Order::Last
     }
 
+    /// Moves all rows in time.
+    pub(crate) fn shift(&mut self, by_s: f64) {
+        self.t_s.iter_mut().for_each(|t_s| *t_s += by_s);
+    }
+
     /// Number of motors, where nothing else gives it: 4, 6 or 8 if that many of the first outputs,
     /// and not the next ones, move together.
     pub(crate) fn like_motors(&self) -> Option<u16> {

@@ -34,6 +34,11 @@ impl Series {
         }
     }
 
+    /// Moves all rows in time.
+    pub(crate) fn shift(&mut self, by_s: f64) {
+        self.t_s.iter_mut().for_each(|t_s| *t_s += by_s);
+    }
+
     /// Adds one row; `values` are in the order of the labels. `true` tells that a row was
     /// dropped, this or the last: see [`Order`].
     pub(crate) fn push(&mut self, t_s: f64, values: impl IntoIterator<Item = f64>) -> bool {

@@ -1,18 +1,16 @@
-//! The shapes of membership functions. What a shape is stands in this file alone: its formula, which has a number and is
-//! all that a table in firmware knows of it; and, where there is an allocator, in three places that the compiler asks for,
-//! its variant in [`MembershipFunction`], its line in the table of spellings, and its outline.
+//! The shapes of membership functions. A shape is a variant of [`MembershipFunction`] and a line in the table of spellings,
+//! both here; a formula, in `formula`; and an outline, in `outline`.
 //!
 //! Formulas that several shapes share are in `straight` and `smooth`.
 
 #[cfg(feature = "alloc")]
-use alloc::{format, string::String, vec, vec::Vec};
-
-#[cfg(feature = "alloc")]
-use libm::log;
-use libm::{cos, exp, fabs, pow};
+use alloc::{string::String, vec, vec::Vec};
 
 #[cfg(feature = "alloc")]
 mod form;
+mod formula;
+#[cfg(feature = "alloc")]
+mod outline;
 mod smooth;
 mod straight;
 #[cfg(test)]
@@ -22,93 +20,11 @@ mod validate;
 
 #[cfg(feature = "alloc")]
 pub(crate) use form::{Form, Parts, Role};
+pub use formula::Kind;
 #[cfg(feature = "alloc")]
-use smooth::{flank, gaussian_flank, sigmoid_flanks};
-use smooth::{gaussian, s_shape, sigmoid, z_shape};
-use straight::{along, falling, indicator, into_unit, rising, trapezoid};
+use straight::{along, into_unit};
 #[cfg(feature = "alloc")]
 pub use validate::MembershipError;
-
-/// The formula of a membership function. What it takes as its parameters is in the order of the fields of the `MembershipFunction` of
-/// that name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(transparent)]
-pub struct Kind(pub u32);
-
-#[expect(missing_docs, reason = "each is the shape of that name")]
-impl Kind {
-    pub const TRAPEZOID: Kind = Kind(0);
-    pub const LEFT_SHOULDER: Kind = Kind(1);
-    pub const RIGHT_SHOULDER: Kind = Kind(2);
-    pub const RECTANGLE: Kind = Kind(3);
-    pub const SINGLETON: Kind = Kind(4);
-    pub const PIECEWISE: Kind = Kind(5);
-    pub const GAUSSIAN: Kind = Kind(6);
-    pub const GAUSSIAN2: Kind = Kind(7);
-    pub const BELL: Kind = Kind(8);
-    pub const SIGMOID: Kind = Kind(9);
-    pub const SIGMOID_DIFFERENCE: Kind = Kind(10);
-    pub const SIGMOID_PRODUCT: Kind = Kind(11);
-    pub const S_SHAPE: Kind = Kind(12);
-    pub const Z_SHAPE: Kind = Kind(13);
-    pub const PI_SHAPE: Kind = Kind(14);
-    pub const COSINE: Kind = Kind(15);
-    pub const SPIKE: Kind = Kind(16);
-    pub const CONCAVE: Kind = Kind(17);
-    pub const CONSTANT: Kind = Kind(18);
-    pub const TRIANGLE: Kind = Kind(19);
-
-    /// The degree at `x` with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape.
-    pub(crate) fn membership(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
-        if x.is_nan() {
-            return 0.0;
-        }
-        let [a, b, c, d] = *parameters;
-        into_unit(match self {
-            Kind::TRIANGLE => trapezoid(x, a, b, b, c),
-            Kind::TRAPEZOID => trapezoid(x, a, b, c, d),
-            Kind::LEFT_SHOULDER => falling(x, a, b),
-            Kind::RIGHT_SHOULDER => rising(x, a, b),
-            Kind::RECTANGLE => indicator(a <= x && x <= b),
-            Kind::SINGLETON => indicator(x == a),
-            Kind::PIECEWISE => along(points.iter().map(|[x, y]| (*x, *y)), x),
-            Kind::GAUSSIAN => gaussian(x, a, b),
-            Kind::GAUSSIAN2 if x < a => gaussian(x, a, b),
-            Kind::GAUSSIAN2 if x > c => gaussian(x, c, d),
-            Kind::GAUSSIAN2 => 1.0,
-            Kind::BELL => 1.0 / (1.0 + pow(fabs((x - a) / b), 2.0 * c)),
-            Kind::SIGMOID => sigmoid(x, a, b),
-            Kind::SIGMOID_DIFFERENCE => fabs(sigmoid(x, a, b) - sigmoid(x, c, d)),
-            Kind::SIGMOID_PRODUCT => sigmoid(x, a, b) * sigmoid(x, c, d),
-            Kind::S_SHAPE => s_shape(x, a, b),
-            Kind::Z_SHAPE => z_shape(x, a, b),
-            Kind::PI_SHAPE if x < b => s_shape(x, a, b),
-            Kind::PI_SHAPE => z_shape(x, c, d),
-            Kind::COSINE if fabs(x - a) <= 0.5 * b => {
-                let turns = (x - a) / b;
-                0.5 * (1.0 + cos(2.0 * core::f64::consts::PI * turns))
-            }
-            Kind::SPIKE => exp(-fabs(10.0 * (x - a) / b)),
-            Kind::CONCAVE => concave(x, a, b),
-            Kind::CONSTANT => a,
-            _ => 0.0,
-        })
-    }
-}
-
-fn concave(x: f64, inflection: f64, end: f64) -> f64 {
-    if inflection <= end {
-        if x < end {
-            (end - inflection) / (2.0 * end - inflection - x)
-        } else {
-            1.0
-        }
-    } else if x > end {
-        (inflection - end) / (inflection - 2.0 * end + x)
-    } else {
-        1.0
-    }
-}
 
 /// A membership function's shape, with its parameters in the unit of the variable.
 ///
@@ -376,168 +292,5 @@ impl MembershipFunction {
                 kind.membership(&parameters, &[], x)
             }
         }
-    }
-}
-
-/// How a shape runs, as far as an exact integral must know.
-#[cfg(feature = "alloc")]
-enum Outline {
-    /// Straight between corners `(x, degree)`, x never falling, the first and last degree held beyond them.
-    Straight(Vec<(f64, f64)>),
-    /// Smooth between these places, in no order, and close enough to each other that none hides a narrow flank. Those
-    /// that are no finite numbers do not count.
-    Smooth(Vec<f64>),
-}
-
-#[cfg(feature = "alloc")]
-impl MembershipFunction {
-    /// Why parameters that are right one by one still make no shape.
-    fn misfit(&self) -> Option<String> {
-        match *self {
-            MembershipFunction::Concave { inflection, end } if inflection == end => {
-                Some(format!("`inflection` and `end` are both {end}"))
-            }
-            _ => None,
-        }
-    }
-
-    fn outline(&self) -> Outline {
-        use Outline::{Smooth, Straight};
-        match *self {
-            MembershipFunction::Triangle { left, peak, right } => {
-                Straight(vec![(left, 0.0), (peak, 1.0), (right, 0.0)])
-            }
-            MembershipFunction::Trapezoid {
-                left,
-                left_top,
-                right_top,
-                right,
-            } => Straight(vec![
-                (left, 0.0),
-                (left_top, 1.0),
-                (right_top, 1.0),
-                (right, 0.0),
-            ]),
-            MembershipFunction::LeftShoulder { top, foot } => {
-                Straight(vec![(top, 1.0), (foot, 0.0)])
-            }
-            MembershipFunction::RightShoulder { foot, top } => {
-                Straight(vec![(foot, 0.0), (top, 1.0)])
-            }
-            MembershipFunction::Rectangle { left, right } => {
-                Straight(vec![(left, 0.0), (left, 1.0), (right, 1.0), (right, 0.0)])
-            }
-            MembershipFunction::Singleton { at } => Straight(vec![(at, 0.0), (at, 1.0), (at, 0.0)]),
-            MembershipFunction::Piecewise { ref points } => Straight(points.clone()),
-            MembershipFunction::Gaussian { mean, sd } => {
-                Smooth([gaussian_flank(mean, -sd), gaussian_flank(mean, sd)].concat())
-            }
-            MembershipFunction::Gaussian2 {
-                left_mean,
-                left_sd,
-                right_mean,
-                right_sd,
-            } => Smooth(
-                [
-                    gaussian_flank(left_mean, -left_sd),
-                    gaussian_flank(right_mean, right_sd),
-                ]
-                .concat(),
-            ),
-            MembershipFunction::Bell {
-                center,
-                width,
-                slope,
-            } => {
-                let reach = |level: f64| pow((1.0 - level) / level, 0.5 / slope);
-                // Closer to the middle as well: |t|^(2 slope) is rough there where the slope is low.
-                let near = (1..40).map(|halvings| width * libm::exp2(-f64::from(halvings)));
-                Smooth(
-                    [
-                        flank(center, -width, reach),
-                        flank(center, width, reach),
-                        near.flat_map(|distance| [center - distance, center + distance])
-                            .collect(),
-                    ]
-                    .concat(),
-                )
-            }
-            MembershipFunction::Sigmoid { inflection, slope } => {
-                Smooth(sigmoid_flanks(inflection, slope))
-            }
-            MembershipFunction::SigmoidDifference {
-                left_inflection,
-                left_slope,
-                right_inflection,
-                right_slope,
-            }
-            | MembershipFunction::SigmoidProduct {
-                left_inflection,
-                left_slope,
-                right_inflection,
-                right_slope,
-            } => {
-                // Where the two sigmoids are equal their difference has a kink.
-                let equal = (left_slope * left_inflection - right_slope * right_inflection)
-                    / (left_slope - right_slope);
-                Smooth(
-                    [
-                        sigmoid_flanks(left_inflection, left_slope),
-                        sigmoid_flanks(right_inflection, right_slope),
-                        vec![equal],
-                    ]
-                    .concat(),
-                )
-            }
-            MembershipFunction::SShape { foot: a, top: b }
-            | MembershipFunction::ZShape { top: a, foot: b } => Smooth(vec![a, 0.5 * (a + b), b]),
-            MembershipFunction::PiShape {
-                left,
-                left_top,
-                right_top,
-                right,
-            } => Smooth(vec![
-                left,
-                0.5 * (left + left_top),
-                left_top,
-                right_top,
-                0.5 * (right_top + right),
-                right,
-            ]),
-            MembershipFunction::Cosine { center, width } => {
-                Smooth(vec![center - 0.5 * width, center, center + 0.5 * width])
-            }
-            MembershipFunction::Spike { center, width } => {
-                let reach = |level: f64| -0.1 * log(level);
-                Smooth([flank(center, -width, reach), flank(center, width, reach)].concat())
-            }
-            MembershipFunction::Concave { inflection, end } => Smooth(vec![
-                inflection,
-                end,
-                end - 5.0 * (end - inflection),
-                end - 25.0 * (end - inflection),
-            ]),
-            MembershipFunction::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
-            MembershipFunction::Linear { .. } => Smooth(vec![]),
-        }
-    }
-
-    /// The corners of a shape made of straight lines, `(x, degree)` with x never falling and the first
-    /// and last degree held beyond them; `None` for a curved shape.
-    pub fn corners(&self) -> Option<Vec<(f64, f64)>> {
-        match self.outline() {
-            Outline::Straight(corners) => Some(corners),
-            Outline::Smooth(_) => None,
-        }
-    }
-
-    /// The places at which to cut an integral over the shape.
-    pub(crate) fn cuts(&self) -> Vec<f64> {
-        let mut cuts = match self.outline() {
-            Outline::Straight(corners) => corners.iter().map(|corner| corner.0).collect(),
-            Outline::Smooth(places) => places,
-        };
-        cuts.retain(|x| x.is_finite());
-        cuts
     }
 }

@@ -171,7 +171,7 @@ impl<'m> Validator<'m> {
             let term_spans = spans.terms.get(i).unwrap_or(&no_spans);
             let what = format!("term `{}` of {what}", term.name);
             if !term_spans.unread
-                && let Err(error) = term.shape.validate()
+                && let Err(error) = term.membership_function.validate()
             {
                 let blamed = error.parameter.and_then(|i| term_spans.parameters.get(i));
                 let here = blamed.unwrap_or(&term_spans.name);
@@ -212,7 +212,7 @@ impl<'m> Validator<'m> {
 
     fn no_linear_terms(&mut self, input: &Variable, spans: &VariableSpans) {
         for (i, term) in input.terms.iter().enumerate() {
-            if let MembershipFunction::Linear { .. } = term.shape {
+            if let MembershipFunction::Linear { .. } = term.membership_function {
                 let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());
                 let message = format!(
                     "term `{}` of input `{}` is a linear function",
@@ -271,7 +271,7 @@ impl<'m> Validator<'m> {
             let spans = spans.terms.get(i).unwrap_or(&no_spans);
             let here = &spans.name;
             let what = format!("term `{}` of {what}", term.name);
-            match &term.shape {
+            match &term.membership_function {
                 _ if spans.unread => {}
                 MembershipFunction::Linear { coefficients, .. } => {
                     if !weighted {

@@ -1,9 +1,10 @@
 """A vehicle made with pymavlink, which knows nothing of flagred: does each understand the other?
 
-Usage: pymavlink_peer.py FLAGRED [1|2]
+Usage: pymavlink_peer.py FLAGRED [1|2|signed]
 
 Starts `FLAGRED watch` on a free port, flies a made-up flight whose motors saturate, in MAVLink 1 or 2, and checks what
-comes back. In MAVLink 2 it sends signed packets at the end, which are to be left out with a note.
+comes back. In MAVLink 2 it sends signed packets at the end, which are to be left out with a note. In the signed round both
+have a key: pymavlink signs and verifies all packets, and what it sends unsigned or replays at the end is to be refused.
 """
 
 import atexit
@@ -13,10 +14,12 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 flagred, version = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else "2"
-if version == "2":
+is_signed = version == "signed"
+if version != "1":
     os.environ["MAVLINK20"] = "1"
 os.environ["MAVLINK_DIALECT"] = "ardupilotmega"
 from pymavlink import mavutil  # noqa: E402  the version is chosen by the environment
@@ -26,14 +29,21 @@ PARAMETERS |= {f"SERVO{n}_FUNCTION": 32 + n for n in range(1, 5)}
 PARAMETERS |= {"MOT_PWM_MIN": 1000, "MOT_PWM_MAX": 2000, "MOT_SPIN_MIN": 0.15, "MOT_SPIN_MAX": 0.95}
 PARAMETERS |= {"FRAME_CLASS": 1, "FRAME_TYPE": 1}
 
+KEY = bytes(range(32))
+key_file = tempfile.NamedTemporaryFile()
+key_file.write(KEY)
+key_file.flush()
+options = ["--key", key_file.name] if is_signed else []
 watch = subprocess.Popen(
-    [flagred, "watch", "udpin:127.0.0.1:0", "--jsonl"], stdout=subprocess.PIPE, text=True
+    [flagred, "watch", "udpin:127.0.0.1:0", "--jsonl", *options], stdout=subprocess.PIPE, text=True
 )
 atexit.register(watch.kill)  # a watch left behind would hold the pipes of whoever runs this
 started = json.loads(watch.stdout.readline())
 address = started["endpoint"].removeprefix("listening at ")
 link = mavutil.mavlink_connection(f"udpout:{address}", source_system=3, source_component=1)
 mavlink = mavutil.mavlink
+if is_signed:
+    link.setup_signing(KEY, sign_outgoing=True)
 heard = []
 asked = set()
 
@@ -92,6 +102,16 @@ if version == "2":
         beat(True, True)
     time.sleep(0.2)
 
+if is_signed:
+    replay = link.mav.heartbeat_encode(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, 128, 0, 4)
+    replay = replay.pack(link.mav)
+    for _ in range(4):  # the first is genuine
+        link.write(replay)
+    link.mav.signing.sign_outgoing = False
+    for _ in range(5):
+        beat(True, True)
+    time.sleep(0.2)
+
 watch.send_signal(signal.SIGINT)
 events = [json.loads(line) for line in watch.stdout]
 code = watch.wait()
@@ -133,6 +153,12 @@ notes = [e["text"] for e in events if e["event"] == "note"]
 if version == "2":
     expect(signed == 5 and any("signed" in note for note in notes), f"{signed} signed, notes {notes}")
     expect(not [e for e in events if e["event"] == "took_off"][1:], "a signed heartbeat was believed")
+if is_signed:
+    signing = link.mav.signing
+    expect(signing.goodsig_count == len(heard) and signing.badsig_count == 0, f"signatures: {vars(signing)}")
+    refused = events[-1]["unsigned"], events[-1]["bad_signatures"], signed
+    expect(refused == (5, 3, 0), f"refused: {refused}")
+    expect(not [e for e in events if e["event"] == "took_off"][1:], "an unsigned heartbeat was believed")
 expect(events[-1]["bad_checksums"] == 0, "packets were not understood")
 expect(code == 1, f"exit code {code}")
 print(f"MAVLink {version}: {len(heard)} messages understood, {len(texts)} texts, {len(levels)} changes of level")

@@ -13,7 +13,7 @@ use std::{
 use flightlog::{
     Flight,
     mavlink::{
-        Sender, Stream, Version,
+        Key, Sender, Skipped, Stream, Version,
         dialect::{
             ATTITUDE_DATA, COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavAutopilot,
             MavCmd, MavLandedState, MavMessage, MavModeFlag, MavParamType, MavResult, MavState,
@@ -84,9 +84,13 @@ pub struct StandIn {
     /// What becomes of the flight's packets, and of all others: how often somebody asks changes nothing of the flight.
     random: [u64; 2],
     stream: Stream,
+    /// A second link.
+    other: Option<(Wire, Stream)>,
     late: VecDeque<(u32, Vec<u8>)>,
     /// What came from the other side.
     pub heard: Heard,
+    /// What came on the second link.
+    pub heard_elsewhere: Heard,
     /// When the motor commands of a time, in ms of the vehicle's clock, were sent.
     pub sent: Vec<(u32, Instant)>,
     /// How far the other side is. A flight that goes as fast as it can waits for it, or the machine's own buffers would
@@ -127,8 +131,10 @@ impl StandIn {
             sender: Sender::new(1),
             random: [0x9e37_79b9_7f4a_7c15, 0xd1b5_4a32_d192_ed03],
             stream: Stream::new(),
+            other: None,
             late: VecDeque::new(),
             heard: Heard::default(),
+            heard_elsewhere: Heard::default(),
             sent: Vec::new(),
             progress: None,
             marks: 0,
@@ -284,6 +290,40 @@ impl StandIn {
         })
     }
 
+    /// Signs what it sends, and takes only what is signed.
+    pub fn sign(&mut self, key: &Key) {
+        self.sender = Sender::new(1).signed(key.clone());
+        self.stream = Stream::with_key(key.clone());
+    }
+
+    /// What of the other side's packets it could not take.
+    pub fn skipped(&self) -> Skipped {
+        self.stream.skipped()
+    }
+
+    /// Sends on another wire what came on its own, and back: an autopilot forwards between its links.
+    pub fn forward_to(&mut self, wire: Wire) {
+        self.other = Some((wire, Stream::new()));
+    }
+
+    /// Goes on from another address.
+    pub fn move_to(&mut self, wire: Wire) {
+        self.wire = wire;
+    }
+
+    /// Sends a message as another component of its system.
+    pub fn say_as(&mut self, component: u8, message: &MavMessage) {
+        let packet = Sender::new(component).packet(self.version, self.system, message);
+        self.transmit(&packet);
+    }
+
+    fn transmit(&mut self, packet: &[u8]) {
+        self.wire.send(packet);
+        if let Some((other, _)) = &mut self.other {
+            other.send(packet);
+        }
+    }
+
     /// Sends bytes as they are, past the link.
     pub fn raw(&mut self, bytes: &[u8]) {
         self.wire.send(bytes);
@@ -308,7 +348,7 @@ impl StandIn {
     fn say(&mut self, message: &MavMessage) {
         let packet = self.sender.packet(self.version, self.system, message);
         if !self.chance(TALK, self.link.loss) {
-            self.wire.send(&packet);
+            self.transmit(&packet);
         }
     }
 
@@ -323,16 +363,16 @@ impl StandIn {
             self.late.push_back((after, packet));
             return;
         }
-        self.wire.send(&packet);
+        self.transmit(&packet);
         if self.chance(FLIGHT, self.link.repeated) {
-            self.wire.send(&packet);
+            self.transmit(&packet);
         }
         for (after, _) in &mut self.late {
             *after = after.saturating_sub(1);
         }
         while self.late.front().is_some_and(|(after, _)| *after == 0) {
             if let Some((_, packet)) = self.late.pop_front() {
-                self.wire.send(&packet);
+                self.transmit(&packet);
             }
         }
     }
@@ -347,9 +387,13 @@ impl StandIn {
 
     /// Takes in what came, and answers requests.
     pub fn listen(&mut self) {
+        self.forward();
         while self.wire.receive(&mut self.stream) {
             let mut messages = Vec::new();
             while let Some(packet) = self.stream.packet() {
+                if let Some((other, _)) = &mut self.other {
+                    other.send(packet.bytes);
+                }
                 let message = packet.message().unwrap();
                 messages.push((Instant::now(), packet.system, packet.component, message));
             }
@@ -359,6 +403,25 @@ impl StandIn {
                 }
                 self.heard.messages.push((at, system, component, message));
             }
+        }
+    }
+
+    /// Brings what came on the second link to the first.
+    fn forward(&mut self) {
+        let Some((other, stream)) = &mut self.other else {
+            return;
+        };
+        let mut messages = Vec::new();
+        while other.receive(stream) {
+            while let Some(packet) = stream.packet() {
+                self.wire.send(packet.bytes);
+                let message = packet.message().unwrap();
+                messages.push((Instant::now(), packet.system, packet.component, message));
+            }
+        }
+        for message in messages {
+            self.answer(&message.3);
+            self.heard_elsewhere.messages.push(message);
         }
     }
 

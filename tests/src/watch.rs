@@ -176,9 +176,12 @@ impl Said {
     /// The worst verdict of its flights; that one is all there is to say where it is `NA`.
     pub fn verdict(&self) -> String {
         let order = ["NA", "GOOD", "WARN", "FAIL"];
-        let verdicts = self
-            .all("landed")
-            .map(|event| event["verdict"].as_str().unwrap());
+        let is_end = |event: &&Value| {
+            let kind = event["event"].as_str().unwrap();
+            ["landed", "lost_in_air", "left_in_air"].contains(&kind)
+        };
+        let verdicts = self.events.iter().filter(is_end);
+        let verdicts = verdicts.map(|event| event["verdict"].as_str().unwrap());
         let worst = verdicts.max_by_key(|verdict| order.iter().position(|known| known == verdict));
         worst.unwrap_or("none").to_owned()
     }

@@ -227,7 +227,7 @@ fn the_values_of_the_corpus_are_those_of_a_plain_integration() {
         bless();
     }
     for case in corpus() {
-        let values = reference::evaluate(&case.model, &case.point, FEW);
+        let values = reference::rules::evaluate(&case.model, &case.point, FEW);
         compare(&case, &values, (FEW_TOLERANCE, FEW_MAXIMA));
     }
 }
@@ -239,7 +239,7 @@ fn bless() {
         let mut cases = String::new();
         for line in lines.lines() {
             let case = case(&model, line, line.into());
-            let values: Vec<String> = reference::evaluate(&case.model, &case.point, MANY)
+            let values: Vec<String> = reference::rules::evaluate(&case.model, &case.point, MANY)
                 .into_iter()
                 .map(|value| value.map_or("none".into(), |value| format!("{value:.12}")))
                 .collect();

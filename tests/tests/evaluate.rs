@@ -320,7 +320,7 @@ fn whole_flights_are_evaluated_from_a_table() {
         assert_eq!(estimator["critical"], 2, "{name}");
         assert_eq!(estimator["auc"], auc, "{name}");
     }
-    // What a table of whole flights holds says nothing about noise and yaw.
+    // What a table of whole flights holds gives neither noise nor yaw.
     assert_eq!(estimator(&document, "flagred")["auc"], Value::Null);
     assert_eq!(estimator(&document, "flagred")["warnings"], Value::Null);
 
@@ -329,7 +329,7 @@ fn whole_flights_are_evaluated_from_a_table() {
     let said = String::from_utf8_lossy(&output.stderr);
     // Nothing but the load is in it, and nobody asks for the load alone.
     assert!(
-        said.contains("does not tell its input `unsteady_now`"),
+        said.contains("has no column for its input `unsteady_now`"),
         "{said}"
     );
     let output = evaluate(&["--rows", &bad, &bad]);

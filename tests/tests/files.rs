@@ -428,8 +428,10 @@ fn old_or_new(seed: u64, count: usize) {
         let is_new = now == *new;
         match fault {
             Fault::Kill(_) => {}
+            // Of the manual only some pages are looked at, and another one may not fit.
+            Fault::FullDisk(_) if is_new && writing.arguments[0] == "man" => {}
             Fault::FullDisk(_) => {
-                assert_eq!(code, if is_new { round.code } else { Some(2) }, "{what}")
+                assert_eq!(code, if is_new { round.code } else { Some(2) }, "{what}");
             }
             Fault::ClosedPipe => assert!(is_new && code == round.code, "{what}: {code:?}"),
         }

@@ -73,6 +73,22 @@ fn evaluate() {
 }
 
 #[test]
+fn learn() {
+    let folder = Folder::new();
+    let rows = "margin,spread,risk\n0.1,0.1,50\n0.1,0.1,70\n0.3,0.2,10\n0.3,0.1,5\n";
+    let (data, out) = (folder.file("data.csv", rows), folder.at("out.yaml"));
+    let arguments = ["learn", PAPER, &data, "--output", &out, "--json", "--force"];
+    let document = json(&arguments);
+    valid("learn", &document);
+    assert_eq!(document["gap_methods"], Value::Null);
+    let document = json(&[&arguments[..], &["--compare-gaps"]].concat());
+    valid("learn", &document);
+    assert_eq!(document["rows"]["used"], 4);
+    assert!(document["gap_methods"]["methods"][0]["method"].is_string());
+    assert!(document["cross_validation"]["rmse"].is_number());
+}
+
+#[test]
 fn inspect() {
     let folder = Folder::new();
     let ground = folder.file(
@@ -104,7 +120,15 @@ fn watch() {
     let flight = flight(folder.file("trouble.csv", trouble()).as_ref());
     let (said, _) = fly_udp(&flight, Link::default(), &[], Speed::Fastest);
     for kind in [
-        "started", "found", "ready", "took_off", "risk", "level", "finding", "landed", "ended",
+        "started",
+        "found",
+        "ready",
+        "took_off",
+        "risk",
+        "level",
+        "finding",
+        "left_in_air",
+        "ended",
     ] {
         assert!(said.all(kind).next().is_some(), "no `{kind}`");
     }

@@ -73,17 +73,17 @@ fn bad_data_is_told_with_its_place_and_nothing_is_written() {
         (
             "nan",
             "margin,spread,risk\n0.1,0.1,5\n0.1,NaN,5\n",
-            "line 3, column `spread`: `NaN` is no finite number",
+            "line 3, column `spread`: `NaN` is not a finite number",
         ),
         (
             "text",
             "margin,spread,risk\nhigh,0.1,5\n",
-            "line 2, column `margin`: `high` is no number",
+            "line 2, column `margin`: `high` is not a number",
         ),
         (
             "infinite",
             "margin,spread,risk\n0.1,0.1,inf\n",
-            "line 2, column `risk`: `inf` is no finite number",
+            "line 2, column `risk`: `inf` is not a finite number",
         ),
         (
             "range",
@@ -134,7 +134,7 @@ fn bad_data_is_told_with_its_place_and_nothing_is_written() {
     let said = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(0));
     assert!(
-        said.contains("1 used, 1 refused") && said.contains("`NaN` is no finite number"),
+        said.contains("1 used, 1 refused") && said.contains("`NaN` is not a finite number"),
         "{said}"
     );
     assert!(Path::new(&out).exists());

@@ -69,7 +69,7 @@ impl Vehicle {
     fn live(&self) -> (Telemetry, Vec<Row>) {
         let mut telemetry: Option<Telemetry> = None;
         let mut rows = Vec::new();
-        for (_, bytes) in &self.packets {
+        for (t_s, bytes) in &self.packets {
             let Next::Packet(packet) = next_packet(bytes) else {
                 panic!("no packet")
             };
@@ -78,7 +78,7 @@ impl Vehicle {
                 telemetry = Some(Telemetry::new(&packet, vehicle));
             }
             let telemetry = telemetry.as_mut().unwrap();
-            if let News::Commands { t_s } = telemetry.receive(&packet) {
+            if let News::Commands { t_s } = telemetry.receive(&packet, *t_s) {
                 let mut commands = [0.0; 4];
                 telemetry.effective_commands(&telemetry.setup(), &mut commands);
                 rows.push(Row {

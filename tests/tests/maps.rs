@@ -4,8 +4,8 @@ use std::fs;
 
 use flagred_tests::flagred;
 use fuzzy::{
-    Engine,
-    map::{DecisionMap, Grid, picture},
+    Engine, drawing,
+    map::{DecisionMap, Grid},
 };
 
 const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml");
@@ -19,21 +19,34 @@ fn a_picture_of_every_rule_set() {
             .unwrap()
             .model;
         let engine = Engine::new(&model).unwrap();
-        let points = if model.inputs.len() > 2 { 17 } else { 51 };
-        let mut grid = Grid::new(&engine, points).unwrap();
+        // A picture has two axes; the other inputs are held.
         // The rules to fly with are decided near the lower ends of their inputs.
-        for (name, value) in [("load", 0.5), ("at_limit", 0.0)] {
-            if engine.input(name).is_some() {
-                grid = grid.fix(name, value).unwrap();
-            }
+        let (points, held): (usize, &[(&str, f64)]) = match model.name.as_str() {
+            "flagred" => (
+                201,
+                &[
+                    ("load", 0.5),
+                    ("at_limit", 0.0),
+                    ("throttle_activity", 0.25),
+                    ("spread", 0.25),
+                ],
+            ),
+            "flagred-battery" => (51, &[("battery", 50.0)]),
+            _ => (51, &[]),
+        };
+        let mut grid = Grid::new(&engine, 2).unwrap();
+        for (name, value) in held {
+            grid = grid.fix(name, *value).unwrap();
         }
-        for name in ["unsteady_now", "unsteady_lately"] {
-            if engine.input(name).is_some() {
-                grid = grid.points(name, 201).unwrap();
+        for input in &model.inputs {
+            if !held.iter().any(|(name, _)| *name == input.name) {
+                grid = grid.points(&input.name, points).unwrap();
             }
         }
         let map = DecisionMap::new(&engine, grid, 0).unwrap();
-        insta::assert_snapshot!(picture(&map));
+        let slice = drawing::Slice::new(&model, &map).unwrap();
+        let text = drawing::map_text(&slice, |cell, _| cell.to_string());
+        insta::assert_snapshot!(text + &drawing::values_text(&slice));
     });
 }
 

@@ -13,7 +13,7 @@ fn paper() -> Model {
 
 fn membership(variable: &Variable, term: &str, x: f64) -> f64 {
     let term = variable.terms.iter().find(|t| t.name == term).unwrap();
-    term.shape.membership(x) * term.height
+    term.membership_function.membership(x) * term.height
 }
 
 /// Row 0 of Table I, for which the paper prints the memberships and the degree of the rule learned from it.

@@ -253,7 +253,7 @@ fn a_watch_that_serves_nobody_ends() {
         }
     }
     child.kill().unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(0), "it goes on");
+    assert_eq!(child.wait().unwrap().code(), Some(3), "it goes on");
 }
 
 fn plane() -> MavMessage {

@@ -11,7 +11,7 @@ const PEER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peer/pymavlink_peer.py"
 #[ignore = "needs Python with pymavlink: tests/peer/run.sh"]
 fn pymavlink_and_watch_understand_each_other() {
     let python = std::env::var("FLAGRED_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    for version in ["1", "2"] {
+    for version in ["1", "2", "signed"] {
         let output = Command::new(&python)
             .arg(PEER)
             .arg(flagred().get_program())

@@ -69,8 +69,12 @@ fn says_what_assess_says(
     if verdict == "GOOD" {
         assert_eq!(vehicle.heard.texts(), [], "{case}");
     }
-    let risky = matches!(verdict, "WARN" | "FAIL");
-    assert_eq!(said.code, Some(i32::from(risky)), "{case}");
+    let code = match verdict {
+        "WARN" | "FAIL" => 1,
+        "GOOD" => 0,
+        _ => 3,
+    };
+    assert_eq!(said.code, Some(code), "{case}");
 }
 
 /// A watch that a vehicle has a connection to, in MAVLink 1.

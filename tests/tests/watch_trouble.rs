@@ -14,6 +14,7 @@ use flagred_tests::{
     wire::{Link, Speed, Wire},
 };
 use flightlog::mavlink::Version;
+use serde_json::json;
 
 #[test]
 fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
@@ -39,14 +40,16 @@ fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
         air.start_s + 80.0,
     );
     assert!(vehicle.heard.values("FR_RISK").len() > values_then);
-    // It starts anew.
+    // It starts anew, and takes its time for that.
+    vehicle.linger(Duration::from_millis(2300));
     for t_ms in [100, 200, 300, 400] {
         vehicle.send(&servo(t_ms * 1000, &[1000; 16]));
         vehicle.linger(Duration::from_millis(5));
     }
     let said = watch.end();
-    assert_eq!(said.one("lost")["what"], "link");
-    let back = said.one("back");
+    assert!(said.all("lost").all(|lost| lost["what"] == "link"));
+    assert_eq!((said.all("lost").count(), said.all("back").count()), (2, 2));
+    let back = said.all("back").next().unwrap();
     assert!(back["after_s"].as_f64().unwrap() >= 2.0, "{back}");
     said.one("rebooted");
     let first = said
@@ -57,8 +60,19 @@ fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
         first["risk"].is_null() && first["unknown"].is_string(),
         "{first}"
     );
-    // The flight is over with the reboot.
-    assert_eq!(said.all("landed").count(), 1);
+    // The flight is over with the reboot, and nobody saw it land.
+    assert_eq!(said.all("landed").count(), 0);
+    let lost = said.one("lost_in_air");
+    assert_eq!(
+        (&lost["why"], &lost["verdict"]),
+        (&json!("reboot"), &json!("NA"))
+    );
+    assert_eq!(lost["level_seen"], "GOOD");
+    assert!(lost["t_s"].as_f64().unwrap() > air.start_s + 79.0, "{lost}");
+    assert_eq!(
+        (said.one("ended")["worst"].as_str(), said.code),
+        (Some("NA"), Some(3))
+    );
     check_texts(&said, &vehicle.heard);
 }
 
@@ -136,6 +150,14 @@ fn garbage_and_wild_values_are_counted_and_raise_no_alarm() {
     );
     assert_eq!(said.all("level").count(), 0);
     assert_eq!(said.all("rebooted").count(), 0);
+    let jumps = said
+        .all("doubt")
+        .filter(|doubt| doubt["what"] == "clock_jump");
+    assert_eq!(jumps.count(), 1);
+    assert!(
+        ended["not_believed"]["clock_jumps"].as_u64() >= Some(40),
+        "{ended}"
+    );
     assert_eq!(said.verdict(), "GOOD");
     assert_eq!(vehicle.heard.texts(), []);
     assert!(said.has_note("no MAVLink packets"));
@@ -255,7 +277,10 @@ fn ports_that_cannot_be_had_are_told_with_what_to_do() {
         "{told}"
     );
     let (code, told) = refused("somewhere", &[]);
-    assert!(code == Some(2) && told.contains("is no endpoint"), "{told}");
+    assert!(
+        code == Some(2) && told.contains("is not an endpoint"),
+        "{told}"
+    );
     let (code, told) = refused("udpout:127.0.0.1:9", &["--no-send"]);
     assert!(code == Some(2) && told.contains("sends first"), "{told}");
 }
@@ -313,4 +338,45 @@ fn a_connection_that_breaks_is_opened_again() {
         2
     );
     said.one("found");
+}
+
+#[test]
+fn nothing_known_is_no_good() {
+    let watch = Watch::udp(&[]);
+    let said = watch.end();
+    let ended = said.one("ended");
+    assert_eq!(
+        (&ended["worst"], &ended["reason"]),
+        (&json!("NA"), &json!("no flight was seen"))
+    );
+    assert_eq!(said.code, Some(3));
+}
+
+/// A link that is killed in the air is no landing; a watch that is ended there is none either, but has seen all.
+#[test]
+fn a_flight_whose_end_nobody_saw_is_not_landed() {
+    let flight = flight(Path::new(STEADY));
+    let air = flight.in_air.as_ref().unwrap().spans[0];
+    for (silent_ms, event, why, verdict, code) in [
+        (2300, "lost_in_air", "link", "NA", 3),
+        (0, "left_in_air", "watch_ended", "GOOD", 0),
+    ] {
+        let watch = Watch::udp(&[]);
+        let mut vehicle = watch.vehicle(&flight, Link::default());
+        vehicle.meet();
+        vehicle.fly(&flight, Speed::Fastest, air.start_s, air.start_s + 30.0);
+        vehicle.linger(Duration::from_millis(silent_ms));
+        let said = watch.end();
+        assert_eq!(said.all("landed").count(), 0);
+        let end = said.one(event);
+        assert_eq!(
+            (&end["why"], &end["verdict"]),
+            (&json!(why), &json!(verdict))
+        );
+        assert!(end["risk_max"].as_f64().is_some(), "{end}");
+        assert_eq!(
+            (said.one("ended")["worst"].as_str(), said.code),
+            (Some(verdict), Some(code))
+        );
+    }
 }

@@ -126,6 +126,10 @@ impl<'a> Teller<'a> {
         match finding.measure {
             Measure::Risk | Measure::ElevatedRisk => {
                 let mut text = format!("{} up to {peak:.0} %", finding.measure);
+                // Its numbers are small: without the threshold 3 % reads like nothing.
+                if finding.measure == Measure::ElevatedRisk {
+                    text += &format!(" (threshold {} %)", number(finding.threshold_pct, 2));
+                }
                 text += &match &finding.cause {
                     Some(cause) => format!(", {}", self.cause(cause)),
                     None => ", interpolated where no rule applies".to_owned(),

@@ -7,6 +7,7 @@ use flagred::{
     log,
     monitor::Monitor,
     profile::Profile,
+    sample::Unknown,
 };
 use flightlog::Flight;
 use fuzzy::{
@@ -158,15 +159,17 @@ fn inputs(
     let mut rows = Vec::with_capacity(moments.len());
     let mut now = vec![f64::NAN; profile.inputs.len()];
     log::for_each_sample(flight, carried, |sample| {
-        // The state at a moment is that after the newest sample up to it.
+        // The state at a moment is that after the newest sample up to it. A touch of the ground does not count.
         while moments
             .get(rows.len())
             .is_some_and(|t_s| *t_s + 1e-6 < sample.t_s)
         {
             rows.push(now.clone());
         }
-        monitor.push(sample);
-        now.copy_from_slice(monitor.inputs());
+        let update = monitor.push(sample);
+        if update.risk != Err(Unknown::OnGround) || update.level.is_none() {
+            now.copy_from_slice(monitor.inputs());
+        }
     });
     rows.resize(moments.len(), now);
     Ok(rows)

@@ -19,20 +19,19 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Flight logs with attitude, or tables with a row for each flight (`margin_mean`, `c_mean`, `c_std`, ...)
+    /// Flight logs with attitude, or CSV tables with a row for each flight and columns such as `margin_mean`
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Add the inputs of this profile: a built-in name or a file
+    /// Add the inputs of this profile: `flagred`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE")]
     profile: Option<String>,
 
-    /// Make a row for each period of so many seconds instead of each time in the air
+    /// Make a row for each period of this length instead of each time in the air
     #[arg(long, value_name = "SECONDS", value_parser = seconds, conflicts_with = "ahead")]
     window: Option<f64>,
 
-    /// Make rows that look ahead: the inputs over the windows of the profile, and the largest 1 s attitude error within the
-    /// next so many seconds
+    /// Make rows that look ahead: the inputs of the profile at a time, and the largest attitude error in the seconds after it
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     ahead: Option<f64>,
 

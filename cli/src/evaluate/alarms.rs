@@ -7,6 +7,8 @@ use flagred::{
     verdict::Level,
 };
 
+use serde::Serialize;
+
 use super::{
     flight::{Record, Said},
     scores::{APART, RESAMPLES, SEED, median},
@@ -173,15 +175,17 @@ impl SmallErrors {
 }
 
 /// The upsets of flights, and how the alarms of a profile found them.
-#[derive(Default)]
+#[derive(Default, Serialize)]
 pub(super) struct Upsets {
     pub(super) before: usize,
     /// Within 1 s after.
+    #[serde(rename = "within_1_s")]
     pub(super) after: usize,
     pub(super) never: usize,
     /// Those of flights without a verdict.
     pub(super) not_assessed: usize,
     /// The median of the leads, in seconds.
+    #[serde(rename = "lead_s_median")]
     pub(super) lead_s: Option<f64>,
 }
 

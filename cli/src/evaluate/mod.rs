@@ -16,12 +16,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use serde::Serialize;
+
 use crate::{
     failure::{Exit, Failure},
     output::{self, Files, Stdout},
     parallel,
 };
 use alarms::Alarms;
+use document::Document;
 use estimators::Estimators;
 use flight::Record;
 use scores::{APART, Case, Evaluated};
@@ -33,12 +36,12 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "rows", value_name = "FLIGHT")]
     flights: Vec<PathBuf>,
 
-    /// Evaluate a table with a row for each flight instead: `att_rmse_deg`, `c_mean`, `c_std`, ..., or from `flagred dataset`
+    /// Evaluate a table with a row for each flight instead of logs, as `flagred dataset` writes it
     #[arg(long, value_name = "DATA.csv", conflicts_with = "flights")]
     rows: Option<PathBuf>,
 
-    /// Another profile to compare, a file; may be repeated
-    #[arg(long = "profile", value_name = "NAME|FILE")]
+    /// A profile to compare with the built-in ones, a file; may be repeated
+    #[arg(long = "profile", value_name = "FILE")]
     profiles: Vec<String>,
 
     /// How many seconds ahead the risk should predict
@@ -62,6 +65,7 @@ fn horizon(text: &str) -> Result<f64, String> {
 }
 
 /// A file that is not among the flights, and why.
+#[derive(Serialize)]
 struct LeftOut {
     file: String,
     reason: String,
@@ -102,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let documents: Vec<&output::Output> = svg.iter().collect();
     let mut out = Stdout::beside(&documents);
     if arguments.json {
-        let document = document::document(&evaluation);
+        let document = Document::new(&evaluation);
         serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
         writeln!(out)?;
     } else {

@@ -68,7 +68,7 @@ pub(super) fn cases(
                 let column = Column::of(&table, &[&input.name], &input.source);
                 if column.is_none() {
                     notes.push(format!(
-                        "`{}` says nothing: the table does not tell its input `{}`",
+                        "profile `{}` has no risk: the table has no column for its input `{}`",
                         named.name, input.name
                     ));
                 }

@@ -1,6 +1,7 @@
 //! What the warnings of a profile are worth, over many flights.
 
 use flagred::evaluation::Judged;
+use serde::Serialize;
 
 use super::{
     alarms::kinds,
@@ -12,7 +13,7 @@ use super::{
 const SAME_GROUP_S: f64 = 5.0;
 
 /// The warnings of a profile over a number of flights.
-#[derive(Default)]
+#[derive(Default, Serialize)]
 pub(super) struct Warnings {
     pub(super) flights: usize,
     pub(super) hours: f64,
@@ -20,18 +21,22 @@ pub(super) struct Warnings {
     /// Episodes with a warning on that began before them.
     pub(super) announced: usize,
     /// The median of how long before, in seconds, over those that were announced.
+    #[serde(rename = "lead_s_median")]
     pub(super) lead_s: Option<f64>,
     /// Groups of episodes, and those whose first one was announced: a warning that stays on announces all the others.
     pub(super) groups: usize,
     pub(super) groups_announced: usize,
+    #[serde(rename = "group_lead_s_median")]
     pub(super) group_lead_s: Option<f64>,
     /// Episodes that were not announced, but answered by a warning before they were over.
     pub(super) answered: usize,
     /// The median of how long that took from their start, in seconds.
+    #[serde(rename = "answer_s_median")]
     pub(super) answer_s: Option<f64>,
     pub(super) warnings: usize,
     pub(super) false_warnings: usize,
     /// The share of the time that a warning was on.
+    #[serde(rename = "share_of_time_on")]
     pub(super) share_on: Option<f64>,
 }
 

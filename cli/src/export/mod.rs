@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     /// Write C for `flagred.h` and the library of `flagred-c`
     #[arg(long, group = "language")]
     c: bool,
-    /// Profile: a built-in name or a file
+    /// Profile: `flagred`, `flagred-paper`, or a file
     #[arg(value_name = "PROFILE", default_value = profile::DEFAULT)]
     profile: String,
     /// The file to write; `-` is standard output

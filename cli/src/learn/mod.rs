@@ -84,7 +84,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "group_by")]
     no_validation: bool,
 
-    /// Skip unusable rows
+    /// Skip rows that cannot be used, instead of stopping at them
     #[arg(long)]
     skip_bad_rows: bool,
 
@@ -171,7 +171,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     output.write(&report::rule_set(arguments, &outcome, &text))?;
     let mut out = Stdout::beside(&[&output]);
     if arguments.json {
-        writeln!(out, "{:#}", report::json(arguments, &outcome))?;
+        let document = report::Document::new(arguments, &outcome);
+        serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
+        writeln!(out)?;
     } else {
         report::words(&mut out, arguments, &outcome)?;
     }

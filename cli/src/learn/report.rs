@@ -2,9 +2,12 @@
 
 use std::io::Write;
 
-use flagred::{gap::GapMethod, learning::Errors};
+use flagred::{
+    gap::GapMethod,
+    learning::{Errors, MethodErrors},
+};
 use fuzzy::drawing::visible;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::{Arguments, Outcome, Resolve};
 
@@ -140,44 +143,104 @@ pub(super) fn words(
     Ok(())
 }
 
-pub(super) fn json(arguments: &Arguments, outcome: &Outcome) -> Value {
-    let learned = &outcome.learned;
-    let errors = |errors: &Errors| {
-        json!({
-            "rows": errors.rows,
-            "without_prediction": errors.without_prediction,
-            "rmse": errors.rmse,
-            "mean_absolute": errors.mean_absolute,
-            "bias": errors.bias,
-        })
-    };
-    let missing = learned.missing_antecedents.iter().map(ToString::to_string);
-    json!({
-        "schema": 1,
-        "rows": {"used": learned.samples, "refused": outcome.refused_count, "reasons": outcome.refused},
-        "resolution": resolution(arguments),
-        "rules": {
-            "learned": learned.model.rules.len() - outcome.kept,
-            "kept": outcome.kept,
-            "completed": learned.completed,
-        },
-        "conflicts": learned.conflicts,
-        "left_out": learned.left_out,
-        "missing": {"count": learned.missing, "antecedents": missing.collect::<Vec<_>>()},
-        "coverage": {
-            "by_rules": outcome.coverage,
-            "after_filling": outcome.after_filling,
-            "gap_method": GapMethod::default().name(),
-        },
-        "cross_validation": outcome.errors.as_ref().filter(|e| e.rows > 0).map(errors),
-        "gap_methods": outcome.gaps.as_ref().map(|gaps| json!({
-            "rules_left_out": gaps.rules,
-            "with_the_rule": errors(&gaps.with_the_rule.by_row),
-            "methods": gaps.methods.iter().map(|(method, found)| json!({
-                "method": method.name(),
-                "by_row": errors(&found.by_row),
-                "by_rule_mean_absolute": found.by_rule_mean_absolute,
-            })).collect::<Vec<_>>(),
-        })),
-    })
+/// The document of `--json`.
+#[derive(Serialize)]
+pub(super) struct Document<'a> {
+    schema: &'static str,
+    rows: Rows<'a>,
+    resolution: &'static str,
+    rules: Rules,
+    conflicts: u64,
+    left_out: u64,
+    missing: Missing,
+    coverage: Coverage,
+    /// `None` where rows were too few, or validation was not wanted.
+    cross_validation: Option<&'a Errors>,
+    gap_methods: Option<GapMethods<'a>>,
+}
+
+#[derive(Serialize)]
+struct Rows<'a> {
+    used: u64,
+    refused: usize,
+    reasons: &'a [String],
+}
+
+#[derive(Serialize)]
+struct Rules {
+    learned: usize,
+    kept: usize,
+    completed: u64,
+}
+
+#[derive(Serialize)]
+struct Missing {
+    count: u64,
+    antecedents: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Coverage {
+    by_rules: f64,
+    after_filling: f64,
+    gap_method: &'static str,
+}
+
+#[derive(Serialize)]
+struct GapMethods<'a> {
+    rules_left_out: u32,
+    with_the_rule: &'a Errors,
+    methods: Vec<OfMethod<'a>>,
+}
+
+#[derive(Serialize)]
+struct OfMethod<'a> {
+    method: &'static str,
+    #[serde(flatten)]
+    errors: &'a MethodErrors,
+}
+
+impl<'a> Document<'a> {
+    pub(super) fn new(arguments: &Arguments, outcome: &'a Outcome) -> Document<'a> {
+        let learned = &outcome.learned;
+        let missing = learned.missing_antecedents.iter();
+        Document {
+            schema: "flagred.learn/1",
+            rows: Rows {
+                used: learned.samples,
+                refused: outcome.refused_count,
+                reasons: &outcome.refused,
+            },
+            resolution: resolution(arguments),
+            rules: Rules {
+                learned: learned.model.rules.len() - outcome.kept,
+                kept: outcome.kept,
+                completed: learned.completed,
+            },
+            conflicts: learned.conflicts,
+            left_out: learned.left_out,
+            missing: Missing {
+                count: learned.missing,
+                antecedents: missing.map(ToString::to_string).collect(),
+            },
+            coverage: Coverage {
+                by_rules: outcome.coverage,
+                after_filling: outcome.after_filling,
+                gap_method: GapMethod::default().name(),
+            },
+            cross_validation: outcome.errors.as_ref().filter(|e| e.rows > 0),
+            gap_methods: outcome.gaps.as_ref().map(|gaps| GapMethods {
+                rules_left_out: gaps.rules,
+                with_the_rule: &gaps.with_the_rule.by_row,
+                methods: gaps
+                    .methods
+                    .iter()
+                    .map(|(method, errors)| OfMethod {
+                        method: method.name(),
+                        errors,
+                    })
+                    .collect(),
+            }),
+        }
+    }
 }

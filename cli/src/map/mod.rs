@@ -38,8 +38,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "INPUT=VALUE", value_parser = fix)]
     fix: Vec<(String, f64)>,
 
-    /// The input along the horizontal axis [default: the first that is not fixed], or a part of its range:
-    /// `spread:0..0.2`. Where all terms lie in less than a quarter of the range, the picture shows twice that part
+    /// The input along the horizontal axis, and the part of its range to show: `spread` or `spread:0..0.2` [default: the
+    /// first that is not fixed, where its terms lie]
     #[arg(long, value_name = "INPUT", value_parser = axis)]
     x: Option<AxisChoice>,
 
@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, value_name = "METHOD", default_value = "thin-plate")]
     fill: Fill,
 
-    /// No rule applies where all firing strengths are below this [default: 0.5 where AND is the minimum]
+    /// Interpolate cells in which all firing strengths are below this [default: from AND and the terms; 0.5 for the minimum]
     #[arg(long, value_name = "DEGREE")]
     coverage_below: Option<f64>,
 
@@ -63,11 +63,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
 
-    /// Draw a surface in three dimensions
+    /// Draw a surface in three dimensions instead of a flat map
     #[arg(long, requires = "svg")]
     surface: bool,
 
-    /// Show the rule with the largest firing strength of each cell instead of the value
+    /// Show in each cell the rule with the largest firing strength instead of the value
     #[arg(long, conflicts_with = "surface")]
     activations: bool,
 

@@ -62,7 +62,7 @@ impl FromStr for Endpoint {
 
 fn unknown(text: &str) -> String {
     format!(
-        "`{text}` is no endpoint: write `udpin:`, `udpout:`, `tcp:` or `tcpin:` and an address with a port, or a serial port such as `/dev/ttyACM0:57600`"
+        "`{text}` is not an endpoint: write `udpin:`, `udpout:`, `tcp:` or `tcpin:` and an address with a port, or a serial port such as `/dev/ttyACM0:57600`"
     )
 }
 

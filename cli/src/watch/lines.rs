@@ -1,14 +1,16 @@
-//! What happens, line by line: words for people and pipes, JSON for programs.
+//! What happens in words, line by line, for people and pipes.
 
-use std::io;
+use flagred::{
+    estimator::Estimator,
+    flight::{Reason, Verdict},
+    monitor::Update,
+};
+use flightlog::{Vehicle, mavlink::Setup};
 
-use flagred::{estimator::Estimator, flight::Verdict, monitor::Update, verdict::Level};
-use flightlog::{Motor, Range, Vehicle, mavlink::Setup};
 use fuzzy::drawing::visible;
-use serde::Serialize;
 
-use super::session::{Event, Session, Silent, View};
-use crate::assessment::{document::FindingDocument, finding::Teller, words::effective_range};
+use super::session::{Doubt, End, Event, Flown, Left, Lost, Session, Silent, Source, View};
+use crate::assessment::{finding::Teller, words::effective_range};
 
 /// Seconds of the vehicle's clock between two lines of risk in words.
 const STEP_S: f64 = 1.0;
@@ -53,6 +55,37 @@ pub(crate) fn words(at_s: f64, text: &str) -> String {
 pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimator) -> String {
     match event {
         Event::Found { system, vehicle } => format!("found vehicle {system}: {}", name(vehicle)),
+        Event::Locked { system, source } => format!(
+            "motor commands of vehicle {system} come{}: it is believed, and nobody else in its name",
+            from(*source)
+        ),
+        Event::GivenUp { system } => {
+            format!("vehicle {system} is given up: it is silent, or sends no motor commands")
+        }
+        Event::SenderChanged { system, to, .. } => format!(
+            "vehicle {system} is heard{} now; it is followed there",
+            from(*to)
+        ),
+        Event::Doubt {
+            what,
+            system,
+            component,
+            source,
+        } => match what {
+            Doubt::SecondSender => format!(
+                "something else{} speaks as vehicle {system}: it is not believed",
+                from(*source)
+            ),
+            Doubt::OtherComponent => format!(
+                "component {component} of vehicle {system} sends parameters: they are not taken for those of the autopilot"
+            ),
+            Doubt::ClockJump => format!(
+                "a time stamp of vehicle {system} jumps while its clock goes on: it is left out"
+            ),
+        },
+        Event::AnotherWatch {
+            component, speaks, ..
+        } => another_watch(*component, *speaks),
         Event::Another { system } => {
             format!("another vehicle is on the link, {system}: it is not followed")
         }
@@ -89,16 +122,58 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             let text = teller(view.as_ref(), estimator).finding(finding);
             format!("{} of {text}", finding.level)
         }
-        Event::Landed { verdict } => match verdict {
-            Verdict::Known(level) => format!("{level}: the flight is over"),
-            Verdict::NotAvailable(reason) => {
-                format!("NA: the flight is over; no verdict: {reason}")
-            }
-        },
+        Event::Over { end, flown } => over(*end, flown),
     }
 }
 
-fn teller<'a>(view: Option<&View<'a>>, estimator: &'a Estimator) -> Teller<'a> {
+/// Where something came from, if that is known.
+fn from(source: Source) -> String {
+    source.map_or(String::new(), |address| format!(" from {address}"))
+}
+
+fn another_watch(component: Option<u8>, speaks: bool) -> String {
+    let (what, so) = match (component, speaks) {
+        (None, _) => return "no other watch is heard any more".to_owned(),
+        (Some(1), false) => ("the autopilot itself sends the risk".to_owned(), "nothing"),
+        (Some(number), false) => (format!("component {number} watches it too"), "nothing"),
+        (Some(number), true) => (format!("component {number} watches it too"), "all"),
+    };
+    let help = match speaks {
+        false => "; `--send-anyway` sends both",
+        true => "",
+    };
+    format!("{what}: this watch says {so}{help}")
+}
+
+fn over(end: End, flown: &Flown) -> String {
+    let mut text = match end {
+        End::Landed => format!("{}: the flight is over", flown.verdict),
+        End::Lost(lost) => format!("{}: LOST IN THE AIR, {}", flown.verdict, cause_of(lost)),
+        End::Left(Left::WatchEnded) => format!("{}: the watch ends in the air", flown.verdict),
+        End::Left(Left::SetUpAnew) => format!(
+            "{}: the flight so far; motors or limits are known better, the rest is assessed anew",
+            flown.verdict
+        ),
+    };
+    match (&flown.verdict, flown.level_seen) {
+        (Verdict::NotAvailable(Reason::LostInAir), Some(level)) => {
+            text += &format!("; {level} until then");
+        }
+        (Verdict::NotAvailable(reason), _) => text += &format!("; no verdict: {reason}"),
+        (Verdict::Known(_), _) => {}
+    }
+    text
+}
+
+fn cause_of(lost: Lost) -> &'static str {
+    match lost {
+        Lost::Link => "nothing is heard of the vehicle",
+        Lost::MotorCommands => "motor commands do not come any more",
+        Lost::Reboot => "the vehicle rebooted",
+    }
+}
+
+pub(super) fn teller<'a>(view: Option<&View<'a>>, estimator: &'a Estimator) -> Teller<'a> {
     let setup = view.and_then(|view| view.setup);
     Teller {
         model: estimator.model(),
@@ -159,159 +234,10 @@ fn risk(update: &Update, view: &View<'_>, estimator: &Estimator) -> String {
     }
 }
 
-/// What an event adds to its kind and time; names are those of docs/json.md.
-#[derive(Serialize)]
-#[serde(tag = "event", rename_all = "snake_case")]
-pub(crate) enum EventLine<'a> {
-    Started {
-        schema: &'static str,
-        endpoint: &'a str,
-        profile: &'a str,
-    },
-    Found(About<'a>),
-    AnotherVehicle {
-        system: u8,
-    },
-    NotAMultirotor(About<'a>),
-    Ready {
-        motors: &'a [Motor],
-        range: &'a Range,
-        effective_range: &'a Range,
-        assumed: &'a [String],
-    },
-    Note {
-        text: &'a str,
-    },
-    Lost {
-        what: Silent,
-    },
-    Back {
-        what: Silent,
-        after_s: f64,
-    },
-    Rebooted,
-    TookOff {
-        t_s: f64,
-    },
-    Risk(Risk<'a>),
-    Level {
-        t_s: f64,
-        level: Level,
-        text: &'a str,
-    },
-    Finding(FindingDocument<'a>),
-    Landed(&'a Verdict),
-    Ended {
-        /// `None` without a flight that has a verdict.
-        worst: Option<Level>,
-        skipped_bytes: u64,
-        bad_checksums: u64,
-        unknown_messages: u64,
-        signed: u64,
-        unsent: u64,
-        dropped_lines: u64,
-    },
-}
-
-#[derive(Serialize)]
-pub(crate) struct About<'a> {
-    system: u8,
-    kind: String,
-    frame: Option<&'a str>,
-    firmware: Option<&'a str>,
-}
-
-#[derive(Serialize)]
-pub(crate) struct Risk<'a> {
-    #[serde(flatten)]
-    update: &'a Update,
-    margin: Option<f64>,
-    spread: Option<f64>,
-    /// Effective commands.
-    motors: &'a [f64],
-    /// Why the risk is unknown.
-    unknown: Option<String>,
-}
-
-/// A line with the receiver's time.
-#[derive(Serialize)]
-struct At<'a> {
-    at_s: f64,
-    #[serde(flatten)]
-    line: EventLine<'a>,
-}
-
-/// An event as one object; `None` for samples on the ground, which have no risk.
-pub(crate) fn json(
-    at_s: f64,
-    event: &Event,
-    session: &Session<'_>,
-    estimator: &Estimator,
-) -> io::Result<Option<String>> {
-    let view = session.view();
-    let line = match event {
-        Event::Found { system, vehicle } => EventLine::Found(About::new(*system, vehicle)),
-        Event::Another { system } => EventLine::AnotherVehicle { system: *system },
-        Event::NotAMultirotor { system, vehicle } => {
-            EventLine::NotAMultirotor(About::new(*system, vehicle))
-        }
-        Event::Ready { setup } => EventLine::Ready {
-            motors: &setup.motors,
-            range: &setup.range,
-            effective_range: &setup.effective,
-            assumed: &setup.assumed,
-        },
-        Event::Note { text } => EventLine::Note { text },
-        Event::Lost { what } => EventLine::Lost { what: *what },
-        Event::Back { what, after_s } => EventLine::Back {
-            what: *what,
-            after_s: *after_s,
-        },
-        Event::Rebooted => EventLine::Rebooted,
-        Event::TookOff { t_s } => EventLine::TookOff { t_s: *t_s },
-        Event::Risk { update } => {
-            let Some(view) = view.filter(|view| view.is_in_air) else {
-                return Ok(None);
-            };
-            let why = update.risk.err();
-            EventLine::Risk(Risk {
-                update,
-                margin: view.margin,
-                spread: view.spread,
-                motors: view.motors,
-                unknown: why.map(|unknown| unknown.explain(estimator.profile())),
-            })
-        }
-        Event::Level { t_s, level, text } => EventLine::Level {
-            t_s: *t_s,
-            level: *level,
-            text,
-        },
-        Event::Ended { finding } => {
-            let teller = teller(view.as_ref(), estimator);
-            EventLine::Finding(FindingDocument::new(finding, teller))
-        }
-        Event::Landed { verdict } => EventLine::Landed(verdict),
-    };
-    json_line(at_s, line).map(Some)
-}
-
-/// A line as one object.
-pub(crate) fn json_line(at_s: f64, line: EventLine<'_>) -> io::Result<String> {
-    let text = serde_json::to_string(&At {
-        at_s: (at_s * 1e3).round() / 1e3,
-        line,
-    })?;
-    Ok(text + "\n")
-}
-
-impl<'a> About<'a> {
-    fn new(system: u8, vehicle: &'a Vehicle) -> Self {
-        About {
-            system,
-            kind: vehicle.kind.to_string(),
-            frame: vehicle.frame.as_deref(),
-            firmware: vehicle.firmware.as_deref(),
-        }
+/// Why a verdict is NA.
+pub(crate) fn reason(verdict: &Verdict) -> Option<String> {
+    match verdict {
+        Verdict::Known(_) => None,
+        Verdict::NotAvailable(reason) => Some(reason.to_string()),
     }
 }

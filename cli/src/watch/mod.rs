@@ -1,6 +1,7 @@
 //! `flagred watch`: the risk of a flight while it is flown.
 
 mod endpoint;
+mod jsonl;
 mod lines;
 mod port;
 mod printer;
@@ -10,8 +11,9 @@ mod tlog;
 mod voice;
 
 use std::{
-    io::{self, IsTerminal},
-    path::PathBuf,
+    fs::File,
+    io::{self, IsTerminal, Read},
+    path::{Path, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -19,24 +21,27 @@ use std::{
     time::{Duration, Instant},
 };
 
-use flagred::{estimator::Estimator, verdict::Level};
-use flightlog::mavlink::{Skipped, Stream};
+use flagred::{estimator::Estimator, flight::Verdict};
+use flightlog::mavlink::{Key, Sender, Skipped, Stream};
 
 use crate::{
+    assess::{FailOn, exit_of},
     failure::{Exit, Failure},
     profile,
 };
 use endpoint::Endpoint;
-use lines::EventLine;
+use jsonl::EventLine;
 use port::{Port, Received};
 use printer::Printer;
 use screen::Screen;
-use session::{Event, Out, Session};
+use session::{Doubts, Event, Out, Session};
 
 /// The version of the lines' layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.watch/1";
-/// The component that is spoken as: the first of those for onboard computers.
+/// The default component id: the first of those for onboard computers.
 const COMPONENT: u8 = 191;
+/// The most that is read of a key file: digits and some white space.
+const KEY_FILE: u64 = 256;
 /// The largest datagram there is.
 const DATAGRAM: usize = 65_536;
 /// How often the screen is drawn, and how many frames may wait for the terminal.
@@ -51,7 +56,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "ENDPOINT")]
     endpoint: Endpoint,
 
-    /// Profile: inputs, rule set and thresholds. A built-in name or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 
@@ -59,11 +64,19 @@ pub(crate) struct Arguments {
     #[arg(long)]
     jsonl: bool,
 
+    /// Believe only packets signed with the key in this file (32 bytes, or 64 hexadecimal digits), and sign those sent
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
+
     /// Only listen: send neither requests nor warnings
     #[arg(long)]
     no_send: bool,
 
-    /// Send as this component of the vehicle's system
+    /// Send warnings although another watch of the vehicle does
+    #[arg(long, conflicts_with = "no_send")]
+    send_anyway: bool,
+
+    /// The MAVLink component id to send as
     #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
     component: u8,
 
@@ -97,10 +110,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(path) => Some(tlog::Recording::create(path)?),
         None => None,
     };
-    let mut session = Session::new(
-        &estimator,
-        (!arguments.no_send).then_some(arguments.component),
-    );
+    let key = arguments.key.as_deref().map(read_key).transpose()?;
+    let sender = (!arguments.no_send).then(|| {
+        let sender = Sender::new(arguments.component);
+        match &key {
+            Some(key) => sender.signed(key.clone()),
+            None => sender,
+        }
+    });
+    let mut session = Session::new(&estimator, sender, arguments.send_anyway);
     let title = match port.listens_at() {
         Some(address) if matches!(arguments.endpoint, Endpoint::UdpIn(_) | Endpoint::TcpIn(_)) => {
             format!("listening at {address}")
@@ -108,7 +126,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         _ => arguments.endpoint.to_string(),
     };
     let mut display = Display::new(arguments.jsonl, &title, &estimator)?;
-    let mut stream = Stream::new();
+    let mut stream = key.map_or_else(Stream::new, Stream::with_key);
     let mut buffer = vec![0; DATAGRAM];
     let mut out = Out::default();
     let start = Instant::now();
@@ -129,6 +147,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 out.events.push(Event::Note { text });
             }
             Received::Closed(why) => {
+                session.closed();
                 let text = format!("the link is closed: {why}; waiting for it to come back");
                 out.events.push(Event::Note { text });
             }
@@ -137,7 +156,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             let recorded = recording.as_mut().map_or(Ok(()), |r| r.add(packet.bytes));
             let failed = recorded.err().map(|text| Event::Note { text });
             out.events.extend(failed);
-            if session.receive(now_s, &packet, &mut out) {
+            if session.receive(now_s, port.source(), &packet, &mut out) {
                 port.answer();
             }
             // At once: what is sent must not wait for what is shown.
@@ -161,32 +180,58 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     display.show(now_s, &mut out.events, &session, &estimator)?;
     let totals = Totals {
         skipped: stream.skipped(),
+        doubts: session.doubts(),
         unsent: port.unsent(),
     };
-    display.end(now_s, worst, &totals)?;
-    Ok(if worst > Some(Level::Good) {
-        Exit::Findings
-    } else {
-        Exit::Clean
+    display.end(now_s, &worst, &totals)?;
+    Ok(exit_of(&worst, FailOn::Warn))
+}
+
+/// The key of MAVLink signatures in a file.
+fn read_key(path: &Path) -> Result<Key, Failure> {
+    let name = path.display();
+    // A key is short: no more is read of a file that is none.
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(KEY_FILE).read_to_end(&mut bytes))
+        .map_err(|error| Failure::unreadable(format!("`{name}` cannot be read: {error}")))?;
+    Key::from_bytes(&bytes).ok_or_else(|| {
+        Failure::unreadable(format!("`{name}` is not a key"))
+            .help("a key is 32 bytes, or 64 hexadecimal digits")
     })
 }
 
 /// What the link cost.
 struct Totals {
     skipped: Skipped,
+    doubts: Doubts,
     unsent: u64,
 }
 
 impl Totals {
     fn words(&self) -> String {
-        format!(
+        let mut text = format!(
             "{} bytes skipped, {} bad checksums, {} unknown messages, {} signed packets ignored, {} packets not sent",
             self.skipped.bytes,
             self.skipped.checksums,
             self.skipped.unknown,
             self.skipped.signed,
             self.unsent
-        )
+        );
+        if self.skipped.unsigned + self.skipped.bad_signatures > 0 {
+            text += &format!(
+                ", {} unsigned packets and {} with a wrong signature refused",
+                self.skipped.unsigned, self.skipped.bad_signatures
+            );
+        }
+        let doubts = self.doubts;
+        if doubts != Doubts::default() {
+            text += &format!(
+                "; not believed: {} packets of a second sender, {} parameters of other components, {} jumps of the clock",
+                doubts.second_sender, doubts.other_component, doubts.clock_jumps
+            );
+        }
+        text
     }
 }
 
@@ -215,7 +260,7 @@ impl Display {
                 endpoint: title,
                 profile,
             };
-            printer.print(lines::json_line(0.0, started)?);
+            printer.print(jsonl::json_line(0.0, started)?);
             Face::Json
         } else if is_screen {
             let title = format!("{title}, profile {profile}");
@@ -243,7 +288,7 @@ impl Display {
     ) -> Result<(), Failure> {
         for event in events.drain(..) {
             let line = match &mut self.face {
-                Face::Json => lines::json(at_s, &event, session, estimator)?,
+                Face::Json => jsonl::json(at_s, &event, session, estimator)?,
                 Face::Words(words) => words.line(at_s, &event, session, estimator),
                 Face::Screen(screen) => {
                     screen.add(at_s, &event, session, estimator);
@@ -264,7 +309,17 @@ impl Display {
             (
                 told.signed,
                 now.signed,
-                "signed packets are left out: without the key nobody can tell whether they are genuine",
+                "signed packets are left out: without the key (`--key`) nobody can tell whether they are genuine",
+            ),
+            (
+                told.unsigned,
+                now.unsigned,
+                "packets that are not signed are refused",
+            ),
+            (
+                told.bad_signatures,
+                now.bad_signatures,
+                "packets whose signature is not that of the key, or that came before, are refused",
             ),
             (
                 told.unknown,
@@ -295,23 +350,25 @@ impl Display {
         }
     }
 
-    fn end(mut self, at_s: f64, worst: Option<Level>, totals: &Totals) -> Result<(), Failure> {
+    fn end(mut self, at_s: f64, worst: &Verdict, totals: &Totals) -> Result<(), Failure> {
         let last = if let Face::Json = self.face {
             let ended = EventLine::Ended {
-                worst,
+                worst: worst.to_string(),
+                reason: lines::reason(worst),
                 skipped_bytes: totals.skipped.bytes,
                 bad_checksums: totals.skipped.checksums,
                 unknown_messages: totals.skipped.unknown,
                 signed: totals.skipped.signed,
+                unsigned: totals.skipped.unsigned,
+                bad_signatures: totals.skipped.bad_signatures,
+                not_believed: totals.doubts,
                 unsent: totals.unsent,
                 dropped_lines: self.printer.dropped(),
             };
-            lines::json_line(at_s, ended)?
+            jsonl::json_line(at_s, ended)?
         } else {
-            let worst = worst.map_or("no flight with a verdict".to_owned(), |level| {
-                format!("{level} at worst")
-            });
-            lines::words(at_s, &format!("{worst}; {}", totals.words()))
+            let why = lines::reason(worst).map_or(String::new(), |reason| format!(": {reason}"));
+            lines::words(at_s, &format!("{worst} at worst{why}; {}", totals.words()))
         };
         self.leave();
         self.printer.print(last);

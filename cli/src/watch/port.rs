@@ -37,7 +37,9 @@ enum Kind {
     },
     TcpIn {
         listener: TcpListener,
-        stream: Option<TcpStream>,
+        client: Option<Client>,
+        /// Connections that are served where the client falls silent, the oldest first.
+        waiting: Vec<Client>,
     },
     Serial {
         path: String,
@@ -45,6 +47,18 @@ enum Kind {
         port: Option<Box<dyn serialport::SerialPort>>,
         tried: Instant,
     },
+}
+
+/// Connections that wait for their turn, at most.
+const MOST_WAITING: usize = 8;
+/// A client that is silent for so long gives way to one that is not.
+const CLIENT_SILENT: Duration = Duration::from_secs(2);
+
+/// A connection to us.
+struct Client {
+    stream: TcpStream,
+    address: SocketAddr,
+    heard: Instant,
 }
 
 /// What a look at the port gave.
@@ -100,7 +114,8 @@ impl Port {
                 listener.set_nonblocking(true).map_err(failed)?;
                 Kind::TcpIn {
                     listener,
-                    stream: None,
+                    client: None,
+                    waiting: Vec::new(),
                 }
             }
             Endpoint::Serial { path, baud } => Kind::Serial {
@@ -145,22 +160,11 @@ impl Port {
                 }),
                 None => again(tried, || connect(address), stream),
             },
-            Kind::TcpIn { listener, stream } => match stream {
-                Some(open) => read(open, buffer).unwrap_or_else(|why| {
-                    *stream = None;
-                    Received::Closed(why)
-                }),
-                None => match listener.accept().and_then(|(open, _)| prepare(open)) {
-                    Ok(open) => {
-                        *stream = Some(open);
-                        Received::Opened
-                    }
-                    Err(_) => {
-                        thread::sleep(WAIT);
-                        Received::Nothing
-                    }
-                },
-            },
+            Kind::TcpIn {
+                listener,
+                client,
+                waiting,
+            } => serve(listener, client, waiting, buffer),
             Kind::Serial {
                 path,
                 baud,
@@ -174,6 +178,16 @@ impl Port {
                 }),
                 None => again(tried, || open_serial(path, *baud), port),
             },
+        }
+    }
+
+    /// Where the latest bytes came from; `None` on a serial port.
+    pub(crate) fn source(&self) -> Option<SocketAddr> {
+        match &self.kind {
+            Kind::Udp { from, .. } => *from,
+            Kind::Tcp { stream, .. } => stream.as_ref()?.peer_addr().ok(),
+            Kind::TcpIn { client, .. } => Some(client.as_ref()?.address),
+            Kind::Serial { .. } => None,
         }
     }
 
@@ -197,7 +211,7 @@ impl Port {
                 ..
             }
             | Kind::TcpIn {
-                stream: Some(stream),
+                client: Some(Client { stream, .. }),
                 ..
             } => stream.write_all(packet),
             Kind::Serial {
@@ -212,6 +226,70 @@ impl Port {
     pub(crate) fn unsent(&self) -> u64 {
         self.unsent
     }
+}
+
+/// Serves one client at a time: the next one where it closes, and one that speaks where it is silent.
+fn serve(
+    listener: &TcpListener,
+    client: &mut Option<Client>,
+    waiting: &mut Vec<Client>,
+    buffer: &mut [u8],
+) -> Received {
+    if waiting.len() < MOST_WAITING
+        && let Ok((stream, address)) = listener.accept()
+        && let Ok(stream) = prepare(stream)
+    {
+        let heard = Instant::now();
+        waiting.push(Client {
+            stream,
+            address,
+            heard,
+        });
+    }
+    if let Some(open) = client {
+        match read(&mut open.stream, buffer) {
+            Ok(Received::Nothing) => {}
+            Ok(received) => {
+                open.heard = Instant::now();
+                return received;
+            }
+            Err(why) => {
+                *client = None;
+                return Received::Closed(why);
+            }
+        }
+        if open.heard.elapsed() < CLIENT_SILENT {
+            return Received::Nothing;
+        }
+        // A look at each, without waiting: those that closed go.
+        waiting.retain(|next| !matches!(peek(&next.stream), Ok(0)));
+        let speaks = |next: &Client| matches!(peek(&next.stream), Ok(1..));
+        let Some(index) = waiting.iter().position(speaks) else {
+            // One that never says anything does not keep others from waiting.
+            if waiting.len() == MOST_WAITING {
+                waiting.remove(0);
+            }
+            return Received::Nothing;
+        };
+        *client = Some(waiting.remove(index));
+        return Received::Opened;
+    }
+    if waiting.is_empty() {
+        thread::sleep(WAIT);
+        return Received::Nothing;
+    }
+    let mut next = waiting.remove(0);
+    next.heard = Instant::now();
+    *client = Some(next);
+    Received::Opened
+}
+
+/// What is there to read, without waiting for it.
+fn peek(stream: &TcpStream) -> io::Result<usize> {
+    stream.set_nonblocking(true)?;
+    let count = stream.peek(&mut [0]);
+    stream.set_nonblocking(false)?;
+    count
 }
 
 fn read(open: &mut impl Read, buffer: &mut [u8]) -> Result<Received, String> {

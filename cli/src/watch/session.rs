@@ -5,70 +5,33 @@
 
 use flagred::{
     estimator::Estimator,
-    flight::{Finding, Verdict},
-    monitor::{Sample, Unknown, Update},
-    verdict::Level,
+    flight::{Reason, Verdict},
+    monitor::{Sample, Unknown},
 };
-use flightlog::{
-    Vehicle,
-    mavlink::{News, Packet, Sender, Setup, Telemetry, Version, vehicle_of},
-};
+use flightlog::mavlink::{News, Packet, Sender, Telemetry, Version, vehicle_of};
 
+mod event;
+mod speech;
 mod tracked;
+mod trust;
 
 use super::voice;
+pub(crate) use event::{End, Event, Flown, Left, Lost, Silent};
+use speech::Speech;
 pub(crate) use tracked::View;
 use tracked::{Tracked, tell};
+use trust::{Candidates, Proof, doubt_of, may_be_multirotor};
+pub(crate) use trust::{Doubt, Doubts, Source};
 
 /// Seconds between two heartbeats, and between two risks sent.
 const HEARTBEAT_S: f64 = 1.0;
 const RISK_S: f64 = 0.5;
+/// A vehicle that sends no motor commands for so long although they are requested gives way to another one.
+const PROOF_S: f64 = 5.0;
+/// A vehicle that is silent for so long gives way to one of another system.
+const GONE_S: f64 = 30.0;
 /// Systems told apart: there are no more.
 const SYSTEMS: usize = 256;
-
-/// Something to tell.
-#[derive(Debug, Clone)]
-pub(crate) enum Event {
-    /// A vehicle was found.
-    Found { system: u8, vehicle: Vehicle },
-    /// Another vehicle is on the link; it is not followed.
-    Another { system: u8 },
-    /// The vehicle that was found is no multirotor; there is nothing to say about it.
-    NotAMultirotor { system: u8, vehicle: Vehicle },
-    /// Motors and limits are known, or assumed; again where they became known better.
-    Ready { setup: Setup },
-    /// Something in words.
-    Note { text: String },
-    /// Nothing comes any more.
-    Lost { what: Silent },
-    /// It comes again.
-    Back { what: Silent, after_s: f64 },
-    /// The vehicle started anew.
-    Rebooted,
-    /// A flight began.
-    TookOff { t_s: f64 },
-    /// A sample was assessed.
-    Risk { update: Update },
-    /// The level changed in flight.
-    Level {
-        t_s: f64,
-        level: Level,
-        text: String,
-    },
-    /// A finding ended.
-    Ended { finding: Finding },
-    /// A flight ended, or what was seen of it.
-    Landed { verdict: Verdict },
-}
-
-/// What fell silent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Silent {
-    Link,
-    #[serde(rename = "motor_commands")]
-    Motors,
-}
 
 /// What comes out.
 #[derive(Default)]
@@ -78,55 +41,121 @@ pub(crate) struct Out {
     pub(crate) packets: Vec<Vec<u8>>,
 }
 
-/// Follows the first vehicle on a link.
+/// Follows the first vehicle on a link that proves to be one.
 pub(crate) struct Session<'e> {
     estimator: &'e Estimator,
-    /// `None` listens only.
-    sender: Option<Sender>,
+    speech: Speech,
     tracked: Option<Tracked>,
+    candidates: Candidates,
+    doubts: Doubts,
     others: Vec<u8>,
     heartbeat_s: Option<f64>,
-    /// The worst level of the flights with a verdict.
-    worst: Option<Level>,
+    /// The worst verdict of the flights so far.
+    worst: Verdict,
 }
 
 impl<'e> Session<'e> {
-    /// Speaks as `component` of the vehicle's system; listens only where that is `None`.
-    pub(crate) fn new(estimator: &'e Estimator, component: Option<u8>) -> Session<'e> {
+    /// Speaks by `sender`, or listens only; where another watch speaks, only if it `insists`.
+    pub(crate) fn new(
+        estimator: &'e Estimator,
+        sender: Option<Sender>,
+        insists: bool,
+    ) -> Session<'e> {
         Session {
             estimator,
-            sender: component.map(Sender::new),
+            speech: Speech::new(sender, insists),
             tracked: None,
+            candidates: Candidates::default(),
+            doubts: Doubts::default(),
             others: Vec::new(),
             heartbeat_s: None,
-            worst: None,
+            worst: Verdict::NotAvailable(Reason::NoFlight),
         }
     }
 
-    /// Takes in a packet at `now_s` of the receiver's clock; says whether it is the vehicle's.
-    pub(crate) fn receive(&mut self, now_s: f64, packet: &Packet<'_>, out: &mut Out) -> bool {
-        if let Some(vehicle) = vehicle_of(packet) {
-            self.meet(now_s, packet, vehicle, out);
+    /// Takes in a packet that came from `source` at `now_s` of the receiver's clock; says whether it is the vehicle's.
+    pub(crate) fn receive(
+        &mut self,
+        now_s: f64,
+        source: Source,
+        packet: &Packet<'_>,
+        out: &mut Out,
+    ) -> bool {
+        if !self.is_followed(source, packet) {
+            self.doubt(now_s, source, packet, out);
+            if !self.consider(now_s, source, packet, out) {
+                return false;
+            }
         }
         let Some(tracked) = &mut self.tracked else {
             return false;
         };
-        if packet.system != tracked.telemetry.system() {
-            return false;
+        if voice::is_risk(packet) {
+            self.speech.hear(now_s, packet, out);
         }
         tracked.count(packet);
-        if packet.component == 1 {
-            tracked.hear(now_s, out);
+        tracked.hear(now_s, out);
+        let jumps = tracked.telemetry.clock_jumps();
+        let news = tracked.telemetry.receive(packet, now_s);
+        let jumps = tracked.telemetry.clock_jumps() - jumps;
+        if self.doubts.add(Doubt::ClockJump, jumps) {
+            out.events.push(told(Doubt::ClockJump, source, packet));
         }
-        match tracked.telemetry.receive(packet) {
+        match news {
             News::Rebooted => {
-                let worst = tracked.start_anew(now_s, out);
-                self.worst = self.worst.max(worst);
+                let verdict = tracked.start_anew(now_s, out);
+                add(&mut self.worst, verdict);
             }
-            News::Commands { t_s } => self.assess(now_s, t_s, out),
+            News::Commands { t_s } => {
+                if !std::mem::replace(&mut tracked.is_proved, true) {
+                    let system = packet.system;
+                    out.events.push(Event::Locked { system, source });
+                    self.candidates.clear();
+                }
+                self.assess(now_s, t_s, out);
+            }
             _ => {}
         }
         true
+    }
+
+    /// The connection that packets came on is closed: the vehicle may come back on another one.
+    pub(crate) fn closed(&mut self) {
+        if let Some(tracked) = &mut self.tracked {
+            tracked.is_gone = true;
+        }
+    }
+
+    /// How much was not believed.
+    pub(crate) fn doubts(&self) -> Doubts {
+        self.doubts
+    }
+
+    fn is_followed(&self, source: Source, packet: &Packet<'_>) -> bool {
+        let is_it = |tracked: &Tracked| {
+            (tracked.telemetry.system(), tracked.source) == (packet.system, source)
+        };
+        packet.component == 1 && self.tracked.as_ref().is_some_and(is_it)
+    }
+
+    /// What comes in the name of the vehicle, but not from its autopilot where that is heard.
+    fn doubt(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut Out) {
+        let Some(tracked) = &self.tracked else {
+            return;
+        };
+        if tracked.telemetry.system() != packet.system {
+            return;
+        }
+        if packet.component != 1 {
+            self.speech.hear(now_s, packet, out);
+        }
+        let doubt = doubt_of(packet);
+        let is_other_end = doubt == Some(Doubt::SecondSender) && tracked.is_silent();
+        if let Some(doubt) = doubt.filter(|_| !is_other_end)
+            && self.doubts.add(doubt, 1)
+        {
+            out.events.push(told(doubt, source, packet));
+        }
     }
 
     /// What is due without any packet; to be called often.
@@ -136,37 +165,81 @@ impl<'e> Session<'e> {
         let Some(tracked) = &mut self.tracked else {
             return;
         };
-        let worst = tracked.set_up(now_s, self.sender.is_some(), self.estimator, out);
-        self.worst = self.worst.max(worst);
+        let verdict = tracked.set_up(now_s, self.speech.asks(), self.estimator, out);
+        self.speech.tick(now_s, tracked.telemetry.system(), out);
         tracked.listen(now_s, out);
+        add(&mut self.worst, verdict);
     }
 
-    /// Ends the watch and the flight that is still on. Gives the worst level of the flights with a verdict.
-    pub(crate) fn finish(&mut self, out: &mut Out) -> Option<Level> {
-        if let Some(tracked) = &mut self.tracked {
-            self.worst = self.worst.max(tracked.end_flight(out));
+    /// Ends the watch and the flight that is still on. Gives the worst verdict of the flights.
+    pub(crate) fn finish(&mut self, out: &mut Out) -> Verdict {
+        let verdict = self
+            .tracked
+            .as_mut()
+            .and_then(|tracked| tracked.finish(out));
+        add(&mut self.worst, verdict);
+        self.worst.clone()
+    }
+
+    /// Whether the sender of a packet becomes the one to follow.
+    fn consider(&mut self, now_s: f64, source: Source, packet: &Packet<'_>, out: &mut Out) -> bool {
+        let is_open =
+            (self.tracked.as_ref()).is_none_or(|tracked| !tracked.is_proved || tracked.is_silent());
+        if is_open {
+            self.candidates.hear(source, packet);
         }
-        self.worst
-    }
-
-    fn meet(&mut self, now_s: f64, packet: &Packet<'_>, vehicle: Vehicle, out: &mut Out) {
+        let Some(vehicle) = vehicle_of(packet) else {
+            return false;
+        };
         let system = packet.system;
-        if let Some(tracked) = &self.tracked {
-            if tracked.telemetry.system() != system && self.is_new(system) {
-                out.events.push(Event::Another { system });
-            }
-            return;
+        let followed = self.tracked.as_ref().map(|t| t.telemetry.system());
+        if followed.is_some_and(|followed| followed != system) && self.is_new(system) {
+            out.events.push(Event::Another { system });
         }
-        let telemetry = Telemetry::new(packet, vehicle.clone());
-        if !telemetry.may_be_multirotor() {
+        if !may_be_multirotor(&vehicle) {
             if self.is_new(system) {
                 out.events.push(Event::NotAMultirotor { system, vehicle });
             }
-            return;
+            return false;
         }
-        out.events.push(Event::Found { system, vehicle });
-        self.tracked = Some(Tracked::new(telemetry, now_s));
+        if !is_open {
+            return false;
+        }
+        let proof = self.candidates.beat(now_s, source, system, &vehicle);
+        if proof == Proof::None {
+            return false;
+        }
+        if let Some(tracked) = &mut self.tracked {
+            let is_same = followed == Some(system) && *tracked.telemetry.vehicle() == vehicle;
+            if tracked.is_proved && is_same {
+                out.events.push(Event::SenderChanged {
+                    system,
+                    from: std::mem::replace(&mut tracked.source, source),
+                    to: source,
+                });
+                self.candidates.clear();
+                return true;
+            }
+            let asked_in_vain = self.speech.asks() && now_s - tracked.found_s >= PROOF_S;
+            let gives_way = match tracked.is_proved {
+                true => now_s - tracked.heard_s >= GONE_S,
+                false => tracked.is_silent() || proof == Proof::Commands || asked_in_vain,
+            };
+            if !gives_way {
+                return false;
+            }
+            let verdict = tracked.end_flight(End::Lost(Lost::Link), out);
+            add(&mut self.worst, verdict);
+            let system = tracked.telemetry.system();
+            out.events.push(Event::GivenUp { system });
+        }
+        let telemetry = Telemetry::new(packet, vehicle.clone());
+        self.tracked = Some(Tracked::new(telemetry, source, now_s));
+        self.candidates.clear();
+        self.speech.forget();
         self.heartbeat_s = None;
+        out.events.push(Event::Found { system, vehicle });
+        true
     }
 
     fn is_new(&mut self, system: u8) -> bool {
@@ -178,16 +251,18 @@ impl<'e> Session<'e> {
     }
 
     fn ask(&mut self, now_s: f64, out: &mut Out) {
-        if let (Some(tracked), Some(sender)) = (&mut self.tracked, &mut self.sender)
-            && !tracked.link_lost
+        if let Some(tracked) = &mut self.tracked
+            && self.speech.asks()
+            && !tracked.is_silent()
         {
             let mut messages = Vec::new();
             tracked
                 .requests
                 .due(now_s, &tracked.telemetry, &mut messages);
-            let (version, system) = tracked.address();
-            out.packets
-                .extend(messages.iter().map(|m| sender.packet(version, system, m)));
+            let to = tracked.address();
+            for message in &messages {
+                self.speech.ask(to, message, out);
+            }
         }
     }
 
@@ -195,16 +270,13 @@ impl<'e> Session<'e> {
         let due = self
             .heartbeat_s
             .is_none_or(|sent_s| now_s - sent_s >= HEARTBEAT_S);
-        if let Some(sender) = &mut self.sender
-            && due
-        {
+        if due {
             self.heartbeat_s = Some(now_s);
-            let (version, system) = self
+            let to = self
                 .tracked
                 .as_ref()
                 .map_or((Version::V2, voice::NOBODY), Tracked::address);
-            out.packets
-                .push(sender.packet(version, system, &voice::heartbeat()));
+            self.speech.say(to, &voice::heartbeat(now_s), out);
         }
     }
 
@@ -212,7 +284,7 @@ impl<'e> Session<'e> {
         let Some(tracked) = &mut self.tracked else {
             return;
         };
-        let (version, system) = tracked.address();
+        let to = tracked.address();
         let in_air = tracked.telemetry.is_in_air();
         let Some(watch) = &mut tracked.watch else {
             return;
@@ -243,23 +315,21 @@ impl<'e> Session<'e> {
             watch.is_flying = true;
             out.events.push(Event::TookOff { t_s });
         } else if !in_air {
-            self.worst = self.worst.max(watch.end_flight(out));
+            let verdict = watch.end_flight(End::Landed, out);
+            add(&mut self.worst, verdict);
         }
         out.events.push(Event::Risk { update });
         if let Some(level) = update.change.filter(|_| in_air) {
             let finding = watch.assessor.open_finding();
             let text = voice::say(level, &update, finding.as_ref(), &watch.setup);
-            if let Some(sender) = &mut self.sender {
-                let message = voice::status(level, &text);
-                out.packets.push(sender.packet(version, system, &message));
-            }
+            self.speech.say(to, &voice::status(level, &text), out);
             out.events.push(Event::Level { t_s, level, text });
         }
         let due = watch
             .risk_sent_s
             .is_none_or(|sent_s| now_s - sent_s >= RISK_S);
-        if let Some(sender) = &mut self.sender
-            && due
+        if due
+            && self.speech.speaks()
             && let Ok(estimate) = update.risk
             && let Some(elevated_pct) = update.elevated_risk_pct
         {
@@ -268,8 +338,7 @@ impl<'e> Session<'e> {
                 (voice::RISK, estimate.risk_pct),
                 (voice::ELEVATED, elevated_pct),
             ] {
-                let message = voice::value(t_s, name, value);
-                out.packets.push(sender.packet(version, system, &message));
+                self.speech.say(to, &voice::value(t_s, name, value), out);
             }
         }
     }
@@ -277,6 +346,23 @@ impl<'e> Session<'e> {
     /// How things stand, for a screen.
     pub(crate) fn view(&self) -> Option<View<'_>> {
         self.tracked.as_ref().map(Tracked::view)
+    }
+}
+
+/// A doubt as an event.
+fn told(what: Doubt, source: Source, packet: &Packet<'_>) -> Event {
+    Event::Doubt {
+        what,
+        system: packet.system,
+        component: packet.component,
+        source,
+    }
+}
+
+/// Keeps the graver verdict.
+fn add(worst: &mut Verdict, verdict: Option<Verdict>) {
+    if let Some(verdict) = verdict {
+        *worst = verdict.worst(worst.clone());
     }
 }
 

@@ -6,7 +6,7 @@ use flagred::{
     verdict::{Level, Measure},
 };
 use flightlog::mavlink::{
-    Setup,
+    Packet, Setup,
     dialect::{
         HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavSeverity, MavState, MavType,
         NAMED_VALUE_FLOAT_DATA, STATUSTEXT_DATA,
@@ -25,16 +25,46 @@ pub(crate) const NOBODY: u8 = 255;
 /// The longest text of a STATUSTEXT.
 const TEXT: usize = 50;
 
-/// The heartbeat of an onboard computer.
-pub(crate) fn heartbeat() -> MavMessage {
+/// The first byte of `custom_mode` in the heartbeats of a watch. The others are its age in tenths of a second: of two
+/// watches of one vehicle the older speaks.
+const WATCH: u32 = 0xf1 << 24;
+const AGE: u32 = (1 << 24) - 1;
+
+/// Numbers of messages.
+const HEARTBEAT: u32 = 0;
+const NAMED_VALUE_FLOAT: u32 = 251;
+
+/// The heartbeat of an onboard computer that has been watching for so long.
+pub(crate) fn heartbeat(age_s: f64) -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-        custom_mode: 0,
+        custom_mode: WATCH | ((age_s * 10.0) as u32).min(AGE),
         mavtype: MavType::MAV_TYPE_ONBOARD_CONTROLLER,
         autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
         base_mode: MavModeFlag::empty(),
         system_status: MavState::MAV_STATE_ACTIVE,
         mavlink_version: 3,
     })
+}
+
+/// The age in a heartbeat of another watch, in seconds.
+pub(crate) fn age_of(packet: &Packet<'_>) -> Option<f64> {
+    // The message is read only where it may be one.
+    if packet.id != HEARTBEAT || packet.component == 1 {
+        return None;
+    }
+    let Some(MavMessage::HEARTBEAT(beat)) = packet.message() else {
+        return None;
+    };
+    let is_watch = beat.custom_mode & !AGE == WATCH
+        && beat.mavtype == MavType::MAV_TYPE_ONBOARD_CONTROLLER
+        && beat.autopilot == MavAutopilot::MAV_AUTOPILOT_INVALID;
+    is_watch.then(|| f64::from(beat.custom_mode & AGE) / 10.0)
+}
+
+/// Whether a packet is the risk that another watch, or a program on the autopilot, sends.
+pub(crate) fn is_risk(packet: &Packet<'_>) -> bool {
+    packet.id == NAMED_VALUE_FLOAT
+        && matches!(packet.message(), Some(MavMessage::NAMED_VALUE_FLOAT(value)) if value.name.to_str() == Ok(RISK))
 }
 
 /// A value at a time of the vehicle's clock.

@@ -43,6 +43,21 @@ pub struct Memory<'m> {
     pub motors: &'m mut [Motor],
 }
 
+/// The pieces of a memory that holds arrays or vectors under the names of [`Memory`].
+macro_rules! lent {
+    ($held:expr) => {
+        Memory {
+            numbers: &mut $held.numbers,
+            partials: &mut $held.partials,
+            strongest: &mut $held.strongest,
+            outcomes: &mut $held.outcomes,
+            seen: &mut $held.seen,
+            risks: &mut $held.risks,
+            motors: &mut $held.motors,
+        }
+    };
+}
+
 impl Plan<'_> {
     /// The size of its memory.
     pub const fn sizes(&self) -> Sizes {
@@ -137,16 +152,7 @@ impl<
     /// # Errors
     /// As [`Monitor::new`].
     pub fn monitor<'a>(&'a mut self, plan: &'a Plan<'a>) -> Result<Monitor<'a>, Refused> {
-        let memory = Memory {
-            numbers: &mut self.numbers,
-            partials: &mut self.partials,
-            strongest: &mut self.strongest,
-            outcomes: &mut self.outcomes,
-            seen: &mut self.seen,
-            risks: &mut self.risks,
-            motors: &mut self.motors,
-        };
-        Monitor::new(plan, memory)
+        Monitor::new(plan, lent!(self))
     }
 }
 
@@ -184,15 +190,6 @@ impl OwnedMemory {
     /// # Errors
     /// As [`Monitor::new`].
     pub fn monitor<'a>(&'a mut self, plan: &'a Plan<'a>) -> Result<Monitor<'a>, Refused> {
-        let memory = Memory {
-            numbers: &mut self.numbers,
-            partials: &mut self.partials,
-            strongest: &mut self.strongest,
-            outcomes: &mut self.outcomes,
-            seen: &mut self.seen,
-            risks: &mut self.risks,
-            motors: &mut self.motors,
-        };
-        Monitor::new(plan, memory)
+        Monitor::new(plan, lent!(self))
     }
 }

@@ -10,7 +10,7 @@ use fuzzy::{
 
 use super::is_gap;
 
-/// With more cells times rules the proof is not tried.
+/// After looking at so many rules the proof is given up.
 const MOST_STEPS: usize = 5_000_000;
 
 /// The least degree of each term in each interval of an input.
@@ -30,39 +30,96 @@ pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) ->
         .iter()
         .map(|rule| &rule.rule)
         .filter(|rule| concludes(rule));
-    let rules: Vec<(f64, Vec<(usize, usize)>)> = rules
-        .filter_map(|rule| Some((rule.weight.min(1.0), literals(model, &rule.condition)?)))
+    let mut rules: Vec<Antecedent> = rules
+        .filter_map(|rule| {
+            Some(Antecedent {
+                weight: rule.weight.min(1.0),
+                literals: literals(model, &rule.condition)?,
+            })
+        })
         .collect();
-    let lengths = || inputs.iter().map(Vec::len);
-    let cells = lengths().fold(1, usize::saturating_mul);
-    let strength = |cell: &[usize], (weight, literals): &(f64, Vec<(usize, usize)>)| {
-        let degrees = literals
+    // Inputs of many rules first: then few of the others matter.
+    let mentions = |input: usize| {
+        let literals = rules.iter().flat_map(|rule| &rule.literals);
+        literals.filter(|(i, _)| *i == input).count()
+    };
+    let mut order: Vec<usize> = (0..inputs.len()).collect();
+    order.sort_by_key(|&input| core::cmp::Reverse(mentions(input)));
+    for (input, _) in rules.iter_mut().flat_map(|rule| &mut rule.literals) {
+        *input = order.iter().position(|i| i == input).unwrap_or_default();
+    }
+    let mut search = Search {
+        inputs: order.iter().map(|&input| &inputs[input]).collect(),
+        rules,
+        and: model.operators.and,
+        coverage_below,
+        cell: Vec::new(),
+        steps: 0,
+    };
+    search.is_covered()
+}
+
+/// The antecedent of a rule: its inputs and their terms, joined by AND.
+struct Antecedent {
+    weight: f64,
+    literals: Vec<(usize, usize)>,
+}
+
+/// A depth-first search for a cell that no rule covers.
+struct Search<'a> {
+    inputs: Vec<&'a Least>,
+    rules: Vec<Antecedent>,
+    and: Conjunction,
+    coverage_below: f64,
+    /// The interval of each of the first inputs.
+    cell: Vec<usize>,
+    steps: usize,
+}
+
+impl Search<'_> {
+    /// Whether all cells with these intervals of the first inputs are covered. A rule that needs no further input covers them
+    /// all at once.
+    fn is_covered(&mut self) -> bool {
+        self.steps += self.rules.len();
+        let known = self.cell.len();
+        let decided = self.rules.iter().filter(|rule| {
+            let last = rule.literals.iter().map(|(input, _)| input + 1).max();
+            last.unwrap_or(0) == known
+        });
+        let strongest = decided.map(|rule| self.strength(rule)).fold(0.0, f64::max);
+        if !is_gap(strongest, self.coverage_below) {
+            return true;
+        }
+        let Some(intervals) = self.inputs.get(known).map(|least| least.len()) else {
+            return false;
+        };
+        (0..intervals).all(|interval| {
+            self.cell.push(interval);
+            let covered = self.steps < MOST_STEPS && self.is_covered();
+            self.cell.pop();
+            covered
+        })
+    }
+
+    fn strength(&self, rule: &Antecedent) -> f64 {
+        let degrees = rule
+            .literals
             .iter()
-            .map(|(input, term)| inputs[*input][cell[*input]][*term]);
-        weight
-            * match model.operators.and {
+            .map(|(input, term)| self.inputs[*input][self.cell[*input]][*term]);
+        rule.weight
+            * match self.and {
                 Conjunction::Minimum => degrees.fold(1.0, f64::min),
                 Conjunction::Product => degrees.product(),
                 _ => 0.0,
             }
-    };
-    let mut cell: Vec<usize> = inputs.iter().map(|_| 0).collect();
-    cells.saturating_mul(rules.len()) <= MOST_STEPS
-        && (0..cells).all(|number| {
-            let mut rest = number;
-            for (interval, length) in cell.iter_mut().zip(lengths()) {
-                (*interval, rest) = (rest % length, rest / length);
-            }
-            let strengths = rules.iter().map(|rule| strength(&cell, rule));
-            !is_gap(strengths.fold(0.0, f64::max), coverage_below)
-        })
+    }
 }
 
 fn least_degrees(input: &Variable) -> Least {
     let corners: Vec<_> = input
         .terms
         .iter()
-        .map(|term| term.shape.corners())
+        .map(|term| term.membership_function.corners())
         .collect();
     let all = corners.iter().flatten().flatten().map(|(x, _)| *x);
     let mut cuts: Vec<f64> = all.chain([input.low, input.high]).collect();
@@ -81,7 +138,8 @@ fn least_degrees(input: &Variable) -> Least {
             let jumps = |corners: &Vec<(f64, f64)>| corners.windows(2).any(|c| c[0].0 == c[1].0);
             match corners {
                 Some(corners) if !jumps(corners) => {
-                    let [start, end] = [pair[0], pair[1]].map(|x| term.shape.membership(x));
+                    let [start, end] =
+                        [pair[0], pair[1]].map(|x| term.membership_function.membership(x));
                     term.height * start.min(end)
                 }
                 _ => 0.0,

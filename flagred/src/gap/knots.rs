@@ -144,7 +144,10 @@ fn count(axes: &[Vec<f64>]) -> usize {
 /// ```
 pub fn peaks(variable: &Variable) -> Vec<f64> {
     let (low, high) = (variable.low, variable.high);
-    let tops = variable.terms.iter().map(|t| top(&t.shape, low, high));
+    let tops = variable
+        .terms
+        .iter()
+        .map(|t| top(&t.membership_function, low, high));
     let mut peaks = vec![low, high];
     peaks.extend(tops.flat_map(|(first, last)| [first, last]));
     peaks.sort_by(f64::total_cmp);
@@ -171,7 +174,10 @@ pub fn changing(variable: &Variable) -> (f64, f64) {
     let changes = |pair: &&[f64]| {
         let differ =
             |shape: &MembershipFunction| shape.membership(pair[0]) != shape.membership(pair[1]);
-        variable.terms.iter().any(|term| differ(&term.shape))
+        variable
+            .terms
+            .iter()
+            .any(|term| differ(&term.membership_function))
     };
     let first = peaks.windows(2).find(changes);
     let last = peaks.windows(2).rev().find(changes);

@@ -101,7 +101,9 @@ fn sums_to_one(variable: &Variable) -> bool {
         let share = f64::from(i) / f64::from(STEPS);
         let x = variable.low + (variable.high - variable.low) * share;
         let memberships = variable.terms.iter();
-        let sum: f64 = memberships.map(|t| t.height * t.shape.membership(x)).sum();
+        let sum: f64 = memberships
+            .map(|t| t.height * t.membership_function.membership(x))
+            .sum();
         (sum - 1.0).abs() < 1e-6
     })
 }

@@ -149,6 +149,25 @@ fn risk_follows_the_motors_within_the_window_and_is_unknown_on_the_ground() {
 }
 
 #[test]
+fn inputs_are_unknown_on_the_ground_at_once() {
+    let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
+    let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
+    fly(&mut monitor, 25.0, &[(5.0, 0.5, true)]);
+    assert_eq!(monitor.inputs(), [0.5]);
+    let mut touch = |t_s, in_air| {
+        monitor.push(&Sample {
+            t_s,
+            motors: &[0.5; 2],
+            in_air,
+            signals: &[],
+        });
+        monitor.inputs()[0]
+    };
+    assert!(touch(5.0, false).is_nan());
+    assert_eq!(touch(5.04, true), 0.5);
+}
+
+#[test]
 fn the_first_seconds_in_the_air_raise_only_fail() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
     for (e, level) in [(0.85, Level::Good), (1.0, Level::Fail)] {

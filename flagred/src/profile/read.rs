@@ -5,48 +5,28 @@ use core::str::FromStr;
 
 use fuzzy::{
     diagnostic::{Diagnostic, Findings},
-    tree::{Entry, Fields, Node, Value},
+    tree::{Fields, Node, Value},
     yaml,
 };
 
-use super::{Profile, ProfileInput, Sampling};
+mod inputs;
+#[cfg(test)]
+mod tests;
+mod verdict;
+
+use super::{Profile, Sampling};
 use crate::{
     accumulator::AccumulatorSettings,
     gap::{GapMethod, GapSettings},
-    source::{Motors, Signal, Source, Statistic},
-    verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings},
 };
+use inputs::inputs;
+use verdict::verdict;
 
 /// The version of the format.
 const VERSION: u64 = 1;
 
 /// The window of an input whose profile names none, in seconds.
 const WINDOW_S: f64 = 2.0;
-
-const STATISTICS: [(&str, Statistic); 8] = [
-    ("mean", Statistic::Mean),
-    ("std", Statistic::Std),
-    ("rms", Statistic::Rms),
-    ("min", Statistic::Min),
-    ("max", Statistic::Max),
-    ("last", Statistic::Last),
-    ("std_less_noise", Statistic::StdLessNoise),
-    ("noise", Statistic::Noise),
-];
-
-type Share = fn(f64) -> Statistic;
-
-const SHARES: [(&str, Share); 2] = [
-    ("share_below", Statistic::ShareBelow),
-    ("share_above", Statistic::ShareAbove),
-];
-
-const MOTORS: [(&str, Motors); 4] = [
-    ("mean", Motors::Mean),
-    ("std", Motors::Std),
-    ("min", Motors::Min),
-    ("max", Motors::Max),
-];
 
 type Found = Vec<Diagnostic>;
 
@@ -157,130 +137,6 @@ fn sampling(fields: &Fields, found: &mut Found) -> Sampling {
     }
 }
 
-fn inputs(fields: &Fields, window_s: f64, found: &mut Found) -> Vec<ProfileInput> {
-    let help =
-        "say where each input of the rule set comes from: `inputs: {margin: {mean: motor_margin}}`";
-    let Some(node) = fields.require("inputs", help, found) else {
-        return Vec::new();
-    };
-    let entries = node.entries("`inputs`", "input", found).unwrap_or_default();
-    entries
-        .iter()
-        .filter_map(|entry| {
-            Some(ProfileInput {
-                name: entry.key.into(),
-                source: source(entry, window_s, found)?,
-            })
-        })
-        .collect()
-}
-
-fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
-    let what = format!("input `{}`", entry.key);
-    let statistics = STATISTICS.iter().map(|(name, _)| *name);
-    let shares = SHARES.iter().map(|(name, _)| *name);
-    let keys: Vec<&str> = statistics
-        .clone()
-        .chain(shares.clone())
-        .chain(["of", "window_s"])
-        .collect();
-    let before = found.len();
-    let fields = entry.value.fields(&what, &keys, found)?;
-    let given: Vec<&str> = statistics
-        .chain(shares)
-        .filter(|k| fields.get(k).is_some())
-        .collect();
-    let [key] = given.as_slice() else {
-        // An unknown key has been told; what it was meant to be is not missing on top.
-        if found.len() == before {
-            let message = format!("{what} takes one statistic, not {}", given.len());
-            found.push(
-                Diagnostic::error("statistic", entry.key_span.clone(), message)
-                    .help("write for example `{mean: motor_margin}`"),
-            );
-        }
-        return None;
-    };
-    let behind = fields.get(key)?;
-    let window_s = number(&fields, "window_s", window_s, Least::Above0, found);
-    let plain = STATISTICS.iter().find(|(name, _)| name == key);
-    let (statistic, observed) = match plain {
-        Some((_, statistic)) => {
-            if let Some(stray) = fields.entry("of") {
-                let message =
-                    format!("`of` goes with `share_below` and `share_above`, not with `{key}`");
-                found.push(
-                    Diagnostic::error("statistic", stray.key_span.clone(), message)
-                        .help(format!("write the signal behind `{key}` alone")),
-                );
-            }
-            (*statistic, behind)
-        }
-        None => {
-            let limit = behind.finite(&format!("`{key}`"), found)?;
-            let (_, share) = SHARES.iter().find(|(name, _)| name == key)?;
-            let help = format!("name the signal: `{{{key}: {limit}, of: motor_margin}}`");
-            (share(limit), fields.require("of", &help, found)?)
-        }
-    };
-    let (motors, signal) = signal(observed, &what, found)?;
-    if statistic.is_of_bins() && motors == Motors::Pooled && signal.is_of_motors() {
-        let message = format!("`{key}` needs one value for all motors");
-        found.push(
-            Diagnostic::error("statistic", behind.span.clone(), message).help(format!(
-                "write for example `{{{key}: {{std: motor_command}}}}`"
-            )),
-        );
-        return None;
-    }
-    Some(Source {
-        statistic,
-        motors,
-        signal,
-        window_s,
-    })
-}
-
-/// `motor_margin` or `{min: motor_margin}`.
-fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)> {
-    if !matches!(node.value, Value::Mapping(_)) {
-        let name = node.words(&format!("the signal of {what}"), found)?;
-        return Some((Motors::Pooled, Signal::named(&name.text)));
-    }
-    let keys = MOTORS.map(|(name, _)| name);
-    let over = format!("the statistic over motors of {what}");
-    let before = found.len();
-    let fields = node.fields(&over, &keys, found)?;
-    let mut given = MOTORS.iter().filter(|(name, _)| fields.get(name).is_some());
-    let (Some((key, motors)), None) = (given.next(), given.next()) else {
-        if found.len() == before {
-            let message = format!("{over} is one of `mean`, `std`, `min` and `max`");
-            found.push(
-                Diagnostic::error("statistic", node.span.clone(), message)
-                    .help("write for example `{min: motor_margin}`"),
-            );
-        }
-        return None;
-    };
-    let node = fields.get(key)?;
-    let name = &node.words(&format!("the signal of {what}"), found)?.text;
-    let signal = Signal::named(name);
-    if !signal.is_of_motors() {
-        let message = format!("`{name}` has one value, not one for each motor");
-        let known: Vec<String> = Signal::names_of_motors()
-            .map(|name| format!("`{name}`"))
-            .collect();
-        found.push(
-            Diagnostic::error("signal", node.span.clone(), message).help(format!(
-                "write the name alone, or a signal of motors: {}",
-                known.join(", ")
-            )),
-        );
-        return None;
-    }
-    Some((*motors, signal))
-}
-
 fn gap(fields: &Fields, found: &mut Found) -> GapSettings {
     let mut gap = GapSettings::default();
     let Some(fields) = fields
@@ -362,121 +218,6 @@ fn elevated_risk(fields: &Fields, found: &mut Found) -> AccumulatorSettings {
     settings
 }
 
-fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
-    let default = VerdictSettings::default();
-    let keys = [
-        "warn",
-        "fail",
-        "clear_after_s",
-        "quiet_after_take_off_s",
-        "quiet_before_landing_s",
-        "idle_below",
-        "noise",
-        "reserve",
-        "imbalance",
-    ];
-    let Some(fields) = fields
-        .get("verdict")
-        .and_then(|node| node.fields("`verdict`", &keys, found))
-    else {
-        return default;
-    };
-    let mut seconds = |key, default| number(&fields, key, default, Least::From0, found);
-    let settings = VerdictSettings {
-        clear_after_s: seconds("clear_after_s", default.clear_after_s),
-        quiet_after_take_off_s: seconds("quiet_after_take_off_s", default.quiet_after_take_off_s),
-        quiet_before_landing_s: seconds("quiet_before_landing_s", default.quiet_before_landing_s),
-        idle_below: seconds("idle_below", default.idle_below),
-        ..default
-    };
-    VerdictSettings {
-        warn: level(&fields, "warn", default.warn, found),
-        fail: level(&fields, "fail", default.fail, found),
-        notices: NoticeSettings {
-            noise: limit(&fields, "noise", "above", found),
-            reserve: limit(&fields, "reserve", "below", found),
-            imbalance: limit(&fields, "imbalance", "above", found),
-        },
-        ..settings
-    }
-}
-
-fn level(fields: &Fields, key: &str, default: LevelSettings, found: &mut Found) -> LevelSettings {
-    let what = format!("`{key}`");
-    let keys = ["risk", "elevated_risk", "after_s", "until"];
-    let Some(node) = fields.get(key) else {
-        return default;
-    };
-    let Some(fields) = node.fields(&what, &keys, found) else {
-        return default;
-    };
-    let raise = threshold(&fields, &what, found);
-    if raise == Threshold::default() && found.is_empty() {
-        let message = format!("{what} has no threshold");
-        found.push(
-            Diagnostic::error("missing-key", node.span.clone(), message)
-                .help("write `risk`, `elevated_risk` or both, in %"),
-        );
-    }
-    let after_s = number(&fields, "after_s", default.after_s, Least::From0, found);
-    let mut until = raise;
-    if let Some(node) = fields.get("until")
-        && let Some(fields) = node.fields("`until`", &["risk", "elevated_risk"], found)
-    {
-        until = threshold(&fields, "`until`", found);
-        for (lower, upper) in [
-            (until.risk_pct, raise.risk_pct),
-            (until.elevated_risk_pct, raise.elevated_risk_pct),
-        ] {
-            if let (Some(lower), Some(upper)) = (lower, upper)
-                && lower > upper
-            {
-                let message = format!("{what} is held until {lower}, which is above {upper}");
-                found.push(
-                    Diagnostic::error("order", node.span.clone(), message)
-                        .help("a level is held down to a lower value than it is raised at"),
-                );
-            }
-        }
-    }
-    LevelSettings {
-        raise,
-        after_s,
-        until,
-    }
-}
-
-fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {
-    let mut limit = |key: &str| {
-        let node = fields.get(key)?;
-        let value = node.finite(&format!("`{key}`"), found)?;
-        if !(0.0..=100.0).contains(&value) {
-            let message = format!("{what}: `{key}` is a percentage, not {value}");
-            found.push(
-                Diagnostic::error("out-of-range", node.span.clone(), message)
-                    .help("write a number from 0 to 100"),
-            );
-        }
-        Some(value)
-    };
-    Threshold {
-        risk_pct: limit("risk"),
-        elevated_risk_pct: limit("elevated_risk"),
-    }
-}
-
-/// A limit of a notice: `{above: 0.04, after_s: 10}`.
-fn limit(fields: &Fields, key: &str, side: &str, found: &mut Found) -> Option<Limit> {
-    let what = format!("`{key}`");
-    let fields = fields.get(key)?.fields(&what, &[side, "after_s"], found)?;
-    let help = format!("write `{key}: {{{side}: 0.1, after_s: 3}}`");
-    let value = fields
-        .require(side, &help, found)?
-        .finite(&format!("`{side}`"), found)?;
-    let after_s = number(&fields, "after_s", 0.0, Least::From0, found);
-    Some(Limit { value, after_s })
-}
-
 /// The least that a number may be.
 #[derive(Clone, Copy)]
 enum Least {
@@ -506,6 +247,3 @@ fn number(fields: &Fields, key: &str, default: f64, least: Least, found: &mut Fo
     }
     value
 }
-
-#[cfg(test)]
-mod tests;

@@ -61,13 +61,12 @@ impl<'o> Collector<'o> {
 
     /// Whether messages of this type hold anything that is read.
     pub(super) fn wants(&self, type_id: u8) -> bool {
-        self.kind(type_id)
-            .is_some_and(|kind| !matches!(kind.role, Role::Nothing))
+        kind(&self.kinds, type_id).is_some_and(|kind| !matches!(kind.role, Role::Nothing))
     }
 
     /// Whether the fields of a text line are as many and such as its definition says.
     pub(super) fn check(&self, type_id: u8, cells: &[&str]) -> Result<(), &'static str> {
-        let Some(kind) = self.kind(type_id) else {
+        let Some(kind) = kind(&self.kinds, type_id) else {
             return Ok(());
         };
         let columns = &kind.format.columns;
@@ -84,13 +83,9 @@ impl<'o> Collector<'o> {
         Ok(())
     }
 
-    fn kind(&self, type_id: u8) -> Option<&Kind> {
-        self.kinds.get(usize::from(type_id))?.as_ref()
-    }
-
     /// Takes in the description of a kind of message; gives whether it holds from now on.
     pub(super) fn define(&mut self, format: Format) -> bool {
-        let known = self.kind(format.type_id).map(|kind| &kind.format);
+        let known = kind(&self.kinds, format.type_id).map(|kind| &kind.format);
         let (is_known, is_same) = (known.is_some(), known == Some(&format));
         if format.type_id == FMT && is_known {
             // The definitions start over: the autopilot booted again into this log.
@@ -125,11 +120,7 @@ impl<'o> Collector<'o> {
 
     /// Takes in a message.
     pub(super) fn message(&mut self, type_id: u8, cells: Cells<'_>) {
-        let Some(kind) = self
-            .kinds
-            .get(usize::from(type_id))
-            .and_then(Option::as_ref)
-        else {
+        let Some(kind) = kind(&self.kinds, type_id) else {
             return;
         };
         if let Some(column) = kind.instance
@@ -200,11 +191,7 @@ impl<'o> Collector<'o> {
     }
 
     fn take(&mut self, type_id: u8, cells: Cells<'_>, t_s: f64) {
-        let Some(kind) = self
-            .kinds
-            .get(usize::from(type_id))
-            .and_then(Option::as_ref)
-        else {
+        let Some(kind) = kind(&self.kinds, type_id) else {
             return;
         };
         let format = &kind.format;
@@ -327,6 +314,11 @@ impl<'o> Collector<'o> {
         flight.geometry = geometry::find(&flight, &declared);
         flight
     }
+}
+
+/// The kind of messages of a type.
+fn kind(kinds: &[Option<Kind>], type_id: u8) -> Option<&Kind> {
+    kinds.get(usize::from(type_id))?.as_ref()
 }
 
 /// The series with these signals of that message: where the definitions are repeated, the

@@ -15,6 +15,8 @@ mod send;
 pub(crate) mod servo;
 #[cfg(feature = "mavlink")]
 mod setup;
+#[cfg(feature = "mavlink")]
+mod signing;
 mod stream;
 #[cfg(feature = "mavlink")]
 mod telemetry;
@@ -32,6 +34,8 @@ pub use requests::{MOTOR_RATE_HZ, Requests, parameters_known};
 pub use send::Sender;
 #[cfg(feature = "mavlink")]
 pub use setup::Setup;
+#[cfg(feature = "mavlink")]
+pub use signing::Key;
 pub use stream::{Skipped, Stream};
 #[cfg(feature = "mavlink")]
 pub use telemetry::{News, Telemetry};

@@ -2,7 +2,7 @@
 
 use ::mavlink::{MAVLinkV1MessageRaw, MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
-use super::{Packet, Version, dialect::MavMessage};
+use super::{Key, Packet, Version, dialect::MavMessage};
 
 impl Packet<'_> {
     /// The message; `None` where a field holds a value that the dialect does not know.
@@ -20,6 +20,7 @@ impl Packet<'_> {
 pub struct Sender {
     component: u8,
     sequence: u8,
+    key: Option<Key>,
 }
 
 impl Sender {
@@ -28,6 +29,15 @@ impl Sender {
         Sender {
             component,
             sequence: 0,
+            key: None,
+        }
+    }
+
+    /// The same, signing its packets: they are of version 2 whatever is asked for.
+    pub fn signed(self, key: Key) -> Sender {
+        Sender {
+            key: Some(key),
+            ..self
         }
     }
 
@@ -49,6 +59,12 @@ impl Sender {
             sequence: self.sequence,
         };
         self.sequence = self.sequence.wrapping_add(1);
+        if let Some(key) = &self.key {
+            let mut raw = MAVLinkV2MessageRaw::new();
+            raw.serialize_message_for_signing(header, message);
+            key.sign(&mut raw);
+            return raw.raw_bytes().to_vec();
+        }
         match version {
             Version::V1 => {
                 let mut raw = MAVLinkV1MessageRaw::new();

@@ -13,6 +13,10 @@ pub struct Skipped {
     pub unknown: u64,
     /// Signed packets, which cannot be verified without the key.
     pub signed: u64,
+    /// With a key: packets that are not signed.
+    pub unsigned: u64,
+    /// With a key: packets whose signature is wrong, or whose time stamp came before.
+    pub bad_signatures: u64,
 }
 
 impl Skipped {
@@ -20,6 +24,16 @@ impl Skipped {
     pub fn is_empty(&self) -> bool {
         *self == Skipped::default()
     }
+}
+
+/// Why a whole packet is not taken.
+enum Refusal {
+    /// It is signed, and there is no key.
+    Signed,
+    #[cfg(feature = "mavlink")]
+    Unsigned,
+    #[cfg(feature = "mavlink")]
+    NotGenuine,
 }
 
 /// Bytes as they arrive, and the packets in them.
@@ -42,12 +56,23 @@ pub struct Stream {
     buffer: Vec<u8>,
     taken: usize,
     skipped: Skipped,
+    #[cfg(feature = "mavlink")]
+    key: Option<super::Key>,
 }
 
 impl Stream {
     /// A stream that starts here.
     pub fn new() -> Stream {
         Stream::default()
+    }
+
+    /// A stream of which only packets are taken that are signed with a key.
+    #[cfg(feature = "mavlink")]
+    pub fn with_key(key: super::Key) -> Stream {
+        Stream {
+            key: Some(key),
+            ..Stream::default()
+        }
     }
 
     /// Adds the bytes that arrived.
@@ -57,16 +82,21 @@ impl Stream {
         self.buffer.extend_from_slice(bytes);
     }
 
-    /// The next packet; `None` until more bytes arrive. Signed packets are counted and skipped.
+    /// The next packet; `None` until more bytes arrive. Signed packets are counted and skipped, or with
+    /// a key those that are not genuine.
     pub fn packet(&mut self) -> Option<Packet<'_>> {
         let length = loop {
             match next_packet(self.buffer.get(self.taken..)?) {
                 Next::Packet(packet) => {
                     let length = packet.bytes.len();
-                    if !packet.is_signed {
-                        break length;
+                    match self.refusal(&packet) {
+                        None => break length,
+                        Some(Refusal::Signed) => self.skipped.signed += 1,
+                        #[cfg(feature = "mavlink")]
+                        Some(Refusal::Unsigned) => self.skipped.unsigned += 1,
+                        #[cfg(feature = "mavlink")]
+                        Some(Refusal::NotGenuine) => self.skipped.bad_signatures += 1,
                     }
-                    self.skipped.signed += 1;
                     self.taken += length;
                 }
                 Next::Skip(count, why) => {
@@ -87,6 +117,17 @@ impl Stream {
             Next::Packet(packet) => Some(packet),
             _ => None,
         }
+    }
+
+    fn refusal(&self, packet: &Packet<'_>) -> Option<Refusal> {
+        #[cfg(feature = "mavlink")]
+        if let Some(key) = &self.key {
+            return match packet.is_signed {
+                false => Some(Refusal::Unsigned),
+                true => (!key.verify(packet)).then_some(Refusal::NotGenuine),
+            };
+        }
+        packet.is_signed.then_some(Refusal::Signed)
     }
 
     /// Ends a datagram: discards a partial packet.

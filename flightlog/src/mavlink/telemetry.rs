@@ -7,8 +7,8 @@ use super::{
     setup::missing,
 };
 use crate::{
-    Vehicle, VehicleKind,
-    clock::{Checked, Clock},
+    Vehicle,
+    clock::{Checked, Clock, seconds_of},
     field::Kind,
     outputs::LONGEST_PULSE_US,
 };
@@ -27,6 +27,18 @@ const NO_PULSE: [u16; 2] = [0, u16::MAX];
 /// The latest pulses of each port, and whether they came since commands were last told.
 type Outputs = [([u16; OUTPUTS_A_PORT], bool); PORTS];
 const NO_OUTPUTS: Outputs = [([u16::MAX; OUTPUTS_A_PORT], false); PORTS];
+
+/// A clock that jumps is believed only where the one before has been silent for so long, in seconds.
+const CLOCK_SILENT_S: f64 = 2.0;
+
+/// A clock of a live vehicle, and when its latest accepted stamp came.
+#[derive(Debug, Default)]
+struct LiveClock {
+    clock: Clock,
+    heard_s: Option<f64>,
+    /// The latest stamp as it came: a packet that comes twice is no witness of itself.
+    stamp: Option<u32>,
+}
 
 /// What a packet changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,7 +87,7 @@ pub enum News {
 ///         ..SERVO_OUTPUT_RAW_DATA::default()
 ///     }));
 ///     let Next::Packet(packet) = next_packet(&outputs) else { panic!("no packet") };
-///     news = telemetry.receive(&packet);
+///     news = telemetry.receive(&packet, 0.04 * f64::from(i));
 /// }
 /// assert!(matches!(news, News::Commands { t_s } if (t_s - 0.4).abs() < 1e-9));
 ///
@@ -93,10 +105,9 @@ pub struct Telemetry {
     version: Version,
     decoder: Decoder,
     parameters_changed: bool,
-    clock: Clock,
-    boot_clock: Clock,
-    /// The latest time stamps of either clock as they came: a packet that comes twice is no witness of itself.
-    stamps: [Option<u32>; 2],
+    clock: LiveClock,
+    boot_clock: LiveClock,
+    clock_jumps: u64,
     outputs: Outputs,
     /// The port that completes the commands of all motors.
     last_port: usize,
@@ -115,9 +126,9 @@ impl Telemetry {
             version: heartbeat.version,
             decoder,
             parameters_changed: false,
-            clock: Clock::default(),
-            boot_clock: Clock::default(),
-            stamps: [None; 2],
+            clock: LiveClock::default(),
+            boot_clock: LiveClock::default(),
+            clock_jumps: 0,
             outputs: NO_OUTPUTS,
             last_port: 0,
             commands_seen: 0,
@@ -171,8 +182,16 @@ impl Telemetry {
         std::mem::take(&mut self.parameters_changed)
     }
 
-    /// Takes in a packet; those of other systems tell nothing.
-    pub fn receive(&mut self, packet: &Packet<'_>) -> News {
+    /// How many time stamps jumped while the clock before went on; these packets were left out.
+    pub fn clock_jumps(&self) -> u64 {
+        self.clock_jumps
+    }
+
+    /// Takes in a packet that came at `now_s` of the receiver's clock; those of other systems tell nothing.
+    ///
+    /// A clock that jumps, back or ahead, is believed once its old time has been silent for 2 s: a vehicle that reboots
+    /// falls silent, one that somebody else speaks for does not.
+    pub fn receive(&mut self, packet: &Packet<'_>, now_s: f64) -> News {
         if packet.system != self.system {
             return News::Nothing;
         }
@@ -183,22 +202,22 @@ impl Telemetry {
                 self.last_port = self.setup().last_port().min(PORTS - 1);
                 return News::Parameter;
             }
-            Told::Outputs(outputs) => return self.command(&outputs),
+            Told::Outputs(outputs) => return self.command(&outputs, now_s),
             Told::State if packet.id == 0 => self.version = packet.version,
             Told::Nothing if packet.component == AUTOPILOT => {
-                return self.other(packet.id, &payload);
+                return self.other(packet.id, &payload, now_s);
             }
             Told::State | Told::Text(_) | Told::Nothing => {}
         }
         News::Nothing
     }
 
-    fn other(&mut self, id: u32, payload: &Payload) -> News {
+    fn other(&mut self, id: u32, payload: &Payload, now_s: f64) -> News {
         let number = |offset, kind| number(payload, offset, kind);
         match id {
             ATTITUDE => {
                 let boot_ms = number(0, Kind::U32).unwrap_or_default();
-                return self.check_boot(boot_ms as u32);
+                return self.check_boot(boot_ms as u32, now_s);
             }
             COMMAND_ACK if number(0, Kind::U16) == Some(SET_MESSAGE_INTERVAL) => {
                 self.interval_refused |= number(2, Kind::U8) != Some(ACCEPTED);
@@ -209,18 +228,19 @@ impl Telemetry {
     }
 
     /// Attitude has a clock of its own, which goes on over 49 days where that of the commands starts over.
-    fn check_boot(&mut self, boot_ms: u32) -> News {
-        if self.stamps[1].replace(boot_ms) == Some(boot_ms) {
+    fn check_boot(&mut self, boot_ms: u32, now_s: f64) -> News {
+        let clock = &mut self.boot_clock;
+        if clock.stamp.replace(boot_ms) == Some(boot_ms) {
             return News::Nothing;
         }
-        self.boot_clock.check(f64::from(boot_ms) * 1e-3);
-        match self.boot_clock.boots_s() {
+        clock.check(f64::from(boot_ms) * 1e-3, now_s, &mut self.clock_jumps);
+        match clock.clock.boots_s() {
             [] => News::Nothing,
             _ => self.forget(),
         }
     }
 
-    fn command(&mut self, outputs: &ServoOutputs) -> News {
+    fn command(&mut self, outputs: &ServoOutputs, now_s: f64) -> News {
         let port = usize::from(outputs.port);
         if port >= PORTS {
             return News::Nothing;
@@ -231,17 +251,15 @@ impl Telemetry {
             return News::Nothing;
         }
         self.commands_seen += 1;
-        if self.stamps[0].replace(outputs.time_us) == Some(outputs.time_us) {
+        let clock = &mut self.clock;
+        if clock.stamp.replace(outputs.time_us) == Some(outputs.time_us) {
             return News::Nothing;
         }
-        let t_s = match self
-            .clock
-            .check(seconds(outputs.time_us, self.clock.now_s()))
-        {
-            Checked::At(t_s) | Checked::Refuted(t_s) | Checked::Confirmed(_, t_s) => t_s,
-            Checked::Wait | Checked::RefutedWait => return News::Nothing,
+        let t_s = seconds_of(outputs.time_us, clock.clock.now_s());
+        let Some(t_s) = clock.check(t_s, now_s, &mut self.clock_jumps) else {
+            return News::Nothing;
         };
-        if !self.clock.boots_s().is_empty() {
+        if !clock.clock.boots_s().is_empty() {
             return self.forget();
         }
         self.outputs[port] = (outputs.pulses_us, true);
@@ -256,9 +274,8 @@ impl Telemetry {
 
     fn forget(&mut self) -> News {
         self.decoder.boot();
-        self.clock = Clock::default();
-        self.boot_clock = Clock::default();
-        self.stamps = [None; 2];
+        self.clock = LiveClock::default();
+        self.boot_clock = LiveClock::default();
         self.outputs = NO_OUTPUTS;
         self.interval_refused = false;
         self.last_port = 0;
@@ -302,21 +319,21 @@ impl Telemetry {
             };
         }
     }
-
-    /// Whether the vehicle is a multirotor, or one that does not say what it is.
-    pub fn may_be_multirotor(&self) -> bool {
-        matches!(
-            self.vehicle.kind,
-            VehicleKind::Multirotor | VehicleKind::Unknown
-        )
-    }
 }
 
-/// Seconds since boot from microseconds in 32 bits, which start over after 71 minutes: the time nearest to the last
-/// one that was believed.
-fn seconds(micros: u32, last_s: Option<f64>) -> f64 {
-    const ROUND_S: f64 = 4_294.967_296;
-    let t_s = f64::from(micros) * 1e-6;
-    let rounds = last_s.map_or(0.0, |last_s| ((last_s - t_s) / ROUND_S).round().max(0.0));
-    t_s + rounds * ROUND_S
+impl LiveClock {
+    /// The time of a stamp, where it can be believed.
+    fn check(&mut self, t_s: f64, now_s: f64, jumps: &mut u64) -> Option<f64> {
+        let is_alive = |heard_s: f64| now_s - heard_s < CLOCK_SILENT_S;
+        if !self.clock.is_next(t_s) && self.heard_s.is_some_and(is_alive) {
+            *jumps += 1;
+            return None;
+        }
+        let t_s = match self.clock.check(t_s) {
+            Checked::At(t_s) | Checked::Refuted(t_s) | Checked::Confirmed(_, t_s) => t_s,
+            Checked::Wait | Checked::RefutedWait => return None,
+        };
+        self.heard_s = Some(now_s);
+        Some(t_s)
+    }
 }

@@ -1,6 +1,7 @@
 //! From MAVLink packets to a `Flight`.
 
 use super::signals::{SPECS, Spec};
+use super::time::VehicleTime;
 use crate::ardupilot::{self, Mode};
 use crate::clock::Latest;
 use crate::geometry;
@@ -30,6 +31,9 @@ pub(super) struct Collector<'o> {
 #[derive(Default)]
 struct Heard {
     decoder: Decoder,
+    time: VehicleTime,
+    /// How far the vehicle's clock was ahead of reception at the first commands.
+    ahead_s: f64,
     outputs: Outputs,
     has_port_0: bool,
     series: Vec<(usize, Series)>,
@@ -79,26 +83,61 @@ impl<'o> Collector<'o> {
         let mut systems = self.systems;
         let chosen = systems.iter().position(is_vehicle).unwrap_or(0);
         if chosen < systems.len() {
-            systems.swap_remove(chosen).1.finish(&mut flight);
+            let heard = systems.swap_remove(chosen).1;
+            let ahead_s = heard.ahead_s;
+            flight.utc_at_zero_s = flight.utc_at_zero_s.map(|utc_s| utc_s - ahead_s);
+            heard.finish(&mut flight);
         }
         flight
     }
 }
 
 impl Heard {
-    /// Takes in a message of the system; `true` when a row was dropped because times go back.
-    fn message(&mut self, t_s: f64, packet: &Packet<'_>, options: &Options) -> bool {
+    /// Takes in a message of the system; `true` when a row was dropped because times go back. On the vehicle's clock that
+    /// is a packet that comes late or twice, and no damage.
+    fn message(&mut self, received_s: f64, packet: &Packet<'_>, options: &Options) -> bool {
         let payload = filled(packet);
+        let t_s = self.time.other(received_s, packet.id, &payload);
         match self.decoder.message(packet.component, packet.id, &payload) {
             Told::State => self.state(t_s),
-            Told::Outputs(outputs) => return self.servos(t_s, &outputs),
+            Told::Outputs(outputs) => return self.commands(received_s, outputs),
             Told::Text(text) => self.texts.push(Event::new(t_s, text)),
             Told::Nothing if packet.component == AUTOPILOT => {
-                return self.signals(t_s, packet.id, &payload, options);
+                let dropped = self.signals(t_s, packet.id, &payload, options);
+                return dropped && !self.time.is_known();
             }
             Told::Nothing | Told::Parameter => {}
         }
         false
+    }
+
+    fn commands(&mut self, received_s: f64, outputs: ServoOutputs) -> bool {
+        let timed = self.time.commands(received_s, outputs);
+        if let Some(ahead_s) = timed.ahead_s {
+            self.shift(ahead_s);
+        }
+        let mut dropped = timed.dropped;
+        for (t_s, outputs) in timed.rows.iter().flatten() {
+            dropped |= self.servos(*t_s, outputs) && !self.time.is_known();
+        }
+        dropped
+    }
+
+    /// Brings what came before the first motor commands to the vehicle's clock.
+    fn shift(&mut self, ahead_s: f64) {
+        self.ahead_s = ahead_s;
+        self.outputs.shift(ahead_s);
+        for (_, series) in &mut self.series {
+            series.shift(ahead_s);
+        }
+        let times = (self.armed.iter_mut())
+            .chain(&mut self.in_air)
+            .map(|(t_s, _)| t_s)
+            .chain(self.modes.iter_mut().map(|(t_s, _)| t_s));
+        times.for_each(|t_s| *t_s += ahead_s);
+        for text in &mut self.texts {
+            text.t_us += (ahead_s * 1e6).round() as i64;
+        }
     }
 
     fn state(&mut self, t_s: f64) {
@@ -152,6 +191,7 @@ impl Heard {
 
     fn finish(mut self, flight: &mut Flight) {
         self.decoder.finish();
+        flight.boots_s = self.time.boots_s().to_vec();
         self.name_vehicle(flight);
         let known = self.decoder.outputs(&flight.vehicle);
         let outputs: Vec<u16>;

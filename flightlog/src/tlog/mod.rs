@@ -1,8 +1,10 @@
 //! MAVLink telemetry logs (`.tlog`): the microseconds since 1970 (8 bytes, big-endian)
-//! before each packet, versions 1 and 2 mixed.
+//! before each packet, versions 1 and 2 mixed. A flight is told on the vehicle's clock, that of its motor commands; where
+//! these carry no time, on that of reception, from the first packet on.
 
 mod collect;
 mod signals;
+mod time;
 
 use std::io;
 

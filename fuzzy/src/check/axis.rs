@@ -1,30 +1,33 @@
-//! The range of an input, cut where something about its terms changes.
+//! Values in the range of an input, and where something about its terms changes.
 
 use alloc::vec::Vec;
 
 use crate::model::{MembershipFunction, Parts, Variable};
 
-/// Points of the range at which to look: evenly spaced ones, and those that the terms' parameters name.
+/// The even steps of a range.
 const EVENLY_SPACED: usize = 64;
 
-/// The values of a variable at which something may happen: the ends, even steps, every parameter of every term that
-/// lies in the range. Rising, no two equal.
-pub(super) fn places(variable: &Variable) -> Vec<f64> {
+/// Values of a variable to evaluate at: even steps with both ends, and the parameters of the terms that lie in the range.
+/// Rising, no two equal.
+pub(super) fn values(variable: &Variable) -> Vec<f64> {
     let (low, high) = (variable.low, variable.high);
     let even = (0..=EVENLY_SPACED).map(|i| {
         let part = i as f64 / EVENLY_SPACED as f64;
         low * (1.0 - part) + high * part
     });
-    let named = variable.terms.iter().flat_map(|term| marks(&term.shape));
-    let mut places: Vec<f64> = even
+    let named = variable
+        .terms
+        .iter()
+        .flat_map(|term| marks(&term.membership_function));
+    let mut values: Vec<f64> = even
         .chain(named.filter(|x| (low..=high).contains(x)))
         .collect();
-    places.sort_by(f64::total_cmp);
-    places.dedup();
-    places
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
 }
 
-/// The corners and middles of a shape, among other numbers.
+/// The parameters of a membership function: its corners and middles, and also widths and slopes.
 pub(super) fn marks(shape: &MembershipFunction) -> Vec<f64> {
     match shape.parts() {
         Parts::Fixed(_, parameters) => parameters,
@@ -33,14 +36,14 @@ pub(super) fn marks(shape: &MembershipFunction) -> Vec<f64> {
     }
 }
 
-/// Where `holds` changes from place to place, to the last digit that matters.
-pub(super) fn changes(places: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
+/// Where `holds` changes between two of the values, by bisection.
+pub(super) fn changes(values: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
     let mut found = Vec::new();
-    let Some(&first) = places.first() else {
+    let Some(&first) = values.first() else {
         return found;
     };
     let mut before = (first, holds(first));
-    for &x in places.get(1..).unwrap_or_default() {
+    for &x in values.get(1..).unwrap_or_default() {
         let here = holds(x);
         if here != before.1 {
             found.push(rounded(bisect(before.0, x, |x| holds(x) == before.1)));
@@ -50,7 +53,7 @@ pub(super) fn changes(places: &[f64], holds: impl Fn(f64) -> bool) -> Vec<f64> {
     found
 }
 
-/// The place between `from`, where `same` holds, and `to`, where it does not, at which it stops.
+/// The smallest number after `from` where `same` no longer holds. It holds at `from` and not at `to`.
 pub(super) fn bisect(mut from: f64, mut to: f64, same: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = 0.5 * (from + to);
@@ -65,7 +68,7 @@ pub(super) fn bisect(mut from: f64, mut to: f64, same: impl Fn(f64) -> bool) -> 
     }
 }
 
-/// Twelve digits: what lies behind them is the rounding of a membership function, not an author's number.
+/// Twelve digits: further ones come from rounding in membership functions.
 pub(super) fn rounded(x: f64) -> f64 {
     let text = alloc::format!("{x:.11e}");
     text.parse().unwrap_or(x)

@@ -1,30 +1,30 @@
-//! Which inputs does no rule cover?
+//! The regions of the input space that no rule covers.
 
 use alloc::{string::String, vec::Vec};
 
 use super::logic::{Cells, Level, Logic, halves};
 use crate::model::{Model, Variable};
 
-/// A box of the input space in which no rule of an output holds.
+/// A box of the input space in which no rule of an output reaches a degree.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Uncovered {
     /// The output.
     pub output: String,
-    /// The degree no rule reaches; where `silent`, no rule fires at all.
+    /// The degree that no rule reaches; 0 where `silent`.
     pub coverage: f64,
     /// Whether no rule fires at all, so that the output has no value.
     pub silent: bool,
-    /// The sides of the box. Of an input that is not named the whole range is meant.
+    /// The sides of the box. An input that is not named has its whole range.
     pub sides: Vec<Side>,
-    /// The part of the input space it takes up.
+    /// The fraction of the input space that the box takes.
     pub share: f64,
-    /// The conditions of rules that would cover it, as terms of the inputs named in `sides`.
+    /// Antecedents that would cover the box, as terms of the inputs named in `sides`.
     pub missing: Vec<Vec<Antecedent>>,
-    /// How many more of them there are than are listed.
+    /// The number of such antecedents that are not listed.
     pub more_missing: usize,
-    /// Inputs whose terms all stay below the degree in a part of the box: no rule could reach it there.
+    /// Inputs whose terms all stay below the degree in a part of the box. A rule cannot cover that part.
     pub weak: Vec<String>,
 }
 
@@ -34,9 +34,9 @@ pub struct Uncovered {
 pub struct Side {
     /// The input.
     pub input: String,
-    /// From this value.
+    /// The lower end.
     pub low: f64,
-    /// Up to this value.
+    /// The upper end.
     pub high: f64,
 }
 
@@ -50,21 +50,22 @@ pub struct Antecedent {
     pub term: String,
 }
 
-/// Uncovered boxes, and whether they are all there are.
+/// Uncovered boxes, and whether the list is complete.
 pub(super) struct Boxes {
     pub(super) found: Vec<Uncovered>,
     pub(super) complete: bool,
 }
 
-/// More boxes than this no author reads; the largest are kept.
+/// The search stops after so many boxes: an author does not read more.
 const MOST_BOXES: usize = 50;
+/// The most missing antecedents that are listed for a box.
 const MOST_MISSING: usize = 16;
-/// Nobody writes a rule over more inputs than this to fill a box, so none is told.
+/// For a box with more sides no antecedents are listed: such a rule would be too long to write.
 const MOST_SIDES_OF_A_RULE: usize = 6;
-/// How many formulas are looked at before the search is given up.
+/// The search stops after so many evaluations of formulas.
 const MOST_LOOKS: usize = 100_000;
 
-/// The boxes in which no rule of `output` reaches `coverage`, or fires at all where that is `None`.
+/// The boxes in which no rule of `output` reaches `coverage`, or, with `None`, in which none fires.
 pub(super) fn uncovered(model: &Model, output: &str, coverage: Option<f64>) -> Boxes {
     let level = Level {
         value: coverage.unwrap_or(0.0),
@@ -90,12 +91,12 @@ pub(super) fn uncovered(model: &Model, output: &str, coverage: Option<f64>) -> B
     Boxes { found, complete }
 }
 
-/// The boxes in which no formula is true, and whether they are all.
+/// The boxes in which no formula is true, and whether the search ended.
 fn search(logic: &Logic) -> (Vec<Cells>, bool) {
     let all: Vec<usize> = (0..logic.formulas.len()).collect();
     let mut boxes = Vec::new();
     let mut looks = 0;
-    // What is left to look at: a box, and the formulas that are not false in all of it.
+    // Boxes to search, each with the formulas that may be true in it.
     let mut left = Vec::from([(logic.everywhere(), all)]);
     while let Some((cells, formulas)) = left.pop() {
         looks += formulas.len() + 1;
@@ -118,7 +119,7 @@ fn search(logic: &Logic) -> (Vec<Cells>, bool) {
     (boxes, true)
 }
 
-/// The formulas that are true in a part of the box; `None` where one is true in all of it.
+/// The formulas that are true in a part of the box; `None` if one is true in the whole box.
 fn undecided(logic: &Logic, cells: &Cells, formulas: &[usize]) -> Option<Vec<usize>> {
     let mut open = Vec::new();
     for &index in formulas {
@@ -131,7 +132,7 @@ fn undecided(logic: &Logic, cells: &Cells, formulas: &[usize]) -> Option<Vec<usi
     Some(open)
 }
 
-/// Joins boxes that are one box together.
+/// Joins neighbouring boxes whose union is a box.
 fn merged(mut boxes: Vec<Cells>) -> Vec<Cells> {
     loop {
         let before = boxes.len();
@@ -146,7 +147,7 @@ fn merged(mut boxes: Vec<Cells>) -> Vec<Cells> {
                 None => left.push(one),
             }
         }
-        // A larger box may join with one that stood before it.
+        // A joined box may have a new neighbour among the earlier ones.
         if left.len() == before {
             return left;
         }
@@ -154,7 +155,7 @@ fn merged(mut boxes: Vec<Cells>) -> Vec<Cells> {
     }
 }
 
-/// The two as one box, if they differ in one input and touch there.
+/// The union of two boxes, if they differ in one input only and touch there.
 fn together(a: &Cells, b: &Cells) -> Option<Cells> {
     let mut differing = a.iter().zip(b).enumerate().filter(|(_, (a, b))| a != b);
     let (input, (&(from, to), &(other_from, other_to))) = differing.next()?;
@@ -173,7 +174,7 @@ fn describe(
     output: &str,
     coverage: Option<f64>,
 ) -> Uncovered {
-    /// A thinner box is the rounding of a single value.
+    /// A thinner box is a single value with a rounding error. It is reported as that value.
     const THIN: f64 = 1e-9;
     let mut sides = Vec::new();
     let mut share = 1.0;
@@ -223,11 +224,11 @@ fn describe(
     }
 }
 
-/// The terms that are the highest somewhere, in the order in which they are.
+/// The terms with the highest degree somewhere in a stretch of an input, from left to right.
 struct Dominating<'v> {
-    /// Those that reach the coverage there.
+    /// Those whose degree reaches the coverage there.
     terms: Vec<&'v str>,
-    /// Whether none reaches it somewhere.
+    /// Whether no term reaches the coverage somewhere.
     weak: bool,
 }
 
@@ -260,7 +261,7 @@ impl<'v> Dominating<'v> {
     }
 }
 
-/// One of each, in all combinations, up to `most`.
+/// All combinations of one antecedent of each choice, at most `most`.
 fn combinations(choices: &[Vec<Antecedent>], most: usize) -> Vec<Vec<Antecedent>> {
     if choices.is_empty()
         || choices.len() > MOST_SIDES_OF_A_RULE

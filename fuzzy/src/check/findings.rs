@@ -21,7 +21,7 @@ use crate::{
     rule::{Condition, Consequent, Name, Rule},
 };
 
-/// More boxes than this are counted, not listed.
+/// The most boxes that are listed; the others are counted.
 const MOST_BOXES_TOLD: usize = 10;
 
 /// The diagnostics of a report, with the spans of the model's parts.
@@ -206,7 +206,7 @@ impl At<'_> {
             .find(|input| input.name == side.input);
         let (low, high) = input.map_or((f64::NAN, f64::NAN), |input| (input.low, input.high));
         let name = &side.input;
-        // Where a slope leaves 0 right behind an end of the range, to a reader that is the end.
+        // A stretch that ends just inside the range ends at the range for a reader.
         let at_end = |x: f64| {
             [low, high]
                 .into_iter()
@@ -290,7 +290,7 @@ impl At<'_> {
         .help("let the neighbouring terms overlap, or add a term between them")
     }
 
-    /// Only where the output does not come near the ends of its range.
+    /// Reported only if the output stays away from an end of its range.
     fn reach(&self, one: &Reach) -> Option<Diagnostic> {
         const NEAR: f64 = 0.01;
         let [low, high] = one.range;
@@ -386,7 +386,7 @@ impl At<'_> {
 }
 
 fn coordinates(at: &[Coordinate]) -> String {
-    /// Of very many inputs the first ones are listed.
+    /// With very many inputs only the first ones are listed.
     const MOST: usize = 6;
     let all = at
         .iter()

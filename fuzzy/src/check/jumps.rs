@@ -7,7 +7,7 @@ use super::{
     probe::{Coordinate, Line, MOST_ON_A_LINE, NOTABLE, Probe},
 };
 
-/// A place at which an output jumps.
+/// A jump of an output.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -25,11 +25,11 @@ pub struct Jump {
 }
 
 impl Probe<'_> {
-    /// Where outputs jump along an input: the largest jump of each output along each input.
+    /// The largest jump of each output along each input.
     pub(super) fn jumps(&mut self) -> Vec<Jump> {
         let mut found = Vec::new();
         let inputs = self.model.inputs.len();
-        // Each input gets its part of the time; of very many the first ones.
+        // The inputs share the work; with very many inputs only the first ones are examined.
         let most_inputs = (self.evaluations / (4 * MOST_ON_A_LINE)).max(1);
         for input in 0..inputs.min(most_inputs) {
             let lines = self.lines(input);
@@ -41,7 +41,7 @@ impl Probe<'_> {
     }
 
     fn largest_jump(&mut self, lines: &[Line], input: usize, output: usize) -> Option<Jump> {
-        /// How many steep places are looked at closely.
+        /// The most steep steps that are bisected.
         const CANDIDATES: usize = 6;
         let variable = &self.model.outputs.get(output)?.variable;
         let notable = NOTABLE * (variable.high - variable.low);
@@ -85,7 +85,7 @@ impl Probe<'_> {
         largest.map(|(_, jump)| jump)
     }
 
-    /// Halves the stretch from `low` to `high`, always keeping the steeper half, until nothing lies between.
+    /// Bisects from `low` to `high`, keeping the steeper half, until no number lies between.
     fn close_in(
         &mut self,
         line: &Line,
@@ -104,7 +104,7 @@ impl Probe<'_> {
             if middle <= low || middle >= high {
                 return Some((low, below, above));
             }
-            // A place without a value between two with one is a gap, not a jump.
+            // A point without a value between two points with one is a gap, not a jump.
             let value = at(self, middle)?;
             if (value - below).abs() >= (above - value).abs() {
                 (high, above) = (middle, value);

@@ -1,10 +1,12 @@
-//! Conditions as logic: whether a rule holds in a box of the input space.
+//! Conditions as propositional formulas: in which boxes of the input space a rule reaches a degree.
 //!
-//! A degree is at least a level, or it is not. With minimum, maximum and one minus x, a condition reaches a level exactly
-//! where a formula of "this term reaches that level" is true, and each of those is true on some intervals of one input.
-//! So all inputs are cut where one of them changes, and in the cells between no formula changes: what is true of every
-//! point is found by looking at cells. Other operators are read as minimum and maximum here, and weights do not count:
-//! the question is whether a rule speaks of a place, not how loud.
+//! With minimum, maximum and `1 - x` as operators, the degree of a condition reaches a level exactly where a formula of
+//! literals is true. A literal says "the degree of this term reaches this level" and is true on some intervals of one input.
+//! Every input is cut at the ends of these intervals. Within a cell between the cuts no literal changes, so statements about
+//! all points follow from one look at each cell.
+//!
+//! Other operators are treated as minimum and maximum, and weights are ignored: the analysis asks where a rule fires, not how
+//! strongly.
 
 use alloc::{boxed::Box, collections::BTreeMap, vec, vec::Vec};
 
@@ -14,26 +16,26 @@ use crate::{
     rule::{Condition, Hedge, Proposition},
 };
 
-/// A degree to be reached: `degree > value` where strict, else `degree >= value`.
+/// A degree to reach: `degree > value` if strict, else `degree >= value`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Level {
     pub(super) value: f64,
     pub(super) strict: bool,
 }
 
-/// The conditions of some rules over the cut inputs.
+/// The formulas of some conditions, and the cells they are evaluated on.
 pub(super) struct Logic {
-    /// The cuts of each input, its ends included.
+    /// The cuts of each input, rising, both ends of the range included.
     pub(super) cuts: Vec<Vec<f64>>,
     literals: Vec<Literal>,
     /// A formula for each condition.
     pub(super) formulas: Vec<Formula>,
 }
 
-/// A hedged term that reaches a level.
+/// "The degree of this term, with its hedges, reaches the level."
 struct Literal {
     input: usize,
-    /// In how many of the cells before this one it holds.
+    /// For each cell, in how many of the cells before it the literal is true.
     holds_before: Vec<usize>,
 }
 
@@ -48,7 +50,7 @@ pub(super) enum Formula {
 /// Cells `from..to` of each input.
 pub(super) type Cells = Vec<(usize, usize)>;
 
-/// What a literal is made of, to find equal ones.
+/// What a literal says. Equal literals are stored once.
 #[derive(PartialEq, Eq, PartialOrd, Ord, Clone)]
 struct Key {
     input: usize,
@@ -59,7 +61,7 @@ struct Key {
 }
 
 impl Logic {
-    /// The formulas of conditions that reach a level.
+    /// A formula for each condition: that its degree reaches the level.
     pub(super) fn new<'m>(
         model: &'m Model,
         conditions: impl Iterator<Item = &'m Condition>,
@@ -74,17 +76,17 @@ impl Logic {
         let formulas = conditions.map(|c| reader.formula(c, level)).collect();
         let found = reader.found;
         let mut cuts: Vec<Vec<f64>> = Vec::with_capacity(model.inputs.len());
-        let places: Vec<Vec<f64>> = model.inputs.iter().map(axis::places).collect();
+        let values: Vec<Vec<f64>> = model.inputs.iter().map(axis::values).collect();
         for variable in &model.inputs {
             cuts.push(vec![variable.low, variable.high]);
         }
         for key in &found {
-            if let (Some(input), Some(places), Some(cuts)) = (
+            if let (Some(input), Some(values), Some(cuts)) = (
                 model.inputs.get(key.input),
-                places.get(key.input),
+                values.get(key.input),
                 cuts.get_mut(key.input),
             ) {
-                cuts.extend(axis::changes(places, |x| key.holds(input, x)));
+                cuts.extend(axis::changes(values, |x| key.holds(input, x)));
             }
         }
         for (cuts, variable) in cuts.iter_mut().zip(&model.inputs) {
@@ -124,7 +126,7 @@ impl Logic {
         cells.collect()
     }
 
-    /// Whether a formula is true or false in all cells of a box; `None` where it is true in some.
+    /// Whether a formula is true or false in all cells of a box; `None` if neither is known.
     pub(super) fn holds(&self, formula: &Formula, cells: &Cells) -> Option<bool> {
         match formula {
             Formula::Always => Some(true),
@@ -144,7 +146,7 @@ impl Logic {
         }
     }
 
-    /// `decisive` decides; all others together are the opposite.
+    /// The value of a conjunction (`decisive` is false) or disjunction (true): one part that is `decisive` decides.
     fn joined(&self, parts: &[Formula], cells: &Cells, decisive: bool) -> Option<bool> {
         let mut all = Some(!decisive);
         for part in parts {
@@ -157,7 +159,7 @@ impl Logic {
         all
     }
 
-    /// Whether a formula is true in some cell. Where that takes too long to find out, it is.
+    /// Whether a formula is true in some cell; also true if the search takes too long.
     pub(super) fn holds_somewhere(&self, formula: &Formula) -> bool {
         const MOST_LOOKS: usize = 2_000;
         let mut left = vec![self.everywhere()];
@@ -178,7 +180,7 @@ impl Logic {
         true
     }
 
-    /// The input and the cell at which to cut a box in two, so that something of the formula is decided in each half.
+    /// An input and a cell at which to cut a box in two: there a literal of the formula changes.
     pub(super) fn split(&self, formula: &Formula, cells: &Cells) -> Option<(usize, usize)> {
         match formula {
             Formula::Always => None,
@@ -206,7 +208,7 @@ impl Logic {
     }
 }
 
-/// A box cut in two at a cell of an input.
+/// The two halves of a box, cut at a cell of an input.
 pub(super) fn halves(cells: Cells, input: usize, cut: usize) -> [Cells; 2] {
     let (mut below, mut above) = (cells.clone(), cells);
     if let (Some(below), Some(above)) = (below.get_mut(input), above.get_mut(input)) {
@@ -236,7 +238,7 @@ impl Reader<'_> {
             Condition::Is(proposition) => self.literal(proposition, level),
             Condition::And(all) => Formula::And(parts(all)),
             Condition::Or(any) => Formula::Or(parts(any)),
-            // 1 - d >= v where not d > 1 - v.
+            // `1 - d >= v` is `not d > 1 - v`.
             Condition::Not(inner) => {
                 let level = Level {
                     value: 1.0 - level.value,
@@ -253,7 +255,7 @@ impl Reader<'_> {
             let name = proposition.term.as_ref()?;
             v.terms.iter().position(|term| term.name == name.text)
         });
-        // A name that is not known has its finding; `any` alone holds everywhere.
+        // `IS any` has no term and is always true. Unknown names are reported elsewhere.
         let (Some(input), Some(term)) = (input, term) else {
             return Formula::Always;
         };

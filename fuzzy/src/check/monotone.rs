@@ -52,12 +52,12 @@ impl FromStr for Monotone {
     }
 }
 
-/// A place at which an output does not do what its author says.
+/// A counterexample to a claim.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Counterexample {
-    /// What was said, with the output it was found in.
+    /// The claim, with the output that contradicts it.
     pub claim: Monotone,
     /// All inputs by name, at the smaller value.
     pub at: Vec<Coordinate>,
@@ -70,7 +70,7 @@ pub struct Counterexample {
 }
 
 impl Probe<'_> {
-    /// The worst counterexample of each output to what its author says.
+    /// The worst counterexample to each claim, for each output.
     pub(super) fn counterexamples(&mut self, claim: &Monotone) -> Vec<Counterexample> {
         let Some(input) = self.model.inputs.iter().position(|v| v.name == claim.input) else {
             return Vec::new();

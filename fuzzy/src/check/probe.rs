@@ -1,7 +1,7 @@
-//! The engine asked at many points: what reach, monotonicity and jumps are found by.
+//! Evaluations of the engine at many points, for the analyses of reach, monotonicity and jumps.
 //!
-//! The places that the terms name are among the points. What is reported happens, at the inputs that are given with it;
-//! what is not reported may still happen between the points.
+//! The points include the parameters of the terms. A reported case is real: it occurs at the inputs given with it. A case
+//! between the points can be missed.
 
 use alloc::{string::String, vec::Vec};
 
@@ -22,28 +22,28 @@ pub struct Coordinate {
     pub value: f64,
 }
 
-/// Steps that may be spent on a question, a step being one rule or term at one point: some tens of milliseconds.
+/// The work that an analysis may take, in rules and terms evaluated at a point: some tens of milliseconds.
 const MOST_STEPS: usize = 3_000_000;
-/// Points of a line along one input.
+/// The most points of a line along one input.
 pub(super) const MOST_ON_A_LINE: usize = 200;
-/// A smaller part of the output's range is no jump, and no counterexample.
+/// The least change, as a fraction of the output's range, that counts as a jump or a counterexample.
 pub(super) const NOTABLE: f64 = 0.005;
 
-/// The engine with places to look at.
+/// The engine, and the points to evaluate it at.
 pub(super) struct Probe<'m> {
     pub(super) model: &'m Model,
     engine: &'m Engine,
     scratch: Scratch,
     outcomes: Vec<Outcome>,
-    /// The values of each input at which to look.
-    pub(super) places: Vec<Vec<f64>>,
-    /// Evaluations that are left for one question.
+    /// The values of each input.
+    pub(super) values: Vec<Vec<f64>>,
+    /// The most evaluations of an analysis.
     pub(super) evaluations: usize,
 }
 
 impl<'m> Probe<'m> {
     pub(super) fn new(model: &'m Model, engine: &'m Engine) -> Self {
-        let places = model
+        let values = model
             .inputs
             .iter()
             .map(|input| chosen(input, MOST_ON_A_LINE));
@@ -53,13 +53,13 @@ impl<'m> Probe<'m> {
             engine,
             scratch: engine.scratch(),
             outcomes: alloc::vec![Outcome::default(); model.outputs.len()],
-            places: places.collect(),
+            values: values.collect(),
             evaluations: (MOST_STEPS / work.max(1)).clamp(100, 60_000),
         }
     }
 
-    /// The values of the outputs that rules give at a point.
-    pub(super) fn values(&mut self, point: &[f64]) -> impl Iterator<Item = Option<f64>> {
+    /// The values of the outputs at a point; `None` where no rule fires.
+    pub(super) fn outputs(&mut self, point: &[f64]) -> impl Iterator<Item = Option<f64>> {
         let done = self
             .engine
             .evaluate_with(&mut self.scratch, point, &mut self.outcomes);
@@ -67,27 +67,27 @@ impl<'m> Probe<'m> {
         self.outcomes
             .iter()
             .map(move |outcome| match outcome.state {
-                // An error about one output leaves those behind it as they were.
+                // After an error the outcomes are those of an earlier point.
                 State::Defined(value) if !failed => Some(value),
                 _ => None,
             })
     }
 
     pub(super) fn value(&mut self, point: &[f64], output: usize) -> Option<f64> {
-        self.values(point).nth(output).flatten()
+        self.outputs(point).nth(output).flatten()
     }
 
-    /// Points of the input space: all combinations of a few places of each input where that is possible, else places
-    /// drawn without order but the same every time.
+    /// At most `most` points of the input space: all combinations of a few values of each input, or, with too many inputs for
+    /// that, pseudo-random ones that are the same every time.
     pub(super) fn points(&self, most: usize) -> Vec<Vec<f64>> {
-        let count = self.places.len();
+        let count = self.values.len();
         let side = libm::pow(most as f64, 1.0 / count.max(1) as f64) as usize;
         if side >= 5 {
             let mut points: Vec<Vec<f64>> = Vec::from([Vec::new()]);
             for input in &self.model.inputs {
-                let places = chosen(input, side);
+                let values = chosen(input, side);
                 let longer = points.iter().flat_map(|point| {
-                    places.iter().map(|&x| {
+                    values.iter().map(|&x| {
                         let mut point = point.clone();
                         point.push(x);
                         point
@@ -97,7 +97,7 @@ impl<'m> Probe<'m> {
             }
             return points;
         }
-        // A linear congruential generator (Knuth's MMIX constants) is order enough, and the same everywhere.
+        // A linear congruential generator with the constants of Knuth's MMIX.
         let mut state: u64 = 1;
         let mut draw = |below: usize| {
             state = state
@@ -106,31 +106,31 @@ impl<'m> Probe<'m> {
             ((state >> 33) as usize) % below.max(1)
         };
         let mut point = || {
-            let place = |places: &Vec<f64>| places.get(draw(places.len())).copied().unwrap_or(0.0);
-            self.places.iter().map(place).collect()
+            let one = |values: &Vec<f64>| values.get(draw(values.len())).copied().unwrap_or(0.0);
+            self.values.iter().map(one).collect()
         };
         (0..most).map(|_| point()).collect()
     }
 
-    /// Lines along an input through points of the other inputs, with the outputs' values on them.
+    /// Lines along an input through points of the other inputs, with the values of the outputs along them.
     pub(super) fn lines(&mut self, input: usize) -> Vec<Line> {
-        let places = self.places.get(input).cloned().unwrap_or_default();
-        let count = (self.evaluations / (2 * places.len().max(1))).clamp(2, 400);
+        let along = self.values.get(input).cloned().unwrap_or_default();
+        let count = (self.evaluations / (2 * along.len().max(1))).clamp(2, 400);
         let mut bases = self.points(count);
         for base in &mut bases {
-            if let Some(place) = base.get_mut(input) {
-                *place = 0.0;
+            if let Some(value) = base.get_mut(input) {
+                *value = 0.0;
             }
         }
         bases.sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
         bases.dedup();
         let lines = bases.into_iter().map(|base| {
             let mut point = base.clone();
-            let values = places.iter().map(|&x| {
-                if let Some(place) = point.get_mut(input) {
-                    *place = x;
+            let values = along.iter().map(|&x| {
+                if let Some(value) = point.get_mut(input) {
+                    *value = x;
                 }
-                (x, self.values(&point).collect())
+                (x, self.outputs(&point).collect())
             });
             let values = values.collect();
             Line {
@@ -152,20 +152,22 @@ impl<'m> Probe<'m> {
     }
 }
 
-/// Values along one input, the others held.
+/// The outputs along one input, with the other inputs held.
 pub(super) struct Line {
+    /// The values of the other inputs; 0 at `input`.
     pub(super) base: Vec<f64>,
     pub(super) input: usize,
+    /// Values of the input, rising, and of all outputs there.
     pub(super) values: Vec<(f64, Vec<Option<f64>>)>,
 }
 
-/// Places of an input at which to look, at most `most`: those its terms name come first, even steps fill up.
+/// At most `most` values of an input: the parameters of its terms and the ends of its range, filled up with even steps.
 fn chosen(input: &Variable, most: usize) -> Vec<f64> {
     let range = input.low..=input.high;
     let mut named: Vec<f64> = input
         .terms
         .iter()
-        .flat_map(|term| axis::marks(&term.shape))
+        .flat_map(|term| axis::marks(&term.membership_function))
         .collect();
     named.retain(|x| range.contains(x));
     named.extend([input.low, input.high]);
@@ -174,21 +176,21 @@ fn chosen(input: &Variable, most: usize) -> Vec<f64> {
     if named.len() >= most {
         return thin(&named, most);
     }
-    let mut even = axis::places(input);
+    let mut even = axis::values(input);
     even.retain(|x| !named.contains(x));
-    let mut places = thin(&even, most - named.len());
-    places.extend(named);
-    places.sort_by(f64::total_cmp);
-    places
+    let mut values = thin(&even, most - named.len());
+    values.extend(named);
+    values.sort_by(f64::total_cmp);
+    values
 }
 
-/// `most` places, evenly taken from all.
-fn thin(places: &[f64], most: usize) -> Vec<f64> {
-    let count = places.len();
+/// `most` of the values, taken at even steps.
+fn thin(values: &[f64], most: usize) -> Vec<f64> {
+    let count = values.len();
     if count <= most {
-        return places.to_vec();
+        return values.to_vec();
     }
     let last = most.saturating_sub(1).max(1);
-    let kept = (0..most).filter_map(|i| places.get(i * (count - 1) / last).copied());
+    let kept = (0..most).filter_map(|i| values.get(i * (count - 1) / last).copied());
     kept.collect()
 }

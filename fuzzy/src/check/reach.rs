@@ -1,4 +1,4 @@
-//! How far the outputs reach.
+//! The values that the outputs take.
 
 use alloc::{string::String, vec::Vec};
 
@@ -24,14 +24,14 @@ pub struct Reach {
 }
 
 impl Probe<'_> {
-    /// The smallest and the largest value of each output, as far as they are found. None for outputs that no point defines.
+    /// The smallest and the largest value found of each output. Outputs without a value at any point are left out.
     pub(super) fn reach(&mut self) -> Vec<Reach> {
         let points = self.points(self.evaluations / 2);
         let none: Option<(f64, Vec<f64>)> = None;
         let mut lows = alloc::vec![none.clone(); self.model.outputs.len()];
         let mut highs = alloc::vec![none; self.model.outputs.len()];
         for point in &points {
-            let values: Vec<Option<f64>> = self.values(point).collect();
+            let values: Vec<Option<f64>> = self.outputs(point).collect();
             for ((value, low), high) in values.iter().zip(&mut lows).zip(&mut highs) {
                 let Some(value) = *value else { continue };
                 if low.as_ref().is_none_or(|(least, _)| value < *least) {
@@ -65,7 +65,7 @@ impl Probe<'_> {
         found
     }
 
-    /// Walks from the best point to better ones, one input at a time.
+    /// Coordinate search from the best point: improves one input at a time.
     fn climb(
         &mut self,
         (mut best, mut point): (f64, Vec<f64>),
@@ -77,7 +77,7 @@ impl Probe<'_> {
         while better && budget > 0 {
             better = false;
             for input in 0..point.len() {
-                for x in self.places.get(input).cloned().unwrap_or_default() {
+                for x in self.values.get(input).cloned().unwrap_or_default() {
                     budget = budget.saturating_sub(1);
                     let mut there = point.clone();
                     if let Some(place) = there.get_mut(input) {

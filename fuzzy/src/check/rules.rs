@@ -1,4 +1,4 @@
-//! Rules against each other: contradictory, subsumed, and such as can never fire.
+//! Rules compared with each other: contradictory and subsumed ones; and rules that can never fire.
 
 use alloc::{
     collections::BTreeMap,
@@ -12,7 +12,7 @@ use crate::{
     rule::{Condition, Rule},
 };
 
-/// Two rules of one condition that conclude different terms of one output. Rules count from 0.
+/// Two rules with the same condition that conclude different terms of one output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -37,7 +37,7 @@ pub struct Contradiction {
     pub second_term: String,
 }
 
-/// A rule that never adds anything: whenever it holds, another one of the same conclusion holds as strongly.
+/// A rule that adds nothing: wherever it fires, another rule with the same conclusion fires at least as strongly.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Subsumed {
@@ -55,7 +55,7 @@ pub struct Subsumed {
     pub by: usize,
 }
 
-/// A condition as the set of its parts, in one order, so that equal conditions are equal.
+/// A condition as the sorted set of its parts, so that the order of the parts does not matter.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 enum Parts {
     All(Vec<usize>),
@@ -83,7 +83,7 @@ impl Numbers {
         match condition {
             Condition::And(parts) => Parts::All(sorted(parts)),
             Condition::Or(parts) => Parts::Any(sorted(parts)),
-            // One part alone is both; as a set of all it meets the conjunctions, which are the rule.
+            // One part alone could be either; most conditions are conjunctions.
             one => Parts::All(sorted(core::slice::from_ref(one))),
         }
     }
@@ -105,7 +105,7 @@ fn canonical(condition: &Condition) -> String {
     }
 }
 
-/// Pairs of rules of one condition and different conclusions.
+/// Pairs of rules with one condition and different conclusions.
 pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
     let mut numbers = Numbers::default();
     let mut by_parts: BTreeMap<Parts, Vec<usize>> = BTreeMap::new();

@@ -109,12 +109,12 @@ pub(super) fn outside(variable: &Variable) -> Vec<usize> {
         // Where the range could not be read, that is the finding.
         return Vec::new();
     }
-    let places = axis::places(variable);
-    let is_zero = |term: &Term| places.iter().all(|&x| term.membership(x) == 0.0);
+    let values = axis::values(variable);
+    let is_zero = |term: &Term| values.iter().all(|&x| term.membership(x) == 0.0);
     let terms = variable.terms.iter().enumerate();
     // A linear or constant function of a weighted output is no fuzzy set, and a shape that could not be read is none yet.
     terms
-        .filter(|(_, term)| is_set(&term.shape) && is_zero(term))
+        .filter(|(_, term)| is_set(&term.membership_function) && is_zero(term))
         .map(|(i, _)| i)
         .collect()
 }
@@ -134,11 +134,11 @@ pub(super) fn holes(input: &Variable) -> Vec<Hole> {
         return Vec::new();
     }
     let covered = |x: f64| input.terms.iter().any(|term| term.membership(x) > 0.0);
-    let places = axis::places(input);
+    let values = axis::values(input);
     let mut found: Vec<Hole> = Vec::new();
     let mut start: Option<f64> = None;
     let mut before: Option<f64> = None;
-    for &x in &places {
+    for &x in &values {
         match (covered(x), start, before) {
             (false, None, None) => start = Some(x),
             (false, None, Some(last)) => {

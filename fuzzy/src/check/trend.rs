@@ -1,7 +1,7 @@
-//! Rules against the trend: where most rules say that more of an input means more of an output, and some say less.
+//! Rules against the trend: along an input most rules raise an output, and a few lower it, or the reverse.
 //!
-//! Two rules are neighbours when their conditions differ in one input only, by one step in the order of its terms. What
-//! the output does from one to the other is compared with what it does for most other neighbours along that input.
+//! Two rules are neighbours if their antecedents differ in one input only, by one step in the order of its terms. Each step
+//! between neighbours raises or lowers the output. The direction of most steps along an input is the trend.
 
 use alloc::{collections::BTreeMap, string::String, vec::Vec};
 
@@ -11,7 +11,7 @@ use crate::{
     rule::{Condition, Proposition},
 };
 
-/// A rule that goes against what most rules say of an input and an output.
+/// A step between two neighbouring rules that goes against the trend.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -20,9 +20,9 @@ pub struct AgainstTrend {
     pub input: String,
     /// The output.
     pub output: String,
-    /// What the output does along the input, by most rules.
+    /// The direction of most steps along the input.
     pub trend: Direction,
-    /// The number of steps between neighbouring rules that follow the trend.
+    /// The number of steps that follow the trend.
     pub following: usize,
     /// The rule at the lower term of the input.
     #[cfg_attr(
@@ -30,19 +30,19 @@ pub struct AgainstTrend {
         serde(serialize_with = "crate::serial::rule_number")
     )]
     pub from_rule: usize,
-    /// Its conclusion.
+    /// The term it concludes.
     pub from_term: String,
-    /// The rule at the next term up.
+    /// The rule at the next higher term.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
     )]
     pub to_rule: usize,
-    /// Its conclusion, on the other side.
+    /// The term it concludes, which is against the trend.
     pub to_term: String,
 }
 
-/// Steps against the trend, where at least twice as many follow it.
+/// The steps against the trend. There is a trend where at least twice as many steps go one way as the other.
 pub(super) fn against(model: &Model) -> Vec<AgainstTrend> {
     let mut found = Vec::new();
     for output in &model.outputs {
@@ -54,21 +54,22 @@ pub(super) fn against(model: &Model) -> Vec<AgainstTrend> {
     found
 }
 
-/// The rules of an output that are plain conjunctions: the term of each input, and the conclusion's place.
+/// The rules of an output whose antecedents are plain conjunctions.
 struct Table {
-    /// By input and rank of its term, rising.
+    /// The key is a list of (input, rank of its term), in the order of the inputs.
     rows: BTreeMap<Vec<(usize, usize)>, Row>,
 }
 
 struct Row {
     rule: usize,
     term: String,
-    place: f64,
+    /// The middle of the term.
+    middle: f64,
 }
 
 impl Table {
     fn new(model: &Model, output: &Variable) -> Option<Self> {
-        // Terms stand in the order of their middles, whatever the order in which they were written.
+        // Terms are ordered by their middles, not as they are written.
         let order: Vec<Vec<usize>> = model.inputs.iter().map(ranks).collect();
         let names: BTreeMap<&str, usize> = model
             .inputs
@@ -86,12 +87,12 @@ impl Table {
                 .terms
                 .iter()
                 .find(|t| t.name == consequent.term.text)?;
-            let Some(place) = middle(term, output) else {
+            let Some(middle) = middle(term, output) else {
                 continue;
             };
             if let Some(key) = key(model, &names, &order, &written.rule.condition) {
                 let term = term.name.clone();
-                rows.insert(key, Row { rule, term, place });
+                rows.insert(key, Row { rule, term, middle });
             }
         }
         Some(Table { rows })
@@ -109,9 +110,9 @@ impl Table {
                     continue;
                 };
                 let steps = steps.entry(input).or_default();
-                if other.place > row.place {
+                if other.middle > row.middle {
                     steps.rising.push((row, other));
-                } else if other.place < row.place {
+                } else if other.middle < row.middle {
                     steps.falling.push((row, other));
                 }
             }
@@ -141,14 +142,14 @@ impl Table {
     }
 }
 
-/// Neighbours along an input between which the output rises or falls.
+/// Neighbouring rules along an input, the lower term first: those that raise the output and those that lower it.
 #[derive(Default)]
 struct Steps<'t> {
     rising: Vec<(&'t Row, &'t Row)>,
     falling: Vec<(&'t Row, &'t Row)>,
 }
 
-/// The rank of each input's term that a plain conjunction of unhedged propositions asks for.
+/// The inputs of a condition and the ranks of their terms; `None` unless it is a conjunction of propositions without hedges.
 fn key(
     model: &Model,
     names: &BTreeMap<&str, usize>,
@@ -180,7 +181,7 @@ fn key(
     Some(key.into_iter().collect())
 }
 
-/// The rank of each term by its middle.
+/// The rank of each term in the order of the middles.
 fn ranks(variable: &Variable) -> Vec<usize> {
     let middles: Vec<f64> = variable
         .terms
@@ -193,19 +194,19 @@ fn ranks(variable: &Variable) -> Vec<usize> {
         .collect()
 }
 
-/// The middle of the values at which a term is highest; of a constant, its value.
+/// The middle of the values at which the degree of a term is highest; the value of a constant; `None` for a linear function.
 fn middle(term: &Term, variable: &Variable) -> Option<f64> {
-    match term.shape {
+    match term.membership_function {
         MembershipFunction::Constant { value } => return Some(value),
         MembershipFunction::Linear { .. } => return None,
         _ => {}
     }
-    let places = axis::places(variable);
-    let highest = places
+    let values = axis::values(variable);
+    let highest = values
         .iter()
         .map(|&x| term.membership(x))
         .fold(0.0, f64::max);
-    let mut top = places.iter().filter(|&&x| term.membership(x) == highest);
+    let mut top = values.iter().filter(|&&x| term.membership(x) == highest);
     let first = *top.next()?;
     let last = top.next_back().copied().unwrap_or(first);
     Some(0.5 * (first + last))

@@ -20,7 +20,7 @@ impl Curves {
     pub(crate) fn new(terms: &[Term], low: f64, high: f64) -> Self {
         let mut cuts = Vec::from([(low, None), (high, None)]);
         for (index, term) in terms.iter().enumerate() {
-            for x in term.shape.cuts() {
+            for x in term.membership_function.cuts() {
                 if low < x && x < high {
                     cuts.push((x, Some(index)));
                 }

@@ -85,7 +85,7 @@ impl Polylines {
         let corners = terms
             .iter()
             .map(|term| {
-                let mut corners = term.shape.corners()?;
+                let mut corners = term.membership_function.corners()?;
                 for corner in &mut corners {
                     corner.1 *= term.height;
                 }

@@ -211,7 +211,7 @@ fn membership(variable: &Variable, term: usize) -> Vec<(f64, f64)> {
     let range = Scale::new(variable.low, variable.high);
     let even = (0..=STEPS).map(|i| range.value(i as f64 / STEPS as f64));
     let beside = 1e-9 * (range.high - range.low);
-    let corners = term.shape.corners().unwrap_or_default();
+    let corners = term.membership_function.corners().unwrap_or_default();
     let corners = corners
         .into_iter()
         .flat_map(|(x, _)| [x - beside, x, x + beside]);

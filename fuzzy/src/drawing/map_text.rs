@@ -6,9 +6,15 @@ use super::{
     colour::{Colour, distinct, viridis},
     scale::thinned,
     slice::{Cell, Slice},
-    text::{short, visible},
+    text::{number, short, visible},
 };
 use crate::model::Model;
+
+/// Columns and rows of a table of values.
+const TABLE: usize = 6;
+
+/// A cell is covered where its coverage is at least this.
+const COVERED: f64 = 0.5;
 
 /// The most columns and rows of a picture.
 const MOST_COLUMNS: usize = 61;
@@ -33,11 +39,12 @@ pub fn map_text(slice: &Slice, paint: impl Fn(char, Option<Colour>) -> String) -
         paint(char::from(first + tenth), Some(viridis(slice.share(value))))
     });
     let (low, high) = (short(slice.range.low), short(slice.range.high));
-    let unit = slice.unit.as_deref().unwrap_or("");
+    let unit = slice.unit.as_ref();
+    let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
     text.push('\n');
     line(
         &mut text,
-        format_args!("0 to 9: tenths of {low} to {high} {unit}"),
+        format_args!("0 to 9: tenths of {low} to {high}{unit}"),
     );
     if slice.any_filled() {
         let method = slice.filling_text();
@@ -91,6 +98,71 @@ pub fn rules_text(
             format_args!("blank: no rule applies, the value is interpolated"),
         );
     }
+    text
+}
+
+/// The values of a slice to 2 decimals at a few points of its axes, and how many cells have a coverage below 0.5.
+///
+/// Below [`map_text`] it makes a snapshot in which a small change shows too.
+///
+/// # Example: a snapshot of a rule set
+/// ```
+/// use fuzzy::{Engine, Model, drawing, map::{DecisionMap, Grid}};
+///
+/// let model: Model = "
+/// fuzzy: 1
+/// name: heater
+/// inputs:
+///   room: {range: [0, 20], partition: [cold, warm]}
+/// outputs:
+///   power: {range: [0, 100], partition: [none, full]}
+/// rules:
+///   - IF room IS cold THEN power IS full
+///   - IF room IS warm THEN power IS none
+/// ".parse()?;
+/// let engine = Engine::new(&model)?;
+/// let map = DecisionMap::new(&engine, Grid::new(&engine, 11)?, 0)?;
+/// let slice = drawing::Slice::new(&model, &map).ok_or("fix inputs until one or two are left")?;
+/// let text = drawing::map_text(&slice, |cell, _| cell.to_string()) + &drawing::values_text(&slice);
+/// // insta::assert_snapshot!(text);
+/// assert!(text.contains("coverage below 0.5: 0 of 11 cells"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn values_text(slice: &Slice) -> String {
+    let columns = thinned(slice.columns(), TABLE);
+    let rows = match &slice.y {
+        Some(y) => thinned(y.points.len(), TABLE),
+        None => vec![0],
+    };
+    let label = |points: &[f64], i: usize| {
+        let point = points.get(i).copied();
+        point.map_or_else(String::new, |point| number(point, 4))
+    };
+    let xs = columns.iter().map(|&x| label(&slice.x.points, x));
+    let xs: String = xs.map(|x| format!("{x:>8}")).collect();
+    let mut text = String::from("\n");
+    line(&mut text, format_args!("{:>8} |{xs}", ""));
+    for &row in rows.iter().rev() {
+        let y = slice.y.as_ref().map(|y| label(&y.points, row));
+        let values = columns.iter().map(|&column| slice.cell(column, row).value);
+        let values: String = values
+            .map(|value| value.map_or_else(|| "none".into(), |value| format!("{value:.2}")))
+            .map(|value| format!("{value:>8}"))
+            .collect();
+        line(
+            &mut text,
+            format_args!("{:>8} |{values}", y.unwrap_or_default()),
+        );
+    }
+    let is_bare = |cell: &&Cell| cell.coverage < COVERED;
+    let (bare, cells) = (
+        slice.cells.iter().filter(is_bare).count(),
+        slice.cells.len(),
+    );
+    line(
+        &mut text,
+        format_args!("coverage below {COVERED}: {bare} of {cells} cells"),
+    );
     text
 }
 

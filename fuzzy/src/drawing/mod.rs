@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | the terms of a variable | [`terms_svg`] | |
 //! | an evaluation with its reasons | [`explanation_svg`] | [`explanation_text`] |
-//! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`] |
+//! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`], [`values_text`] |
 //! | the rule that dominates each part of a map | [`rules_svg`] | [`rules_text`] |
 //! | lines over a number ([`Plot`]) | [`plots_svg`] | |
 //! | curves over time ([`Panel`]) | [`Panel::svg`] | [`over_time_text`] |
@@ -45,7 +45,7 @@ pub use curve::{Stretch, over_time_text, path};
 pub use explanation::{explanation_svg, terms_svg};
 pub use explanation_text::explanation_text;
 pub use heat::{map_svg, runs};
-pub use map_text::{map_text, rules_text};
+pub use map_text::{map_text, rules_text, values_text};
 pub use panel::{CSS, Line, Mark, Panel, Phase, Size, Timeline};
 pub use plot::{Plot, Series, plots_svg};
 pub use regions::rules_svg;

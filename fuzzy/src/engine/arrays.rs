@@ -105,8 +105,8 @@ impl OwnedTable {
 
     fn curve(&mut self, index: u32, literal: &Literal) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
-        let (kind, parameters) = literal.term.shape.kind();
-        if let MembershipFunction::Piecewise { points } = &literal.term.shape {
+        let (kind, parameters) = literal.term.membership_function.kind();
+        if let MembershipFunction::Piecewise { points } = &literal.term.membership_function {
             self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
         }
         self.hedges.extend(&literal.hedges);

@@ -200,7 +200,7 @@ impl Compiler<'_> {
         for (input, term, hedges) in self.literals.keys() {
             let always = || Term {
                 name: String::new(),
-                shape: MembershipFunction::Constant { value: 1.0 },
+                membership_function: MembershipFunction::Constant { value: 1.0 },
                 height: 1.0,
             };
             by_input[*input].push(Literal {
@@ -296,7 +296,7 @@ impl Compiler<'_> {
         let input = |name: &str| self.model.inputs.iter().position(|v| v.name == name);
         let mut consequents = Consequents::default();
         for term in &output.variable.terms {
-            consequents.push(&term.shape, input);
+            consequents.push(&term.membership_function, input);
         }
         Defuzzify::weighted(output, operators, consequents)
     }

@@ -306,7 +306,7 @@ fn explain_output(
     let sets = variable
         .terms
         .iter()
-        .all(|term| !matches!(term.shape, MembershipFunction::Linear { .. }));
+        .all(|term| !matches!(term.membership_function, MembershipFunction::Linear { .. }));
     ExplainedOutput {
         name: variable.name.clone(),
         value,

@@ -93,7 +93,7 @@ pub(super) fn lines(literal: &Literal) -> Option<Vec<(f64, Line)>> {
     if !literal.hedges.is_empty() || literal.term.height != 1.0 {
         return None;
     }
-    let shape = &literal.term.shape;
+    let shape = &literal.term.membership_function;
     let corners = shape.corners()?;
     let mut lines = Vec::new();
     let mut before: Option<(f64, f64)> = None;
@@ -211,11 +211,11 @@ mod tests {
         ]
     }
 
-    fn literal(shape: MembershipFunction, hedges: &[Hedge]) -> Literal {
+    fn literal(membership_function: MembershipFunction, hedges: &[Hedge]) -> Literal {
         Literal {
             term: Term {
                 name: String::new(),
-                shape,
+                membership_function,
                 height: 1.0,
             },
             hedges: hedges.to_vec(),

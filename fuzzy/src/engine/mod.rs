@@ -116,11 +116,6 @@ impl Engine {
         self.inputs.iter().map(|v| (&v.name, v.low, v.high))
     }
 
-    /// Name, lower and upper end of each output.
-    pub(crate) fn output_ranges(&self) -> impl Iterator<Item = (&Arc<str>, f64, f64)> {
-        self.outputs.iter().map(|v| (&v.name, v.low, v.high))
-    }
-
     /// Working memory for [`Engine::evaluate_with`]; each thread needs its own.
     pub fn scratch(&self) -> Scratch {
         let sizes = self.arrays.sizes;

@@ -140,7 +140,7 @@ fn wrong_numbers_of_places() {
 fn every_problem_of_a_model_at_once() {
     let mut model = gap(NoRuleFires::Value(101.0));
     model.inputs.push(Variable::new("x", 1.0, 1.0));
-    model.inputs[0].terms[0].shape = MembershipFunction::Gaussian {
+    model.inputs[0].terms[0].membership_function = MembershipFunction::Gaussian {
         mean: 0.0,
         sd: -1.0,
     };
@@ -301,9 +301,9 @@ mod laws {
             let output = &mut scaled.outputs[0].variable;
             (output.low, output.high) = (scale * output.low, scale * output.high);
             for term in &mut output.terms {
-                let corners = term.shape.corners().unwrap();
+                let corners = term.membership_function.corners().unwrap();
                 let points = corners.into_iter().map(|(x, y)| (scale * x, y)).collect();
-                term.shape = MembershipFunction::Piecewise { points };
+                term.membership_function = MembershipFunction::Piecewise { points };
             }
             let outcome = Engine::new(&scaled).unwrap().evaluate(&[x, y]).unwrap()[0];
             match (outcome.value(), expected.value()) {
@@ -324,9 +324,9 @@ mod laws {
             for variable in mirrored.inputs.iter_mut().chain(outputs) {
                 (variable.low, variable.high) = (-variable.high, -variable.low);
                 for term in &mut variable.terms {
-                    let corners = term.shape.corners().unwrap();
+                    let corners = term.membership_function.corners().unwrap();
                     let points = corners.into_iter().rev().map(|(x, y)| (-x, y)).collect();
-                    term.shape = MembershipFunction::Piecewise { points };
+                    term.membership_function = MembershipFunction::Piecewise { points };
                 }
             }
             let value = Engine::new(&model).unwrap().evaluate(&[x, y]).unwrap()[0].value();

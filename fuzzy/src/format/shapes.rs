@@ -51,8 +51,11 @@ pub(super) fn read(
             None => {
                 let known = MembershipFunction::FORMS.iter().map(|form| form.name);
                 let message = format!("there is no membership function `{name}`");
-                let mut finding =
-                    Diagnostic::error("unknown-shape", shape.key_span.clone(), message);
+                let mut finding = Diagnostic::error(
+                    "unknown-membership-function",
+                    shape.key_span.clone(),
+                    message,
+                );
                 finding.help = suggest(name, known.chain(["piecewise", "linear"]));
                 findings.push(finding);
                 None

@@ -90,11 +90,14 @@ fn any_variable() -> impl Strategy<Value = Variable> {
             let sets: Option<Vec<MembershipFunction>> = shapes.iter().cloned().collect();
             match sets {
                 Some(sets) => {
-                    let terms = names.into_iter().zip(sets).map(|(name, shape)| Term {
-                        name,
-                        shape,
-                        height,
-                    });
+                    let terms = names
+                        .into_iter()
+                        .zip(sets)
+                        .map(|(name, membership_function)| Term {
+                            name,
+                            membership_function,
+                            height,
+                        });
                     variable.terms = terms.collect();
                 }
                 None => variable = variable.partition(names.iter().map(String::as_str)),
@@ -153,7 +156,7 @@ fn any_model() -> impl Strategy<Value = Model> {
                     for (i, term) in variable.terms.iter_mut().enumerate() {
                         let constant = i as f64;
                         let coefficients = Vec::from([(inputs[0].name.clone(), 0.5)]);
-                        term.shape = match i % 3 {
+                        term.membership_function = match i % 3 {
                             0 => MembershipFunction::Constant { value: constant },
                             1 => MembershipFunction::Singleton { at: constant },
                             _ => MembershipFunction::Linear {
@@ -253,17 +256,19 @@ const MISTAKES: [Mistake; 32] = [
         m.inputs[0].terms[0].height = f64::NAN
     }),
     ("wrong-parameter", |m| {
-        m.inputs[0].terms[0].shape = MembershipFunction::Triangle {
+        m.inputs[0].terms[0].membership_function = MembershipFunction::Triangle {
             left: 0.0,
             peak: 2.0,
             right: 1.0,
         };
     }),
     ("wrong-parameter", |m| {
-        m.inputs[0].terms[0].shape = MembershipFunction::Gaussian { mean: 0.0, sd: 0.0 };
+        m.inputs[0].terms[0].membership_function =
+            MembershipFunction::Gaussian { mean: 0.0, sd: 0.0 };
     }),
     ("wrong-parameter", |m| {
-        m.inputs[0].terms[0].shape = MembershipFunction::Piecewise { points: Vec::new() }
+        m.inputs[0].terms[0].membership_function =
+            MembershipFunction::Piecewise { points: Vec::new() }
     }),
     ("wrong-parameter", |m| {
         let samples = Sampling {
@@ -293,25 +298,26 @@ const MISTAKES: [Mistake; 32] = [
     }),
     ("wrong-term", |m| {
         let coefficients = Vec::new();
-        m.inputs[0].terms[0].shape = MembershipFunction::Linear {
+        m.inputs[0].terms[0].membership_function = MembershipFunction::Linear {
             coefficients,
             constant: 1.0,
         };
     }),
     ("wrong-term", |m| {
         m.outputs[0].defuzzifier = Defuzzifier::Centroid;
-        m.outputs[0].variable.terms[0].shape = MembershipFunction::Singleton {
+        m.outputs[0].variable.terms[0].membership_function = MembershipFunction::Singleton {
             at: m.outputs[0].variable.low,
         };
     }),
     ("wrong-term", |m| {
         m.outputs[0].defuzzifier = Defuzzifier::WeightedSum;
-        m.outputs[0].variable.terms[0].shape = MembershipFunction::Gaussian { mean: 0.0, sd: 1.0 };
+        m.outputs[0].variable.terms[0].membership_function =
+            MembershipFunction::Gaussian { mean: 0.0, sd: 1.0 };
     }),
     ("unknown-variable", |m| {
         m.outputs[0].defuzzifier = Defuzzifier::WeightedSum;
         let coefficients = Vec::from([("nothing".into(), 1.0)]);
-        m.outputs[0].variable.terms[0].shape = MembershipFunction::Linear {
+        m.outputs[0].variable.terms[0].membership_function = MembershipFunction::Linear {
             coefficients,
             constant: 1.0,
         };
@@ -319,7 +325,7 @@ const MISTAKES: [Mistake; 32] = [
     ("term-outside-range", |m| {
         m.outputs[0].defuzzifier = Defuzzifier::Bisector;
         for term in &mut m.outputs[0].variable.terms {
-            term.shape = MembershipFunction::Rectangle {
+            term.membership_function = MembershipFunction::Rectangle {
                 left: 2e9,
                 right: 3e9,
             };

@@ -322,7 +322,7 @@ fn rising(
 fn unread(name: &str) -> Term {
     Term {
         name: String::from(name),
-        shape: MembershipFunction::Constant { value: 1.0 },
+        membership_function: MembershipFunction::Constant { value: 1.0 },
         height: 1.0,
     }
 }
@@ -384,10 +384,10 @@ fn term(
         spans.height = node.span.clone();
         node.finite(&format!("the height of {term}"), findings)
     });
-    let shape = shapes::read(&term, &fields, spans, findings);
+    let membership_function = shapes::read(&term, &fields, spans, findings);
     Some(Term {
         name: entry.key.to_string(),
-        shape: shape?,
+        membership_function: membership_function?,
         height: height?,
     })
 }

@@ -97,7 +97,7 @@ fn terms(variable: &Variable) -> (&'static str, Node) {
         && *terms == between_peaks(&names().zip(peaks.iter().copied()).collect::<Vec<_>>());
     if !is_partition {
         let terms = terms.iter().map(|term| {
-            let (shape, parameters) = shapes::write(&term.shape);
+            let (shape, parameters) = shapes::write(&term.membership_function);
             let mut entries: Entries = Vec::from([(shape, parameters)]);
             if term.height != 1.0 {
                 entries.push(("height", Node::number(term.height)));
@@ -117,7 +117,7 @@ fn terms(variable: &Variable) -> (&'static str, Node) {
 
 /// Where each term of a partition would have its peak.
 fn peaks(terms: &[Term]) -> Vec<f64> {
-    let peak = |term: &Term| match term.shape {
+    let peak = |term: &Term| match term.membership_function {
         MembershipFunction::Triangle { peak, .. } => Some(peak),
         MembershipFunction::LeftShoulder { top, .. }
         | MembershipFunction::RightShoulder { top, .. } => Some(top),

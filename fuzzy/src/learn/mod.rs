@@ -148,7 +148,7 @@ impl Learner {
                 .variable
                 .terms
                 .iter()
-                .map(|term| peak(&output.variable, &term.shape))
+                .map(|term| peak(&output.variable, &term.membership_function))
                 .collect(),
             samples: 0,
             cells: BTreeMap::new(),
@@ -251,7 +251,7 @@ fn check(variable: &Variable, value: f64) -> Result<(), Refusal> {
 fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
     let mut best: Option<(u16, f64)> = None;
     for (i, term) in (0..=u16::MAX).zip(&variable.terms) {
-        let membership = term.height * term.shape.membership(value);
+        let membership = term.height * term.membership_function.membership(value);
         if membership > best.map_or(0.0, |(_, highest)| highest) {
             best = Some((i, membership));
         }

@@ -1,18 +1,16 @@
 //! Decision maps: the values, coverage and dominant rules of an engine on a grid.
 
-use alloc::{sync::Arc, vec, vec::Vec};
+use alloc::{string::String, vec, vec::Vec};
 
 use crate::Engine;
 use crate::engine::{EvaluateError, Outcome, Scratch};
 
 mod grid;
-mod picture;
 mod table;
 #[cfg(test)]
 mod tests;
 
 pub use grid::{Axis, Fixed, Grid, GridError};
-pub use picture::picture;
 pub use table::{DecisionTable, TableError};
 
 /// One output of an engine on every cell of a grid.
@@ -38,8 +36,7 @@ pub use table::{DecisionTable, TableError};
 #[derive(Debug, Clone, PartialEq)]
 pub struct DecisionMap {
     grid: Grid,
-    output: Arc<str>,
-    range: (f64, f64),
+    output: String,
     /// NaN where there is no value.
     values: Vec<f64>,
     coverage: Vec<f64>,
@@ -154,7 +151,7 @@ impl DecisionMap {
                 got: named,
             });
         }
-        let Some((name, low, high)) = engine.output_ranges().nth(output) else {
+        let Some(name) = engine.output_names().nth(output) else {
             return Err(EvaluateError::WrongNumberOfOutputs {
                 expected: engine.output_names().len(),
                 got: output,
@@ -162,8 +159,7 @@ impl DecisionMap {
         };
         let cells = grid.cells();
         let mut map = DecisionMap {
-            output: Arc::clone(name),
-            range: (low, high),
+            output: name.into(),
             // The system provides zeroed memory at no cost; every cell is written below.
             values: vec![0.0; cells],
             coverage: vec![0.0; cells],
@@ -205,11 +201,6 @@ impl DecisionMap {
     /// The output's name.
     pub fn output(&self) -> &str {
         &self.output
-    }
-
-    /// The output's range.
-    pub fn range(&self) -> (f64, f64) {
-        self.range
     }
 
     /// The value of a cell; `None` where it has none, or where it is not on the grid.

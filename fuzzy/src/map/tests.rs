@@ -97,11 +97,6 @@ fn between_cells_and_beyond_them() {
 }
 
 #[test]
-fn a_picture_of_the_published_map() {
-    insta::assert_snapshot!(picture(&map(51)));
-}
-
-#[test]
 fn a_table_is_as_good_as_it_says() {
     let engine = Engine::new(&published()).unwrap();
     let grid = Grid::new(&engine, 101).unwrap();

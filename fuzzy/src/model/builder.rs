@@ -167,10 +167,14 @@ impl Variable {
 
     /// Adds a term of height 1.
     #[must_use]
-    pub fn term(mut self, name: impl Into<String>, shape: MembershipFunction) -> Self {
+    pub fn term(
+        mut self,
+        name: impl Into<String>,
+        membership_function: MembershipFunction,
+    ) -> Self {
         self.terms.push(Term {
             name: name.into(),
-            shape,
+            membership_function,
             height: 1.0,
         });
         self
@@ -178,9 +182,9 @@ impl Variable {
 }
 
 impl Term {
-    /// The degree of membership of `x`: the height times the shape's degree, in [0, 1].
+    /// The degree of membership of `x`: the height times that of the membership function, in [0, 1].
     pub fn membership(&self, x: f64) -> f64 {
-        self.height * self.shape.membership(x)
+        self.height * self.membership_function.membership(x)
     }
 }
 

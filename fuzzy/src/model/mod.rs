@@ -80,7 +80,7 @@ pub struct Term {
     /// Its name in rules.
     pub name: String,
     /// The membership function.
-    pub shape: MembershipFunction,
+    pub membership_function: MembershipFunction,
     /// The height of the membership function, in (0, 1]; 1 where the author wrote none.
     pub height: f64,
 }

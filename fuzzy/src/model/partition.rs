@@ -9,7 +9,7 @@ pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
     let peak = |i: usize| peaks.get(i).map(|(_, peak)| *peak);
     let term = |(i, &(name, at)): (usize, &(&str, f64))| {
         let left = i.checked_sub(1).and_then(peak);
-        let shape = match (left, peak(i + 1)) {
+        let membership_function = match (left, peak(i + 1)) {
             (Some(left), Some(right)) => MembershipFunction::Triangle {
                 left,
                 peak: at,
@@ -21,7 +21,7 @@ pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
         };
         Term {
             name: String::from(name),
-            shape,
+            membership_function,
             height: 1.0,
         }
     };

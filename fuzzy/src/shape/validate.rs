@@ -74,6 +74,16 @@ impl MembershipFunction {
         }
         self.misfit().map_or(Ok(()), |message| wrong(0, message))
     }
+
+    /// Why parameters that are right one by one still make no membership function.
+    fn misfit(&self) -> Option<String> {
+        match *self {
+            MembershipFunction::Concave { inflection, end } if inflection == end => {
+                Some(format!("`inflection` and `end` are both {end}"))
+            }
+            _ => None,
+        }
+    }
 }
 
 fn finite(i: usize, name: &str, value: f64) -> Result<(), MembershipError> {

@@ -286,7 +286,7 @@ fn propositions(model: &Model, condition: &Condition) -> Option<Vec<(usize, usiz
 }
 
 fn peaks(terms: &[Term]) -> Result<Vec<f64>, String> {
-    let peak = |term: &Term| match term.shape {
+    let peak = |term: &Term| match term.membership_function {
         MembershipFunction::Triangle { peak, .. } => Ok(peak),
         MembershipFunction::LeftShoulder { top, .. }
         | MembershipFunction::RightShoulder { top, .. } => Ok(top),

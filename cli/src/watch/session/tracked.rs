@@ -4,14 +4,13 @@ use flagred::{
     estimator::Estimator,
     flight::{Assessor, Finding, Verdict},
     monitor::{Craft, Update},
-    verdict::Level,
 };
 use flightlog::{
     Vehicle,
     mavlink::{Packet, Requests, Setup, Telemetry, Version, parameters_known},
 };
 
-use super::{Event, Out, Silent};
+use super::{End, Event, Flown, Left, Lost, Out, Silent, Source};
 
 /// A link, or the motor commands on it, that are silent for this long are lost.
 const SILENT_S: f64 = 2.0;
@@ -21,6 +20,12 @@ const LISTEN_S: f64 = 10.0;
 /// A vehicle that is followed.
 pub(super) struct Tracked {
     pub(super) telemetry: Telemetry,
+    /// Where its packets come from.
+    pub(super) source: Source,
+    /// Motor commands came, with a clock that goes on.
+    pub(super) is_proved: bool,
+    /// The connection that it was heard on is closed.
+    pub(super) is_gone: bool,
     pub(super) requests: Requests,
     pub(super) found_s: f64,
     pub(super) heard_s: f64,
@@ -64,9 +69,12 @@ pub(crate) struct View<'a> {
 
 impl Tracked {
     /// Starts to follow the vehicle that a heartbeat told of.
-    pub(super) fn new(telemetry: Telemetry, now_s: f64) -> Tracked {
+    pub(super) fn new(telemetry: Telemetry, source: Source, now_s: f64) -> Tracked {
         Tracked {
             telemetry,
+            source,
+            is_proved: false,
+            is_gone: false,
             requests: Requests::new(),
             found_s: now_s,
             heard_s: now_s,
@@ -123,7 +131,13 @@ impl Tracked {
         }
     }
 
+    /// Whether nothing comes from it any more.
+    pub(super) fn is_silent(&self) -> bool {
+        self.link_lost || self.is_gone
+    }
+
     pub(super) fn hear(&mut self, now_s: f64, out: &mut Out) {
+        self.is_gone = false;
         if self.link_lost {
             self.link_lost = false;
             self.sequence = None;
@@ -140,14 +154,14 @@ impl Tracked {
     }
 
     /// Makes a monitor as soon as the motors are known, and a new one where they become known better.
-    /// Gives the level of the flight that ended with the old one.
+    /// Gives the verdict of the flight that the old one was on.
     pub(super) fn set_up(
         &mut self,
         now_s: f64,
         asks: bool,
         estimator: &Estimator,
         out: &mut Out,
-    ) -> Option<Level> {
+    ) -> Option<Verdict> {
         let done = if asks {
             self.requests.parameters_done()
         } else {
@@ -171,7 +185,7 @@ impl Tracked {
             .with_geometry(geometry.map_or(&[], |geometry| &geometry.factors));
         match Assessor::new(estimator, craft, None) {
             Ok(assessor) => {
-                let level = self.end_flight(out);
+                let verdict = self.end_flight(End::Left(Left::SetUpAnew), out);
                 out.events.push(Event::Ready {
                     setup: setup.clone(),
                 });
@@ -185,7 +199,8 @@ impl Tracked {
                     is_flying: false,
                     latest: None,
                 });
-                level
+                // A part of a flight too short for a verdict is no flight without one.
+                verdict.filter(|verdict| matches!(verdict, Verdict::Known(_)))
             }
             Err(error) => {
                 let text = format!("the risk cannot be assessed: {error}");
@@ -212,36 +227,60 @@ impl Tracked {
         }
     }
 
-    /// Resets what is known of the vehicle after it rebooted; gives the level of the flight that ended with it.
-    pub(super) fn start_anew(&mut self, now_s: f64, out: &mut Out) -> Option<Level> {
-        let level = self.end_flight(out);
+    /// Resets what is known of the vehicle after it rebooted; gives the verdict of the flight that was lost with it.
+    pub(super) fn start_anew(&mut self, now_s: f64, out: &mut Out) -> Option<Verdict> {
+        let verdict = self.end_flight(End::Lost(Lost::Reboot), out);
         out.events.push(Event::Rebooted);
         self.watch = None;
         self.set_up_tried = false;
         self.requests = Requests::new();
         self.found_s = now_s;
-        level
+        verdict
     }
 
-    pub(super) fn end_flight(&mut self, out: &mut Out) -> Option<Level> {
-        self.watch.as_mut().and_then(|watch| watch.end_flight(out))
+    /// Ends the flight that is on with the watch.
+    pub(super) fn finish(&mut self, out: &mut Out) -> Option<Verdict> {
+        let commands_lost = self.watch.as_ref().is_some_and(|watch| watch.commands_lost);
+        let end = match self.telemetry.is_in_air() {
+            _ if self.link_lost => End::Lost(Lost::Link),
+            false => End::Landed,
+            true if commands_lost => End::Lost(Lost::MotorCommands),
+            true => End::Left(Left::WatchEnded),
+        };
+        self.end_flight(end, out)
+    }
+
+    pub(super) fn end_flight(&mut self, end: End, out: &mut Out) -> Option<Verdict> {
+        let watch = self.watch.as_mut()?;
+        watch.end_flight(end, out)
     }
 }
 
 impl Watch {
-    /// Ends the flight that is on, if any; gives the level of its verdict.
-    pub(super) fn end_flight(&mut self, out: &mut Out) -> Option<Level> {
+    /// Ends the flight that is on, if any; gives its verdict.
+    pub(super) fn end_flight(&mut self, end: End, out: &mut Out) -> Option<Verdict> {
         if !std::mem::take(&mut self.is_flying) {
             return None;
         }
         tell(self.assessor.end_findings(), out);
-        let verdict = self.assessor.finish().verdict;
-        let level = match verdict {
+        let t_s = self.latest.map(|update| update.t_s);
+        let seen = self.assessor.finish();
+        let level_seen = match seen.verdict {
             Verdict::Known(level) => Some(level),
             Verdict::NotAvailable(_) => None,
         };
-        out.events.push(Event::Landed { verdict });
-        level
+        let verdict = match end {
+            End::Lost(_) => seen.verdict.lost_in_air(),
+            End::Landed | End::Left(_) => seen.verdict,
+        };
+        let flown = Flown {
+            t_s,
+            verdict: verdict.clone(),
+            level_seen,
+            risk_max: seen.summary.risk_max.map(|peak| peak.value_pct),
+        };
+        out.events.push(Event::Over { end, flown });
+        Some(verdict)
     }
 }
 

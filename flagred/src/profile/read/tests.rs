@@ -1,4 +1,8 @@
 use super::*;
+use crate::{
+    source::{Motors, Signal, Source, Statistic},
+    verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings},
+};
 
 const START: &str =
     "flagred: 1\nname: test\nrules: test\ninputs:\n  margin: {mean: motor_margin}\n";

@@ -1,21 +1,17 @@
 //! On-board monitors have the bits of the monitor, with a lent plan, with exported Rust and with exported C, over grids of
 //! inputs and over every flight.
 
-use std::{
-    collections::BTreeMap,
-    io::Write,
-    path::{Path, PathBuf},
-    process::{Command, Stdio},
-    sync::OnceLock,
-};
+mod c;
+
+use std::{collections::BTreeSet, path::Path, process::Command};
 
 use flagred::{
-    board::{self, Factors, OwnedMemory, Plan, table},
+    board::{self, Factors, OwnedMemory, Plan},
     estimator::Estimator,
     monitor::{Craft, Monitor},
 };
 use flagred_tests::{
-    Folder, STEADY,
+    Folder,
     board::{Moment, PROFILES, estimator, findings, geometry, logs, moment, moments, points, told},
     flagred,
 };
@@ -23,13 +19,13 @@ use flagred_tests::{
 /// The output of `flagred export --rust` for each profile.
 mod exported {
     pub mod flagred {
-        include!("../exported/flagred.rs");
+        include!("../../exported/flagred.rs");
     }
     pub mod flagred_paper {
-        include!("../exported/flagred_paper.rs");
+        include!("../../exported/flagred_paper.rs");
     }
     pub mod flagred_battery {
-        include!("../exported/flagred_battery.rs");
+        include!("../../exported/flagred_battery.rs");
     }
 }
 
@@ -223,9 +219,8 @@ fn every_signal_statistic_and_notice_is_the_same_lent_and_in_c() {
     let folder = Folder::new();
     let (estimator, file) = profile_of_every_signal(&folder);
     let plan = estimator.plan().unwrap();
-    let exported = Some((&*file, "every_signal"));
-    let built = program("tests/c/follow.c", "every-signal", exported);
-    let (mut known, mut measures) = (0, std::collections::BTreeSet::new());
+    let (_, built) = c::program("tests/c/follow.c", "every-signal", (&file, "every_signal"));
+    let (mut known, mut measures) = (0, BTreeSet::new());
     for log in logs() {
         let flight = moments(&log, &[]);
         let geometry = geometry(&log);
@@ -251,12 +246,10 @@ fn every_signal_statistic_and_notice_is_the_same_lent_and_in_c() {
             ended.extend(whole.finish().into_iter().flatten());
             measures.extend(ended.iter().map(|finding| finding.measure.to_string()));
         });
-        if let Some((_, folder)) = &built {
-            let mut command = Command::new(folder.at("every-signal"));
-            command.arg(geometry.len().to_string());
-            let found = written(command, &doubles(&geometry, &flight));
-            assert_same(&expected, &found, &format!("{what} in C"));
-        }
+        let mut command = Command::new(built.at("every-signal"));
+        command.arg(geometry.len().to_string());
+        let found = c::written(command, &c::doubles(&geometry, &flight));
+        assert_same(&expected, &found, &format!("{what} in C"));
     }
     assert!(known > 1000, "{known}");
     let expected = ["command noise", "imbalance", "reserve", "risk"];
@@ -321,10 +314,10 @@ fn a_sample_on_board_allocates_nothing() {
 #[test]
 fn what_has_no_closed_form_is_refused_with_what_has() {
     let folder = Folder::new();
-    let rules = include_str!("../../rules/flagred-paper.yaml")
+    let rules = include_str!("../../../rules/flagred-paper.yaml")
         .replace("defuzzifier: centroid", "defuzzifier: bisector");
     folder.file("odd-rules.yaml", rules);
-    let profile = include_str!("../../rules/profiles/flagred-paper.yaml")
+    let profile = include_str!("../../../rules/profiles/flagred-paper.yaml")
         .replace("rules: flagred-paper ", "rules: odd-rules.yaml ");
     let output = flagred()
         .args(["export", "--c", &folder.file("odd.yaml", profile)])
@@ -337,219 +330,6 @@ fn what_has_no_closed_form_is_refused_with_what_has() {
             && told.contains("help: closed forms have"),
         "{told}"
     );
-}
-
-/// The folder of the C library, built with `core` only.
-fn library() -> Option<&'static Path> {
-    static LIBRARY: OnceLock<Option<PathBuf>> = OnceLock::new();
-    let built = LIBRARY.get_or_init(|| {
-        if Command::new("cc").arg("--version").output().is_err() {
-            eprintln!("skipped: there is no C compiler named `cc`");
-            return None;
-        }
-        let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let target = workspace.join("target");
-        let status = Command::new(env!("CARGO"))
-            .args([
-                "build",
-                "--quiet",
-                "-p",
-                "flagred-c",
-                "--no-default-features",
-            ])
-            .args(["--profile", "onboard", "--target-dir"])
-            .arg(&target)
-            .current_dir(&workspace)
-            .status();
-        assert!(
-            status.unwrap().success(),
-            "the library for C does not build"
-        );
-        Some(target.join("onboard"))
-    });
-    built.as_deref()
-}
-
-/// Compiles a C program with the library, and returns it and its folder.
-fn program(source: &str, name: &str, exported: Option<(&str, &str)>) -> Option<(Command, Folder)> {
-    let library = library()?;
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let folder = Folder::new();
-    let mut cc = Command::new("cc");
-    cc.args([
-        "-std=c11",
-        "-O1",
-        "-Wall",
-        "-Wextra",
-        "-Wpedantic",
-        "-Werror",
-    ]);
-    cc.arg("-I").arg(root.join("bindings/c/include"));
-    if let Some((profile, plan)) = exported {
-        let header = folder.at("profile.h");
-        let status = flagred()
-            .args(["export", "--c", profile, "--output"])
-            .arg(&header)
-            .status();
-        assert!(status.unwrap().success(), "{profile}");
-        cc.arg("-I").arg(folder.path());
-        cc.arg(format!("-DPROFILE=\"{header}\""));
-        cc.arg(format!("-DPLAN=flagred_plan_{plan}"));
-    }
-    let binary = folder.at(name);
-    cc.arg(root.join(source)).arg("-o").arg(&binary);
-    cc.arg(library.join("libflagred.a"));
-    let compiled = cc.output().unwrap();
-    let told = String::from_utf8_lossy(&compiled.stderr);
-    assert!(compiled.status.success(), "{told}");
-    Some((Command::new(binary), folder))
-}
-
-/// The C initialisers name their fields, so the compiler holds the structures equal.
-#[test]
-fn the_header_has_the_arrays_of_a_table() {
-    macro_rules! list {
-        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
-            [$((stringify!($array), stringify!($item))),*]
-        };
-    }
-    let arrays = table::arrays!(list!).map(|(array, item)| match item {
-        "f64" => format!("FLAGRED_ARRAY(double, {array})"),
-        "u32" => format!("FLAGRED_ARRAY(uint32_t, {array})"),
-        item => format!("FLAGRED_ARRAY(flagred_{}, {array})", item.to_lowercase()),
-    });
-    let header = include_str!("../../bindings/c/include/flagred.h");
-    let listed: Vec<&str> = header
-        .lines()
-        .filter_map(|line| line.split(';').next()?.strip_prefix("    "))
-        .filter(|line| line.starts_with("FLAGRED_ARRAY("))
-        .take(arrays.len())
-        .collect();
-    assert_eq!(arrays[..], listed);
-}
-
-/// A geometry and a flight as input of `tests/c/follow.c`.
-fn doubles(geometry: &[Factors], flight: &[Moment]) -> Vec<f64> {
-    let mut doubles = Vec::new();
-    if !geometry.is_empty() {
-        doubles.push(3.0);
-        doubles.extend(geometry.iter().flatten());
-    }
-    for moment in flight {
-        doubles.extend([0.0, moment.t_s, f64::from(u8::from(moment.in_air))]);
-        doubles.extend(&moment.motors);
-        doubles.extend(&moment.signals);
-    }
-    doubles.push(2.0);
-    doubles
-}
-
-/// The output of a program for doubles as its input.
-fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
-    let mut child = program
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let bytes: Vec<u8> = doubles.iter().flat_map(|x| x.to_ne_bytes()).collect();
-    let mut stdin = child.stdin.take().unwrap();
-    let writer = std::thread::spawn(move || stdin.write_all(&bytes).unwrap());
-    let output = child.wait_with_output().unwrap();
-    writer.join().unwrap();
-    assert!(output.status.success());
-    let text = String::from_utf8(output.stdout).unwrap();
-    text.lines().map(str::to_owned).collect()
-}
-
-#[test]
-fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs() {
-    for (profile, (name, _)) in PROFILES.iter().zip(exported()) {
-        let Some((_, folder)) = program("tests/c/follow.c", name, Some((profile, name))) else {
-            return;
-        };
-        let estimator = estimator(profile);
-        for log in logs() {
-            let flight = moments(&log, &estimator.profile().signals());
-            for geometry in [&[][..], &geometry(&log)] {
-                let mut command = Command::new(folder.at(name));
-                command.arg(flight[0].motors.len().to_string());
-                let expected = by_the_monitor(&estimator, geometry, &flight);
-                let what = format!("{name} in C, {} factors, {}", geometry.len(), log.display());
-                assert_same(
-                    &expected,
-                    &written(command, &doubles(geometry, &flight)),
-                    &what,
-                );
-            }
-        }
-        let points = points(&estimator, along(&estimator));
-        let doubles = points
-            .iter()
-            .flat_map(|point| [1.0].into_iter().chain(point.iter().copied()));
-        let found = written(
-            Command::new(folder.at(name)),
-            &doubles.collect::<Vec<f64>>(),
-        );
-        let expected: Vec<String> = points
-            .iter()
-            .map(|point| moment(estimator.at(point).as_ref()))
-            .collect();
-        assert_same(&expected, &found, &format!("{name} in C over its inputs"));
-    }
-}
-
-#[test]
-fn the_example_in_c_runs() {
-    let profile = ("flagred", "flagred");
-    let Some((mut program, _folder)) =
-        program("bindings/c/examples/hover.c", "hover", Some(profile))
-    else {
-        return;
-    };
-    let output = program.output().unwrap();
-    assert!(output.status.success());
-    let text = String::from_utf8(output.stdout).unwrap();
-    insta::assert_snapshot!(text);
-}
-
-/// The time in us and the risk of every row with a risk.
-fn risks(csv: &[u8]) -> BTreeMap<u64, f64> {
-    let text = std::str::from_utf8(csv).unwrap();
-    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
-    let column = names.iter().position(|name| *name == "risk").unwrap();
-    let rows = text.lines().skip(1).filter_map(|line| {
-        let cells: Vec<&str> = line.split(',').collect();
-        let t_us = (cells[0].parse::<f64>().unwrap() * 1e6).round() as u64;
-        Some((t_us, cells[column].parse().ok()?))
-    });
-    rows.collect()
-}
-
-#[test]
-fn a_log_flown_again_in_c_has_the_risk_of_assess() {
-    let profile = ("flagred", "flagred");
-    let Some((mut program, folder)) =
-        program("bindings/c/examples/replay.c", "replay", Some(profile))
-    else {
-        return;
-    };
-    let csv = folder.at("steady.csv");
-    let converted = flagred()
-        .args(["convert", STEADY, "--output", &csv])
-        .output();
-    assert!(converted.unwrap().status.success());
-    let flown = program.stdin(std::fs::File::open(&csv).unwrap()).output();
-    let flown = risks(&flown.unwrap().stdout);
-    let assessed = flagred().args(["assess", "--csv", &csv]).output().unwrap();
-    let assessed = risks(&assessed.stdout);
-    assert!(assessed.len() > 1000, "{}", assessed.len());
-    for (t_us, risk_pct) in &assessed {
-        let by_c = flown.get(t_us).copied().unwrap_or(f64::NAN);
-        assert!(
-            (by_c - risk_pct).abs() <= 1e-6,
-            "{t_us} us: {by_c} is not {risk_pct}"
-        );
-    }
 }
 
 /// The rule sets of `tests/onboard`, which use every array of a table. Each input is the last value of a signal.
@@ -604,52 +384,16 @@ fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
             said.map(|said| moment(said.as_ref())).collect()
         });
         assert_same(&expected, &lent, &name);
-        if let Some((command, _folder)) = program("tests/c/follow.c", &name, Some((&file, &name))) {
-            let doubles = points
-                .iter()
-                .flat_map(|point| [1.0].into_iter().chain(point.iter().copied()));
-            let found = written(command, &doubles.collect::<Vec<f64>>());
-            assert_same(&expected, &found, &format!("{name} in C"));
-        }
+        let (command, _folder) = c::program("tests/c/follow.c", &name, (&file, &name));
+        let doubles = points
+            .iter()
+            .flat_map(|point| [1.0].into_iter().chain(point.iter().copied()));
+        let found = c::written(command, &doubles.collect::<Vec<f64>>());
+        assert_same(&expected, &found, &format!("{name} in C"));
     }
     for (_, array) in &used {
         assert!(used.contains(&(true, array)), "no {array} are used");
     }
-}
-
-#[test]
-fn a_damaged_table_is_refused_or_evaluates_in_c() {
-    macro_rules! list {
-        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
-            [$(item_size(|table| table.$array)),*]
-        };
-    }
-    let sizes: [usize; _] = table::arrays!(list!);
-    let folder = Folder::new();
-    let of_every_kind = profiles_of_every_kind(&folder);
-    let of_every_kind = of_every_kind
-        .iter()
-        .map(|(name, _, file)| (&**name, &**file));
-    let shipped = exported().into_iter().zip(PROFILES);
-    let shipped = shipped.map(|((name, _), profile)| (name, profile));
-    for (name, profile) in of_every_kind.chain(shipped) {
-        let exported = Some((profile, name));
-        let Some((mut command, _folder)) = program("tests/c/damage.c", name, exported) else {
-            return;
-        };
-        let output = command.args(sizes.map(|size| size.to_string())).output();
-        let output = output.unwrap();
-        assert!(output.status.success(), "{name}: {output:?}");
-        let text = String::from_utf8(output.stdout).unwrap();
-        let (accepted, tried) = text.trim().split_once(" of ").unwrap();
-        let [accepted, tried] = [accepted, tried].map(|count| count.parse::<u32>().unwrap());
-        assert!(accepted > 100 && tried > accepted + 100, "{name}: {text}");
-    }
-}
-
-/// The size of an item of an array of a table.
-fn item_size<T>(_: for<'a> fn(&table::Table<'a>) -> &'a [T]) -> usize {
-    size_of::<T>()
 }
 
 #[test]
@@ -661,33 +405,4 @@ fn every_compiled_table_is_whole() {
         let engine = fuzzy::Engine::new(&model).unwrap();
         assert_eq!(engine.table().check(), Ok(()), "{}", model.name);
     }
-}
-
-/// The program of examples/09-on-board.md.
-#[test]
-fn the_page_in_c_runs() {
-    let page = include_str!("../../examples/09-on-board.md");
-    let (_, rest) = page.split_once("```c\n").unwrap();
-    let (code, _) = rest.split_once("```").unwrap();
-    let pages = Folder::new();
-    let profile = ("flagred", "flagred");
-    let Some((mut program, _folder)) = program(&pages.file("page.c", code), "page", Some(profile))
-    else {
-        return;
-    };
-    let output = program.output().unwrap();
-    assert!(output.status.success());
-    assert_eq!(String::from_utf8(output.stdout).unwrap(), "FAIL\n");
-}
-
-#[test]
-fn mistakes_in_c_are_told_and_nothing_is_written() {
-    let profile = ("flagred", "flagred");
-    let Some((mut program, _folder)) = program("tests/c/mistakes.c", "mistakes", Some(profile))
-    else {
-        return;
-    };
-    let output = program.output().unwrap();
-    let text = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{text}");
 }

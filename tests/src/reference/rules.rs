@@ -76,7 +76,7 @@ fn proposed(model: &Model, values: &[f64], proposition: &Proposition) -> f64 {
     let mut x = match &proposition.term {
         Some(name) => {
             let term = term(&model.inputs[input].terms, &name.text);
-            term.height * membership(&term.shape, values[input])
+            term.height * membership(&term.membership_function, values[input])
         }
         None => 1.0,
     };
@@ -138,7 +138,7 @@ fn number(
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
         let sum: f64 = fired
             .iter()
-            .map(|(weight, term)| weight * consequent(model, &term.shape, values))
+            .map(|(weight, term)| weight * consequent(model, &term.membership_function, values))
             .sum();
         return match output.defuzzifier {
             Defuzzifier::WeightedSum => sum,
@@ -148,7 +148,7 @@ fn number(
     let aggregated = |x: f64| {
         let mut y = 0.0;
         for (strength, term) in fired {
-            let membership = term.height * membership(&term.shape, x);
+            let membership = term.height * membership(&term.membership_function, x);
             let part = match model.operators.implication {
                 Implication::Minimum => strength.min(membership),
                 Implication::Product => strength * membership,
@@ -166,7 +166,7 @@ fn number(
     let (low, high) = (output.variable.low, output.variable.high);
     let mut cuts: Vec<f64> = fired
         .iter()
-        .flat_map(|(_, term)| parameters(&term.shape))
+        .flat_map(|(_, term)| parameters(&term.membership_function))
         .collect();
     cuts.retain(|x| low < *x && *x < high);
     cuts.extend([low, high]);

@@ -1,0 +1,163 @@
+//! The inputs of a profile: a statistic over time, of a signal or of a statistic over its motors.
+
+use alloc::{format, string::String, vec::Vec};
+
+use fuzzy::{
+    diagnostic::Diagnostic,
+    tree::{Entry, Fields, Node, Value},
+};
+
+use super::{Found, Least, number};
+use crate::{
+    profile::ProfileInput,
+    source::{Motors, Signal, Source, Statistic},
+};
+
+const STATISTICS: [(&str, Statistic); 8] = [
+    ("mean", Statistic::Mean),
+    ("std", Statistic::Std),
+    ("rms", Statistic::Rms),
+    ("min", Statistic::Min),
+    ("max", Statistic::Max),
+    ("last", Statistic::Last),
+    ("std_less_noise", Statistic::StdLessNoise),
+    ("noise", Statistic::Noise),
+];
+
+type Share = fn(f64) -> Statistic;
+
+const SHARES: [(&str, Share); 2] = [
+    ("share_below", Statistic::ShareBelow),
+    ("share_above", Statistic::ShareAbove),
+];
+
+const MOTORS: [(&str, Motors); 4] = [
+    ("mean", Motors::Mean),
+    ("std", Motors::Std),
+    ("min", Motors::Min),
+    ("max", Motors::Max),
+];
+
+pub(super) fn inputs(fields: &Fields, window_s: f64, found: &mut Found) -> Vec<ProfileInput> {
+    let help =
+        "say where each input of the rule set comes from: `inputs: {margin: {mean: motor_margin}}`";
+    let Some(node) = fields.require("inputs", help, found) else {
+        return Vec::new();
+    };
+    let entries = node.entries("`inputs`", "input", found).unwrap_or_default();
+    entries
+        .iter()
+        .filter_map(|entry| {
+            Some(ProfileInput {
+                name: entry.key.into(),
+                source: source(entry, window_s, found)?,
+            })
+        })
+        .collect()
+}
+
+fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
+    let what = format!("input `{}`", entry.key);
+    let statistics = STATISTICS.iter().map(|(name, _)| *name);
+    let shares = SHARES.iter().map(|(name, _)| *name);
+    let keys: Vec<&str> = statistics
+        .clone()
+        .chain(shares.clone())
+        .chain(["of", "window_s"])
+        .collect();
+    let before = found.len();
+    let fields = entry.value.fields(&what, &keys, found)?;
+    let given: Vec<&str> = statistics
+        .chain(shares)
+        .filter(|k| fields.get(k).is_some())
+        .collect();
+    let [key] = given.as_slice() else {
+        // An unknown key has been told; what it was meant to be is not missing on top.
+        if found.len() == before {
+            let message = format!("{what} takes one statistic, not {}", given.len());
+            found.push(
+                Diagnostic::error("statistic", entry.key_span.clone(), message)
+                    .help("write for example `{mean: motor_margin}`"),
+            );
+        }
+        return None;
+    };
+    let behind = fields.get(key)?;
+    let window_s = number(&fields, "window_s", window_s, Least::Above0, found);
+    let plain = STATISTICS.iter().find(|(name, _)| name == key);
+    let (statistic, observed) = match plain {
+        Some((_, statistic)) => {
+            if let Some(stray) = fields.entry("of") {
+                let message =
+                    format!("`of` goes with `share_below` and `share_above`, not with `{key}`");
+                found.push(
+                    Diagnostic::error("statistic", stray.key_span.clone(), message)
+                        .help(format!("write the signal behind `{key}` alone")),
+                );
+            }
+            (*statistic, behind)
+        }
+        None => {
+            let limit = behind.finite(&format!("`{key}`"), found)?;
+            let (_, share) = SHARES.iter().find(|(name, _)| name == key)?;
+            let help = format!("name the signal: `{{{key}: {limit}, of: motor_margin}}`");
+            (share(limit), fields.require("of", &help, found)?)
+        }
+    };
+    let (motors, signal) = signal(observed, &what, found)?;
+    if statistic.is_of_bins() && motors == Motors::Pooled && signal.is_of_motors() {
+        let message = format!("`{key}` needs one value for all motors");
+        found.push(
+            Diagnostic::error("statistic", behind.span.clone(), message).help(format!(
+                "write for example `{{{key}: {{std: motor_command}}}}`"
+            )),
+        );
+        return None;
+    }
+    Some(Source {
+        statistic,
+        motors,
+        signal,
+        window_s,
+    })
+}
+
+/// `motor_margin` or `{min: motor_margin}`.
+fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)> {
+    if !matches!(node.value, Value::Mapping(_)) {
+        let name = node.words(&format!("the signal of {what}"), found)?;
+        return Some((Motors::Pooled, Signal::named(&name.text)));
+    }
+    let keys = MOTORS.map(|(name, _)| name);
+    let over = format!("the statistic over motors of {what}");
+    let before = found.len();
+    let fields = node.fields(&over, &keys, found)?;
+    let mut given = MOTORS.iter().filter(|(name, _)| fields.get(name).is_some());
+    let (Some((key, motors)), None) = (given.next(), given.next()) else {
+        if found.len() == before {
+            let message = format!("{over} is one of `mean`, `std`, `min` and `max`");
+            found.push(
+                Diagnostic::error("statistic", node.span.clone(), message)
+                    .help("write for example `{min: motor_margin}`"),
+            );
+        }
+        return None;
+    };
+    let node = fields.get(key)?;
+    let name = &node.words(&format!("the signal of {what}"), found)?.text;
+    let signal = Signal::named(name);
+    if !signal.is_of_motors() {
+        let message = format!("`{name}` has one value, not one for each motor");
+        let known: Vec<String> = Signal::names_of_motors()
+            .map(|name| format!("`{name}`"))
+            .collect();
+        found.push(
+            Diagnostic::error("signal", node.span.clone(), message).help(format!(
+                "write the name alone, or a signal of motors: {}",
+                known.join(", ")
+            )),
+        );
+        return None;
+    }
+    Some((*motors, signal))
+}

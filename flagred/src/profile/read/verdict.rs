@@ -1,0 +1,123 @@
+//! The verdict of a profile: when a level is raised and lowered, and the limits of notices.
+
+use alloc::format;
+
+use fuzzy::{diagnostic::Diagnostic, tree::Fields};
+
+use super::{Found, Least, number};
+use crate::verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings};
+
+pub(super) fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
+    let default = VerdictSettings::default();
+    let keys = [
+        "warn",
+        "fail",
+        "clear_after_s",
+        "quiet_after_take_off_s",
+        "quiet_before_landing_s",
+        "idle_below",
+        "noise",
+        "reserve",
+        "imbalance",
+    ];
+    let Some(fields) = fields
+        .get("verdict")
+        .and_then(|node| node.fields("`verdict`", &keys, found))
+    else {
+        return default;
+    };
+    let mut seconds = |key, default| number(&fields, key, default, Least::From0, found);
+    let settings = VerdictSettings {
+        clear_after_s: seconds("clear_after_s", default.clear_after_s),
+        quiet_after_take_off_s: seconds("quiet_after_take_off_s", default.quiet_after_take_off_s),
+        quiet_before_landing_s: seconds("quiet_before_landing_s", default.quiet_before_landing_s),
+        idle_below: seconds("idle_below", default.idle_below),
+        ..default
+    };
+    VerdictSettings {
+        warn: level(&fields, "warn", default.warn, found),
+        fail: level(&fields, "fail", default.fail, found),
+        notices: NoticeSettings {
+            noise: limit(&fields, "noise", "above", found),
+            reserve: limit(&fields, "reserve", "below", found),
+            imbalance: limit(&fields, "imbalance", "above", found),
+        },
+        ..settings
+    }
+}
+
+fn level(fields: &Fields, key: &str, default: LevelSettings, found: &mut Found) -> LevelSettings {
+    let what = format!("`{key}`");
+    let keys = ["risk", "elevated_risk", "after_s", "until"];
+    let Some(node) = fields.get(key) else {
+        return default;
+    };
+    let Some(fields) = node.fields(&what, &keys, found) else {
+        return default;
+    };
+    let raise = threshold(&fields, &what, found);
+    if raise == Threshold::default() && found.is_empty() {
+        let message = format!("{what} has no threshold");
+        found.push(
+            Diagnostic::error("missing-key", node.span.clone(), message)
+                .help("write `risk`, `elevated_risk` or both, in %"),
+        );
+    }
+    let after_s = number(&fields, "after_s", default.after_s, Least::From0, found);
+    let mut until = raise;
+    if let Some(node) = fields.get("until")
+        && let Some(fields) = node.fields("`until`", &["risk", "elevated_risk"], found)
+    {
+        until = threshold(&fields, "`until`", found);
+        for (lower, upper) in [
+            (until.risk_pct, raise.risk_pct),
+            (until.elevated_risk_pct, raise.elevated_risk_pct),
+        ] {
+            if let (Some(lower), Some(upper)) = (lower, upper)
+                && lower > upper
+            {
+                let message = format!("{what} is held until {lower}, which is above {upper}");
+                found.push(
+                    Diagnostic::error("order", node.span.clone(), message)
+                        .help("a level is held down to a lower value than it is raised at"),
+                );
+            }
+        }
+    }
+    LevelSettings {
+        raise,
+        after_s,
+        until,
+    }
+}
+
+fn threshold(fields: &Fields, what: &str, found: &mut Found) -> Threshold {
+    let mut limit = |key: &str| {
+        let node = fields.get(key)?;
+        let value = node.finite(&format!("`{key}`"), found)?;
+        if !(0.0..=100.0).contains(&value) {
+            let message = format!("{what}: `{key}` is a percentage, not {value}");
+            found.push(
+                Diagnostic::error("out-of-range", node.span.clone(), message)
+                    .help("write a number from 0 to 100"),
+            );
+        }
+        Some(value)
+    };
+    Threshold {
+        risk_pct: limit("risk"),
+        elevated_risk_pct: limit("elevated_risk"),
+    }
+}
+
+/// A limit of a notice: `{above: 0.04, after_s: 10}`.
+fn limit(fields: &Fields, key: &str, side: &str, found: &mut Found) -> Option<Limit> {
+    let what = format!("`{key}`");
+    let fields = fields.get(key)?.fields(&what, &[side, "after_s"], found)?;
+    let help = format!("write `{key}: {{{side}: 0.1, after_s: 3}}`");
+    let value = fields
+        .require(side, &help, found)?
+        .finite(&format!("`{side}`"), found)?;
+    let after_s = number(&fields, "after_s", 0.0, Least::From0, found);
+    Some(Limit { value, after_s })
+}

@@ -1,0 +1,100 @@
+//! The vehicle's clock in a telemetry log, whose own times are those of reception.
+
+use crate::clock::{Checked, Clock, seconds_of};
+use crate::field::Kind;
+use crate::mavlink::decoder::{Payload, ServoOutputs, number};
+
+/// Messages that begin with the milliseconds since boot: ATTITUDE and ATTITUDE_TARGET.
+const BOOT_MS: [u32; 2] = [30, 83];
+/// The time in a message is believed where it differs by at most this from that of the commands before, in s.
+const LATE_S: f64 = 5.0;
+
+/// The clock of one vehicle: that of its motor commands, and between them that of reception.
+#[derive(Default)]
+pub(super) struct VehicleTime {
+    clock: Clock,
+    /// The latest motor commands: when they were received, and their time.
+    latest: Option<(f64, f64)>,
+    /// Commands whose time jumps wait for the next ones, which tell whether it is damaged.
+    waiting: Option<(f64, ServoOutputs)>,
+}
+
+/// Motor commands and their times.
+#[derive(Default)]
+pub(super) struct Timed {
+    /// Those to take now, in their order.
+    pub(super) rows: [Option<(f64, ServoOutputs)>; 2],
+    /// Whether one was dropped, whose time is damaged.
+    pub(super) dropped: bool,
+    /// With the first of all: how far the vehicle's clock is ahead of reception.
+    pub(super) ahead_s: Option<f64>,
+}
+
+impl VehicleTime {
+    /// Takes in motor commands that were received at `received_s`.
+    pub(super) fn commands(&mut self, received_s: f64, outputs: ServoOutputs) -> Timed {
+        if outputs.time_us == 0 {
+            let rows = [Some((self.guess_s(received_s), outputs)), None];
+            return Timed {
+                rows,
+                ..Timed::default()
+            };
+        }
+        let last_s = self.clock.now_s().or(self.waiting.map(|(t_s, _)| t_s));
+        let stamp_s = seconds_of(outputs.time_us, last_s);
+        let checked = self.clock.check(stamp_s);
+        let waited = self.waiting.take();
+        let (rows, dropped) = match checked {
+            Checked::At(t_s) => ([Some((t_s, outputs)), None], false),
+            Checked::Refuted(t_s) => ([Some((t_s, outputs)), None], true),
+            Checked::Confirmed(first_s, t_s) => {
+                let first = waited.map(|(_, outputs)| (first_s, outputs));
+                ([first, Some((t_s, outputs))], false)
+            }
+            Checked::Wait | Checked::RefutedWait => {
+                self.waiting = Some((stamp_s, outputs));
+                ([None, None], checked == Checked::RefutedWait)
+            }
+        };
+        let latest_s = rows.iter().flatten().last().map(|(t_s, _)| *t_s);
+        let before = self.latest;
+        self.latest = latest_s.map(|t_s| (received_s, t_s)).or(before);
+        Timed {
+            rows,
+            dropped,
+            ahead_s: latest_s
+                .filter(|_| before.is_none())
+                .map(|t_s| t_s - received_s),
+        }
+    }
+
+    fn guess_s(&self, received_s: f64) -> f64 {
+        self.latest.map_or(received_s, |(then_s, commands_s)| {
+            commands_s + (received_s - then_s).max(0.0)
+        })
+    }
+
+    /// Whether the vehicle's clock is known.
+    pub(super) fn is_known(&self) -> bool {
+        self.latest.is_some()
+    }
+
+    /// The start of each boot but the first.
+    pub(super) fn boots_s(&self) -> &[f64] {
+        self.clock.boots_s()
+    }
+
+    /// The time of another message; that of reception while the vehicle's is not known.
+    pub(super) fn other(&self, received_s: f64, id: u32, payload: &Payload) -> f64 {
+        let guess_s = self.guess_s(received_s);
+        let Some((_, commands_s)) = self.latest else {
+            return guess_s;
+        };
+        let own = BOOT_MS.contains(&id).then(|| number(payload, 0, Kind::U32));
+        // The clock goes on over boots, that of the message starts again.
+        let own_s = own.flatten().map(|ms| ms * 1e-3 + self.clock.offset_s());
+        own_s
+            .filter(|own_s| (own_s - commands_s).abs() <= LATE_S)
+            .unwrap_or(guess_s)
+    }
+}

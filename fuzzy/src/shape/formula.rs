@@ -1,0 +1,89 @@
+//! The formulas of membership functions, each with a number: all that a table in firmware knows of a shape.
+
+use libm::{cos, exp, fabs, pow};
+
+use super::{
+    smooth::{gaussian, s_shape, sigmoid, z_shape},
+    straight::{along, falling, indicator, into_unit, rising, trapezoid},
+};
+
+/// The formula of a membership function. Its parameters are in the order of the fields of the `MembershipFunction` of that
+/// name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Kind(pub u32);
+
+#[expect(missing_docs, reason = "each is the shape of that name")]
+impl Kind {
+    pub const TRAPEZOID: Kind = Kind(0);
+    pub const LEFT_SHOULDER: Kind = Kind(1);
+    pub const RIGHT_SHOULDER: Kind = Kind(2);
+    pub const RECTANGLE: Kind = Kind(3);
+    pub const SINGLETON: Kind = Kind(4);
+    pub const PIECEWISE: Kind = Kind(5);
+    pub const GAUSSIAN: Kind = Kind(6);
+    pub const GAUSSIAN2: Kind = Kind(7);
+    pub const BELL: Kind = Kind(8);
+    pub const SIGMOID: Kind = Kind(9);
+    pub const SIGMOID_DIFFERENCE: Kind = Kind(10);
+    pub const SIGMOID_PRODUCT: Kind = Kind(11);
+    pub const S_SHAPE: Kind = Kind(12);
+    pub const Z_SHAPE: Kind = Kind(13);
+    pub const PI_SHAPE: Kind = Kind(14);
+    pub const COSINE: Kind = Kind(15);
+    pub const SPIKE: Kind = Kind(16);
+    pub const CONCAVE: Kind = Kind(17);
+    pub const CONSTANT: Kind = Kind(18);
+    pub const TRIANGLE: Kind = Kind(19);
+
+    /// The degree at `x` with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape.
+    pub(crate) fn membership(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
+        if x.is_nan() {
+            return 0.0;
+        }
+        let [a, b, c, d] = *parameters;
+        into_unit(match self {
+            Kind::TRIANGLE => trapezoid(x, a, b, b, c),
+            Kind::TRAPEZOID => trapezoid(x, a, b, c, d),
+            Kind::LEFT_SHOULDER => falling(x, a, b),
+            Kind::RIGHT_SHOULDER => rising(x, a, b),
+            Kind::RECTANGLE => indicator(a <= x && x <= b),
+            Kind::SINGLETON => indicator(x == a),
+            Kind::PIECEWISE => along(points.iter().map(|[x, y]| (*x, *y)), x),
+            Kind::GAUSSIAN => gaussian(x, a, b),
+            Kind::GAUSSIAN2 if x < a => gaussian(x, a, b),
+            Kind::GAUSSIAN2 if x > c => gaussian(x, c, d),
+            Kind::GAUSSIAN2 => 1.0,
+            Kind::BELL => 1.0 / (1.0 + pow(fabs((x - a) / b), 2.0 * c)),
+            Kind::SIGMOID => sigmoid(x, a, b),
+            Kind::SIGMOID_DIFFERENCE => fabs(sigmoid(x, a, b) - sigmoid(x, c, d)),
+            Kind::SIGMOID_PRODUCT => sigmoid(x, a, b) * sigmoid(x, c, d),
+            Kind::S_SHAPE => s_shape(x, a, b),
+            Kind::Z_SHAPE => z_shape(x, a, b),
+            Kind::PI_SHAPE if x < b => s_shape(x, a, b),
+            Kind::PI_SHAPE => z_shape(x, c, d),
+            Kind::COSINE if fabs(x - a) <= 0.5 * b => {
+                let turns = (x - a) / b;
+                0.5 * (1.0 + cos(2.0 * core::f64::consts::PI * turns))
+            }
+            Kind::SPIKE => exp(-fabs(10.0 * (x - a) / b)),
+            Kind::CONCAVE => concave(x, a, b),
+            Kind::CONSTANT => a,
+            _ => 0.0,
+        })
+    }
+}
+
+fn concave(x: f64, inflection: f64, end: f64) -> f64 {
+    if inflection <= end {
+        if x < end {
+            (end - inflection) / (2.0 * end - inflection - x)
+        } else {
+            1.0
+        }
+    } else if x > end {
+        (inflection - end) / (inflection - 2.0 * end + x)
+    } else {
+        1.0
+    }
+}

@@ -1,0 +1,262 @@
+//! A whole flight, sample by sample.
+
+use flagred::profile::Profile;
+use fuzzy::Model;
+
+use super::{
+    elevated::{self, Stretch},
+    inputs::{self, Observed},
+    levels::{self, Moment, Trouble},
+    rules,
+    yaw::less_yaw,
+};
+
+/// Less than this on the ground, in seconds, is no landing.
+const TOUCH_S: f64 = 1.0;
+/// Motors that begin to idle within this time after a high risk, in seconds, are no landing.
+const TROUBLE_S: f64 = 2.0;
+
+/// The motor commands at one time.
+pub struct Sample {
+    /// When, in seconds.
+    pub t_s: f64,
+    /// The effective command of each motor; NaN is unknown.
+    pub commands: Vec<f64>,
+    /// Whether the log says that the vehicle is in the air.
+    pub in_air: bool,
+}
+
+/// What is known after a sample that the log says is in the air.
+pub struct Row {
+    /// Its time in seconds.
+    pub t_s: f64,
+    /// The inputs of the profile.
+    pub inputs: Vec<Option<f64>>,
+    /// The risk in %.
+    pub risk: Option<f64>,
+    /// The elevated risk in %.
+    pub elevated: Option<f64>,
+}
+
+/// The samples of a log.
+pub fn samples(flight: &flightlog::Flight) -> Vec<Sample> {
+    let effective = |raw: &f64| flight.effective_command(*raw).unwrap_or(f64::NAN);
+    let rows = flight.commands.rows().map(|(t_s, raw)| Sample {
+        t_s,
+        commands: raw.iter().map(effective).collect(),
+        in_air: flight.is_in_air(t_s) == Some(true),
+    });
+    rows.collect()
+}
+
+/// Follows flights by a profile and a rule set; the factors are those of each motor, none where they are unknown.
+pub fn follow(
+    samples: &[Sample],
+    factors: &[[f64; 3]],
+    profile: &Profile,
+    model: &Model,
+) -> (Vec<Row>, Vec<Trouble>) {
+    let longest_gap_s = profile.sampling.longest_gap_s;
+    let mut rows = Vec::new();
+    let mut troubles = Vec::new();
+    let mut air: Option<Air> = None;
+    let mut down_since_s = None;
+    let mut before_s: Option<f64> = None;
+    for sample in samples {
+        let t_s = sample.t_s;
+        let since_s = before_s.map(|before_s| t_s - before_s);
+        if since_s.is_some_and(|s| (-longest_gap_s..=0.0).contains(&s)) {
+            continue;
+        }
+        let held_s = since_s.filter(|s| (0.0..=longest_gap_s).contains(s));
+        if held_s.is_none() {
+            troubles.extend(
+                air.take()
+                    .into_iter()
+                    .flat_map(|air| air.end(profile, None)),
+            );
+            down_since_s = None;
+        }
+        before_s = Some(t_s);
+        if sample.in_air && !rests(&mut air, sample, profile) {
+            down_since_s = None;
+            let air = air.get_or_insert_with(|| Air::new(t_s, profile));
+            rows.push(air.take_in(sample, held_s.unwrap_or(0.0), factors, (profile, model)));
+            continue;
+        }
+        if sample.in_air {
+            rows.push(Row {
+                t_s,
+                inputs: vec![None; profile.inputs.len()],
+                risk: None,
+                elevated: None,
+            });
+        }
+        let down_s = *down_since_s.get_or_insert(t_s);
+        if t_s - down_s >= TOUCH_S {
+            let ended = air.take().into_iter();
+            troubles.extend(ended.flat_map(|air| air.end(profile, Some(down_s))));
+        }
+    }
+    troubles.extend(
+        air.into_iter()
+            .flat_map(|air| air.end(profile, down_since_s)),
+    );
+    (rows, troubles)
+}
+
+/// Whether the motors idle on the ground: before take-off, and after a flight unless a high risk came just before.
+fn rests(air: &mut Option<Air>, sample: &Sample, profile: &Profile) -> bool {
+    let known: Vec<f64> = sample
+        .commands
+        .iter()
+        .copied()
+        .filter(|e| e.is_finite())
+        .collect();
+    let idles = known.iter().sum::<f64>() / (known.len() as f64) < profile.verdict.idle_below;
+    let Some(air) = air else { return idles };
+    if !idles {
+        air.fell = None;
+        return false;
+    }
+    let since_high_s = sample.t_s - air.last_high_s;
+    !*air.fell.get_or_insert(since_high_s <= TROUBLE_S)
+}
+
+/// A time in the air. The state is reset before and after it.
+struct Air {
+    take_off_s: f64,
+    /// What ended before this time does not count in the long windows.
+    since_s: f64,
+    /// Of each input.
+    observed: Vec<Vec<Observed>>,
+    risks: Vec<Stretch>,
+    /// The rate in % per second after the last of the risks, and the elevated risk in %.
+    elevated: Option<(f64, f64)>,
+    moments: Vec<Moment>,
+    troubles: Vec<Trouble>,
+    /// Whether the motors idle after a high risk, while they idle.
+    fell: Option<bool>,
+    last_high_s: f64,
+}
+
+impl Air {
+    fn new(take_off_s: f64, profile: &Profile) -> Air {
+        Air {
+            take_off_s,
+            since_s: f64::NEG_INFINITY,
+            observed: vec![Vec::new(); profile.inputs.len()],
+            risks: Vec::new(),
+            elevated: None,
+            moments: Vec::new(),
+            troubles: Vec::new(),
+            fell: None,
+            last_high_s: f64::NEG_INFINITY,
+        }
+    }
+
+    fn end(mut self, profile: &Profile, landed_s: Option<f64>) -> Vec<Trouble> {
+        self.stop(profile, landed_s);
+        self.troubles
+    }
+
+    /// Ends the findings; the elevated risk begins anew.
+    fn stop(&mut self, profile: &Profile, landed_s: Option<f64>) {
+        let found = levels::troubles(&profile.verdict, &self.moments, landed_s);
+        self.troubles.extend(found);
+        self.moments.clear();
+        self.begin_anew();
+    }
+
+    /// The elevated risk begins at 0.
+    fn begin_anew(&mut self) {
+        self.risks.clear();
+        self.elevated = None;
+    }
+
+    fn take_in(
+        &mut self,
+        sample: &Sample,
+        held_s: f64,
+        factors: &[[f64; 3]],
+        (profile, model): (&Profile, &Model),
+    ) -> Row {
+        let Sample {
+            t_s, ref commands, ..
+        } = *sample;
+        let less_yaw = less_yaw(commands, factors);
+        let span = (t_s - held_s, t_s);
+        for (input, observed) in profile.inputs.iter().zip(&mut self.observed) {
+            observed.push(Observed::new(&input.source, span, commands, &less_yaw));
+        }
+        self.settle(t_s, profile);
+        let inputs = inputs::values(profile, &self.observed, t_s, self.since_s);
+        let risk = risk(profile, model, &inputs);
+        let elevated = risk.map(|risk| self.add(risk, span, profile));
+        let known_s = self.moments.last().map_or(t_s, |moment| moment.t_s);
+        if t_s - known_s > profile.sampling.longest_gap_s {
+            self.stop(profile, None);
+        }
+        Row {
+            t_s,
+            inputs,
+            risk,
+            elevated,
+        }
+    }
+
+    /// Drops the take-off from the long windows and the elevated risk.
+    fn settle(&mut self, t_s: f64, profile: &Profile) {
+        let sampling = &profile.sampling;
+        let flown_s = t_s - self.take_off_s;
+        let is_due = flown_s >= sampling.take_off_s + sampling.warm_up_s;
+        if self.since_s.is_infinite() && is_due && sampling.take_off_s > 0.0 {
+            self.since_s = self.take_off_s + sampling.take_off_s;
+            self.begin_anew();
+        }
+    }
+
+    /// Adds a risk; gives the elevated risk.
+    fn add(&mut self, risk: f64, (from_s, t_s): (f64, f64), profile: &Profile) -> f64 {
+        let verdict = &profile.verdict;
+        if verdict.warn.raise.risk_pct.is_some_and(|high| risk >= high) {
+            self.last_high_s = t_s;
+        }
+        let before = self.risks.last().map_or(risk, |stretch| stretch.to.1);
+        if t_s > from_s {
+            self.risks.push(Stretch {
+                from: (from_s, before),
+                to: (t_s, risk),
+            });
+            let rate = elevated::rate(&profile.elevated_risk, &self.risks);
+            let (rate_before, elevated) = self.elevated.unwrap_or((rate, 0.0));
+            let step = (t_s - from_s) * (rate_before + rate) / 2.0;
+            self.elevated = Some((rate, (elevated + step).clamp(0.0, 100.0)));
+        }
+        let elevated = self.elevated.map_or(0.0, |(_, elevated)| elevated);
+        self.moments.push(Moment {
+            t_s,
+            risk,
+            elevated,
+            takes_off: t_s - self.take_off_s < verdict.quiet_after_take_off_s,
+        });
+        elevated
+    }
+}
+
+/// The risk at values of the inputs of a profile.
+fn risk(profile: &Profile, model: &Model, inputs: &[Option<f64>]) -> Option<f64> {
+    let known: Option<Vec<f64>> = inputs.iter().copied().collect();
+    let known = known?;
+    let place = |name: &str| profile.inputs.iter().position(|input| input.name == name);
+    let value = |name: &str| place(name).map(|input| known[input]);
+    let point: Option<Vec<f64>> = model
+        .inputs
+        .iter()
+        .map(|input| value(&input.name))
+        .collect();
+    let mut outputs = model.outputs.iter();
+    let output = outputs.position(|output| output.variable.name == profile.output)?;
+    // The risks of the shipped rules are triangles that are even on both sides: few samples give the exact centroid.
+    rules::evaluate(model, &point?, 2)[output]
+}

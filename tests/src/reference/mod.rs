@@ -1,0 +1,12 @@
+//! What the documents say, computed a second time apart from the libraries: directly, slowly, in `f64`.
+//!
+//! [`rules`] evaluates a rule set as docs/rule-sets.md defines it. [`flight`] follows a flight as docs/profiles.md defines
+//! it: it keeps every sample and computes every window from scratch.
+
+pub mod elevated;
+pub mod flight;
+pub mod inputs;
+pub mod levels;
+pub mod rules;
+pub mod window;
+pub mod yaw;

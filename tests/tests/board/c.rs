@@ -1,0 +1,272 @@
+//! The same in C: exported profiles, the examples, and what C can do wrong.
+
+use std::{
+    collections::BTreeMap,
+    io::Write,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::OnceLock,
+};
+
+use flagred::board::{Factors, table};
+use flagred_tests::{
+    Folder, STEADY,
+    board::{Moment, PROFILES, estimator, geometry, logs, moment, moments, points},
+    flagred,
+};
+
+use super::{along, assert_same, by_the_monitor, exported, profiles_of_every_kind};
+
+/// The shipped profile, and its name in C.
+const FLAGRED: (&str, &str) = ("flagred", "flagred");
+
+/// The folder of the C library, built with `core` only.
+fn library() -> &'static Path {
+    static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
+    LIBRARY.get_or_init(|| {
+        let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let target = workspace.join("target");
+        let status = Command::new(env!("CARGO"))
+            .args([
+                "build",
+                "--quiet",
+                "-p",
+                "flagred-c",
+                "--no-default-features",
+            ])
+            .args(["--profile", "onboard", "--target-dir"])
+            .arg(&target)
+            .current_dir(&workspace)
+            .status();
+        assert!(
+            status.unwrap().success(),
+            "the library for C does not build"
+        );
+        target.join("onboard")
+    })
+}
+
+/// Compiles a C program with the library and an exported profile, and returns it and its folder. The compiler is `cc`, with
+/// which Rust links too.
+pub(crate) fn program(
+    source: &str,
+    name: &str,
+    (profile, plan): (&str, &str),
+) -> (Command, Folder) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folder = Folder::new();
+    let mut cc = Command::new("cc");
+    cc.args([
+        "-std=c11",
+        "-O1",
+        "-Wall",
+        "-Wextra",
+        "-Wpedantic",
+        "-Werror",
+    ]);
+    cc.arg("-I").arg(root.join("bindings/c/include"));
+    let header = folder.at("profile.h");
+    let status = flagred()
+        .args(["export", "--c", profile, "--output"])
+        .arg(&header)
+        .status();
+    assert!(status.unwrap().success(), "{profile}");
+    cc.arg("-I").arg(folder.path());
+    cc.arg(format!("-DPROFILE=\"{header}\""));
+    cc.arg(format!("-DPLAN=flagred_plan_{plan}"));
+    let binary = folder.at(name);
+    cc.arg(root.join(source)).arg("-o").arg(&binary);
+    cc.arg(library().join("libflagred.a"));
+    let compiled = cc.output().unwrap();
+    let told = String::from_utf8_lossy(&compiled.stderr);
+    assert!(compiled.status.success(), "{told}");
+    (Command::new(binary), folder)
+}
+
+/// The C initialisers name their fields, so the compiler holds the structures equal.
+#[test]
+fn the_header_has_the_arrays_of_a_table() {
+    macro_rules! list {
+        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+            [$((stringify!($array), stringify!($item))),*]
+        };
+    }
+    let arrays = table::arrays!(list!).map(|(array, item)| match item {
+        "f64" => format!("FLAGRED_ARRAY(double, {array})"),
+        "u32" => format!("FLAGRED_ARRAY(uint32_t, {array})"),
+        item => format!("FLAGRED_ARRAY(flagred_{}, {array})", item.to_lowercase()),
+    });
+    let header = include_str!("../../../bindings/c/include/flagred.h");
+    let listed: Vec<&str> = header
+        .lines()
+        .filter_map(|line| line.split(';').next()?.strip_prefix("    "))
+        .filter(|line| line.starts_with("FLAGRED_ARRAY("))
+        .take(arrays.len())
+        .collect();
+    assert_eq!(arrays[..], listed);
+}
+
+/// A geometry and a flight as input of `tests/c/follow.c`.
+pub(crate) fn doubles(geometry: &[Factors], flight: &[Moment]) -> Vec<f64> {
+    let mut doubles = Vec::new();
+    if !geometry.is_empty() {
+        doubles.push(3.0);
+        doubles.extend(geometry.iter().flatten());
+    }
+    for moment in flight {
+        doubles.extend([0.0, moment.t_s, f64::from(u8::from(moment.in_air))]);
+        doubles.extend(&moment.motors);
+        doubles.extend(&moment.signals);
+    }
+    doubles.push(2.0);
+    doubles
+}
+
+/// The output of a program for doubles as its input.
+pub(crate) fn written(mut program: Command, doubles: &[f64]) -> Vec<String> {
+    let mut child = program
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let bytes: Vec<u8> = doubles.iter().flat_map(|x| x.to_ne_bytes()).collect();
+    let mut stdin = child.stdin.take().unwrap();
+    let writer = std::thread::spawn(move || stdin.write_all(&bytes).unwrap());
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn exported_c_says_what_the_monitor_says_of_every_flight_and_all_over_the_inputs() {
+    for (profile, (name, _)) in PROFILES.iter().zip(exported()) {
+        let (_, folder) = program("tests/c/follow.c", name, (profile, name));
+        let estimator = estimator(profile);
+        for log in logs() {
+            let flight = moments(&log, &estimator.profile().signals());
+            for geometry in [&[][..], &geometry(&log)] {
+                let mut command = Command::new(folder.at(name));
+                command.arg(flight[0].motors.len().to_string());
+                let expected = by_the_monitor(&estimator, geometry, &flight);
+                let what = format!("{name} in C, {} factors, {}", geometry.len(), log.display());
+                assert_same(
+                    &expected,
+                    &written(command, &doubles(geometry, &flight)),
+                    &what,
+                );
+            }
+        }
+        let points = points(&estimator, along(&estimator));
+        let doubles = points
+            .iter()
+            .flat_map(|point| [1.0].into_iter().chain(point.iter().copied()));
+        let found = written(
+            Command::new(folder.at(name)),
+            &doubles.collect::<Vec<f64>>(),
+        );
+        let expected: Vec<String> = points
+            .iter()
+            .map(|point| moment(estimator.at(point).as_ref()))
+            .collect();
+        assert_same(&expected, &found, &format!("{name} in C over its inputs"));
+    }
+}
+
+#[test]
+fn the_example_in_c_runs() {
+    let (mut program, _folder) = program("bindings/c/examples/hover.c", "hover", FLAGRED);
+    let output = program.output().unwrap();
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    insta::assert_snapshot!(text);
+}
+
+/// The time in us and the risk of every row with a risk.
+fn risks(csv: &[u8]) -> BTreeMap<u64, f64> {
+    let text = std::str::from_utf8(csv).unwrap();
+    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let column = names.iter().position(|name| *name == "risk").unwrap();
+    let rows = text.lines().skip(1).filter_map(|line| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let t_us = (cells[0].parse::<f64>().unwrap() * 1e6).round() as u64;
+        Some((t_us, cells[column].parse().ok()?))
+    });
+    rows.collect()
+}
+
+#[test]
+fn a_log_flown_again_in_c_has_the_risk_of_assess() {
+    let (mut program, folder) = program("bindings/c/examples/replay.c", "replay", FLAGRED);
+    let csv = folder.at("steady.csv");
+    let converted = flagred()
+        .args(["convert", STEADY, "--output", &csv])
+        .output();
+    assert!(converted.unwrap().status.success());
+    let flown = program.stdin(std::fs::File::open(&csv).unwrap()).output();
+    let flown = risks(&flown.unwrap().stdout);
+    let assessed = flagred().args(["assess", "--csv", &csv]).output().unwrap();
+    let assessed = risks(&assessed.stdout);
+    assert!(assessed.len() > 1000, "{}", assessed.len());
+    for (t_us, risk_pct) in &assessed {
+        let by_c = flown.get(t_us).copied().unwrap_or(f64::NAN);
+        assert!(
+            (by_c - risk_pct).abs() <= 1e-6,
+            "{t_us} us: {by_c} is not {risk_pct}"
+        );
+    }
+}
+
+#[test]
+fn a_damaged_table_is_refused_or_evaluates_in_c() {
+    macro_rules! list {
+        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+            [$(item_size(|table| table.$array)),*]
+        };
+    }
+    let sizes: [usize; _] = table::arrays!(list!);
+    let folder = Folder::new();
+    let of_every_kind = profiles_of_every_kind(&folder);
+    let of_every_kind = of_every_kind
+        .iter()
+        .map(|(name, _, file)| (&**name, &**file));
+    let shipped = exported().into_iter().zip(PROFILES);
+    let shipped = shipped.map(|((name, _), profile)| (name, profile));
+    for (name, profile) in of_every_kind.chain(shipped) {
+        let (mut command, _folder) = program("tests/c/damage.c", name, (profile, name));
+        let output = command.args(sizes.map(|size| size.to_string())).output();
+        let output = output.unwrap();
+        assert!(output.status.success(), "{name}: {output:?}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        let (accepted, tried) = text.trim().split_once(" of ").unwrap();
+        let [accepted, tried] = [accepted, tried].map(|count| count.parse::<u32>().unwrap());
+        assert!(accepted > 100 && tried > accepted + 100, "{name}: {text}");
+    }
+}
+
+/// The size of an item of an array of a table.
+fn item_size<T>(_: for<'a> fn(&table::Table<'a>) -> &'a [T]) -> usize {
+    size_of::<T>()
+}
+
+/// The program of examples/09-on-board.md.
+#[test]
+fn the_page_in_c_runs() {
+    let page = include_str!("../../../examples/09-on-board.md");
+    let (_, rest) = page.split_once("```c\n").unwrap();
+    let (code, _) = rest.split_once("```").unwrap();
+    let pages = Folder::new();
+    let (mut program, _folder) = program(&pages.file("page.c", code), "page", FLAGRED);
+    let output = program.output().unwrap();
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), "FAIL\n");
+}
+
+#[test]
+fn mistakes_in_c_are_told_and_nothing_is_written() {
+    let (mut program, _folder) = program("tests/c/mistakes.c", "mistakes", FLAGRED);
+    let output = program.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{text}");
+}

@@ -1,0 +1,204 @@
+//! `flagred watch` where others speak in the name of the vehicle, or watch it too.
+
+use std::{net::TcpStream, path::Path, time::Duration};
+
+use flagred_tests::{
+    Folder, STEADY, schema,
+    vehicle::{StandIn, flight, servo},
+    watch::{Said, Watch, refused},
+    wire::{Link, Speed, Wire},
+};
+use flightlog::{
+    Flight,
+    mavlink::{
+        Key, Version,
+        dialect::{
+            EXTENDED_SYS_STATE_DATA, MavLandedState, MavMessage, MavParamType, PARAM_VALUE_DATA,
+        },
+    },
+};
+use serde_json::json;
+
+fn steady() -> (Flight, f64) {
+    let flight = flight(Path::new(STEADY));
+    let start_s = flight.in_air.as_ref().unwrap().spans[0].start_s;
+    (flight, start_s)
+}
+
+/// Every line is one that docs/schemas/watch.json describes.
+fn valid(said: &Said) {
+    let schema = schema::schema("watch");
+    for line in &said.events {
+        assert_eq!(schema::errors(&schema, line), Vec::<String>::new());
+    }
+}
+
+/// Motors at their limits, a landing and a parameter, in the name of the vehicle.
+fn lie(liar: &mut StandIn, t_s: f64) {
+    liar.beat(false, false);
+    liar.send(&servo((t_s * 1e6) as u32, &[2000; 16]));
+    liar.send(&MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+        landed_state: MavLandedState::MAV_LANDED_STATE_ON_GROUND,
+        ..EXTENDED_SYS_STATE_DATA::default()
+    }));
+    liar.send(&maximum(1100.0));
+}
+
+fn maximum(value_us: f32) -> MavMessage {
+    MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+        param_value: value_us,
+        param_count: 900,
+        param_index: u16::MAX,
+        param_id: "MOT_PWM_MAX".into(),
+        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+    })
+}
+
+#[test]
+fn a_second_sender_is_told_and_neither_believed_nor_answered() {
+    let (flight, start_s) = steady();
+    let watch = Watch::udp(&[]);
+    let mut vehicle = watch.vehicle(&flight, Link::default());
+    let mut liar = watch.vehicle(&flight, Link::default());
+    vehicle.say_as(154, &maximum(1200.0));
+    vehicle.meet();
+    vehicle.say_as(154, &maximum(1200.0));
+    for i in 0..20 {
+        let at_s = start_s + f64::from(i);
+        vehicle.fly(&flight, Speed::Fastest, at_s, at_s + 1.0);
+        lie(&mut liar, at_s + 0.99);
+        liar.linger(Duration::from_millis(2));
+    }
+    let said = watch.end();
+    assert_eq!(said.one("locked")["system"], 1);
+    assert_eq!(said.one("ready")["range"]["high"], 2000.0);
+    assert_eq!(said.all("level").count() + said.all("landed").count(), 0);
+    let told: Vec<&str> = said
+        .all("doubt")
+        .map(|doubt| doubt["what"].as_str().unwrap())
+        .collect();
+    assert_eq!(told, ["other_component", "second_sender"]);
+    let not_believed = &said.one("ended")["not_believed"];
+    assert_eq!(not_believed["second_sender"], 80);
+    assert_eq!(said.verdict(), "GOOD");
+    assert!(!vehicle.heard.values("FR_RISK").is_empty());
+    assert!(liar.heard.messages.is_empty(), "{:?}", liar.heard);
+    valid(&said);
+}
+
+#[test]
+fn a_vehicle_that_comes_back_from_another_address_is_followed_after_a_silence() {
+    let (flight, start_s) = steady();
+    let watch = Watch::udp(&[]);
+    let mut vehicle = watch.vehicle(&flight, Link::default());
+    vehicle.meet();
+    vehicle.fly(&flight, Speed::Fastest, start_s, start_s + 10.0);
+    vehicle.linger(Duration::from_millis(2300));
+    vehicle.move_to(Wire::udp(watch.address()));
+    vehicle.fly(&flight, Speed::Fastest, start_s + 12.0, start_s + 30.0);
+    let said = watch.end();
+    let changed = said.one("sender_changed");
+    assert_ne!(changed["from"], changed["to"]);
+    assert_eq!(said.one("found")["system"], 1);
+    assert_eq!(said.one("left_in_air")["verdict"], "GOOD");
+    valid(&said);
+}
+
+#[test]
+fn of_two_watches_one_speaks() {
+    let (flight, start_s) = steady();
+    let first = Watch::udp(&[]);
+    // Their ages differ by more than a tenth of a second.
+    std::thread::sleep(Duration::from_millis(400));
+    let second = Watch::udp(&[]);
+    let mut vehicle = first.vehicle(&flight, Link::default());
+    vehicle.forward_to(Wire::udp(second.address()));
+    vehicle.meet();
+    for _ in 0..30 {
+        vehicle.beat(false, false);
+        vehicle.linger(Duration::from_millis(50));
+    }
+    vehicle.fly(&flight, Speed::Times(4.0), start_s, start_s + 20.0);
+    let (first, second) = (first.end(), second.end());
+    let told = second.one("another_watch");
+    assert_eq!(
+        (&told["component"], &told["speaks"]),
+        (&json!(191), &json!(false))
+    );
+    assert_eq!(
+        first
+            .all("another_watch")
+            .filter(|told| told["speaks"] == false)
+            .count(),
+        0
+    );
+    assert!(vehicle.heard.values("FR_RISK").len() > 2);
+    assert_eq!(vehicle.heard_elsewhere.values("FR_RISK").len(), 0);
+    // Both know the risk.
+    for said in [&first, &second] {
+        assert_eq!(said.one("left_in_air")["verdict"], "GOOD");
+        valid(said);
+    }
+}
+
+#[test]
+fn with_a_key_only_signed_packets_are_believed_and_those_sent_are_signed() {
+    let (flight, start_s) = steady();
+    let folder = Folder::new();
+    let file = folder.file("key", "0b".repeat(32));
+    let watch = Watch::udp(&["--key", &file]);
+    let key = Key::from_bytes(&[0x0b; 32]).unwrap();
+    let mut liar = watch.vehicle(&flight, Link::default());
+    let mut vehicle = watch.vehicle(&flight, Link::default());
+    vehicle.sign(&key);
+    // First, and with the wrong key: even so the vehicle is not locked out.
+    for _ in 0..5 {
+        lie(&mut liar, 1.0);
+    }
+    liar.sign(&Key::from_bytes(&[0x0c; 32]).unwrap());
+    for _ in 0..5 {
+        lie(&mut liar, 1.0);
+    }
+    vehicle.meet();
+    vehicle.fly_on(&flight, Speed::Fastest, start_s, start_s + 20.0);
+    vehicle.linger(Duration::from_millis(300));
+    let said = watch.end();
+    let ended = said.one("ended");
+    assert_eq!(
+        (&ended["unsigned"], &ended["bad_signatures"]),
+        (&json!(20), &json!(20))
+    );
+    assert_eq!(ended["not_believed"]["second_sender"], 0);
+    assert!(said.has_note("not signed") && said.has_note("signature"));
+    assert_eq!(said.verdict(), "GOOD");
+    assert!(!vehicle.heard.values("FR_RISK").is_empty());
+    let skipped = vehicle.skipped();
+    assert_eq!(
+        (skipped.unsigned, skipped.bad_signatures),
+        (0, 0),
+        "{skipped:?}"
+    );
+    valid(&said);
+
+    let wrong = folder.file("wrong", "secret");
+    let (code, told) = refused("udpin:127.0.0.1:0", &["--key", &wrong]);
+    assert!(
+        code == Some(3) && told.contains("is not a key") && told.contains("64 hex"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_silent_client_does_not_keep_a_second_one_out() {
+    let (flight, _) = steady();
+    let watch = Watch::start("tcpin:127.0.0.1:0", &[]);
+    let silent = TcpStream::connect(watch.address()).unwrap();
+    std::thread::sleep(Duration::from_millis(100));
+    let stream = TcpStream::connect(watch.address()).unwrap();
+    let mut vehicle = watch.vehicle_on(&flight, Wire::tcp(stream), Link::default(), Version::V2);
+    vehicle.meet();
+    let said = watch.end();
+    drop(silent);
+    said.one("found");
+    said.one("ready");
+}
