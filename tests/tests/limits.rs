@@ -17,8 +17,9 @@ fn profile(rules: &str) -> String {
 }
 
 fn run(arguments: &[&str]) -> Output {
+    let mut command = flagred();
     let started = Instant::now();
-    let output = flagred().args(arguments).output().unwrap();
+    let output = command.args(arguments).output().unwrap();
     // A debug build on a busy machine; without bounds these take minutes or all memory.
     assert!(
         started.elapsed() < Duration::from_secs(20),
@@ -97,6 +98,72 @@ fn a_profile_names_rule_sets_of_its_own_folder() {
         .output()
         .unwrap();
     assert!(here.status.success(), "{here:?}");
+}
+
+/// A small compressed file can hold a row that fills the memory.
+#[test]
+fn rows_headers_and_columns_of_a_flight_csv_are_bounded() {
+    let folder = Folder::new();
+    let names = "t_s,motor1\n";
+    for (name, start, repeated, said) in [
+        (
+            "cell",
+            "t_s,motor1\n0,",
+            "5",
+            "line 2: the row is longer than 1000000 bytes",
+        ),
+        (
+            "names",
+            "t_s,motor1,",
+            "x",
+            "line 1: the row is longer than 1000000 bytes",
+        ),
+        (
+            "quoted",
+            "t_s,motor1\n0,\"",
+            "5\n",
+            "line 2: the row is longer than 1000000 bytes",
+        ),
+        (
+            "commas",
+            "t_s,motor1\n0.5",
+            ",",
+            "line 2: the row is longer than 1000000 bytes",
+        ),
+        ("header", "# note: ", "x", "not a flight log"),
+        ("headers", "# a: b\n", "# a: b\n", "not a flight log"),
+    ] {
+        let block = repeated.repeat(1_000_000 / repeated.len());
+        let path = folder.at(name);
+        let mut packed = flate2::write::GzEncoder::new(
+            fs::File::create(&path).unwrap(),
+            flate2::Compression::fast(),
+        );
+        std::io::Write::write_all(&mut packed, start.as_bytes()).unwrap();
+        for _ in 0..100 {
+            std::io::Write::write_all(&mut packed, block.as_bytes()).unwrap();
+        }
+        std::io::Write::write_all(&mut packed, names.as_bytes()).unwrap();
+        packed.finish().unwrap();
+        refused(&["inspect", &path], said);
+    }
+    let columns: String = (0..4095).map(|i| format!(",s{i}")).collect();
+    let wide = folder.file(
+        "wide.csv",
+        format!("t_s{columns}\n0{}\n", ",1".repeat(4095)),
+    );
+    assert!(
+        !String::from_utf8(run(&["inspect", &wide]).stderr)
+            .unwrap()
+            .contains("columns")
+    );
+    let wider = folder.file("wider.csv", format!("t_s{columns},more\n"));
+    refused(
+        &["inspect", &wider],
+        "line 1: there are 4097 columns, more than 4096",
+    );
+    let twice = folder.file("twice.csv", "t_s,a,b,a\n");
+    refused(&["inspect", &twice], "the column `a` is there twice");
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 mod write;
 
-use std::io::BufRead;
+use std::cell::Cell;
+use std::collections::HashSet;
+use std::io::{self, BufRead, Read};
 
 use csv::{ByteRecord, ReaderBuilder};
 
@@ -45,13 +47,22 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     let mut flight = Flight::empty(Format::Csv);
     let (header, lines) = read_header(input)?;
     let start = input.taken();
+    let left = Cell::new(LONGEST_ROW);
     let mut reader = ReaderBuilder::new()
         .flexible(true)
         .has_headers(false)
         .comment(Some(b'#'))
-        .from_reader(&mut *input);
+        .from_reader(Bounded {
+            input: &mut *input,
+            left: &left,
+        });
     let mut record = ByteRecord::new();
-    if !reader.read_byte_record(&mut record).map_err(broken)? {
+    let broken = |error, line| match left.get() {
+        0 => too_long(line),
+        _ => io_error(io::Error::other::<csv::Error>(error)),
+    };
+    let first = reader.read_byte_record(&mut record);
+    if !first.map_err(|error| broken(error, lines + 1))? {
         return Err(problem(lines + 1, "there is no line of column names", HELP));
     }
     let layout = Layout::new(&record, lines + 1, options)?;
@@ -59,7 +70,13 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     let mut next = ByteRecord::new();
     let mut end = reader.position().byte();
     record = ByteRecord::new();
-    while reader.read_byte_record(&mut next).map_err(broken)? {
+    loop {
+        left.set(LONGEST_ROW);
+        let line = lines + reader.position().line();
+        let more = reader.read_byte_record(&mut next);
+        if !more.map_err(|error| broken(error, line))? {
+            break;
+        }
         // A comment without a line end reads as a row of nothing.
         if next.as_slice().is_empty() && next.len() <= 1 {
             continue;
@@ -104,8 +121,30 @@ fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
     .with_path("the log")
 }
 
-fn broken(error: csv::Error) -> ReadError {
-    io_error(std::io::Error::other(error))
+/// Bytes of a row, with the comments above it. Longer header lines are not taken for a flight CSV.
+const LONGEST_ROW: usize = 1_000_000;
+const MOST_COLUMNS: usize = 4096;
+
+fn too_long(line: u64) -> ReadError {
+    let text = format!("the row is longer than {LONGEST_ROW} bytes");
+    problem(line, text, "a row is one sample: end it with a line end")
+}
+
+/// Reads no more than the bytes that are left for a row, which otherwise would fill the memory.
+struct Bounded<'a, 'r> {
+    input: &'a mut Input<'r>,
+    left: &'a Cell<usize>,
+}
+
+impl Read for Bounded<'_, '_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        if self.left.get() == 0 {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        let count = self.input.read(to)?;
+        self.left.set(self.left.get().saturating_sub(count));
+        Ok(count)
+    }
 }
 
 struct HeaderLine {
@@ -161,8 +200,20 @@ impl Layout {
             .iter()
             .map(|name| String::from_utf8_lossy(cell(name)).into_owned())
             .collect();
-        for (column, name) in names.iter().enumerate() {
-            if names[..column].contains(name) && !name.is_empty() {
+        if names.len() > MOST_COLUMNS {
+            let text = format!(
+                "there are {} columns, more than {MOST_COLUMNS}",
+                names.len()
+            );
+            return Err(problem(
+                line,
+                text,
+                "leave out columns that no profile needs",
+            ));
+        }
+        let mut seen = HashSet::new();
+        for name in names.iter().filter(|name| !name.is_empty()) {
+            if !seen.insert(name) {
                 let text = format!("the column `{name}` is there twice");
                 return Err(problem(line, text, "give each column a name of its own"));
             }
