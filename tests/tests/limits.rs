@@ -6,7 +6,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use flagred_tests::{Folder, flagred};
+use flagred_tests::{
+    Folder, flagred,
+    log_writer::{DataFlash, Value},
+};
 
 const RULE_SET: &str = "fuzzy: 1\nname: wind\ninputs: {wind: {range: [0, 20], partition: [calm, storm]}}\n\
     outputs: {risk: {range: [0, 100], partition: [low, high]}}\n\
@@ -164,6 +167,57 @@ fn rows_headers_and_columns_of_a_flight_csv_are_bounded() {
     );
     let twice = folder.file("twice.csv", "t_s,a,b,a\n");
     refused(&["inspect", &twice], "the column `a` is there twice");
+}
+
+#[test]
+fn a_report_shows_the_first_flight_modes_and_counts_the_rest() {
+    let mut log = DataFlash::new();
+    log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
+    log.define(130, "RCOU", "QHHHH", "TimeUS,C1,C2,C3,C4");
+    log.define(132, "EV", "QB", "TimeUS,Id");
+    log.define(133, "MSG", "QZ", "TimeUS,Message");
+    log.define(134, "MODE", "QMBB", "TimeUS,Mode,ModeNum,Rsn");
+    log.write("MSG", [1e6.into(), "ArduCopter V4.5.7 (2a3dc4b7)".into()]);
+    for motor in 1..=4 {
+        log.parameter(
+            1e6,
+            &format!("SERVO{motor}_FUNCTION"),
+            f64::from(32 + motor),
+        );
+    }
+    log.parameter(1e6, "MOT_PWM_MIN", 1000.0);
+    log.parameter(1e6, "MOT_PWM_MAX", 2000.0);
+    for row in 0..30_000 {
+        let time = Value::Number(1e6 + 1e4 * f64::from(row));
+        if let Some(event) = [(10, 10.0), (20, 28.0)].iter().find(|event| event.0 == row) {
+            log.write("EV", [time, event.1.into()]);
+        }
+        let mode = Value::Number(f64::from(row % 3));
+        log.write("MODE", [time, mode, mode, 0.0.into()]);
+        log.write(
+            "RCOU",
+            [
+                time,
+                1500.0.into(),
+                1500.0.into(),
+                1500.0.into(),
+                1500.0.into(),
+            ],
+        );
+    }
+    let folder = Folder::new();
+    let (log, report) = (
+        folder.file("modes.bin", &log.bytes),
+        folder.at("report.html"),
+    );
+    assert!(run(&["assess", &log, "--html", &report]).status.success());
+    let html = fs::read_to_string(report).unwrap();
+    let more = html
+        .split("and ")
+        .find(|rest| rest.contains(" more flight modes"));
+    let more = more.and_then(|rest| rest.split(' ').next()?.parse::<usize>().ok());
+    assert!(more.is_some_and(|more| more > 29_000), "{more:?}");
+    assert!(html.len() < 2_000_000, "{}", html.len());
 }
 
 #[test]
