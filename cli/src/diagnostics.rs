@@ -102,18 +102,27 @@ pub(crate) fn refuse(findings: &Findings, file: &str, text: &str) -> Failure {
     Failure::shown(3)
 }
 
-/// Reads a text file, or standard input for `-`.
+/// Rule sets and profiles larger than this are refused, in bytes: 10,000 rules take about a tenth of it.
+const LARGEST_TEXT: usize = 4_000_000;
+
+/// Reads a rule set or a profile, or standard input for `-`.
 pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     let shown = path.display();
     let bytes = if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+        read_up_to_limit(io::stdin().lock())
     } else {
-        fs::read(path)
+        fs::File::open(path).and_then(read_up_to_limit)
     };
     let bytes = bytes.map_err(|error| {
         Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
     })?;
+    if bytes.len() > LARGEST_TEXT {
+        let limit = LARGEST_TEXT / 1_000_000;
+        return Err(
+            Failure::unreadable(format!("`{shown}` is larger than {limit} MB"))
+                .help("rule sets and profiles are small YAML files"),
+        );
+    }
     String::from_utf8(bytes).map_err(|error| {
         let good = error.utf8_error().valid_up_to();
         Failure::unreadable(format!(
@@ -121,4 +130,13 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
         ))
         .help("save it as UTF-8")
     })
+}
+
+/// All bytes, or one more than are allowed.
+fn read_up_to_limit(source: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    source
+        .take(LARGEST_TEXT as u64 + 1)
+        .read_to_end(&mut bytes)?;
+    Ok(bytes)
 }

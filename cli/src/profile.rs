@@ -1,6 +1,9 @@
 //! `--profile`: a shipped profile by its name, or a file, with the rule set it names.
 
-use std::path::{Path, PathBuf};
+use std::{
+    env,
+    path::{Path, PathBuf},
+};
 
 use flagred::{estimator::Estimator, profile::Profile, shipped};
 use fuzzy::Model;
@@ -26,13 +29,22 @@ pub(crate) struct Loaded {
 /// Compiles a profile, which is a shipped one's name or a file, with its rule set.
 ///
 /// A shipped name wins over a file of that name (`./flagred` is the file); a file's rule set is looked for beside it first, and then among the shipped ones.
+/// A profile may come from somebody else: the rule set lies in its folder, or in the one that `FLAGRED_RULES` names, and
+/// a file that is no rule set is not quoted.
 pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
     let (profile, profile_text, folder) = read(name)?;
     let (rules_file, rules_text) = rules(&profile, folder.as_deref())?;
     let beside = |folder: &PathBuf| [PathBuf::from(name), folder.join(&profile.rules)];
     let files = folder.iter().flat_map(beside).collect();
     let model = fuzzy::yaml::parse(&rules_text)
-        .map_err(|findings| refuse(&findings, &rules_file, &rules_text))?
+        .map_err(|findings| match names_a_key(&rules_text) {
+            true => refuse(&findings, &rules_file, &rules_text),
+            false => Failure::unreadable(format!(
+                "profile `{}` names `{rules_file}`, which is not a rule set",
+                profile.name
+            ))
+            .help("a rule set has the keys `inputs`, `outputs` and `rules`"),
+        })?
         .model;
     let estimator = Estimator::new(&profile, &model).map_err(|error| {
         Failure::unreadable(format!(
@@ -84,6 +96,13 @@ fn file_name(path: &Path) -> String {
 fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String, String), Failure> {
     let beside = folder.map(|folder| folder.join(&profile.rules));
     if let Some(path) = beside.filter(|path| path.is_file()) {
+        if !is_allowed(&path, folder) {
+            return Err(Failure::unreadable(format!(
+                "profile `{}` names the rule set `{}`, which is not in the profile's folder",
+                profile.name, profile.rules
+            ))
+            .help("move it there, or allow its folder with FLAGRED_RULES=FOLDER"));
+        }
         return Ok((path.display().to_string(), read_text(&path)?));
     }
     let shipped = shipped::RULE_SETS
@@ -97,4 +116,33 @@ fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String, String), F
                 profile.name, profile.rules
             ))
         })
+}
+
+/// Whether a file, all links followed, lies in the folder of its profile or in the folder that the caller allows.
+fn is_allowed(path: &Path, folder: Option<&Path>) -> bool {
+    let Ok(path) = path.canonicalize() else {
+        return false;
+    };
+    // The folder of `profile.yaml` has no name.
+    let folder = folder.map(|folder| match folder.as_os_str().is_empty() {
+        true => PathBuf::from("."),
+        false => folder.to_owned(),
+    });
+    let allowed = env::var_os("FLAGRED_RULES").map(PathBuf::from);
+    [folder, allowed]
+        .into_iter()
+        .flatten()
+        .filter_map(|folder| folder.canonicalize().ok())
+        .any(|folder| path.starts_with(folder))
+}
+
+/// Whether a line of a text begins with a key that only a rule set has.
+fn names_a_key(text: &str) -> bool {
+    text.lines().any(|line| {
+        let line = line.trim_start_matches([' ', '{', '"', '\'']);
+        ["inputs", "outputs", "rules"].iter().any(|key| {
+            let rest = line.strip_prefix(key);
+            rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
+        })
+    })
 }

@@ -135,7 +135,7 @@ impl Window {
         match self.newest() {
             Some(slot) if slot.index == index || full => {
                 slot.end_s = t_s;
-                slot.samples += 1;
+                slot.samples = slot.samples.saturating_add(1);
                 slot.moments.merge(moments);
             }
             _ => {
@@ -151,7 +151,7 @@ impl Window {
                 self.len += 1;
             }
         }
-        self.samples += 1;
+        self.samples = self.samples.saturating_add(1);
         self.back.merge(moments);
         self.keep_a_front();
     }
@@ -165,7 +165,8 @@ impl Window {
     /// Drops what ended before a time.
     pub(crate) fn forget_before(&mut self, t_s: f64) {
         while self.len > 0 && self.slots[self.oldest].end_s - t_s <= TIME_RESOLUTION_S {
-            self.samples -= self.slots[self.oldest].samples;
+            let left = self.slots[self.oldest].samples;
+            self.samples = self.samples.saturating_sub(left);
             self.oldest = self.place(1);
             self.len -= 1;
             if self.front > 0 {

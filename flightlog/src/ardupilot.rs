@@ -2,7 +2,7 @@
 //! the range of their commands.
 
 use crate::geometry::tables;
-use crate::outputs::LONGEST_PULSE_US;
+use crate::outputs::{FRACTIONS, PULSES_US};
 use crate::parameters::{Parameters, name_of};
 use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
 
@@ -172,7 +172,7 @@ fn motors_of_frame(frame: &str) -> Option<u16> {
 }
 
 /// Full range of the motor outputs: MOT_PWM_MIN/MAX if both are above 0, else
-/// RCn_MIN/MAX of the throttle channel n.
+/// RCn_MIN/MAX of the throttle channel n. `None` where they are no pulses of a speed controller.
 pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     let range = |(low, high), source| Range {
         low,
@@ -182,16 +182,18 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     };
     let own = parameters
         .pair("MOT_PWM_MIN", "MOT_PWM_MAX")
-        .filter(|(low, high)| *low > 0.0 && *high <= LONGEST_PULSE_US);
+        .filter(|(low, _)| *low > 0.0);
     if let Some(own) = own {
-        return Some(range(own, "MOT_PWM_MIN/MAX".into()));
+        return PULSES_US
+            .allow(own)
+            .then(|| range(own, "MOT_PWM_MIN/MAX".into()));
     }
     let (channel, from) = match parameters.get("RCMAP_THROTTLE") {
         Some(channel) => (channel as i64, "by RCMAP_THROTTLE"),
         None => (3, "is 3 by default"),
     };
     let radio = parameters.pair(&format!("RC{channel}_MIN"), &format!("RC{channel}_MAX"))?;
-    if radio.0 < 0.0 || radio.1 > LONGEST_PULSE_US {
+    if !PULSES_US.allow(radio) {
         return None;
     }
     let source =
@@ -210,11 +212,16 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
         source,
     };
     let spin = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX");
-    if let Some((low, high)) = spin.filter(|(low, high)| *low >= 0.0 && *high <= 1.0) {
-        return range(low, high, "MOT_SPIN_MIN/MAX".into());
+    if let Some((low, high)) = spin {
+        return match FRACTIONS.allow((low, high)) {
+            true => range(low, high, "MOT_SPIN_MIN/MAX".into()),
+            false => crate::flight::whole_range(&format!(
+                "MOT_SPIN_MIN/MAX, {low} and {high}, are no limits"
+            )),
+        };
     }
     let low = parameters.get("THR_MIN").map(|value| value / 1000.0);
-    let Some(low) = low.filter(|low| (0.0..1.0).contains(low)) else {
+    let Some(low) = low.filter(|&low| FRACTIONS.allow((low, 1.0))) else {
         return crate::flight::whole_range("the log has no MOT_SPIN_MIN/MAX and no THR_MIN");
     };
     let curve_is_used = parameters.get("MOT_TCRV_ENABLE").is_none_or(|on| on > 0.0);
@@ -224,7 +231,7 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
         (None, Some(percent)) => (percent / 100.0, "THR_MIN and MOT_TCRV_MAXPCT"),
         (None, None) => (1.0, "THR_MIN"),
     };
-    match high > low && high <= 1.0 {
+    match FRACTIONS.allow((low, high)) {
         true => range(low, high, source.into()),
         false => range(low, 1.0, format!("THR_MIN; {source} is not a limit")),
     }
@@ -365,6 +372,26 @@ mod tests {
         ] {
             let vehicle = vehicle([text].into_iter(), &parameters(&[]));
             assert_eq!(vehicle.id.as_deref(), is_id.then_some(text));
+        }
+    }
+
+    /// Limits of no speed controller would hide a motor at its limit.
+    #[test]
+    fn limits_that_cannot_be_are_no_limits() {
+        for (low, high) in [
+            (100.0, 1100.0),
+            (1000.0, 5e4),
+            (1500.0, 1501.0),
+            (2000.0, 1000.0),
+        ] {
+            let set = parameters(&[("MOT_PWM_MIN", low), ("MOT_PWM_MAX", high)]);
+            assert_eq!(pwm_range(&set), None, "{low} {high}");
+        }
+        for (low, high) in [(-0.1, 0.95), (0.1, 7.0), (0.5, 0.55)] {
+            let set = parameters(&[("MOT_SPIN_MIN", low), ("MOT_SPIN_MAX", high)]);
+            let range = effective_range(&set);
+            assert_eq!((range.low, range.high), (0.0, 1.0));
+            assert!(range.source.contains("are no limits"), "{}", range.source);
         }
     }
 

@@ -11,6 +11,8 @@ pub(crate) struct Input<'r> {
     start: usize,
     end: usize,
     taken: u64,
+    /// The byte taken last.
+    last: Option<u8>,
     at_end: bool,
     /// Compressed data may end early or be damaged: then what came before counts.
     compressed: bool,
@@ -25,6 +27,7 @@ impl<'r> Input<'r> {
             start: 0,
             end: 0,
             taken: 0,
+            last: None,
             at_end: false,
             compressed,
             failure: None,
@@ -74,6 +77,11 @@ impl<'r> Input<'r> {
         self.taken
     }
 
+    /// Whether what was taken so far ends with the end of a line.
+    pub(crate) fn is_at_line_end(&self) -> bool {
+        matches!(self.last, None | Some(b'\n' | b'\r'))
+    }
+
     /// Why the stream ended before its time, if it did.
     pub(crate) fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
@@ -112,5 +120,8 @@ impl BufRead for Input<'_> {
         let count = count.min(self.end - self.start);
         self.start += count;
         self.taken += count as u64;
+        if count > 0 {
+            self.last = self.buffer.get(self.start - 1).copied();
+        }
     }
 }

@@ -8,6 +8,34 @@ const MISSING: u16 = u16::MAX;
 /// Pulses longer than this are damaged, in us.
 pub(crate) const LONGEST_PULSE_US: f64 = 3000.0;
 
+/// Limits (lowest, highest) of a range of commands, and its smallest width, in the unit of the
+/// range. What is outside cannot be meant: a range too wide or too narrow hides a motor at its limit.
+pub(crate) struct Bounds {
+    pub(crate) least: f64,
+    pub(crate) most: f64,
+    pub(crate) width: f64,
+}
+
+/// Pulse widths that a servo or a speed controller takes, in us.
+pub(crate) const PULSES_US: Bounds = Bounds {
+    least: 500.0,
+    most: 2500.0,
+    width: 100.0,
+};
+
+/// The effective range, as fractions of the full range.
+pub(crate) const FRACTIONS: Bounds = Bounds {
+    least: 0.0,
+    most: 1.0,
+    width: 0.1,
+};
+
+impl Bounds {
+    pub(crate) fn allow(&self, (low, high): (f64, f64)) -> bool {
+        low >= self.least && high <= self.most && high - low >= self.width
+    }
+}
+
 /// Outputs that may be motors where nothing else names them. A motor has at least this standard
 /// deviation, in us, and this correlation with the mean of the first four outputs.
 const MOST_LIKE: usize = 8;

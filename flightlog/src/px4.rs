@@ -172,9 +172,7 @@ pub(crate) fn output_range(
         }
     };
     if let (Some(low), Some(high)) = (of_output("MIN"), of_output("MAX"))
-        && high > low
-        && low > 0.0
-        && high <= crate::outputs::LONGEST_PULSE_US
+        && crate::outputs::PULSES_US.allow((low, high))
     {
         let source = match has_static_mixer(parameters) {
             true => format!("PWM_{bank}_MIN/MAX or PWM_MIN/MAX (SYS_CTRL_ALLOC = 0)"),

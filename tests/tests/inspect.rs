@@ -118,13 +118,75 @@ fn limits_that_cannot_be_are_refused() {
         ),
         (
             "# pwm_low_us: -50000\n# pwm_high_us: 2000\n",
-            "`pwm_low_us` is -50000, not in 0 to 3000",
+            "line 1: `pwm_low_us` is -50000, not in 500 to 2500",
+        ),
+        (
+            "# pwm_low_us: 1000\n# pwm_high_us: 1e308\n",
+            "line 2: `pwm_high_us` is 1000",
+        ),
+        (
+            "# pwm_low_us: 2000\n# pwm_high_us: 1000\n",
+            "line 2: `pwm_high_us` is not above `pwm_low_us`",
+        ),
+        (
+            "# pwm_low_us: 1500\n# pwm_high_us: 1500.5\n",
+            "line 2: `pwm_high_us` is less than 100 above `pwm_low_us`",
+        ),
+        (
+            "# pwm_high_us: 2000\n",
+            "line 1: `pwm_high_us` has no `pwm_low_us`",
+        ),
+        (
+            "# effective_low: 0.95\n# effective_high: 0.15\n",
+            "line 2: `effective_high` is not above `effective_low`",
+        ),
+        (
+            "# effective_low: 0.5\n# effective_high: 0.55\n",
+            "line 2: `effective_high` is less than 0.1 above `effective_low`",
+        ),
+        (
+            "# effective_low: 0.15\n",
+            "line 1: `effective_low` has no `effective_high`",
         ),
     ] {
         let (code, _, stderr) = inspect(&[], &format!("{header}t_s,pwm1\n0,2000\n"));
         assert_eq!(code, Some(3));
         assert!(stderr.contains(said), "{stderr}");
     }
+}
+
+/// Half a number is a number too: a last row without its line end is not believed. Every command
+/// says that the end is missing.
+#[test]
+fn a_torn_or_short_last_row_is_truncation() {
+    let whole =
+        "# pwm_low_us: 1000\n# pwm_high_us: 2000\nt_s,roll_deg,pwm1\n0,1,1500\n0.1,1,1600\n";
+    let read = |log: &str, signals: Option<Vec<String>>| {
+        flightlog::read(log.as_bytes(), &flightlog::Options { signals }).unwrap()
+    };
+    for signals in [None, Some(Vec::new())] {
+        let flight = read(whole, signals.clone());
+        assert!(flight.report.is_clean());
+        assert_eq!(flight.commands.len(), 2);
+        // A comment without a line end, and carriage returns, cut no row.
+        for log in [format!("{whole}# end"), whole.replace('\n', "\r\n")] {
+            assert!(read(&log, signals.clone()).report.is_clean());
+        }
+        for (cut, rows) in [(1, 1), (3, 1), (6, 1), (9, 1), (11, 1), (12, 0)] {
+            let flight = read(&whole[..whole.len() - cut], signals.clone());
+            assert_eq!(flight.commands.len(), rows, "{cut}");
+            assert!(flight.report.truncated || cut == 11, "{cut}");
+        }
+        let flight = read(&format!("{whole}0.2,1\n"), signals);
+        assert!(flight.report.truncated && flight.report.bad_messages == 1);
+    }
+    let torn = &whole[..whole.len() - 2];
+    let (_, stdout, _) = inspect(&[], torn);
+    assert!(
+        stdout.contains("cut off at its end\n")
+            && stdout.contains("line 5: the last row has no line end"),
+        "{stdout}"
+    );
 }
 
 #[test]

@@ -136,17 +136,21 @@ unsafe fn start(
     if motors == 0 {
         return Err(Status::NoMotors);
     }
+    // SAFETY: the caller's promise on the plan's arrays, which are used in this call only.
+    if size < unsafe { plan.bytes(motors) }? {
+        return Err(Status::MemorySize);
+    }
     // SAFETY: the caller's promise on the plan's arrays.
     let plan = unsafe { plan.read(&mut block) }?;
     let plan: &'static flagred::board::Plan<'static> = block.place(plan)?;
     plan.check().map_err(|_| Status::DamagedPlan)?;
 
-    let limits: &'static [Limits] = if limits.is_null() {
-        &[]
-    } else {
-        // SAFETY: not null, and by the caller's promise there is one for each motor.
-        unsafe { core::slice::from_raw_parts(limits, motors) }
+    let limits = Array {
+        items: limits,
+        count: if limits.is_null() { 0 } else { motors },
     };
+    // SAFETY: by the caller's promise there is one for each motor.
+    let limits: &'static [Limits] = unsafe { limits.read() }?;
     let ranges = block.fill(limits.len(), Range::FULL)?;
     for (range, Limits { low, high }) in ranges.iter_mut().zip(limits) {
         *range = Range::new(*low, *high).ok_or(Status::BadLimits)?;

@@ -19,6 +19,9 @@ use flagred::{
 
 use crate::{memory::Block, status::Status};
 
+#[cfg(test)]
+mod tests;
+
 /// The version of the data that this library reads.
 const FORMAT: u32 = 3;
 
@@ -43,7 +46,12 @@ impl<T> Array<T> {
         if self.items.is_null() || !self.items.is_aligned() {
             return Err(Status::NullPointer);
         }
-        // SAFETY: neither null nor unaligned, and the caller's promise.
+        // No object is larger: the count is damaged.
+        let bytes = self.count.checked_mul(size_of::<T>());
+        if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) {
+            return Err(Status::DamagedPlan);
+        }
+        // SAFETY: neither null nor unaligned, of a possible size, and the caller's promise.
         Ok(unsafe { core::slice::from_raw_parts(self.items, self.count) })
     }
 }

@@ -47,13 +47,16 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
     let ends = flight.modes.iter().skip(1).map(|next| next.t_s());
     let ends = ends.chain([f64::INFINITY]);
     let mut kinds: Vec<&str> = Vec::new();
-    let mut phases = Vec::new();
+    let mut phases: Vec<Phase> = Vec::new();
+    let mut more = 0;
     for (mode, end_s) in flight.modes.iter().zip(ends) {
         let span = Stretch {
             start_s: mode.t_s().max(stretch.start_s),
             end_s: end_s.min(stretch.end_s),
         };
-        if span.end_s > span.start_s {
+        if span.end_s > span.start_s && phases.len() == MOST_EVENTS {
+            more += 1;
+        } else if span.end_s > span.start_s {
             let known = kinds.iter().position(|known| *known == mode.what);
             let kind = known.unwrap_or_else(|| {
                 kinds.push(&mode.what);
@@ -65,6 +68,10 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
                 kind,
             });
         }
+    }
+    if let Some(last) = phases.last_mut().filter(|_| more > 0) {
+        last.name = format!("and {} more flight modes", more + 1);
+        last.stretch.end_s = stretch.end_s;
     }
     // The gravest finding comes first; it is drawn last, on top of the others.
     let findings = assessed.findings.iter().rev().map(|finding| {

@@ -63,10 +63,20 @@ impl Plan<'_> {
     pub const fn sizes(&self) -> Sizes {
         let inputs = self.table.inputs.len();
         let sizes = self.table.sizes;
-        let rules = sizes.degrees as usize + sizes.stack as usize + sizes.strengths as usize;
+        // Saturating: a damaged plan asks for more memory than there is, and never for less than it uses.
+        let rules = (sizes.degrees as usize)
+            .saturating_add(sizes.stack as usize)
+            .saturating_add(sizes.strengths as usize);
+        let numbers = inputs
+            .saturating_mul(2)
+            .saturating_add(self.inputs.len())
+            .saturating_add(rules);
+        let partials = (sizes.partial as usize)
+            .saturating_mul(2)
+            .saturating_add(sizes.alive as usize);
         Sizes {
-            numbers: 2 * inputs + self.inputs.len() + rules,
-            partials: sizes.alive as usize + 2 * sizes.partial as usize,
+            numbers,
+            partials,
             outputs: self.table.outputs.len(),
             channels: self.channels.len(),
         }
@@ -78,14 +88,16 @@ impl Plan<'_> {
         const ALIGNED: usize = 15;
         let sizes = self.sizes();
         let own = size_of::<Plan<'_>>() + size_of::<Monitor<'_>>() + size_of::<Window>();
-        let channels = sizes.channels * (size_of::<Seen>() + size_of::<Channel>());
-        let sources = size_of_val(self.inputs);
-        let outputs = sizes.outputs * (size_of::<Strongest>() + size_of::<Outcome>());
-        let numbers = sizes.numbers * size_of::<f64>() + sizes.partials * size_of::<Partial>();
+        let channel = size_of::<Seen>() + size_of::<Channel>();
+        let output = size_of::<Strongest>() + size_of::<Outcome>();
         let motor = size_of::<Motor>() + size_of::<Range>() + size_of::<f64>();
         let frame = 4 * size_of::<usize>() + 16 * ALIGNED;
-        let all = own + channels + sources + outputs + numbers + frame;
-        all.saturating_add(motors.saturating_mul(motor))
+        (own + frame + size_of_val(self.inputs))
+            .saturating_add(sizes.channels.saturating_mul(channel))
+            .saturating_add(sizes.outputs.saturating_mul(output))
+            .saturating_add(sizes.numbers.saturating_mul(size_of::<f64>()))
+            .saturating_add(sizes.partials.saturating_mul(size_of::<Partial>()))
+            .saturating_add(motors.saturating_mul(motor))
     }
 }
 

@@ -2,7 +2,9 @@
 
 mod write;
 
-use std::io::BufRead;
+use std::cell::Cell;
+use std::collections::HashSet;
+use std::io::{self, BufRead, Read};
 
 use csv::{ByteRecord, ReaderBuilder};
 
@@ -10,7 +12,7 @@ use crate::error::io_error;
 use crate::flight::whole_range;
 use crate::geometry::{self, Declared, tables};
 use crate::input::Input;
-use crate::outputs::LONGEST_PULSE_US;
+use crate::outputs::{Bounds, FRACTIONS, PULSES_US};
 use crate::signal::{Label, preferred};
 use crate::{
     Commands, Flight, Format, Intervals, Motor, Options, Range, ReadError, Report, Series,
@@ -44,30 +46,59 @@ fn cell(bytes: &[u8]) -> &[u8] {
 pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, ReadError> {
     let mut flight = Flight::empty(Format::Csv);
     let (header, lines) = read_header(input)?;
+    let start = input.taken();
+    let left = Cell::new(LONGEST_ROW);
     let mut reader = ReaderBuilder::new()
         .flexible(true)
         .has_headers(false)
         .comment(Some(b'#'))
-        .from_reader(input);
+        .from_reader(Bounded {
+            input: &mut *input,
+            left: &left,
+        });
     let mut record = ByteRecord::new();
-    if !reader.read_byte_record(&mut record).map_err(broken)? {
+    let broken = |error, line| match left.get() {
+        0 => too_long(line),
+        _ => io_error(io::Error::other::<csv::Error>(error)),
+    };
+    let first = reader.read_byte_record(&mut record);
+    if !first.map_err(|error| broken(error, lines + 1))? {
         return Err(problem(lines + 1, "there is no line of column names", HELP));
     }
     let layout = Layout::new(&record, lines + 1, options)?;
     let mut rows = Rows::new(&layout);
+    let mut next = ByteRecord::new();
+    let mut end = reader.position().byte();
+    record = ByteRecord::new();
     loop {
-        match reader.read_byte_record(&mut record) {
-            Ok(false) => break,
-            Ok(true) => {
-                let line = lines + record.position().map_or(0, csv::Position::line);
-                rows.add(&layout, &record, line, &mut flight.report);
-            }
-            Err(error) => return Err(broken(error)),
+        left.set(LONGEST_ROW);
+        let line = lines + reader.position().line();
+        let more = reader.read_byte_record(&mut next);
+        if !more.map_err(|error| broken(error, line))? {
+            break;
         }
+        // A comment without a line end reads as a row of nothing.
+        if next.as_slice().is_empty() && next.len() <= 1 {
+            continue;
+        }
+        rows.add(&layout, &record, lines, &mut flight.report);
+        std::mem::swap(&mut record, &mut next);
+        end = reader.position().byte();
     }
-    if rows.last_was_short {
-        flight.report.truncated = true;
+    drop(reader);
+    // A last row without a line end may be torn inside a number.
+    let is_torn = start + end == input.taken() && !input.is_at_line_end();
+    match record.position().filter(|_| is_torn) {
+        Some(torn) => {
+            flight.report.truncated = true;
+            flight.report.skipped_bytes += end - torn.byte();
+            let line = lines + torn.line();
+            let reason = || format!("line {line}: the last row has no line end");
+            flight.report.because(reason);
+        }
+        None => rows.add(&layout, &record, lines, &mut flight.report),
     }
+    flight.report.truncated |= rows.last_was_short;
     flight.motors = layout.motors();
     flight.armed = None;
     flight.in_air = Some(rows.in_air());
@@ -90,8 +121,30 @@ fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
     .with_path("the log")
 }
 
-fn broken(error: csv::Error) -> ReadError {
-    io_error(std::io::Error::other(error))
+/// Bytes of a row, with the comments above it. Longer header lines are not taken for a flight CSV.
+const LONGEST_ROW: usize = 1_000_000;
+const MOST_COLUMNS: usize = 4096;
+
+fn too_long(line: u64) -> ReadError {
+    let text = format!("the row is longer than {LONGEST_ROW} bytes");
+    problem(line, text, "a row is one sample: end it with a line end")
+}
+
+/// Reads no more than the bytes that are left for a row, which otherwise would fill the memory.
+struct Bounded<'a, 'r> {
+    input: &'a mut Input<'r>,
+    left: &'a Cell<usize>,
+}
+
+impl Read for Bounded<'_, '_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        if self.left.get() == 0 {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        let count = self.input.read(to)?;
+        self.left.set(self.left.get().saturating_sub(count));
+        Ok(count)
+    }
 }
 
 struct HeaderLine {
@@ -147,8 +200,20 @@ impl Layout {
             .iter()
             .map(|name| String::from_utf8_lossy(cell(name)).into_owned())
             .collect();
-        for (column, name) in names.iter().enumerate() {
-            if names[..column].contains(name) && !name.is_empty() {
+        if names.len() > MOST_COLUMNS {
+            let text = format!(
+                "there are {} columns, more than {MOST_COLUMNS}",
+                names.len()
+            );
+            return Err(problem(
+                line,
+                text,
+                "leave out columns that no profile needs",
+            ));
+        }
+        let mut seen = HashSet::new();
+        for name in names.iter().filter(|name| !name.is_empty()) {
+            if !seen.insert(name) {
                 let text = format!("the column `{name}` is there twice");
                 return Err(problem(line, text, "give each column a name of its own"));
             }
@@ -255,7 +320,11 @@ impl Rows {
         }
     }
 
-    fn add(&mut self, layout: &Layout, record: &ByteRecord, line: u64, report: &mut Report) {
+    fn add(&mut self, layout: &Layout, record: &ByteRecord, lines: u64, report: &mut Report) {
+        let Some(position) = record.position() else {
+            return;
+        };
+        let line = lines + position.line();
         self.last_was_short = false;
         match self.try_add(layout, record) {
             Ok(()) => report.messages += 1,
@@ -362,30 +431,43 @@ fn apply_header(
             }
         }
     };
-    let pair = |low: &str, high: &str, most: f64| -> Result<Option<(f64, f64)>, ReadError> {
+    let line_of = |key: &str| {
+        let entry = header.iter().find(|entry| entry.key == key);
+        entry.map_or(1, |entry| entry.line)
+    };
+    let pair = |low: &str, high: &str, bounds: Bounds| -> Result<Option<(f64, f64)>, ReadError> {
+        let Bounds { least, most, width } = bounds;
         for key in [low, high] {
-            if let Some(value) = value(key)?.filter(|value| !(0.0..=most).contains(value)) {
-                let line = header.iter().find(|entry| entry.key == key);
-                let text = format!("`{key}` is {value}, not in 0 to {most}");
-                let line = line.map_or(1, |entry| entry.line);
-                return Err(problem(line, text, "write the limit of the vehicle"));
+            if let Some(value) = value(key)?.filter(|value| !(least..=most).contains(value)) {
+                let text = format!("`{key}` is {value}, not in {least} to {most}");
+                let help = "write the limit of the vehicle";
+                return Err(problem(line_of(key), text, help));
             }
         }
-        let (Some(low_value), Some(high_value)) = (value(low)?, value(high)?) else {
-            return Ok(None);
+        let (low_value, high_value) = match (value(low)?, value(high)?) {
+            (Some(low_value), Some(high_value)) => (low_value, high_value),
+            (None, None) => return Ok(None),
+            (Some(_), None) => {
+                let text = format!("`{low}` has no `{high}`");
+                return Err(problem(line_of(low), text, "write both or neither"));
+            }
+            (None, Some(_)) => {
+                let text = format!("`{high}` has no `{low}`");
+                return Err(problem(line_of(high), text, "write both or neither"));
+            }
         };
-        if high_value > low_value {
-            return Ok(Some((low_value, high_value)));
+        if high_value <= low_value {
+            let text = format!("`{high}` is not above `{low}`");
+            return Err(problem(line_of(high), text, "swap or correct the two"));
         }
-        let line = header.iter().find(|entry| entry.key == high);
-        let text = format!("`{high}` is not above `{low}`");
-        Err(problem(
-            line.map_or(1, |entry| entry.line),
-            text,
-            "swap or correct the two",
-        ))
+        if !bounds.allow((low_value, high_value)) {
+            let text = format!("`{high}` is less than {width} above `{low}`");
+            let help = "write the limits of the vehicle";
+            return Err(problem(line_of(high), text, help));
+        }
+        Ok(Some((low_value, high_value)))
     };
-    let pwm = pair("pwm_low_us", "pwm_high_us", LONGEST_PULSE_US)?;
+    let pwm = pair("pwm_low_us", "pwm_high_us", PULSES_US)?;
     if layout.stem == "motor" && !layout.motors.is_empty() {
         flight.range = Some(Range {
             low: 0.0,
@@ -401,7 +483,7 @@ fn apply_header(
             source: "header pwm_low_us, pwm_high_us".into(),
         });
     }
-    flight.effective = match pair("effective_low", "effective_high", 1.0)? {
+    flight.effective = match pair("effective_low", "effective_high", FRACTIONS)? {
         Some((low, high)) => Range {
             low,
             high,

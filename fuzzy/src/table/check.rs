@@ -131,6 +131,7 @@ impl Table<'_> {
             last_cell += u64::from(offset.ok_or(Damaged("axes"))?);
             require((axis.input as usize) < self.inputs.len(), "axes")?;
         }
+        require(last_cell <= u64::from(u32::MAX), "axes")?;
         let end = (last_cell + 1).saturating_mul(actions_a_cell);
         require(
             first_action.saturating_add(end) <= self.actions.len() as u64,
@@ -152,7 +153,8 @@ impl Table<'_> {
                 last = last.max(dimension.any);
                 alive += 1;
             }
-            last_cell += u64::from(last) * u64::from(dimension.stride);
+            let offset = u64::from(last) * u64::from(dimension.stride);
+            last_cell = u64::saturating_add(last_cell, offset);
             require(alive < self.sizes.alive as usize, "dimensions")?;
             if i + 1 < self.dimensions.len() {
                 most = most.saturating_mul(alive.max(1));
@@ -163,6 +165,7 @@ impl Table<'_> {
         let end = self.cells.last().map_or(usize::MAX, |end| *end as usize);
         require(
             partial > 0
+                && last_cell <= u64::from(u32::MAX)
                 && last_cell + 1 < self.cells.len() as u64
                 && self.cells.is_sorted()
                 && end <= self.actions.len(),

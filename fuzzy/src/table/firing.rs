@@ -309,9 +309,13 @@ fn fire_trie<A: Arrays>(
     firing: &mut Firing<'_>,
 ) {
     path[0] = Partial { degree: 1.0, at: 0 };
-    let mut open = 1;
-    while open > 0 {
-        open -= 1;
+    let mut open = 1usize;
+    // In a tree no node is reached twice. Where a damaged table is no tree, time stays bounded.
+    for _ in table.nodes() {
+        let Some(left) = open.checked_sub(1) else {
+            return;
+        };
+        open = left;
         let Partial { degree, at } = path[open];
         let node = &table.nodes()[at as usize];
         let range = node.first_action as usize..node.end_action as usize;

@@ -1,0 +1,273 @@
+//! Every bound of docs/limits.md, at the command line: what is beyond it ends soon, with a message.
+
+use std::{
+    fs,
+    process::{Output, Stdio},
+    time::{Duration, Instant},
+};
+
+use flagred_tests::{
+    Folder, flagred,
+    log_writer::{DataFlash, Value},
+};
+
+const RULE_SET: &str = "fuzzy: 1\nname: wind\ninputs: {wind: {range: [0, 20], partition: [calm, storm]}}\n\
+    outputs: {risk: {range: [0, 100], partition: [low, high]}}\n\
+    rules: [IF wind IS calm THEN risk IS low, IF wind IS storm THEN risk IS high]\n";
+
+fn profile(rules: &str) -> String {
+    format!("flagred: 1\nname: wind\nrules: {rules}\ninputs: {{wind: {{last: wind_m_s}}}}\n")
+}
+
+fn run(arguments: &[&str]) -> Output {
+    let mut command = flagred();
+    let started = Instant::now();
+    let output = command.args(arguments).output().unwrap();
+    // A debug build on a busy machine; without bounds these take minutes or all memory.
+    assert!(
+        started.elapsed() < Duration::from_secs(20),
+        "{arguments:?} took {:?}",
+        started.elapsed()
+    );
+    output
+}
+
+/// Whether a call ends with 3 and says this on standard error.
+fn refused(arguments: &[&str], said: &str) {
+    let output = run(arguments);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{arguments:?}: {told}");
+    assert!(told.contains(said), "{arguments:?}: {told}");
+}
+
+#[test]
+fn rule_sets_and_profiles_have_a_size_limit() {
+    let folder = Folder::new();
+    let comments = folder.file("comments.yaml", "# nothing\n".repeat(10_000_000));
+    let said = "is larger than 4 MB";
+    refused(&["check", &comments], said);
+    refused(&["export", "--c", &comments], said);
+    refused(
+        &[
+            "export",
+            "--c",
+            &folder.file("p.yaml", profile("comments.yaml")),
+        ],
+        said,
+    );
+    #[cfg(unix)]
+    for command in [&["check", "/dev/zero"][..], &["export", "--c", "/dev/zero"]] {
+        refused(command, said);
+    }
+    let largest = format!("{RULE_SET}{}", "#".repeat(4_000_000 - RULE_SET.len()));
+    let output = run(&["check", &folder.file("largest.yaml", &largest)]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    refused(&["check", &folder.file("larger.yaml", largest + "#")], said);
+}
+
+/// A profile may come from somebody else.
+#[test]
+fn a_profile_names_rule_sets_of_its_own_folder() {
+    let folder = Folder::new();
+    fs::create_dir(folder.at("own")).unwrap();
+    folder.file("wind.yaml", RULE_SET);
+    folder.file("own/beside.yaml", RULE_SET);
+    let absolute = folder.at("wind.yaml");
+    let said = "which is not in the profile's folder";
+    let named = folder.at("own/profile.yaml");
+    let export = ["export", "--c", &named];
+    for rules in ["../wind.yaml", &absolute] {
+        folder.file("own/profile.yaml", profile(rules));
+        refused(&export, said);
+        let allowed = flagred()
+            .args(export)
+            .env("FLAGRED_RULES", folder.path())
+            .output()
+            .unwrap();
+        assert!(allowed.status.success(), "{allowed:?}");
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(&absolute, folder.at("own/link.yaml")).unwrap();
+        folder.file("own/profile.yaml", profile("link.yaml"));
+        refused(&export, said);
+    }
+    folder.file("own/profile.yaml", profile("beside.yaml"));
+    assert!(run(&export).status.success());
+    // A profile that is named without its folder.
+    let here = flagred()
+        .args(["export", "--c", "profile.yaml"])
+        .current_dir(folder.at("own"))
+        .output()
+        .unwrap();
+    assert!(here.status.success(), "{here:?}");
+}
+
+/// A small compressed file can hold a row that fills the memory.
+#[test]
+fn rows_headers_and_columns_of_a_flight_csv_are_bounded() {
+    let folder = Folder::new();
+    let names = "t_s,motor1\n";
+    for (name, start, repeated, said) in [
+        (
+            "cell",
+            "t_s,motor1\n0,",
+            "5",
+            "line 2: the row is longer than 1000000 bytes",
+        ),
+        (
+            "names",
+            "t_s,motor1,",
+            "x",
+            "line 1: the row is longer than 1000000 bytes",
+        ),
+        (
+            "quoted",
+            "t_s,motor1\n0,\"",
+            "5\n",
+            "line 2: the row is longer than 1000000 bytes",
+        ),
+        (
+            "commas",
+            "t_s,motor1\n0.5",
+            ",",
+            "line 2: the row is longer than 1000000 bytes",
+        ),
+        ("header", "# note: ", "x", "not a flight log"),
+        ("headers", "# a: b\n", "# a: b\n", "not a flight log"),
+    ] {
+        let block = repeated.repeat(1_000_000 / repeated.len());
+        let path = folder.at(name);
+        let mut packed = flate2::write::GzEncoder::new(
+            fs::File::create(&path).unwrap(),
+            flate2::Compression::fast(),
+        );
+        std::io::Write::write_all(&mut packed, start.as_bytes()).unwrap();
+        for _ in 0..100 {
+            std::io::Write::write_all(&mut packed, block.as_bytes()).unwrap();
+        }
+        std::io::Write::write_all(&mut packed, names.as_bytes()).unwrap();
+        packed.finish().unwrap();
+        refused(&["inspect", &path], said);
+    }
+    let columns: String = (0..4095).map(|i| format!(",s{i}")).collect();
+    let wide = folder.file(
+        "wide.csv",
+        format!("t_s{columns}\n0{}\n", ",1".repeat(4095)),
+    );
+    assert!(
+        !String::from_utf8(run(&["inspect", &wide]).stderr)
+            .unwrap()
+            .contains("columns")
+    );
+    let wider = folder.file("wider.csv", format!("t_s{columns},more\n"));
+    refused(
+        &["inspect", &wider],
+        "line 1: there are 4097 columns, more than 4096",
+    );
+    let twice = folder.file("twice.csv", "t_s,a,b,a\n");
+    refused(&["inspect", &twice], "the column `a` is there twice");
+}
+
+#[test]
+fn a_report_shows_the_first_flight_modes_and_counts_the_rest() {
+    let mut log = DataFlash::new();
+    log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
+    log.define(130, "RCOU", "QHHHH", "TimeUS,C1,C2,C3,C4");
+    log.define(132, "EV", "QB", "TimeUS,Id");
+    log.define(133, "MSG", "QZ", "TimeUS,Message");
+    log.define(134, "MODE", "QMBB", "TimeUS,Mode,ModeNum,Rsn");
+    log.write("MSG", [1e6.into(), "ArduCopter V4.5.7 (2a3dc4b7)".into()]);
+    for motor in 1..=4 {
+        log.parameter(
+            1e6,
+            &format!("SERVO{motor}_FUNCTION"),
+            f64::from(32 + motor),
+        );
+    }
+    log.parameter(1e6, "MOT_PWM_MIN", 1000.0);
+    log.parameter(1e6, "MOT_PWM_MAX", 2000.0);
+    for row in 0..30_000 {
+        let time = Value::Number(1e6 + 1e4 * f64::from(row));
+        if let Some(event) = [(10, 10.0), (20, 28.0)].iter().find(|event| event.0 == row) {
+            log.write("EV", [time, event.1.into()]);
+        }
+        let mode = Value::Number(f64::from(row % 3));
+        log.write("MODE", [time, mode, mode, 0.0.into()]);
+        log.write(
+            "RCOU",
+            [
+                time,
+                1500.0.into(),
+                1500.0.into(),
+                1500.0.into(),
+                1500.0.into(),
+            ],
+        );
+    }
+    let folder = Folder::new();
+    let (log, report) = (
+        folder.file("modes.bin", &log.bytes),
+        folder.at("report.html"),
+    );
+    assert!(run(&["assess", &log, "--html", &report]).status.success());
+    let html = fs::read_to_string(report).unwrap();
+    let more = html
+        .split("and ")
+        .find(|rest| rest.contains(" more flight modes"));
+    let more = more.and_then(|rest| rest.split(' ').next()?.parse::<usize>().ok());
+    assert!(more.is_some_and(|more| more > 29_000), "{more:?}");
+    assert!(html.len() < 2_000_000, "{}", html.len());
+}
+
+#[test]
+fn a_file_that_is_no_rule_set_is_not_quoted() {
+    let folder = Folder::new();
+    folder.file(
+        "secret.txt",
+        "root:x:0:0:root:/root:/bin/sh\npassword: {hunter2\n",
+    );
+    let named = folder.file("profile.yaml", profile("secret.txt"));
+    let output = run(&["export", "--c", &named]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert!(
+        told.contains("secret.txt`, which is not a rule set"),
+        "{told}"
+    );
+    assert!(
+        !told.contains("root:") && !told.contains("hunter2"),
+        "{told}"
+    );
+    // What is meant as a rule set is quoted, so that its author finds the mistake.
+    folder.file("secret.txt", RULE_SET.replace("IS calm", "IS clam"));
+    refused(&["export", "--c", &named], "did you mean `calm`?");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_rule_set_comes_through_a_pipe_and_waiting_for_one_can_be_interrupted() {
+    let folder = Folder::new();
+    let pipe = folder.at("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let check = || {
+        let mut command = flagred();
+        command.args(["check", &pipe]).stdout(Stdio::null());
+        command.spawn().unwrap()
+    };
+    let mut running = check();
+    fs::write(&pipe, RULE_SET).unwrap();
+    assert_eq!(running.wait().unwrap().code(), Some(0));
+
+    let mut waiting = check();
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(waiting.try_wait().unwrap().is_none());
+    let id = waiting.id().to_string();
+    let kill = std::process::Command::new("kill")
+        .args(["-INT", &id])
+        .status();
+    assert!(kill.unwrap().success());
+    let ended = std::os::unix::process::ExitStatusExt::signal(&waiting.wait().unwrap());
+    assert_eq!(ended, Some(2));
+}
