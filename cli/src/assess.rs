@@ -13,7 +13,8 @@ use flightlog::{Flight, ReadError};
 use crate::{
     assessment::{document, words},
     failure::{Exit, Failure},
-    output, parallel, profile,
+    output::{self, Files, Output, Stdout},
+    parallel, profile,
     report::{self, Subject},
 };
 
@@ -43,7 +44,7 @@ pub(crate) struct Arguments {
     verbose: bool,
 
     /// Also write a report to this file: one HTML page that opens offline; for several logs, a comparison
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = output::html_path)]
     html: Option<PathBuf>,
 
     /// Also write an SVG picture of the risk over time to this file
@@ -86,23 +87,35 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             Failure::usage("--svg draws one flight").help("compare several with --html FILE")
         );
     }
-    let reports = arguments.html.is_some() || arguments.svg.is_some();
+    let inputs = arguments.logs.iter().map(PathBuf::from);
+    let mut files = Files::reading(inputs.chain(loaded.files.iter().cloned()))?;
+    let html = files.optional(arguments.html.as_ref())?;
+    let svg = files.optional(arguments.svg.as_ref())?;
+    let reports = html.is_some() || svg.is_some();
     let options = options(estimator, reports);
     let mut subjects = Vec::new();
-    let mut out = anstream::stdout().lock();
+    let documents: Vec<&Output> = html.iter().chain(&svg).collect();
+    let mut out = Stdout::beside(&documents);
+    // Reports are written first: whoever reads standard output may stop at any time.
+    let mut waiting = Vec::new();
     let mut exit = Exit::Clean;
-    let mut documents = Vec::new();
+    let mut json = Vec::new();
     let mut head = true;
     let mut show = |log: &String, flight: Flight, assessed: Assessment| {
+        let mut out: Box<dyn Write + '_> = match reports {
+            true => Box::new(&mut waiting),
+            false => Box::new(&mut out),
+        };
         if arguments.json {
             let document = document::document(log, &flight, estimator, &assessed);
-            documents.push(serde_json::to_value(document).map_err(std::io::Error::from)?);
+            json.push(serde_json::to_value(document).map_err(std::io::Error::from)?);
         } else if arguments.csv {
             let name = several.then_some(log.as_str());
             document::write_csv(&mut out, name, head, estimator, &assessed)?;
             head = false;
             if let Verdict::NotAvailable(reason) = &assessed.verdict {
                 let failure = Failure::unreadable(format!("`{log}`: no verdict: {reason}"));
+                out.flush()?;
                 failure.help_if(reason.help()).report();
             }
         } else {
@@ -114,7 +127,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 &assessed,
                 arguments.verbose,
             )?;
+            out.flush()?;
         }
+        drop(out);
         if reports {
             subjects.push(Subject {
                 name: log.clone(),
@@ -148,40 +163,45 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         },
     );
     shown?;
+    // One that cannot be written keeps no other from being written, nor the verdict from being told.
+    let reported = match (subjects.as_slice(), several) {
+        ([], _) => Ok(()),
+        ([subject], false) => write_reports(html.as_ref(), svg.as_ref(), subject, &loaded),
+        (subjects, _) => html.as_ref().map_or(Ok(()), |html| {
+            html.write(&report::comparison(subjects, &loaded))
+        }),
+    };
+    out.write_all(&waiting)?;
     if arguments.json {
-        match (documents.as_slice(), several) {
+        match (json.as_slice(), several) {
             ([], _) => {}
             ([document], false) => write_json(&mut out, document)?,
             (documents, _) => write_json(&mut out, &documents)?,
         }
     }
-    out.flush()?;
-    write_reports(arguments, &subjects, &loaded)?;
+    out.finish()?;
+    reported?;
     Ok(exit)
 }
 
-/// Writes the files that were asked for; where no log could be read, there is nothing to write.
+/// Writes the files that were asked for of one flight.
 fn write_reports(
-    arguments: &Arguments,
-    subjects: &[Subject],
+    html: Option<&Output>,
+    svg: Option<&Output>,
+    subject: &Subject,
     loaded: &profile::Loaded,
 ) -> Result<(), Failure> {
-    let text = match subjects {
-        [] => return Ok(()),
-        [subject] if arguments.logs.len() == 1 => report::report(subject, loaded),
-        several => report::comparison(several, loaded),
-    };
-    if let Some(path) = &arguments.html {
-        output::write(path, &text)?;
-    }
-    if let (Some(path), [subject]) = (&arguments.svg, subjects) {
-        let text = report::svg(subject, loaded).ok_or_else(|| {
-            Failure::unreadable(format!(
-                "`{}`: no risk is known at any time, so there is nothing to draw",
-                subject.name
-            ))
-        })?;
-        output::write(path, &text)?;
+    let mut texts = Vec::new();
+    texts.extend(html.map(|html| (html, report::report(subject, loaded))));
+    let drawn = svg.and_then(|svg| Some((svg, report::svg(subject, loaded)?)));
+    let nothing_drawn = svg.is_some() && drawn.is_none();
+    texts.extend(drawn);
+    output::write_all(texts)?;
+    if nothing_drawn {
+        return Err(Failure::unreadable(format!(
+            "`{}`: no risk is known at any time, so there is nothing to draw",
+            subject.name
+        )));
     }
     Ok(())
 }

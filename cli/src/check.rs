@@ -5,6 +5,7 @@ use std::{io::Write, path::PathBuf};
 use fuzzy::{
     check,
     diagnostic::{Diagnostic, Findings, Severity},
+    drawing::visible,
     format::Document,
 };
 use serde::Serialize;
@@ -12,6 +13,7 @@ use serde::Serialize;
 use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
+    output::{Files, Stdout},
     rule_set::profile_instead,
 };
 
@@ -71,6 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<Exit, Failure> {
+    Files::reading(&arguments.models)?;
     let mut exit = Exit::Clean;
     for path in &arguments.models {
         let text = read_text(path)?;
@@ -81,7 +84,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         {
             return Err(failure);
         }
-        let mut out = anstream::stdout().lock();
+        let mut out = Stdout::text();
         if arguments.json {
             let json = Json {
                 schema: "flagred.check/1",
@@ -96,8 +99,9 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
             writeln!(out)?;
         } else {
             write!(out, "{}", draw(&findings.0, &file, &text, true))?;
-            writeln!(out, "{file}: {}", summary(&findings))?;
+            writeln!(out, "{}: {}", visible(&file), summary(&findings))?;
         }
+        out.finish()?;
         let worst = findings.0.iter().map(|finding| finding.severity).max();
         if worst > worst_allowed {
             exit = Exit::Findings;

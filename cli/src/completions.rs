@@ -1,9 +1,14 @@
 //! `flagred completions`: what a shell needs to complete command lines.
 
+use std::io::Write as _;
+
 use clap::CommandFactory;
 use clap_complete::Shell;
 
-use crate::failure::{Exit, Failure};
+use crate::{
+    failure::{Exit, Failure},
+    output::Stdout,
+};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -20,6 +25,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         "flagred",
         &mut script,
     );
-    std::io::Write::write_all(&mut std::io::stdout().lock(), &script)?;
+    let mut out = Stdout::data();
+    out.write_all(&script)?;
+    out.finish()?;
     Ok(Exit::Clean)
 }

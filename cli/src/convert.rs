@@ -1,14 +1,13 @@
 //! `flagred convert`: a flight log as flight CSV.
 
-use std::{
-    fs::File,
-    io::{BufWriter, Write},
-    path::{Path, PathBuf},
+use std::path::PathBuf;
+
+use flightlog::Options;
+
+use crate::{
+    failure::{Exit, Failure},
+    output::{self, Files, Replace, Visible},
 };
-
-use flightlog::{Flight, Options};
-
-use crate::failure::{Exit, Failure};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -17,36 +16,21 @@ pub(crate) struct Arguments {
     log: PathBuf,
 
     /// The CSV file to write; `-` is standard output
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", value_parser = output::csv_path)]
     output: PathBuf,
 }
 
 /// Writes the motor commands and signals of a log; warns where the log is damaged.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut files = Files::reading([&arguments.log])?;
+    let output = files.output(&arguments.output, Replace::Yes)?;
     let flight = flightlog::open(&arguments.log, &Options::default())?;
-    if arguments.output == Path::new("-") {
-        flight.write_csv(&mut BufWriter::new(anstream::stdout().lock()))?;
-    } else {
-        write(&flight, &arguments.output).map_err(|error| {
-            Failure::usage(format!(
-                "cannot write `{}`: {error}",
-                arguments.output.display()
-            ))
-        })?;
-    }
+    output.write_with(|out| flight.write_csv(Visible(out)))?;
     if let Some(reason) = &flight.report.reason {
-        let mut err = anstream::stderr().lock();
-        writeln!(
-            err,
+        output::say(&format!(
             "warning: `{}` is damaged: {reason}; the undamaged part is converted",
             arguments.log.display()
-        )?;
+        ));
     }
     Ok(Exit::Clean)
-}
-
-fn write(flight: &Flight, path: &Path) -> std::io::Result<()> {
-    let mut out = BufWriter::new(File::create(path)?);
-    flight.write_csv(&mut out)?;
-    out.flush()
 }

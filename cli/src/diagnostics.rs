@@ -3,11 +3,15 @@
 use std::{
     fs,
     io::{self, Read, Write},
+    ops::Range,
     path::Path,
 };
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use fuzzy::diagnostic::{Diagnostic, Findings, Severity};
+use fuzzy::{
+    diagnostic::{Diagnostic, Findings, Severity},
+    drawing::{visible, visible_lines},
+};
 
 use crate::failure::Failure;
 
@@ -18,14 +22,34 @@ pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: boo
     } else {
         Renderer::plain()
     };
-    let drawn = findings
-        .iter()
-        .map(|finding| renderer.render(&report(finding, file, text)));
+    let (shown_file, shown_text) = (visible(file), visible_lines(text));
+    let drawn = findings.iter().map(|finding| {
+        let finding = shown(finding, text);
+        renderer.render(&report(&finding, &shown_file, &shown_text))
+    });
     let mut drawn = drawn.collect::<Vec<_>>().join("\n\n");
     if !drawn.is_empty() {
         drawn.push('\n');
     }
     drawn
+}
+
+/// A finding in the text as it is shown.
+fn shown(finding: &Diagnostic, text: &str) -> Diagnostic {
+    let at = |offset: usize| {
+        text.get(..offset)
+            .map_or(offset, |t| visible_lines(t).len())
+    };
+    let moved = |span: &Range<usize>| at(span.start)..at(span.end);
+    let mut shown = finding.clone();
+    shown.span = moved(&shown.span);
+    shown.message = visible(&shown.message).into_owned();
+    shown.help = shown.help.map(|help| visible(&help).into_owned());
+    for related in &mut shown.related {
+        related.span = moved(&related.span);
+        related.message = visible(&related.message).into_owned();
+    }
+    shown
 }
 
 fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Group<'a>> {
@@ -34,7 +58,7 @@ fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Grou
         Severity::Warning => Level::WARNING,
         Severity::Note => Level::NOTE,
     };
-    let inside = |span: &std::ops::Range<usize>| {
+    let inside = |span: &Range<usize>| {
         let end = span.end.min(text.len());
         span.start.min(end)..end
     };

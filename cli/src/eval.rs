@@ -2,7 +2,7 @@
 
 use std::{
     fs::File,
-    io::{self, BufReader, BufWriter, Read, Write},
+    io::{self, BufReader, Read},
     path::{Path, PathBuf},
     thread,
 };
@@ -15,6 +15,7 @@ use fuzzy::{
 
 use crate::{
     failure::{Exit, Failure},
+    output::{self, Files, Stdout, number_or_cell},
     rule_set,
 };
 
@@ -32,6 +33,7 @@ pub(crate) struct Arguments {
 const BLOCK: usize = 16_384;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    Files::reading([&arguments.model, &arguments.points])?;
     let (_, engine) = rule_set::load(&arguments.model)?;
     let path = &arguments.points;
     let input: Box<dyn Read> = if path == Path::new("-") {
@@ -51,8 +53,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .map_err(|error| unreadable(&error))?
         .clone();
     let columns = columns(&engine, &header)?;
-    let mut writer = csv::Writer::from_writer(BufWriter::new(io::stdout().lock()));
-    writer.write_record(header.iter().chain(engine.output_names()))?;
+    let mut writer = csv::Writer::from_writer(Stdout::data());
+    let names = header.iter().map(number_or_cell);
+    let outputs = engine.output_names().map(output::cell);
+    writer.write_record(names.chain(outputs).map(|name| name.into_owned()))?;
 
     let threads = thread::available_parallelism().map_or(1, usize::from);
     let mut scratches: Vec<Scratch> = (0..threads).map(|_| engine.scratch()).collect();
@@ -74,18 +78,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 let values = outcomes
                     .iter()
                     .map(|o| o.value().map(digits).unwrap_or_default());
-                let fields = record.iter().map(String::from).chain(values);
+                let copied = record
+                    .iter()
+                    .map(|field| number_or_cell(field).into_owned());
+                let fields = copied.chain(values);
                 writer.write_record(fields)?;
             }
         }
         rows += block.len();
+        // A stream may have no end; of a file the rest is evaluated, for what is to be said of it.
+        if writer.get_ref().is_closed() && path == Path::new("-") {
+            break;
+        }
     }
     writer.flush()?;
-    let mut err = anstream::stderr().lock();
     for (name, undefined) in engine.output_names().zip(undefined) {
         if let Some(why) = undefined.why(rows) {
-            // Nothing is left to tell a user whose standard error is closed.
-            let _ = writeln!(err, "`{name}` is undefined {why}");
+            output::say(&format!("`{name}` is undefined {why}"));
         }
     }
     Ok(Exit::Clean)

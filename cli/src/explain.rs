@@ -12,7 +12,8 @@ use serde::Serialize;
 
 use crate::{
     failure::{Exit, Failure},
-    output, rule_set,
+    output::{self, Files, Stdout},
+    rule_set,
 };
 
 #[derive(clap::Args)]
@@ -49,14 +50,16 @@ struct Json<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut files = Files::reading([&arguments.model])?;
+    let svg = files.optional(arguments.svg.as_ref())?;
     let (model, engine) = rule_set::load(&arguments.model)?;
     let values = values(&model, &arguments.inputs)?;
     let explanation = engine.explain(&values).map_err(Failure::usage)?;
-    if let Some(file) = &arguments.svg {
-        output::write(file, &explanation_svg(&model, &explanation))?;
+    if let Some(svg) = svg {
+        svg.write(&explanation_svg(&model, &explanation))?;
         return Ok(Exit::Clean);
     }
-    let mut out = anstream::stdout().lock();
+    let mut out = Stdout::text();
     if arguments.json {
         let json = Json {
             schema: "flagred.explain/1",
@@ -68,6 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     } else {
         write!(out, "{}", explanation_text(&model, &explanation))?;
     }
+    out.finish()?;
     Ok(Exit::Clean)
 }
 

@@ -3,6 +3,7 @@
 use std::{fmt, io, io::Write, path::Path, process::ExitCode};
 
 use clap::error::{ContextKind, ContextValue};
+use fuzzy::drawing::{visible, visible_lines};
 
 /// How a command that ran to its end ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,15 +31,18 @@ impl From<Exit> for ExitCode {
 pub(crate) struct Failure {
     code: u8,
     message: String,
+    /// What the message is about, one line each.
+    details: Vec<String>,
     help: Option<String>,
 }
 
 impl Failure {
-    /// The command line asks for something that cannot be done: exit code 2.
+    /// The command line asks for something that cannot be done, or an output cannot be written: exit code 2.
     pub(crate) fn usage(message: impl fmt::Display) -> Self {
         Failure {
             code: 2,
             message: message.to_string(),
+            details: Vec::new(),
             help: None,
         }
     }
@@ -48,6 +52,7 @@ impl Failure {
         Failure {
             code: 3,
             message: message.to_string(),
+            details: Vec::new(),
             help: None,
         }
     }
@@ -57,8 +62,15 @@ impl Failure {
         Failure {
             code,
             message: String::new(),
+            details: Vec::new(),
             help: None,
         }
+    }
+
+    /// Adds what the message is about, one line each.
+    pub(crate) fn details(mut self, details: Vec<String>) -> Self {
+        self.details = details;
+        self
     }
 
     /// Adds what to do about it.
@@ -86,9 +98,12 @@ impl Failure {
             let mut err = anstream::stderr().lock();
             let red = anstyle::AnsiColor::Red.on_default().bold();
             // Nothing is left to tell a user whose standard error is closed.
-            let _ = writeln!(err, "{red}error{red:#}: {}", self.message);
+            let _ = writeln!(err, "{red}error{red:#}: {}", visible(&self.message));
+            for detail in &self.details {
+                let _ = writeln!(err, "  {}", visible(detail));
+            }
             if let Some(help) = &self.help {
-                let _ = writeln!(err, "  help: {help}");
+                let _ = writeln!(err, "  help: {}", visible(help));
             }
         }
         ExitCode::from(self.code)
@@ -113,14 +128,22 @@ impl From<flightlog::ReadError> for Failure {
     }
 }
 
-/// Standard output could not be written. A closed pipe (`flagred ... | head`) is the reader's choice, not a failure.
+/// Ends the program for a command line that clap refuses, or that asks for help. What the user typed is shown as text.
+pub(crate) fn refuse(error: &clap::Error) -> ExitCode {
+    let text = error.render().to_string();
+    let shown = visible_lines(&text);
+    if shown == text {
+        error.exit();
+    }
+    // Nothing is left to tell a user whose standard error is closed.
+    let _ = write!(anstream::stderr(), "{shown}");
+    ExitCode::from(2)
+}
+
+/// Standard output could not be written: exit code 2. That its reader went is no error (`output::Stdout`).
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
-        if error.kind() == io::ErrorKind::BrokenPipe {
-            Failure::shown(0)
-        } else {
-            Failure::unreadable(format!("the output cannot be written: {error}"))
-        }
+        Failure::usage(format!("the output cannot be written: {error}"))
     }
 }
 
@@ -129,7 +152,7 @@ impl From<csv::Error> for Failure {
     fn from(error: csv::Error) -> Self {
         match error.into_kind() {
             csv::ErrorKind::Io(error) => Failure::from(error),
-            kind => Failure::unreadable(format!("the output cannot be written: {kind:?}")),
+            kind => Failure::usage(format!("the output cannot be written: {kind:?}")),
         }
     }
 }

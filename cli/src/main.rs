@@ -36,7 +36,8 @@ use failure::{Exit, Failure};
 
 /// Estimates from its motor commands the risk that a multirotor loses control; checks, explains and learns fuzzy rule sets.
 ///
-/// Exit codes: 0 no findings, 1 findings, 2 wrong usage, 3 no answer: the input cannot be read or is not of a multirotor.
+/// Exit codes: 0 no findings, 1 findings, 2 wrong usage or an output that cannot be written, 3 no answer: the input cannot
+/// be read or is not of a multirotor.
 #[derive(Parser)]
 #[command(name = "flagred", version, max_term_width = 100, after_help = help::FLAGRED)]
 struct Arguments {
@@ -120,7 +121,7 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments.command.run(),
         Err(error) => match failure::command_forgotten(&error) {
             Some(failure) => Err(failure),
-            None => error.exit(),
+            None => return failure::refuse(&error),
         },
     };
     match ran {

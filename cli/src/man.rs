@@ -1,12 +1,12 @@
 //! `flagred man`: the manual, made of the same definitions as the help.
 
-use std::{fs, io::Write, path::PathBuf};
+use std::{fs, io::Write as _, path::PathBuf};
 
 use clap::{Command, CommandFactory};
 
 use crate::{
     failure::{Exit, Failure},
-    output,
+    output::{Files, Replace, Stdout},
 };
 
 #[derive(clap::Args)]
@@ -29,14 +29,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     if let Some(folder) = &arguments.all {
         fs::create_dir_all(folder).map_err(|error| {
-            Failure::unreadable(format!("`{}` cannot be made: {error}", folder.display()))
+            Failure::usage(format!("`{}` cannot be made: {error}", folder.display()))
         })?;
+        let mut files = Files::reading::<PathBuf>([])?;
         for command in std::iter::once(&flagred).chain(commands()) {
             let page = page(command)?;
             let name = command
                 .get_display_name()
                 .unwrap_or_else(|| command.get_name());
-            output::write(&folder.join(format!("{name}.1")), &page)?;
+            let output = files.output(&folder.join(format!("{name}.1")), Replace::Yes)?;
+            output.write(&page)?;
         }
         return Ok(Exit::Clean);
     }
@@ -51,7 +53,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             })?,
     };
     let page = page(command)?;
-    std::io::stdout().lock().write_all(page.as_bytes())?;
+    let mut out = Stdout::data();
+    out.write_all(page.as_bytes())?;
+    out.finish()?;
     Ok(Exit::Clean)
 }
 

@@ -1,12 +1,13 @@
 //! `flagred new`: a commented rule set to start from.
 
-use std::{
-    fs::OpenOptions,
-    io::{self, Write},
-    path::PathBuf,
-};
+use std::{io::Write, path::PathBuf};
 
-use crate::failure::{Exit, Failure};
+use fuzzy::drawing::visible;
+
+use crate::{
+    failure::{Exit, Failure},
+    output::{Files, Replace, Stdout},
+};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -16,6 +17,9 @@ pub(crate) struct Arguments {
     /// The file to write [default: NAME.yaml]; `-` is standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
 }
 
 /// A name that is a file name everywhere and needs no quotes in YAML.
@@ -36,23 +40,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.yaml", arguments.name)),
     };
-    if path.as_os_str() == "-" {
-        anstream::stdout().lock().write_all(text.as_bytes())?;
-        return Ok(Exit::Clean);
+    let mut files = Files::reading::<PathBuf>([])?;
+    let output = files.output(&path, Replace::forced(arguments.force))?;
+    output.write(&text)?;
+    if !output.is_stdout() {
+        let shown = path.display().to_string();
+        let shown = visible(&shown);
+        let mut out = Stdout::text();
+        writeln!(out, "wrote {shown}; edit it, then try:")?;
+        writeln!(out, "  flagred check {shown}")?;
+        writeln!(out, "  flagred explain {shown} temperature=24 humidity=70")?;
+        out.finish()?;
     }
-    let shown = path.display();
-    // An existing file is never overwritten.
-    let file = OpenOptions::new().write(true).create_new(true).open(&path);
-    let mut file = file.map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists => Failure::usage(format!("`{shown}` exists already"))
-            .help("choose another name, or another file with `--output`"),
-        _ => Failure::unreadable(format!("`{shown}` cannot be written: {error}")),
-    })?;
-    file.write_all(text.as_bytes())
-        .map_err(|error| Failure::unreadable(format!("`{shown}` cannot be written: {error}")))?;
-    let mut out = anstream::stdout().lock();
-    writeln!(out, "wrote {shown}; edit it, then try:")?;
-    writeln!(out, "  flagred check {shown}")?;
-    writeln!(out, "  flagred explain {shown} temperature=24 humidity=70")?;
     Ok(Exit::Clean)
 }

@@ -22,6 +22,8 @@ pub(crate) struct Loaded {
     pub(crate) model: Model,
     pub(crate) profile_text: String,
     pub(crate) rules_text: String,
+    /// Where it may have been read from; empty for a shipped one.
+    pub(crate) files: Vec<PathBuf>,
 }
 
 /// Compiles a profile, which is a shipped one's name or a file, with its rule set.
@@ -32,6 +34,8 @@ pub(crate) struct Loaded {
 pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
     let (profile, profile_text, folder) = read(name)?;
     let (rules_file, rules_text) = rules(&profile, folder.as_deref())?;
+    let beside = |folder: &PathBuf| [PathBuf::from(name), folder.join(&profile.rules)];
+    let files = folder.iter().flat_map(beside).collect();
     let model = fuzzy::yaml::parse(&rules_text)
         .map_err(|findings| match names_a_key(&rules_text) {
             true => refuse(&findings, &rules_file, &rules_text),
@@ -53,6 +57,7 @@ pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
         model,
         profile_text,
         rules_text,
+        files,
     })
 }
 

@@ -10,6 +10,7 @@ pub mod tuning;
 pub mod vehicle;
 pub mod watch;
 pub mod wire;
+pub mod writing;
 
 pub use folder::Folder;
 

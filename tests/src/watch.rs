@@ -51,7 +51,21 @@ impl Watch {
 
     /// One whose events are kept where they are worth it.
     pub fn start_keeping(endpoint: &str, options: &[&str], keep: fn(&Value) -> bool) -> Watch {
-        let child = flagred()
+        Watch::run(flagred(), endpoint, options, keep)
+    }
+
+    /// One that a command runs, to which the arguments are added.
+    pub fn of(command: Command, endpoint: &str, options: &[&str]) -> Watch {
+        Watch::run(command, endpoint, options, |_| true)
+    }
+
+    fn run(
+        mut command: Command,
+        endpoint: &str,
+        options: &[&str],
+        keep: fn(&Value) -> bool,
+    ) -> Watch {
+        let child = command
             .args(["watch", endpoint, "--jsonl"])
             .args(options)
             .stdout(Stdio::piped())

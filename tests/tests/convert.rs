@@ -87,6 +87,7 @@ fn standard_output_and_failures() {
     let output = refused.output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        String::from_utf8_lossy(&output.stderr).contains("cannot write `/no/such/folder/x.csv`")
+        String::from_utf8_lossy(&output.stderr)
+            .contains("`/no/such/folder/x.csv` cannot be written")
     );
 }

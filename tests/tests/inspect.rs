@@ -103,7 +103,7 @@ fn control_characters_are_shown_as_such() {
     let (code, stdout, _) = inspect(&[], &format!("# note: \u{1b}[31mred\u{202e}\u{7}\n{LOG}"));
     assert_eq!(code, Some(0));
     assert!(
-        stdout.contains("note: \u{fffd}[31mred\u{fffd}\u{fffd}"),
+        stdout.contains("note: \\u{1b}[31mred\\u{202e}\\u{7}"),
         "{stdout}"
     );
 }

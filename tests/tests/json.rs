@@ -77,7 +77,7 @@ fn learn() {
     let folder = Folder::new();
     let rows = "margin,spread,risk\n0.1,0.1,50\n0.1,0.1,70\n0.3,0.2,10\n0.3,0.1,5\n";
     let (data, out) = (folder.file("data.csv", rows), folder.at("out.yaml"));
-    let arguments = ["learn", PAPER, &data, "--output", &out, "--json"];
+    let arguments = ["learn", PAPER, &data, "--output", &out, "--json", "--force"];
     let document = json(&arguments);
     valid("learn", &document);
     assert_eq!(document["gap_methods"], Value::Null);

@@ -265,7 +265,7 @@ fn an_error_on_no_rows_is_unknown_and_not_nought() {
     assert_eq!(gaps["methods"][0]["by_row"]["without_prediction"], 1);
     assert_eq!(gaps["methods"][0]["by_row"]["rmse"], Value::Null);
     assert_eq!(gaps["methods"][0]["by_rule_mean_absolute"], Value::Null);
-    let output = learn(&[&model, &data, "-o", &out, "--compare-gaps"]);
+    let output = learn(&[&model, &data, "-o", &out, "--compare-gaps", "--force"]);
     let text = String::from_utf8(output.stdout).unwrap();
     let nearest = text.lines().find(|line| line.contains("nearest")).unwrap();
     let figures: Vec<&str> = nearest.split_whitespace().skip(1).collect();

@@ -11,7 +11,7 @@ use flightlog::{Flight, Motor, Range, Report};
 use serde::Serialize;
 
 use super::finding::Teller;
-use crate::failure::Failure;
+use crate::{failure::Failure, output::cell};
 
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.assess/1";
@@ -156,12 +156,17 @@ pub(crate) fn write_csv(
     let mut table = csv::Writer::from_writer(out);
     if head {
         let columns = row(estimator, &Step::default());
-        let names = columns.iter().map(|(name, _)| *name);
-        table.write_record(log.map(|_| "log").into_iter().chain(names))?;
+        let names = columns.iter().map(|(name, _)| cell(name));
+        let names = log.map(|_| "log".into()).into_iter().chain(names);
+        table.write_record(names.map(|name| name.into_owned()))?;
     }
     for step in &assessed.steps {
         let fields = row(estimator, step).into_iter().map(|(_, field)| field);
-        table.write_record(log.map(str::to_owned).into_iter().chain(fields))?;
+        table.write_record(
+            log.map(|log| cell(log).into_owned())
+                .into_iter()
+                .chain(fields),
+        )?;
     }
     Ok(table.flush()?)
 }

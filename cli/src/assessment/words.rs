@@ -9,7 +9,7 @@ use flagred::{
     verdict::Level,
 };
 use flightlog::Flight;
-use fuzzy::drawing::{number, over_time_text};
+use fuzzy::drawing::{number, over_time_text, visible};
 
 use super::finding::{self, Teller};
 
@@ -26,16 +26,21 @@ pub(crate) fn write(
     verbose: bool,
 ) -> io::Result<()> {
     let style = style(&assessed.verdict);
-    writeln!(out, "{style}{:<4}{style:#} {name}", assessed.verdict)?;
-    writeln!(out, "     {}", vehicle(flight))?;
+    writeln!(
+        out,
+        "{style}{:<4}{style:#} {}",
+        assessed.verdict,
+        visible(name)
+    )?;
+    indented(out, &vehicle(flight))?;
     if let Verdict::NotAvailable(reason) = &assessed.verdict {
-        writeln!(out, "     no verdict: {reason}")?;
+        indented(out, &format!("no verdict: {reason}"))?;
         if let Some(help) = reason.help() {
-            writeln!(out, "     help: {help}")?;
+            indented(out, &format!("help: {help}"))?;
         }
     }
     if !flight.report.is_clean() {
-        writeln!(out, "     {}", damage(&flight.report))?;
+        indented(out, &damage(&flight.report))?;
     }
     if let Some(spans) = &flight.in_air
         && assessed.summary.in_air_s > 0.0
@@ -55,10 +60,10 @@ pub(crate) fn write(
             let profile = &estimator.profile().name;
             text += &format!(", motors at {rate_hz:.1} Hz; profile {profile}");
         }
-        writeln!(out, "     {text}")?;
+        indented(out, &text)?;
     }
     if assessed.summary.assessed_s > 0.0 {
-        writeln!(out, "     {}", summary(&assessed.summary, verbose))?;
+        indented(out, &summary(&assessed.summary, verbose))?;
     }
     writeln!(out)?;
     let teller = Teller {
@@ -68,7 +73,7 @@ pub(crate) fn write(
     if verbose {
         for finding in &assessed.findings {
             line(out, finding.level, &teller.finding(finding))?;
-            writeln!(out, "     {}", teller.details(finding))?;
+            indented(out, &teller.details(finding))?;
         }
     } else {
         for one in finding::lines(&assessed.findings) {
@@ -91,7 +96,11 @@ pub(crate) fn write(
 
 fn line(out: &mut impl Write, level: Level, text: &str) -> io::Result<()> {
     let style = level_style(level);
-    writeln!(out, "{style}{level:<4}{style:#} {text}")
+    writeln!(out, "{style}{level:<4}{style:#} {}", visible(text))
+}
+
+fn indented(out: &mut impl Write, text: &str) -> io::Result<()> {
+    writeln!(out, "     {}", visible(text))
 }
 
 /// The vehicle in a line: firmware, frame, motors and ranges.

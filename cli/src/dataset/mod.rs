@@ -3,7 +3,7 @@
 mod flight;
 pub(crate) mod summary;
 
-use std::{io::Write, path::Path};
+use std::path::{Path, PathBuf};
 
 use flagred::{
     attitude::CRITICAL_ERROR_DEG,
@@ -13,6 +13,7 @@ use flagred::{
 
 use crate::{
     failure::{Exit, Failure},
+    output::{self, Files, Stdout},
     parallel, profile,
 };
 
@@ -114,17 +115,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         },
         critical_deg: arguments.critical,
     };
-    let mut out = std::io::stdout().lock();
-    write!(out, "file,vehicle,kind,from_s,t_s")?;
-    for input in &plan.profile.inputs {
-        write!(out, ",{}", input.name)?;
-    }
-    if let Cut::Ahead { .. } = plan.cut {
-        for length_s in BEFORE_S {
-            write!(out, ",error_last_{length_s}_s_deg")?;
-        }
-    }
-    writeln!(out, ",att_rmse_deg,{}", plan.profile.output)?;
+    let named = arguments.profile.iter();
+    Files::reading(named.chain(&arguments.logs).map(PathBuf::from))?;
+    let mut out = csv::Writer::from_writer(Stdout::data());
+    out.write_record(head(&plan))?;
 
     let mut exit = Exit::Clean;
     let mut written = 0;
@@ -137,12 +131,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             match made {
                 Ok(made) => {
                     for note in &made.notes {
-                        say(&format!("{log}: {note}"));
+                        output::say(&format!("{log}: {note}"));
                     }
                     written += made.rows.len();
                     for row in &made.rows {
                         if failed.is_none() {
-                            failed = write_row(&mut out, log, row).err();
+                            failed = out.write_record(cells(log, row)).err();
                         }
                     }
                 }
@@ -157,6 +151,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Some(error) = failed {
         return Err(error.into());
     }
+    out.flush()?;
     if written == 0 && exit == Exit::Clean {
         return Err(Failure::unreadable("no row could be made of these flights"));
     }
@@ -194,28 +189,33 @@ fn rows_of(log: &str, plan: &Plan) -> Result<Rows, Failure> {
     flight::rows(log, plan)
 }
 
-fn write_row(out: &mut impl Write, log: &str, row: &Row) -> std::io::Result<()> {
-    let quoted = |text: &str| match text.contains([',', '"', '\n']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    };
-    let time = |t_s: Option<f64>| t_s.map(|t_s| format!("{t_s:.3}")).unwrap_or_default();
-    let (from, to) = (time(row.from_s), time(row.to_s));
-    for text in [log, &row.vehicle, &row.kind] {
-        write!(out, "{},", quoted(text))?;
+/// The names of the columns.
+fn head(plan: &Plan) -> Vec<String> {
+    let mut head = ["file", "vehicle", "kind", "from_s", "t_s"]
+        .map(str::to_owned)
+        .to_vec();
+    let inputs = plan.profile.inputs.iter();
+    head.extend(inputs.map(|input| output::cell(&input.name).into_owned()));
+    if let Cut::Ahead { .. } = plan.cut {
+        head.extend(BEFORE_S.map(|length_s| format!("error_last_{length_s}_s_deg")));
     }
-    write!(out, "{from},{to}")?;
-    for value in &row.inputs {
-        write!(out, ",{value:.8}")?;
-    }
-    for error_deg in &row.errors_before_deg {
-        let error_deg = error_deg.map(|error_deg| format!("{error_deg:.6}"));
-        write!(out, ",{}", error_deg.unwrap_or_default())?;
-    }
-    writeln!(out, ",{:.6},{:.5}", row.att_rmse_deg, row.risk_pct)
+    head.push("att_rmse_deg".to_owned());
+    head.push(output::cell(&plan.profile.output).into_owned());
+    head
 }
 
-fn say(note: &str) {
-    // Nothing is left to tell a user whose standard error is closed.
-    let _ = writeln!(anstream::stderr(), "{note}");
+fn cells(log: &str, row: &Row) -> Vec<String> {
+    let texts = [log, &row.vehicle, &row.kind];
+    let mut cells = texts.map(|text| output::cell(text).into_owned()).to_vec();
+    for time in [row.from_s, row.to_s] {
+        cells.push(time.map(|t_s| format!("{t_s:.3}")).unwrap_or_default());
+    }
+    cells.extend(row.inputs.iter().map(|value| format!("{value:.8}")));
+    for error_deg in &row.errors_before_deg {
+        let error_deg = error_deg.map(|error_deg| format!("{error_deg:.6}"));
+        cells.push(error_deg.unwrap_or_default());
+    }
+    cells.push(format!("{:.6}", row.att_rmse_deg));
+    cells.push(format!("{:.5}", row.risk_pct));
+    cells
 }

@@ -20,7 +20,8 @@ use serde::Serialize;
 
 use crate::{
     failure::{Exit, Failure},
-    output, parallel,
+    output::{self, Files, Stdout},
+    parallel,
 };
 use alarms::Alarms;
 use document::Document;
@@ -86,23 +87,34 @@ struct Evaluation {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let inputs = arguments.flights.iter().chain(&arguments.rows).cloned();
+    let inputs = inputs.chain(arguments.profiles.iter().map(PathBuf::from));
+    let mut files = Files::reading(inputs)?;
+    files.optional(arguments.svg.as_ref())?;
     let estimators = Estimators::new(&arguments.profiles)?;
-    let (evaluation, exit) = match &arguments.rows {
+    let (mut evaluation, exit) = match &arguments.rows {
         Some(table) => (rows(table, &estimators)?, Exit::Clean),
         None => flights(arguments, &estimators)?,
     };
-    if let Some(picture) = &arguments.svg {
-        output::write(picture, &svg::draw(&evaluation))?;
-    }
-    let mut out = anstream::stdout().lock();
+    // Flights in folders are known only now.
+    let mut files = Files::reading(evaluation.records.iter().map(|record| &record.file))?;
+    let svg = files.optional(arguments.svg.as_ref())?;
+    let drawn = match &svg {
+        Some(svg) => svg.write(&svg::draw(&evaluation)),
+        None => Ok(()),
+    };
+    let documents: Vec<&output::Output> = svg.iter().collect();
+    let mut out = Stdout::beside(&documents);
     if arguments.json {
         let document = Document::new(&evaluation);
         serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
         writeln!(out)?;
     } else {
+        evaluation.make_names_visible();
         words::write(&mut out, &evaluation)?;
     }
-    out.flush()?;
+    out.finish()?;
+    drawn?;
     Ok(exit)
 }
 
@@ -179,13 +191,31 @@ fn flights(arguments: &Arguments, estimators: &Estimators) -> Result<(Evaluation
 fn rows(table: &Path, estimators: &Estimators) -> Result<Evaluation, Failure> {
     let (cases, notes) = rows::cases(table, estimators)?;
     for note in notes {
-        // Nothing is left to tell a user whose standard error is closed.
-        let _ = writeln!(anstream::stderr(), "{note}");
+        output::say(&note);
     }
     Ok(Evaluation::of(estimators, &cases))
 }
 
 impl Evaluation {
+    /// For words on a terminal. In JSON and in pictures names stand as they are.
+    fn make_names_visible(&mut self) {
+        let evaluated = self.estimators.iter_mut().flat_map(|of| {
+            let groups = of.by_vehicle.iter_mut().chain(&mut of.by_kind);
+            groups.map(|(name, _)| name).chain([&mut of.name])
+        });
+        let warned = self.warnings.iter_mut().flat_map(|(_, by_kind)| by_kind);
+        let alarmed = self.alarms.iter_mut().flat_map(|of| &mut of.by_kind);
+        let recorded = self.records.iter_mut();
+        let names = evaluated
+            .chain(warned.map(|(kind, _)| kind))
+            .chain(alarmed.map(|(kind, _, _)| kind))
+            .chain(recorded.flat_map(|of| of.vehicle.iter_mut().chain([&mut of.kind])))
+            .chain(self.left_out.iter_mut().map(|of| &mut of.reason));
+        for name in names {
+            *name = fuzzy::drawing::visible(name).into_owned();
+        }
+    }
+
     /// Of cases that are flights.
     fn of(estimators: &Estimators, cases: &[Case]) -> Evaluation {
         let main = || cases.iter().filter(|case| case.kind != APART);

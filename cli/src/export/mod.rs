@@ -12,7 +12,8 @@ use flagred::{
 
 use crate::{
     failure::{Exit, Failure},
-    output, profile,
+    output::{Files, Replace},
+    profile,
 };
 
 mod c;
@@ -37,6 +38,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let loaded = profile::load(&arguments.profile)?;
+    let output = Files::reading(&loaded.files)?.output(&arguments.output, Replace::Yes)?;
     let plan = loaded.estimator.plan().map_err(|error| {
         let rules = &loaded.estimator.profile().rules;
         Failure::unreadable(format!("rule set `{rules}`: {error}")).help(error.help())
@@ -48,7 +50,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     } else {
         c::text(&plan, rules, &signals)
     };
-    output::write(&arguments.output, &text)?;
+    output.write(&text)?;
     Ok(Exit::Clean)
 }
 
@@ -73,7 +75,9 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
             signals.join(", ")
         ));
     }
-    lines
+    // A name from outside must not end the comment.
+    let harmless = |line: String| fuzzy::drawing::visible(&line).replace("*/", "* /");
+    lines.into_iter().map(harmless).collect()
 }
 
 /// An array of a plan, as text.

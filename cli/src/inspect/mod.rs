@@ -7,7 +7,10 @@ use std::{io::Write, path::PathBuf};
 
 use flightlog::{Gap, Options};
 
-use crate::failure::{Exit, Failure};
+use crate::{
+    failure::{Exit, Failure},
+    output::{Files, Stdout},
+};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -22,6 +25,7 @@ pub(crate) struct Arguments {
 
 /// Shows every log in turn; one that cannot be read does not keep the others from being shown.
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    Files::reading(&arguments.logs)?;
     let mut exit = Exit::Clean;
     for log in &arguments.logs {
         let name = log.display().to_string();
@@ -37,7 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         if flight.gaps().iter().any(other) {
             exit = Exit::Unreadable;
         }
-        let mut out = anstream::stdout().lock();
+        let mut out = Stdout::text();
         match arguments.json {
             true => {
                 serde_json::to_writer_pretty(&mut out, &json::Document::new(&name, &flight))
@@ -46,6 +50,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             }
             false => text::write(&mut out, &name, &flight)?,
         }
+        out.finish()?;
     }
     Ok(exit)
 }

@@ -3,12 +3,13 @@
 use std::io::{self, Write};
 
 use flightlog::{Flight, Intervals, Range};
+use fuzzy::drawing::visible;
 
 /// Texts of the autopilot that are shown; the JSON document has them all.
 const MESSAGES: usize = 12;
 
 pub(super) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Result<()> {
-    writeln!(out, "{name}: {}", flight.format)?;
+    writeln!(out, "{}: {}", visible(name), flight.format)?;
     line(out, "vehicle", &vehicle(flight))?;
     lines(out, "motors", motors(flight))?;
     lines(out, "geometry", geometry(flight))?;
@@ -32,11 +33,7 @@ pub(super) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Re
 }
 
 fn line(out: &mut impl Write, key: &str, value: &str) -> io::Result<()> {
-    // Texts of a log may hold terminal commands and turn the direction of writing.
-    let is_harmful =
-        |c: char| c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let value = value.replace(is_harmful, "\u{fffd}");
-    writeln!(out, "  {key:<11}{value}")
+    writeln!(out, "  {key:<11}{}", visible(value))
 }
 
 /// The key stands before the first line only; nothing at all without lines.

@@ -3,10 +3,7 @@
 mod data;
 pub(crate) mod report;
 
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::{io::Write as _, path::PathBuf};
 
 use clap::ValueEnum;
 use flagred::{
@@ -21,7 +18,8 @@ use fuzzy::{
 
 use crate::{
     failure::{Exit, Failure},
-    output, rule_set,
+    output::{Files, Replace, Stdout},
+    rule_set,
 };
 
 #[derive(clap::Args)]
@@ -37,6 +35,10 @@ pub(crate) struct Arguments {
     /// The file for the learned rule set; `-` is standard output
     #[arg(short, long, value_name = "OUT.yaml")]
     output: PathBuf,
+
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
 
     /// How to choose the consequent of rows with the same terms
     #[arg(long, value_enum, default_value = "strongest", value_name = "HOW")]
@@ -118,13 +120,8 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    if arguments.data.contains(&arguments.output) && arguments.output != Path::new("-") {
-        let name = arguments.output.display();
-        return Err(Failure::usage(format!(
-            "`--output {name}` would replace the rows it is learned from"
-        ))
-        .help("name another file"));
-    }
+    let mut files = Files::reading(arguments.data.iter().chain([&arguments.model]))?;
+    let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
     let name = arguments.model.display().to_string();
     let (document, text) = rule_set::read(&arguments.model)?;
     let mut model = document.model;
@@ -171,15 +168,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         },
         learned,
     };
-    output::write(
-        &arguments.output,
-        &report::rule_set(arguments, &outcome, &text),
-    )?;
-    let mut out: Box<dyn Write> = if arguments.output == Path::new("-") {
-        Box::new(anstream::stderr())
-    } else {
-        Box::new(anstream::stdout())
-    };
+    output.write(&report::rule_set(arguments, &outcome, &text))?;
+    let mut out = Stdout::beside(&[&output]);
     if arguments.json {
         let document = report::Document::new(arguments, &outcome);
         serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
@@ -187,6 +177,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     } else {
         report::words(&mut out, arguments, &outcome)?;
     }
+    out.finish()?;
     Ok(Exit::Clean)
 }
 
@@ -212,17 +203,15 @@ fn settings(arguments: &Arguments) -> Settings {
 
 fn bad_rows(refused: &[String]) -> Failure {
     const SHOWN: usize = 20;
-    let shown: Vec<&str> = refused.iter().take(SHOWN).map(String::as_str).collect();
-    let more = match refused.len().saturating_sub(SHOWN) {
-        0 => String::new(),
-        more => format!("\n  and {more} more"),
-    };
+    let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();
+    let more = refused.len().saturating_sub(SHOWN);
+    shown.extend((more > 0).then(|| format!("and {more} more")));
     let count = refused.len();
     Failure::unreadable(format!(
-        "{count} row{} cannot be learned from, and nothing was written\n  {}{more}",
-        if count == 1 { "" } else { "s" },
-        shown.join("\n  ")
+        "{count} row{} cannot be learned from, and nothing was written",
+        if count == 1 { "" } else { "s" }
     ))
+    .details(shown)
     .help("correct or remove these rows, or leave them out with --skip-bad-rows")
 }
 

@@ -6,6 +6,7 @@ use flagred::{
     gap::GapMethod,
     learning::{Errors, MethodErrors},
 };
+use fuzzy::drawing::visible;
 use serde::Serialize;
 
 use super::{Arguments, Outcome, Resolve};
@@ -59,7 +60,7 @@ pub(super) fn words(
         learned.samples, outcome.refused_count
     )?;
     for refused in outcome.refused.iter().take(SHOWN) {
-        writeln!(out, "           {refused}")?;
+        writeln!(out, "           {}", visible(refused))?;
     }
     writeln!(
         out,
@@ -79,7 +80,7 @@ pub(super) fn words(
         learned.missing
     )?;
     for antecedent in learned.missing_antecedents.iter().take(SHOWN) {
-        writeln!(out, "           {antecedent}")?;
+        writeln!(out, "           {}", visible(&antecedent.to_string()))?;
     }
     writeln!(
         out,
@@ -89,7 +90,7 @@ pub(super) fn words(
         GapMethod::default().name()
     )?;
     let parts = match &arguments.group_by {
-        Some(column) => format!("groups of `{column}` left out in turn"),
+        Some(column) => format!("groups of `{}` left out in turn", visible(column)),
         None => "tenths of the rows left out in turn".to_owned(),
     };
     match &outcome.errors {

@@ -16,7 +16,8 @@ use fuzzy::{
 
 use crate::{
     failure::{Exit, Failure},
-    output, rule_set,
+    output::{self, Files, Stdout},
+    rule_set,
 };
 
 /// The default number of points along each axis.
@@ -158,36 +159,39 @@ pub(crate) fn points_along(inputs: usize) -> usize {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut files = Files::reading([&arguments.model])?;
+    let svg = files.optional(arguments.svg.as_ref())?;
     let (model, _) = rule_set::load(&arguments.model)?;
     let evaluated = evaluate(arguments, model)?;
-    let mut out = anstream::stdout().lock();
+    let mut out = Stdout::text();
     let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();
     if arguments.csv && whole && evaluated.model.inputs.len() > 2 {
         write_whole(&mut out, arguments, evaluated)?;
+        out.finish()?;
         return Ok(Exit::Clean);
     }
     let (slice, notes) = slice::cut(arguments, &evaluated)?;
     for note in notes {
-        // Nothing is left to tell a user whose standard error is closed.
-        let _ = writeln!(anstream::stderr(), "note: {note}");
+        output::say(&format!("note: {note}"));
     }
     let model = &evaluated.model;
-    match &arguments.svg {
+    match &svg {
         _ if arguments.csv => write_slice(&mut out, &slice)?,
         None if arguments.activations => {
             write!(out, "{}", rules_text(&slice, model, painted))?;
         }
         None => write!(out, "{}", map_text(&slice, painted))?,
-        Some(file) if arguments.surface => {
+        Some(svg) if arguments.surface => {
             let drawn = surface_svg(&slice).ok_or_else(|| {
                 Failure::usage("`--surface` needs two inputs, and one is left")
                     .help("without `--surface`, the picture of one input is a curve")
             })?;
-            output::write(file, &drawn)?;
+            svg.write(&drawn)?;
         }
-        Some(file) if arguments.activations => output::write(file, &rules_svg(&slice, model))?,
-        Some(file) => output::write(file, &map_svg(&slice))?,
+        Some(svg) if arguments.activations => svg.write(&rules_svg(&slice, model))?,
+        Some(svg) => svg.write(&map_svg(&slice))?,
     }
+    out.finish()?;
     Ok(Exit::Clean)
 }
 
@@ -266,12 +270,9 @@ fn write_whole(
     let map = DecisionMap::new(&evaluated.engine, grid, evaluated.output)
         .map_err(|error| no_map(&error))?;
     let filled = FilledMap::new(map, filling);
-    let mut out = std::io::BufWriter::new(out);
     let map = filled.map();
-    for axis in map.grid().axes() {
-        write!(out, "{},", axis.name)?;
-    }
-    writeln!(out, "{},coverage,rule,filled,distance", map.output())?;
+    let axes = map.grid().axes().iter().map(|axis| &*axis.name);
+    write_head(out, axes, map.output())?;
     for cell in 0..map.grid().cells() {
         for x in map.grid().point(cell) {
             write!(out, "{},", short(x))?;
@@ -294,18 +295,28 @@ fn write_whole(
             distance.map(short).unwrap_or_default()
         )?;
     }
-    out.flush()?;
     Ok(())
 }
 
+/// The names of the columns.
+fn write_head<'a>(
+    out: &mut impl Write,
+    axes: impl Iterator<Item = &'a str>,
+    output: &'a str,
+) -> Result<(), Failure> {
+    let mut head = csv::Writer::from_writer(out);
+    let names = axes
+        .chain([output])
+        .map(|name| output::cell(name).into_owned());
+    let more = ["coverage", "rule", "filled", "distance"].map(str::to_owned);
+    head.write_record(names.chain(more))?;
+    Ok(head.flush()?)
+}
+
 /// Every cell of a slice.
-fn write_slice(out: &mut impl Write, slice: &Slice) -> std::io::Result<()> {
-    let mut out = std::io::BufWriter::new(out);
-    write!(out, "{},", slice.x.name)?;
-    if let Some(y) = &slice.y {
-        write!(out, "{},", y.name)?;
-    }
-    writeln!(out, "{},coverage,rule,filled,distance", slice.output)?;
+fn write_slice(out: &mut impl Write, slice: &Slice) -> Result<(), Failure> {
+    let axes = std::iter::once(&slice.x).chain(&slice.y);
+    write_head(out, axes.map(|axis| axis.name.as_str()), &slice.output)?;
     for (i, x) in slice.x.points.iter().enumerate() {
         for j in 0..slice.rows() {
             write!(out, "{},", short(*x))?;
@@ -324,7 +335,7 @@ fn write_slice(out: &mut impl Write, slice: &Slice) -> std::io::Result<()> {
             )?;
         }
     }
-    out.flush()
+    Ok(())
 }
 
 /// The number of a rule, counted from 1; empty where no rule fired.

@@ -4,7 +4,7 @@ use flagred::flight::{Assessment, Peak, Verdict};
 use flightlog::Flight;
 use fuzzy::{
     Model,
-    drawing::{CSS, Escaped, Frame, Panel, Sheet, Timeline, number},
+    drawing::{CSS, Escaped, Frame, Panel, Sheet, Timeline, number, visible_lines},
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -199,9 +199,8 @@ fn page(title: &str, body: &Markup) -> String {
             }
         }
     };
-    // HTML has no control characters; a log may.
-    let is_control = |c: char| c.is_control() && c != '\n' && c != '\t';
-    page.into_string().replace(is_control, "\u{fffd}")
+    // HTML has no control characters, and a log must not turn the direction of writing.
+    visible_lines(&page.into_string()).into_owned()
 }
 
 fn verdict_class(verdict: &Verdict) -> &'static str {

@@ -7,6 +7,8 @@ use flagred::{
 };
 use flightlog::{Vehicle, mavlink::Setup};
 
+use fuzzy::drawing::visible;
+
 use super::session::{Doubt, End, Event, Flown, Left, Lost, Session, Silent, Source, View};
 use crate::assessment::{finding::Teller, words::effective_range};
 
@@ -46,7 +48,7 @@ impl Words {
 
 /// A line of words with the receiver's time.
 pub(crate) fn words(at_s: f64, text: &str) -> String {
-    format!("{at_s:8.1} s  {text}\n")
+    format!("{at_s:8.1} s  {}\n", visible(text))
 }
 
 /// An event in words; a risk is described with how things stand, by [`Words`].

@@ -130,7 +130,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut buffer = vec![0; DATAGRAM];
     let mut out = Out::default();
     let start = Instant::now();
-    while !stop.load(Ordering::Relaxed) {
+    // Who is sent warnings or reads the recording still needs the watch when nobody reads what it prints.
+    let is_needed = !arguments.no_send || arguments.record.is_some();
+    while !stop.load(Ordering::Relaxed) && (is_needed || !display.printer.is_closed()) {
         let received = port.receive(&mut buffer);
         let is_datagram = matches!(received, Received::Datagram(_));
         let now_s = start.elapsed().as_secs_f64();
@@ -151,9 +153,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             }
         }
         while let Some(packet) = stream.packet() {
-            if let Some(recording) = &mut recording {
-                recording.add(packet.bytes)?;
-            }
+            let recorded = recording.as_mut().map_or(Ok(()), |r| r.add(packet.bytes));
+            let failed = recorded.err().map(|text| Event::Note { text });
+            out.events.extend(failed);
             if session.receive(now_s, port.source(), &packet, &mut out) {
                 port.answer();
             }
@@ -167,11 +169,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         session.tick(now_s, &mut out);
         out.packets.drain(..).for_each(|packet| port.send(&packet));
         display.skipped(stream.skipped(), &mut out.events);
+        let recorded = recording.as_mut().map_or(Ok(()), tlog::Recording::flush);
+        let failed = recorded.err().map(|text| Event::Note { text });
+        out.events.extend(failed);
         display.show(now_s, &mut out.events, &session, &estimator)?;
-        display.refresh(&session, &estimator)?;
-        if let Some(recording) = &mut recording {
-            recording.flush()?;
-        }
+        display.refresh(&session, &estimator);
     }
     let worst = session.finish(&mut out);
     let now_s = start.elapsed().as_secs_f64();
@@ -258,14 +260,14 @@ impl Display {
                 endpoint: title,
                 profile,
             };
-            printer.print(jsonl::json_line(0.0, started)?)?;
+            printer.print(jsonl::json_line(0.0, started)?);
             Face::Json
         } else if is_screen {
             let title = format!("{title}, profile {profile}");
-            printer.print(screen::ENTER.to_owned())?;
+            printer.print(screen::ENTER.to_owned());
             Face::Screen(Screen::new(title))
         } else {
-            printer.print(lines::words(0.0, &format!("{title}, profile {profile}")))?;
+            printer.print(lines::words(0.0, &format!("{title}, profile {profile}")));
             Face::Words(lines::Words::default())
         };
         Ok(Display {
@@ -294,7 +296,7 @@ impl Display {
                 }
             };
             if let Some(line) = line {
-                self.printer.print(line)?;
+                self.printer.print(line);
             }
         }
         Ok(())
@@ -338,15 +340,14 @@ impl Display {
         }
     }
 
-    fn refresh(&mut self, session: &Session<'_>, estimator: &Estimator) -> Result<(), Failure> {
+    fn refresh(&mut self, session: &Session<'_>, estimator: &Estimator) {
         if let Face::Screen(screen) = &self.face
             && self.drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME)
         {
             self.drawn = Some(Instant::now());
             let frame = screen.frame(session.view().as_ref(), estimator, screen::size());
-            self.printer.print(frame)?;
+            self.printer.print(frame);
         }
-        Ok(())
     }
 
     fn end(mut self, at_s: f64, worst: &Verdict, totals: &Totals) -> Result<(), Failure> {
@@ -370,7 +371,8 @@ impl Display {
             lines::words(at_s, &format!("{worst} at worst{why}; {}", totals.words()))
         };
         self.leave();
-        self.printer.print(last)
+        self.printer.print(last);
+        Ok(())
     }
 
     /// The screen goes before the last words, which are to stay.
@@ -378,8 +380,7 @@ impl Display {
         if let Face::Screen(_) = self.face {
             // Frames that wait go first.
             std::thread::sleep(FRAME);
-            // Nothing is left to tell a user whose terminal is gone.
-            let _ = self.printer.print(screen::LEAVE.to_owned());
+            self.printer.print(screen::LEAVE.to_owned());
             self.face = Face::Words(lines::Words::default());
         }
     }

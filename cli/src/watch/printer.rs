@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::failure::Failure;
+use crate::output;
 
 /// How long the end waits for the last words to be read.
 const LAST_WORDS: Duration = Duration::from_secs(1);
@@ -30,25 +30,28 @@ impl Printer {
         }
     }
 
-    /// Prints a piece as soon as there is somebody to read it; it is dropped where too many wait for that.
-    ///
-    /// # Errors
-    ///
-    /// Where standard output is closed or cannot be written.
-    pub(crate) fn print(&mut self, piece: String) -> Result<(), Failure> {
+    /// Prints a piece as soon as there is somebody to read it; it is dropped where too many wait for that, and where
+    /// standard output cannot be written any more, which is said once.
+    pub(crate) fn print(&mut self, piece: String) {
         let sent = self.pieces.as_ref().map(|pieces| pieces.try_send(piece));
         match sent {
             Some(Err(TrySendError::Full(_))) => self.dropped += 1,
             Some(Err(TrySendError::Disconnected(_))) => {
+                self.pieces = None;
                 let ended = self.thread.take().map(JoinHandle::join);
-                if let Some(Ok(Err(error))) = ended {
-                    return Err(error.into());
+                if let Some(Ok(Err(error))) = ended
+                    && error.kind() != io::ErrorKind::BrokenPipe
+                {
+                    output::say(&format!("standard output cannot be written: {error}"));
                 }
-                return Err(io::Error::from(io::ErrorKind::BrokenPipe).into());
             }
             Some(Ok(())) | None => {}
         }
-        Ok(())
+    }
+
+    /// Whether nothing can be printed any more.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
     /// How many pieces nobody read in time.

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use flagred::{estimator::Estimator, verdict::Level};
-use fuzzy::drawing::bar;
+use fuzzy::drawing::{bar, visible};
 
 use super::{
     lines,
@@ -33,7 +33,7 @@ pub(crate) struct Screen {
 impl Screen {
     pub(crate) fn new(title: String) -> Screen {
         Screen {
-            title,
+            title: visible(&title).into_owned(),
             latest: VecDeque::new(),
         }
     }
@@ -50,7 +50,8 @@ impl Screen {
             return;
         }
         let text = lines::describe(event, session, estimator);
-        self.latest.push_back(format!("{at_s:8.1} s  {text}"));
+        self.latest
+            .push_back(format!("{at_s:8.1} s  {}", visible(&text)));
         while self.latest.len() > LATEST {
             self.latest.pop_front();
         }
@@ -139,7 +140,7 @@ fn state(view: &View<'_>, estimator: &Estimator) -> String {
     let mut text = format!(
         "vehicle {}: {}; {activity}; {:.0} % of packets lost\n\n",
         view.system,
-        lines::name(view.vehicle),
+        visible(&lines::name(view.vehicle)),
         100.0 * view.lost_share
     );
     let Some(setup) = view.setup else {
@@ -172,7 +173,7 @@ fn state(view: &View<'_>, estimator: &Estimator) -> String {
                 Some(unknown) => unknown.explain(estimator.profile()),
                 None => "no motor command yet".to_owned(),
             };
-            text += &format!("risk      unknown: {why}\n\n\n");
+            text += &format!("risk      unknown: {}\n\n\n", visible(&why));
         }
     }
     let number = |value: Option<f64>| value.map_or("unknown".to_owned(), |v| format!("{v:.2}"));
@@ -190,7 +191,7 @@ fn state(view: &View<'_>, estimator: &Estimator) -> String {
         };
     }
     if !setup.assumed.is_empty() {
-        text += &format!("\nassumed: {}\n", setup.assumed.join("; "));
+        text += &format!("\nassumed: {}\n", visible(&setup.assumed.join("; ")));
     }
     text
 }

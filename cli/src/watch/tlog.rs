@@ -2,49 +2,74 @@
 
 use std::{
     fs::File,
-    io::{BufWriter, Write},
+    io::{self, BufWriter, Write},
     path::Path,
     time::{SystemTime, UNIX_EPOCH},
 };
 
-use crate::failure::Failure;
+use crate::{failure::Failure, output};
 
 /// A telemetry log that is being written: before each packet 8 bytes with the time in microseconds since 1970, the
 /// most significant first.
 pub(crate) struct Recording {
     name: String,
-    file: BufWriter<File>,
+    /// `None` once it could not be written.
+    file: Option<BufWriter<File>>,
+    /// The bytes added, and those of them that are surely in the file. Both end with a packet.
+    added: u64,
+    written: u64,
 }
 
 impl Recording {
     /// Begins one; a file of that name is not overwritten.
     pub(crate) fn create(path: &Path) -> Result<Recording, Failure> {
-        let name = path.display().to_string();
-        let file = File::create_new(path).map_err(|error| {
-            Failure::unreadable(format!("`{name}` cannot be recorded to: {error}"))
-        })?;
         Ok(Recording {
-            name,
-            file: BufWriter::new(file),
+            name: path.display().to_string(),
+            file: Some(BufWriter::new(output::new_file(path)?)),
+            added: 0,
+            written: 0,
         })
     }
 
     /// Adds a packet that arrived just now.
-    pub(crate) fn add(&mut self, packet: &[u8]) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    ///
+    /// What to say where it cannot be written: once, the recording ends there with its last whole packet.
+    pub(crate) fn add(&mut self, packet: &[u8]) -> Result<(), String> {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let t_us = since_1970.map_or(0, |time| time.as_micros() as u64);
-        let written = self.file.write_all(&t_us.to_be_bytes());
-        written
-            .and_then(|()| self.file.write_all(packet))
-            .map_err(|error| self.failed(&error))
+        let result = self.file.as_mut().map_or(Ok(()), |file| {
+            file.write_all(&t_us.to_be_bytes())?;
+            file.write_all(packet)
+        });
+        self.added += 8 + packet.len() as u64;
+        result.map_err(|error| self.end(&error))
     }
 
     /// Brings what was added to the disk: a watch may end at any moment.
-    pub(crate) fn flush(&mut self) -> Result<(), Failure> {
-        self.file.flush().map_err(|error| self.failed(&error))
+    ///
+    /// # Errors
+    ///
+    /// As [`Recording::add`].
+    pub(crate) fn flush(&mut self) -> Result<(), String> {
+        let result = self.file.as_mut().map_or(Ok(()), Write::flush);
+        result.map_err(|error| self.end(&error))?;
+        self.written = self.added;
+        Ok(())
     }
 
-    fn failed(&self, error: &std::io::Error) -> Failure {
-        Failure::unreadable(format!("`{}` cannot be recorded to: {error}", self.name))
+    fn end(&mut self, error: &io::Error) -> String {
+        let told = format!("`{}` cannot be recorded to: {error}", self.name);
+        // What the buffer holds is given up.
+        let file = self.file.take().map(|file| file.into_parts().0);
+        let is_whole = file.is_some_and(|file| file.set_len(self.written).is_ok());
+        match is_whole {
+            true => format!(
+                "{told}; it ends after {} bytes, the watch goes on",
+                self.written
+            ),
+            false => format!("{told}; it ends inside a packet, the watch goes on"),
+        }
     }
 }

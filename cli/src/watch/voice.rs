@@ -13,6 +13,8 @@ use flightlog::mavlink::{
     },
 };
 
+use fuzzy::drawing::visible;
+
 use crate::assessment::finding::limit;
 
 /// The names of the values that are sent.
@@ -77,7 +79,10 @@ pub(crate) fn value(t_s: f64, name: &str, value: f64) -> MavMessage {
 /// A text that ground stations show and read aloud.
 pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     let mut bytes = [0; TEXT];
-    for (byte, letter) in bytes.iter_mut().zip(text.bytes()) {
+    let text = visible(text);
+    let ends = text.char_indices().map(|(start, c)| start + c.len_utf8());
+    let end = ends.take_while(|end| *end <= TEXT).last().unwrap_or(0);
+    for (byte, letter) in bytes.iter_mut().zip(text.bytes().take(end)) {
         *byte = letter;
     }
     MavMessage::STATUSTEXT(STATUSTEXT_DATA {
@@ -134,6 +139,7 @@ fn cause(cause: Option<&Cause>, room: usize) -> String {
     let Some(Cause { input, term, .. }) = cause else {
         return String::new();
     };
+    let (input, term) = (visible(input), visible(term));
     let told = [format!(", {input} {term}"), format!(", {input}")];
     let mut fits = told.into_iter().filter(|text| text.len() <= room);
     fits.next().unwrap_or_default()
@@ -143,6 +149,20 @@ fn cause(cause: Option<&Cause>, room: usize) -> String {
 mod tests {
     use super::*;
     use flightlog::mavlink::{Next, Sender, Version, next_packet};
+
+    /// Names of rule sets stand in it.
+    #[test]
+    fn a_text_does_nothing_on_a_terminal_and_ends_with_a_whole_character() {
+        let MavMessage::STATUSTEXT(sent) = status(Level::Warn, "a\u{1b}[2J\u{202e}") else {
+            panic!("another message");
+        };
+        assert_eq!(sent.text.to_str().unwrap(), "a\\u{1b}[2J\\u{202e}");
+        let long = "x".repeat(TEXT - 1) + "é";
+        let MavMessage::STATUSTEXT(sent) = status(Level::Warn, &long) else {
+            panic!("another message");
+        };
+        assert_eq!(sent.text.to_str().unwrap(), "x".repeat(TEXT - 1));
+    }
 
     #[test]
     fn a_text_of_any_length_fits() {

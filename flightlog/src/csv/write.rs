@@ -11,7 +11,8 @@ impl Flight {
     ///
     /// Commands in us are written as they are (`pwm1`..), all others as fractions of the
     /// full range (`motor1`..). What is not known is an empty cell. Numbers are written so
-    /// that reading them gives the same number again.
+    /// that reading them gives the same number again. A text that a spreadsheet would take for
+    /// a formula has an apostrophe in front.
     ///
     /// # Errors
     ///
@@ -83,8 +84,7 @@ impl Flight {
         let mut known = Vec::new();
         let mut line = |out: &mut dyn Write, key: &str, value: &str| {
             known.push(key.to_owned());
-            // A line break would end the comment.
-            writeln!(out, "# {key}: {}", value.replace(['\r', '\n'], " "))
+            writeln!(out, "# {}: {}", comment(key), comment(value))
         };
         let vehicle = &self.vehicle;
         if let Some(frame) = &vehicle.frame {
@@ -128,7 +128,7 @@ impl Flight {
         }
         for (key, value) in &self.header {
             if !known.contains(key) {
-                writeln!(out, "# {key}: {value}")?;
+                writeln!(out, "# {}: {}", comment(key), comment(value))?;
             }
         }
         Ok(())
@@ -142,8 +142,28 @@ fn cell(out: &mut dyn Write, value: Option<f64>) -> io::Result<()> {
     }
 }
 
+/// What makes a spreadsheet read a cell as a formula.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
+/// A text in a comment. A line break would end it, and a spreadsheet splits it into cells as it does rows.
+fn comment(text: &str) -> String {
+    let mut written = String::with_capacity(text.len());
+    for (i, cell) in text.split_inclusive([',', ';']).enumerate() {
+        let number = cell.trim_end_matches([',', ';']).trim().parse::<f64>();
+        if i > 0 && cell.starts_with(FORMULA) && number.is_err() {
+            written.push('\'');
+        }
+        written += cell;
+    }
+    written.replace(['\r', '\n'], " ")
+}
+
 /// A name as a cell: in quotes where it holds what would end the cell.
 fn quoted(name: &str) -> String {
+    let name = match name.starts_with(FORMULA) {
+        true => &format!("'{name}"),
+        false => name,
+    };
     match name.contains([',', '"', '\r', '\n']) {
         true => format!("\"{}\"", name.replace('"', "\"\"")),
         false => name.into(),

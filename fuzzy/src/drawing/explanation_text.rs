@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::{
     explanation::{answer, digits},
     scale::Scale,
-    text::{bar, block},
+    text::{bar, block, visible},
 };
 use crate::{
     engine::{Degree, ExplainedInput, ExplainedOutput, Explanation},
@@ -22,7 +22,7 @@ const ROWS: usize = 6;
 ///
 /// `model` is the rule set that was explained.
 pub fn explanation_text(model: &Model, explanation: &Explanation) -> String {
-    let mut text = format!("{}\n", model.name);
+    let mut text = format!("{}\n", visible(&model.name));
     for (input, variable) in explanation.inputs.iter().zip(&model.inputs) {
         add_input(&mut text, variable, input);
     }
@@ -34,9 +34,17 @@ pub fn explanation_text(model: &Model, explanation: &Explanation) -> String {
 
 // Writing to a String cannot fail.
 fn add_input(text: &mut String, variable: &Variable, input: &ExplainedInput) {
-    let unit = variable.unit.iter().map(|unit| format!(" {unit}"));
+    let unit = variable
+        .unit
+        .iter()
+        .map(|unit| format!(" {}", visible(unit)));
     let unit: String = unit.collect();
-    let _ = write!(text, "\n{} = {}{unit}", input.name, digits(input.given));
+    let _ = write!(
+        text,
+        "\n{} = {}{unit}",
+        visible(&input.name),
+        digits(input.given)
+    );
     if input.given != input.value {
         let _ = write!(text, ", outside the range, used as {}", digits(input.value));
     }
@@ -46,7 +54,9 @@ fn add_input(text: &mut String, variable: &Variable, input: &ExplainedInput) {
 
 /// A line for each term: its degree as a number and as a bar.
 fn add_degrees(text: &mut String, terms: &[Degree]) {
-    let names = terms.iter().map(|term| term.term.chars().count());
+    let terms = terms.iter().map(|term| (visible(&term.term), term.degree));
+    let terms: Vec<_> = terms.collect();
+    let names = terms.iter().map(|(term, _)| term.chars().count());
     let width = names.max().unwrap_or(0).max(4);
     if !terms.is_empty() {
         let _ = writeln!(
@@ -57,13 +67,13 @@ fn add_degrees(text: &mut String, terms: &[Degree]) {
             scale = BAR - 1
         );
     }
-    for Degree { term, degree } in terms {
-        let _ = writeln!(text, "  {term:width$} {degree:>8.5}  {}", bar(*degree, BAR));
+    for (term, degree) in terms {
+        let _ = writeln!(text, "  {term:width$} {degree:>8.5}  {}", bar(degree, BAR));
     }
 }
 
 fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, all: &Explanation) {
-    let _ = writeln!(text, "\n{}", answer(output, variable));
+    let _ = writeln!(text, "\n{}", visible(&answer(output, variable)));
     let _ = writeln!(
         text,
         "  coverage {:.5}, the largest firing strength",
@@ -75,7 +85,7 @@ fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, 
     }
     for share in &output.rules {
         let fired = all.rules.iter().find(|rule| rule.rule == share.rule);
-        let rule = fired.map_or("", |rule| rule.text.as_str());
+        let rule = fired.map_or("".into(), |rule| visible(&rule.text));
         let (number, percent) = (share.rule + 1, 100.0 * share.share);
         let _ = writeln!(
             text,
@@ -84,7 +94,11 @@ fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, 
         );
     }
     if !output.set.is_empty() && !output.rules.is_empty() {
-        let _ = writeln!(text, "\n  aggregated set: degree over {}", output.name);
+        let _ = writeln!(
+            text,
+            "\n  aggregated set: degree over {}",
+            visible(&output.name)
+        );
         add_set(text, output, Scale::new(variable.low, variable.high));
     }
 }

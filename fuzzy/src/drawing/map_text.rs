@@ -6,7 +6,7 @@ use super::{
     colour::{Colour, distinct, viridis},
     scale::thinned,
     slice::{Cell, Slice},
-    text::{number, short},
+    text::{number, short, visible},
 };
 use crate::model::Model;
 
@@ -41,9 +41,10 @@ pub fn map_text(slice: &Slice, paint: impl Fn(char, Option<Colour>) -> String) -
     let (low, high) = (short(slice.range.low), short(slice.range.high));
     let unit = slice.unit.as_ref();
     let unit = unit.map_or_else(String::new, |unit| format!(" {unit}"));
+    text.push('\n');
     line(
         &mut text,
-        format_args!("\n0 to 9: tenths of {low} to {high}{unit}"),
+        format_args!("0 to 9: tenths of {low} to {high}{unit}"),
     );
     if slice.any_filled() {
         let method = slice.filling_text();
@@ -168,12 +169,14 @@ pub fn values_text(slice: &Slice) -> String {
 fn heading(slice: &Slice, more: &str) -> String {
     let held = slice.held_text();
     let between = if held.is_empty() { "" } else { " " };
-    format!("{}{more}{between}{held}\n", slice.title())
+    let heading = format!("{}{more}{between}{held}", slice.title());
+    visible(&heading).into_owned() + "\n"
 }
 
-/// Writing to a String cannot fail.
+/// A line that may hold names. Writing to a String cannot fail.
 fn line(text: &mut String, arguments: std::fmt::Arguments<'_>) {
-    let _ = writeln!(text, "{arguments}");
+    let line = arguments.to_string();
+    let _ = writeln!(text, "{}", visible(&line));
 }
 
 /// A character for the i-th rule; after 36 all the same.
@@ -197,10 +200,7 @@ fn picture(text: &mut String, slice: &Slice, mut draw: impl FnMut(Cell) -> Strin
         let label = value.filter(|_| is_marked).map(|y| short(*y));
         let cells = columns.iter().map(|&column| draw(slice.cell(column, row)));
         let cells: String = cells.collect();
-        line(
-            text,
-            format_args!("{:>8} |{cells}", label.unwrap_or_default()),
-        );
+        let _ = writeln!(text, "{:>8} |{cells}", label.unwrap_or_default());
     }
     let scale = slice.x.scale();
     let (low, high) = (short(scale.low), short(scale.high));

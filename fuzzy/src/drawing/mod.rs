@@ -11,7 +11,7 @@
 //! | lines over a number ([`Plot`]) | [`plots_svg`] | |
 //! | curves over time ([`Panel`]) | [`Panel::svg`] | [`over_time_text`] |
 //!
-//! Names and texts in a picture are escaped: no name can add markup.
+//! Names and texts in a picture are escaped: no name can add markup, or act on a terminal ([`visible`]).
 //!
 //! # Example: the terms of a variable, with the degree of each at 8
 //! ```
@@ -53,4 +53,4 @@ pub use scale::Scale;
 pub use sheet::{Anchor, Frame, Sheet};
 pub use slice::{Axis, Cell, Slice};
 pub use surface::surface_svg;
-pub use text::{Escaped, bar, number, short};
+pub use text::{Escaped, bar, number, short, visible, visible_lines};

@@ -1,25 +1,65 @@
-//! Texts in pictures: escaped for markup, short numbers, bars of characters.
+//! Texts in pictures: made visible, escaped for markup, short numbers, bars of characters.
 
-use std::fmt;
+use std::{borrow::Cow, fmt};
 
-/// A text, escaped for the content and the attributes of HTML and SVG.
+/// Whether a character could act on a terminal or turn the direction of writing instead of being seen: control
+/// characters, line and paragraph separators, the bidirectional controls (Unicode, UAX 9) and what XML does not allow.
+fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c,
+            '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+            | '\u{fffe}' | '\u{ffff}')
+}
+
+/// A text from outside in one line: every character that would act instead of being seen is written as its number.
 ///
-/// A character that XML does not allow becomes U+FFFD, so that no text can make a broken file.
+/// ```
+/// assert_eq!(fuzzy::drawing::visible("warm\u{1b}[2J"), "warm\\u{1b}[2J");
+/// assert_eq!(fuzzy::drawing::visible("größer als 5 °C"), "größer als 5 °C");
+/// ```
+pub fn visible(text: &str) -> Cow<'_, str> {
+    replaced(text, |_, _| false)
+}
+
+/// The same for a text of several lines: ends of lines and tabs stay.
+pub fn visible_lines(text: &str) -> Cow<'_, str> {
+    replaced(text, |c, rest| match c {
+        '\n' | '\t' => true,
+        '\r' => rest.starts_with('\n'),
+        _ => false,
+    })
+}
+
+/// Writes the hidden characters as numbers; `stays` is asked about each, with the text behind it.
+fn replaced(text: &str, stays: impl Fn(char, &str) -> bool) -> Cow<'_, str> {
+    if !text.contains(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len() + 16);
+    let mut rest = text.chars();
+    while let Some(c) = rest.next() {
+        if is_hidden(c) && !stays(c, rest.as_str()) {
+            shown.extend(c.escape_unicode());
+        } else {
+            shown.push(c);
+        }
+    }
+    Cow::Owned(shown)
+}
+
+/// A text, escaped for the content and the attributes of HTML and SVG, and made visible ([`visible_lines`]), so that no
+/// text can make a broken file.
 pub struct Escaped<'a>(pub &'a str);
 
 impl fmt::Display for Escaped<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for character in self.0.chars() {
+        for character in visible_lines(self.0).chars() {
             match character {
                 '&' => f.write_str("&amp;")?,
                 '<' => f.write_str("&lt;")?,
                 '>' => f.write_str("&gt;")?,
                 '"' => f.write_str("&quot;")?,
                 '\'' => f.write_str("&#39;")?,
-                '\n' | '\t' => write!(f, "{character}")?,
-                c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {
-                    f.write_str("\u{fffd}")?;
-                }
                 c => write!(f, "{c}")?,
             }
         }
@@ -100,8 +140,25 @@ mod tests {
         let text = Escaped("<script>alert(\"1\")</script> & 'x'\0\u{7}").to_string();
         assert_eq!(
             text,
-            "&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt; &amp; &#39;x&#39;\u{fffd}\u{fffd}"
+            "&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt; &amp; &#39;x&#39;\\u{0}\\u{7}"
         );
+    }
+
+    #[test]
+    fn what_would_act_is_seen() {
+        for (text, shown) in [
+            ("", ""),
+            ("Größe 5 µs, 飛行", "Größe 5 µs, 飛行"),
+            ("a\u{1b}]0;title\u{7}", "a\\u{1b}]0;title\\u{7}"),
+            ("\u{9b}31m\u{7f}", "\\u{9b}31m\\u{7f}"),
+            ("nib\u{202e}gpj.\u{2066}", "nib\\u{202e}gpj.\\u{2066}"),
+            ("\u{200f}\u{61c}\u{2028}", "\\u{200f}\\u{61c}\\u{2028}"),
+            ("one\ntwo\r\n\t", "one\\u{a}two\\u{d}\\u{a}\\u{9}"),
+        ] {
+            assert_eq!(visible(text), shown);
+        }
+        let lines = "one\ntwo\r\n\tthree\rfour\u{1b}";
+        assert_eq!(visible_lines(lines), "one\ntwo\r\n\tthree\\u{d}four\\u{1b}");
     }
 
     #[test]

@@ -1,0 +1,390 @@
+//! Files that are written whole or not at all, and never over what the same call reads or writes.
+
+use std::{
+    fs::{self, File, Metadata, OpenOptions},
+    io::{self, BufWriter, ErrorKind, Write},
+    path::{Path, PathBuf},
+};
+
+use super::{Stdout, is_standard};
+use crate::failure::Failure;
+
+/// The most links from one to the next that are followed, as Linux does.
+const LINKS: usize = 40;
+
+/// Whether a file that exists already is replaced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Replace {
+    /// It was made of other files, and can be made again.
+    Yes,
+    /// It may be written by hand: only with `--force`.
+    No,
+}
+
+impl Replace {
+    /// As `--force` says.
+    pub(crate) fn forced(force: bool) -> Replace {
+        if force { Replace::Yes } else { Replace::No }
+    }
+}
+
+/// Where an output goes.
+pub(crate) struct Output {
+    named: PathBuf,
+    place: Place,
+}
+
+enum Place {
+    Stdout,
+    /// A device, a FIFO or a socket: written to, never replaced.
+    Special,
+    /// Where the file is or will be, behind all links.
+    File(PathBuf, Replace),
+}
+
+/// What tells one file from another, by whatever path.
+#[derive(Debug, PartialEq, Eq)]
+enum Identity {
+    /// Device and inode; the path in full where there are none.
+    #[cfg(unix)]
+    Node(u64, u64),
+    /// A file that does not exist yet, behind all links.
+    Path(PathBuf),
+}
+
+/// The files that a call reads and writes.
+#[derive(Default)]
+pub(crate) struct Files {
+    known: Vec<Known>,
+    /// Whether an output is `-`.
+    stdout_is_taken: bool,
+}
+
+struct Known {
+    identity: Identity,
+    /// As the user knows it.
+    shown: String,
+    role: &'static str,
+}
+
+impl Files {
+    /// Begins with what is read; `-` is standard input.
+    ///
+    /// # Errors
+    ///
+    /// Where standard output is one of them.
+    pub(crate) fn reading<P: AsRef<Path>>(
+        inputs: impl IntoIterator<Item = P>,
+    ) -> Result<Files, Failure> {
+        let mut files = Files::default();
+        for input in inputs {
+            let input = input.as_ref();
+            // What is no regular file, or cannot be read, is not replaced either.
+            let identity = match is_standard(input) {
+                true => standard(Stream::Input),
+                false => fs::metadata(input)
+                    .ok()
+                    .and_then(|metadata| identity(input, &metadata)),
+            };
+            files.known.extend(identity.map(|identity| Known {
+                identity,
+                shown: format!("`{}`", input.display()),
+                role: "read",
+            }));
+        }
+        if let Some(stdout) = standard(Stream::Output) {
+            files.claim(stdout, "standard output".to_owned())?;
+        }
+        Ok(files)
+    }
+
+    /// An output that is to be written, `-` is standard output.
+    ///
+    /// # Errors
+    ///
+    /// Where it is an input or another output, exists and must not be replaced, or cannot be written.
+    pub(crate) fn output(&mut self, named: &Path, replace: Replace) -> Result<Output, Failure> {
+        let shown = format!("`{}`", named.display());
+        let output = |place| Output {
+            named: named.to_owned(),
+            place,
+        };
+        if is_standard(named) {
+            if std::mem::replace(&mut self.stdout_is_taken, true) {
+                return Err(Failure::usage("two outputs are `-`, standard output")
+                    .help("name a file for one of them"));
+            }
+            // Whether that is one of the files was seen in the beginning.
+            return Ok(output(Place::Stdout));
+        }
+        let failed = |error: &io::Error| cannot_write(named, error);
+        let found = match fs::metadata(named) {
+            Ok(found) => Some(found),
+            Err(error) if error.kind() == ErrorKind::NotFound => None,
+            Err(error) => return Err(failed(&error)),
+        };
+        let target = target(named).map_err(|error| failed(&error))?;
+        let same = match &found {
+            None => Some(Identity::Path(target.clone())),
+            Some(found) => identity(&target, found),
+        };
+        if let Some(same) = same {
+            self.claim(same, shown.clone())?;
+        }
+        let Some(found) = found else {
+            return Ok(output(Place::File(target, replace)));
+        };
+        if found.is_dir() {
+            return Err(Failure::usage(format!("{shown} is a folder")).help("name a file in it"));
+        }
+        if !found.is_file() {
+            return Ok(output(Place::Special));
+        }
+        if replace == Replace::No {
+            return Err(exists(named));
+        }
+        // A file that may not be written is not replaced either.
+        let opened = OpenOptions::new().write(true).open(&target);
+        opened.map_err(|error| failed(&error))?;
+        Ok(output(Place::File(target, replace)))
+    }
+
+    /// An output that may be asked for; what was there before is replaced.
+    pub(crate) fn optional(&mut self, named: Option<&PathBuf>) -> Result<Option<Output>, Failure> {
+        let output = named.map(|named| self.output(named, Replace::Yes));
+        output.transpose()
+    }
+
+    fn claim(&mut self, identity: Identity, shown: String) -> Result<(), Failure> {
+        if let Some(other) = self.known.iter().find(|known| known.identity == identity) {
+            let Known {
+                shown: other, role, ..
+            } = other;
+            let message = match shown == *other {
+                true => format!("{shown} is to be written, and is {role} as well"),
+                false => format!(
+                    "{shown} is to be written, and is the same file as {other}, which is {role}"
+                ),
+            };
+            return Err(Failure::usage(message).help("name another file to write"));
+        }
+        self.known.push(Known {
+            identity,
+            shown,
+            role: "written",
+        });
+        Ok(())
+    }
+}
+
+impl Output {
+    pub(crate) fn is_stdout(&self) -> bool {
+        matches!(self.place, Place::Stdout)
+    }
+
+    /// Writes a text.
+    pub(crate) fn write(&self, text: &str) -> Result<(), Failure> {
+        self.write_with(|out| out.write_all(text.as_bytes()))
+    }
+
+    /// Writes what `fill` writes. A file is there whole or not at all: beside its place first, on the disk, then renamed.
+    pub(crate) fn write_with(
+        &self,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let failed = |error: io::Error| cannot_write(&self.named, &error);
+        match &self.place {
+            Place::Stdout => {
+                let mut out = Stdout::data();
+                fill(&mut out)?;
+                out.finish()
+            }
+            Place::Special => {
+                let written = open_special(&self.named).and_then(|special| {
+                    let mut out = BufWriter::new(special);
+                    fill(&mut out)?;
+                    out.flush()
+                });
+                match written {
+                    // Its reader has seen enough.
+                    Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+                    written => written.map_err(failed),
+                }
+            }
+            Place::File(target, replace) => {
+                write_file(target, *replace, fill).map_err(|error| match error.kind() {
+                    ErrorKind::AlreadyExists => exists(&self.named),
+                    _ => failed(error),
+                })
+            }
+        }
+    }
+}
+
+/// Writes several texts: files, then devices, then standard output, which may block. One that cannot be written stops no
+/// other.
+///
+/// # Errors
+///
+/// The first failure.
+pub(crate) fn write_all(mut texts: Vec<(&Output, String)>) -> Result<(), Failure> {
+    texts.sort_by_key(|(output, _)| match output.place {
+        Place::File(..) => 0,
+        Place::Special => 1,
+        Place::Stdout => 2,
+    });
+    let mut failed = None;
+    for (output, text) in texts {
+        let written = output.write(&text);
+        failed = failed.or(written.err());
+    }
+    failed.map_or(Ok(()), Err)
+}
+
+/// A new file that is written as things happen. Where it exists already it is left alone; a device is written to.
+pub(crate) fn new_file(named: &Path) -> Result<File, Failure> {
+    let special = fs::metadata(named).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    let opened = match special {
+        true => OpenOptions::new().write(true).open(named),
+        false => File::create_new(named),
+    };
+    opened.map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => {
+            Failure::usage(format!("`{}` exists already", named.display())).help("name a new file")
+        }
+        _ => cannot_write(named, &error),
+    })
+}
+
+fn write_file(
+    target: &Path,
+    replace: Replace,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let folder = target.parent().unwrap_or(Path::new("/"));
+    let mut draft = tempfile::Builder::new();
+    draft.prefix(".flagred-").suffix(".part");
+    // As any new file: less what the user masks.
+    #[cfg(unix)]
+    draft.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let draft = draft.tempfile_in(folder)?;
+    let mut out = BufWriter::new(draft.as_file());
+    fill(&mut out)?;
+    out.flush()?;
+    drop(out);
+    if let Ok(old) = fs::metadata(target) {
+        keep(draft.as_file(), &old)?;
+    }
+    draft.as_file().sync_all()?;
+    match replace {
+        Replace::Yes => draft.persist(target)?,
+        Replace::No => draft.persist_noclobber(target)?,
+    };
+    Ok(())
+}
+
+/// Gives a file owner and mode of the one that it replaces.
+fn keep(draft: &File, old: &Metadata) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{MetadataExt, fchown};
+        let new = draft.metadata()?;
+        if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
+            match fchown(draft, Some(old.uid()), Some(old.gid())) {
+                // Only root may give files away; another user's file becomes one's own, as with any editor.
+                Err(error) if error.kind() == ErrorKind::PermissionDenied => {}
+                other => other?,
+            }
+        }
+    }
+    draft.set_permissions(old.permissions())
+}
+
+/// The place behind all links, also where nothing is there yet.
+fn target(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..LINKS {
+        if let Ok(full) = path.canonicalize() {
+            return Ok(full);
+        }
+        let folder = match path.parent() {
+            Some(folder) if folder != Path::new("") => folder.canonicalize()?,
+            _ => Path::new(".").canonicalize()?,
+        };
+        let Some(name) = path.file_name() else {
+            return Err(ErrorKind::NotFound.into());
+        };
+        let full = folder.join(name);
+        match full.read_link() {
+            Ok(link) => path = folder.join(link),
+            Err(_) => return Ok(full),
+        }
+    }
+    Err(io::Error::other("too many links"))
+}
+
+/// `None` for what is no regular file.
+#[cfg(unix)]
+fn identity(_: &Path, found: &Metadata) -> Option<Identity> {
+    use std::os::unix::fs::MetadataExt;
+    let node = || Identity::Node(found.dev(), found.ino());
+    found.is_file().then(node)
+}
+
+#[cfg(not(unix))]
+fn identity(path: &Path, found: &Metadata) -> Option<Identity> {
+    let full = path.canonicalize().ok().filter(|_| found.is_file());
+    full.map(Identity::Path)
+}
+
+enum Stream {
+    Input,
+    Output,
+}
+
+/// The file that a standard stream is redirected to.
+#[cfg(unix)]
+fn standard(stream: Stream) -> Option<Identity> {
+    use std::os::fd::AsFd;
+    let owned = match stream {
+        Stream::Input => io::stdin().as_fd().try_clone_to_owned(),
+        Stream::Output => io::stdout().as_fd().try_clone_to_owned(),
+    };
+    let found = File::from(owned.ok()?).metadata().ok()?;
+    identity(Path::new("-"), &found)
+}
+
+#[cfg(not(unix))]
+fn standard(_: Stream) -> Option<Identity> {
+    None
+}
+
+/// A device or a FIFO is opened, a socket connected to.
+fn open_special(path: &Path) -> io::Result<Box<dyn Write>> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::{fs::FileTypeExt, net::UnixStream};
+        if fs::metadata(path)?.file_type().is_socket() {
+            return Ok(Box::new(UnixStream::connect(path)?));
+        }
+    }
+    Ok(Box::new(OpenOptions::new().write(true).open(path)?))
+}
+
+fn exists(named: &Path) -> Failure {
+    Failure::usage(format!("`{}` exists already", named.display()))
+        .help("name another file, or replace this one with `--force`")
+}
+
+pub(super) fn cannot_write(named: &Path, error: &io::Error) -> Failure {
+    let failure = Failure::usage(format!("`{}` cannot be written: {error}", named.display()));
+    match error.kind() {
+        ErrorKind::NotFound | ErrorKind::PermissionDenied => {
+            failure.help("check that its folder exists and can be written to")
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            failure.help("make room on the disk, and run the command again")
+        }
+        _ => failure,
+    }
+}

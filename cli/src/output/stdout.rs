@@ -1,0 +1,125 @@
+//! Standard output, whose reader may go at any time.
+
+use std::io::{self, BufWriter, StderrLock, StdoutLock, Write};
+
+use anstream::{AutoStream, ColorChoice};
+use fuzzy::drawing::visible_lines;
+
+use crate::failure::Failure;
+
+/// Standard output. A reader who closes the pipe changes neither what a command does nor its exit code: what is written
+/// after that is dropped.
+pub(crate) struct Stdout(BufWriter<Pipe>);
+
+struct Pipe {
+    stream: Stream,
+    is_closed: bool,
+}
+
+enum Stream {
+    Out(AutoStream<StdoutLock<'static>>),
+    Err(AutoStream<StderrLock<'static>>),
+}
+
+impl Stdout {
+    /// For people: colours where it is a terminal that has them.
+    pub(crate) fn text() -> Stdout {
+        Stdout::new(Stream::Out(anstream::stdout().lock()))
+    }
+
+    /// For people, on standard error where standard output holds a document.
+    pub(crate) fn beside(documents: &[&super::Output]) -> Stdout {
+        if documents.iter().any(|output| output.is_stdout()) {
+            Stdout::new(Stream::Err(anstream::stderr().lock()))
+        } else {
+            Stdout::text()
+        }
+    }
+
+    /// For programs: every byte as it is.
+    pub(crate) fn data() -> Stdout {
+        let lock = io::stdout().lock();
+        Stdout::new(Stream::Out(AutoStream::new(lock, ColorChoice::AlwaysAnsi)))
+    }
+
+    fn new(stream: Stream) -> Stdout {
+        let is_closed = false;
+        Stdout(BufWriter::new(Pipe { stream, is_closed }))
+    }
+
+    /// Whether nobody reads any more.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.0.get_ref().is_closed
+    }
+
+    /// Writes what is left.
+    pub(crate) fn finish(mut self) -> Result<(), Failure> {
+        Ok(self.0.flush()?)
+    }
+}
+
+impl Write for Stdout {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl Pipe {
+    fn tell<T>(&mut self, result: io::Result<T>, dropped: T) -> io::Result<T> {
+        match result {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+                self.is_closed = true;
+                Ok(dropped)
+            }
+            other => other,
+        }
+    }
+}
+
+impl Write for Pipe {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.is_closed {
+            return Ok(bytes.len());
+        }
+        let written = match &mut self.stream {
+            Stream::Out(out) => out.write(bytes),
+            Stream::Err(err) => err.write(bytes),
+        };
+        self.tell(written, bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.is_closed {
+            return Ok(());
+        }
+        let flushed = match &mut self.stream {
+            Stream::Out(out) => out.flush(),
+            Stream::Err(err) => err.flush(),
+        };
+        self.tell(flushed, ())
+    }
+}
+
+/// Makes the hidden characters of all that goes through visible; ends of lines stay.
+pub(crate) struct Visible<W>(pub(crate) W);
+
+impl<W: Write> Write for Visible<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let is_plain = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n');
+        if bytes.iter().all(is_plain) {
+            return self.0.write(bytes);
+        }
+        // Formatted text comes in pieces of whole characters, where no buffer stands before this.
+        let text = String::from_utf8_lossy(bytes);
+        self.0.write_all(visible_lines(&text).as_bytes())?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}

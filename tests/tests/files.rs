@@ -1,0 +1,492 @@
+//! What becomes of the files that commands write, and of those that they must not.
+#![cfg(unix)]
+
+use std::{
+    fs,
+    io::Read,
+    os::unix::{
+        fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink},
+        net::UnixListener,
+    },
+    path::Path,
+    process::{Command, Output, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use flagred_tests::{
+    Folder, STEADY, flagred,
+    vehicle::flight,
+    watch::{Watch, assess},
+    wire::{Link, Speed},
+    writing::{RULES, Writing, commands, drafts, limited, wild_flight},
+};
+
+fn run(arguments: &[&str]) -> (Option<i32>, String) {
+    let output = flagred().args(arguments).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    (output.status.code(), told)
+}
+
+/// By its own name, a link, another spelling, another name of the same file.
+#[test]
+fn no_output_replaces_an_input() {
+    let folder = Folder::new();
+    let log = folder.file("log.csv", wild_flight(30));
+    let rules = folder.file("rules.svg", fs::read(RULES).unwrap());
+    let rows = folder.file("rows.csv", "margin,spread,risk\n0.1,0.1,50\n");
+    let table = folder.file(
+        "table.svg",
+        "att_rmse_deg,margin,spread\n1,0.3,0.05\n9,0.02,0.2\n",
+    );
+    let profile = fs::read_to_string(RULES.replace("flagred-paper", "profiles/flagred-paper"));
+    let profile = folder.file("profile.yaml", profile.unwrap());
+    // A log is known by its content, whatever it is called.
+    let page = folder.file("page.html", wild_flight(30));
+    symlink(&log, folder.at("link.csv")).unwrap();
+    fs::hard_link(&page, folder.at("other.html")).unwrap();
+    fs::create_dir(folder.at("sub")).unwrap();
+    let (link, other) = (folder.at("link.csv"), folder.at("other.html"));
+    let around = folder.at("sub/../rules.svg");
+    let values = ["margin=0.1", "spread=0.1"];
+    for (arguments, input) in [
+        (vec!["convert", &log, "-o", &log], &log),
+        (vec!["convert", &log, "-o", &link], &log),
+        (vec!["convert", &link, "-o", &log], &log),
+        (vec!["assess", &page, "--html", &page], &page),
+        (vec!["assess", STEADY, &page, "--html", &other], &page),
+        (vec!["map", &rules, "--svg", &rules], &rules),
+        (vec!["map", &rules, "--surface", "--svg", &around], &rules),
+        (
+            vec!["explain", &rules, values[0], values[1], "--svg", &rules],
+            &rules,
+        ),
+        (
+            vec!["learn", &rules, &rows, "-o", &rules, "--force"],
+            &rules,
+        ),
+        (vec!["learn", &rules, &rows, "-o", &rows, "--force"], &rows),
+        (vec!["evaluate", "--rows", &table, "--svg", &table], &table),
+        (vec!["export", "--c", &profile, "-o", &profile], &profile),
+        (
+            vec!["assess", &log, "--profile", &profile, "--html", &profile],
+            &profile,
+        ),
+    ] {
+        let before = fs::read(input).unwrap();
+        let (code, told) = run(&arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {told}");
+        assert!(
+            told.contains("as well")
+                || told.contains("which is read")
+                || told.contains("the report is HTML"),
+            "{arguments:?}: {told}"
+        );
+        assert!(fs::read(input).unwrap() == before, "{arguments:?}");
+    }
+    assert_eq!(drafts(folder.path()), [""; 0]);
+}
+
+/// `assess --html *.BIN` names the first log as the report.
+#[test]
+fn a_log_in_the_place_of_a_report_is_not_replaced() {
+    let folder = Folder::new();
+    let first = folder.file("first.BIN", fs::read(STEADY).unwrap());
+    for arguments in [
+        ["assess", "--html", &first, STEADY],
+        ["assess", "--svg", &first, STEADY],
+        ["convert", "-o", &first, STEADY],
+    ] {
+        let (code, told) = run(&arguments);
+        assert_eq!(code, Some(2), "{told}");
+        assert!(told.contains("; write `"), "{told}");
+        assert!(fs::read(&first).unwrap() == fs::read(STEADY).unwrap());
+    }
+}
+
+#[test]
+fn no_output_replaces_another() {
+    let folder = Folder::new();
+    let same = folder.at("same");
+    symlink("same", folder.at("link")).unwrap();
+    let link = folder.at("link");
+    for (html, svg) in [(&same, &same), (&same, &link), (&link, &same)] {
+        let (code, told) = run(&["assess", STEADY, "--html", html, "--svg", svg]);
+        assert_eq!(code, Some(2), "{told}");
+        assert!(
+            told.contains("which is written") || told.contains("is written as well"),
+            "{told}"
+        );
+        assert!(!Path::new(&same).exists());
+    }
+    let (code, told) = run(&["assess", STEADY, "--html", "-", "--svg", "-"]);
+    assert_eq!(code, Some(2));
+    assert!(told.contains("two outputs are `-`"), "{told}");
+}
+
+/// `flagred convert log.csv -o - >> log.csv` would never end.
+#[test]
+fn standard_output_is_no_input_and_no_other_output() {
+    let folder = Folder::new();
+    let log = folder.file("log.csv", wild_flight(30));
+    let html = folder.file("page.html", "");
+    let append = |file: &str, arguments: &[&str]| {
+        let out = fs::OpenOptions::new().append(true).open(file).unwrap();
+        let Output { status, stderr, .. } = flagred()
+            .args(arguments)
+            .stdout(out)
+            .stderr(Stdio::piped())
+            .output()
+            .unwrap();
+        (status.code(), String::from_utf8(stderr).unwrap())
+    };
+    let before = fs::read(&log).unwrap();
+    for (file, arguments) in [
+        (&log, vec!["convert", &log, "-o", "-"]),
+        (&log, vec!["inspect", &log]),
+        (&log, vec!["dataset", &log]),
+        (&html, vec!["assess", &log, "--html", &html]),
+    ] {
+        let (code, told) = append(file, &arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {told}");
+        assert!(told.contains("standard output"), "{told}");
+    }
+    assert!(fs::read(&log).unwrap() == before);
+}
+
+#[test]
+fn a_replaced_file_keeps_its_mode_and_links_keep_leading_to_it() {
+    let folder = Folder::new();
+    let log = folder.file("log.csv", wild_flight(30));
+    for writing in commands(&folder) {
+        for file in &writing.files {
+            let path = Path::new(file);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            let real = format!("{file}.real");
+            fs::write(&real, "old").unwrap();
+            fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
+            symlink(
+                path.file_name().unwrap().to_str().unwrap().to_owned() + ".real",
+                path,
+            )
+            .unwrap();
+        }
+        let code = writing.command().status().unwrap().code();
+        assert!(matches!(code, Some(0 | 1)), "{:?}", writing.arguments);
+        for file in &writing.files {
+            let link = fs::symlink_metadata(file).unwrap();
+            assert!(link.is_symlink(), "{file}");
+            let real = fs::metadata(format!("{file}.real")).unwrap();
+            assert_eq!(real.mode() & 0o777, 0o640, "{file}");
+            assert!(real.len() > 3, "{file}");
+        }
+    }
+    // A new file is as any other new file, also behind a link.
+    symlink("target.csv", folder.at("dangling.csv")).unwrap();
+    let (code, told) = run(&["convert", &log, "-o", &folder.at("dangling.csv")]);
+    assert_eq!(code, Some(0), "{told}");
+    let plain = fs::metadata(folder.file("plain", "")).unwrap();
+    let made = fs::symlink_metadata(folder.at("target.csv")).unwrap();
+    assert!(made.is_file() && made.mode() == plain.mode());
+}
+
+#[test]
+fn special_files_are_written_to_and_stay() {
+    let folder = Folder::new();
+    let fifo = folder.at("fifo");
+    assert!(
+        Command::new("mkfifo")
+            .arg(&fifo)
+            .status()
+            .unwrap()
+            .success()
+    );
+    let socket = folder.at("socket");
+    let listener = UnixListener::bind(&socket).unwrap();
+    let mut whole = None;
+    for place in [folder.at("plain"), fifo.clone(), socket.clone()] {
+        let from = (place.clone(), listener.try_clone().unwrap());
+        let reader = thread::spawn(move || {
+            let (place, listener) = from;
+            let mut read = Vec::new();
+            if place.ends_with("socket") {
+                listener.accept().unwrap().0.read_to_end(&mut read).unwrap();
+            } else if place.ends_with("fifo") {
+                fs::File::open(place)
+                    .unwrap()
+                    .read_to_end(&mut read)
+                    .unwrap();
+            }
+            read
+        });
+        let (code, told) = run(&["convert", STEADY, "-o", &place]);
+        assert_eq!(code, Some(0), "{place}: {told}");
+        let read = reader.join().unwrap();
+        let whole = whole.get_or_insert_with(|| fs::read(&place).unwrap());
+        assert!(read == *whole || place.ends_with("plain"), "{place}");
+    }
+    assert!(fs::symlink_metadata(fifo).unwrap().file_type().is_fifo());
+    assert!(
+        fs::symlink_metadata(socket)
+            .unwrap()
+            .file_type()
+            .is_socket()
+    );
+}
+
+/// Rule sets may be written by hand: `new` and `learn` replace none unless told to.
+#[test]
+fn what_may_be_written_by_hand_is_replaced_by_force_alone() {
+    let folder = Folder::new();
+    for writing in commands(&folder) {
+        if !writing
+            .arguments
+            .iter()
+            .any(|argument| argument == "--force")
+        {
+            continue;
+        }
+        let file = &writing.files[0];
+        fs::write(file, "by hand").unwrap();
+        let cautious: Vec<&str> = writing.arguments.iter().map(String::as_str).collect();
+        let cautious: Vec<&str> = cautious.into_iter().filter(|a| *a != "--force").collect();
+        let (code, told) = run(&cautious);
+        assert_eq!(code, Some(2), "{told}");
+        assert!(
+            told.contains("exists already") && told.contains("`--force`"),
+            "{told}"
+        );
+        assert_eq!(fs::read_to_string(file).unwrap(), "by hand");
+        assert_eq!(writing.command().status().unwrap().code(), Some(0));
+        assert!(fs::read_to_string(file).unwrap().contains("fuzzy: 1"));
+    }
+}
+
+/// The old file is whole, what is wrong is said, and no draft is left.
+#[test]
+fn a_full_disk_leaves_the_old_file_and_is_2() {
+    let folder = Folder::new();
+    for writing in commands(&folder) {
+        for file in &writing.files {
+            fs::create_dir_all(Path::new(file).parent().unwrap()).unwrap();
+            fs::write(file, "old").unwrap();
+        }
+        let output = writing.limited(1).output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{:?}: {told}",
+            writing.arguments
+        );
+        assert!(
+            told.contains("cannot be written") && told.contains("make room"),
+            "{told}"
+        );
+        assert!(
+            writing.contents().iter().all(|content| content == b"old"),
+            "{told}"
+        );
+        for file in &writing.files {
+            assert_eq!(drafts(Path::new(file).parent().unwrap()), [""; 0]);
+        }
+    }
+}
+
+/// A table that ends in the middle must not pass for a whole one.
+#[test]
+fn a_full_disk_behind_standard_output_is_2() {
+    for arguments in [
+        vec!["convert", STEADY, "-o", "-"],
+        vec!["assess", STEADY],
+        vec!["assess", "--json", STEADY],
+        vec!["assess", "--csv", STEADY],
+        vec!["inspect", STEADY],
+        vec!["check", RULES],
+        vec!["map", RULES],
+        vec!["map", RULES, "--csv"],
+        vec!["explain", RULES, "margin=0.1", "spread=0.1"],
+        vec!["dataset", STEADY],
+        vec!["export", "--c"],
+        vec!["new", "mine", "-o", "-"],
+        vec!["man"],
+        vec!["completions", "bash"],
+    ] {
+        let full = fs::OpenOptions::new()
+            .write(true)
+            .open("/dev/full")
+            .unwrap();
+        let output = flagred().args(&arguments).stdout(full).output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+        assert!(told.contains("cannot be written"), "{arguments:?}: {told}");
+    }
+}
+
+#[test]
+fn a_watch_whose_recording_fails_says_so_and_goes_on() {
+    let folder = Folder::new();
+    let file = folder.at("recorded.tlog");
+    let flight = flight(Path::new(STEADY));
+    let watch = Watch::of(limited(100), "udpin:127.0.0.1:0", &["--record", &file]);
+    let mut vehicle = watch.vehicle(&flight, Link::default());
+    vehicle.meet();
+    let air = flight.in_air.as_ref().unwrap().spans[0];
+    vehicle.fly(&flight, Speed::Fastest, air.start_s, air.end_s);
+    let said = watch.end();
+    assert!(said.has_note("recorded.tlog` cannot be recorded to"));
+    let failed = said.events.iter().position(|event| {
+        event["text"]
+            .as_str()
+            .is_some_and(|text| text.contains("cannot be recorded to"))
+    });
+    let risks = said.events[failed.unwrap()..].iter();
+    let risks = risks.filter(|event| event["event"] == "risk").count();
+    assert!(risks > 100, "{risks}");
+    assert_eq!(said.code, Some(0));
+    // It ends with a whole packet.
+    let read = assess(Path::new(&file));
+    assert_eq!(read["read"]["truncated"], false, "{}", read["read"]);
+    assert_eq!(read["read"]["skipped_bytes"], 0);
+    assert!((10_000..=51_200).contains(&fs::metadata(&file).unwrap().len()));
+}
+
+/// What can go wrong while a file is written.
+#[derive(Debug)]
+enum Fault {
+    Kill(Duration),
+    FullDisk(u64),
+    ClosedPipe,
+}
+
+struct Round {
+    writing: Writing,
+    /// What the files hold in the end, and how long that takes.
+    new: Vec<Vec<u8>>,
+    code: Option<i32>,
+    time: Duration,
+}
+
+fn rounds(folder: &Folder) -> Vec<Round> {
+    let commands = commands(folder).into_iter();
+    let round = |writing: Writing| {
+        let start = Instant::now();
+        let code = writing.command().status().unwrap().code();
+        let (new, time) = (writing.contents(), start.elapsed());
+        assert!(matches!(code, Some(0 | 1)), "{:?}", writing.arguments);
+        Round {
+            writing,
+            new,
+            code,
+            time,
+        }
+    };
+    commands.map(round).collect()
+}
+
+/// Whatever happens, each file is the old one or the new one, whole.
+fn old_or_new(seed: u64, count: usize) {
+    let folder = Folder::new();
+    let rounds = rounds(&folder);
+    let mut random = fastrand::Rng::with_seed(seed);
+    let (mut kept, mut replaced) = (0, 0);
+    for i in 0..count {
+        let round = &rounds[i % rounds.len()];
+        let Round { writing, new, .. } = round;
+        let old = format!("old {i}").into_bytes();
+        writing
+            .files
+            .iter()
+            .for_each(|file| fs::write(file, &old).unwrap());
+        let largest = new.iter().map(Vec::len).max().unwrap() as u64 / 512 + 2;
+        let fault = match random.u8(0..4) {
+            0 | 1 => Fault::Kill(round.time.mul_f64(random.f64() * 1.1)),
+            2 => Fault::FullDisk(random.u64(1..largest)),
+            _ => Fault::ClosedPipe,
+        };
+        let code = match fault {
+            Fault::Kill(after) => {
+                let mut child = writing.command().spawn().unwrap();
+                thread::sleep(after);
+                child.kill().unwrap();
+                child.wait().unwrap().code()
+            }
+            Fault::FullDisk(blocks) => writing.limited(blocks).output().unwrap().status.code(),
+            Fault::ClosedPipe => {
+                let mut child = writing.command().stdout(Stdio::piped()).spawn().unwrap();
+                drop(child.stdout.take());
+                child.wait().unwrap().code()
+            }
+        };
+        let what = format!("seed {seed}, round {i}, {fault:?}, {:?}", writing.arguments);
+        let now = writing.contents();
+        for (now, new) in now.iter().zip(new) {
+            assert!(*now == old || now == new, "{what}: {} bytes", now.len());
+            kept += usize::from(*now == old);
+            replaced += usize::from(now == new);
+        }
+        let is_new = now == *new;
+        match fault {
+            Fault::Kill(_) => {}
+            // Of the manual only some pages are looked at, and another one may not fit.
+            Fault::FullDisk(_) if is_new && writing.arguments[0] == "man" => {}
+            Fault::FullDisk(_) => {
+                assert_eq!(code, if is_new { round.code } else { Some(2) }, "{what}");
+            }
+            Fault::ClosedPipe => assert!(is_new && code == round.code, "{what}: {code:?}"),
+        }
+    }
+    assert!(
+        kept > count / 10 && replaced > count / 10,
+        "{kept} kept, {replaced} replaced"
+    );
+}
+
+#[test]
+fn whatever_fails_a_file_is_the_old_one_or_the_new_one() {
+    old_or_new(16, 40);
+}
+
+#[test]
+#[ignore = "takes half a minute"]
+fn whatever_fails_a_file_is_the_old_one_or_the_new_one_many_times() {
+    for seed in 0..4 {
+        old_or_new(seed, 250);
+    }
+}
+
+/// The same on a disk that is full in earnest.
+#[test]
+#[ignore = "mounts a small file system, which not every machine allows"]
+fn a_full_file_system_leaves_the_old_file() {
+    let folder = Folder::new();
+    let mounted = folder.path().join("out");
+    let script = "mount -t tmpfs -o size=64k none \"$OUT\" && printf old > \"$FILE\" \
+        && head -c 60k /dev/zero > \"$OUT/ballast\" && \"$@\"; echo \"$?\"; cat \"$FILE\"; ls -A \"$OUT\" | wc -l";
+    let mut tried = 0;
+    for writing in commands(&folder) {
+        let file = &writing.files[0];
+        if writing.arguments[0] == "man" || writing.arguments[0] == "new" {
+            // Pages go to a folder of their own, and a template fits in.
+            continue;
+        }
+        let output = Command::new("unshare")
+            .args(["-rm", "sh", "-c", script, "sh"])
+            .arg(flagred().get_program())
+            .args(&writing.arguments)
+            .env("OUT", &mounted)
+            .env("FILE", file)
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stdout).unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            said.ends_with("2\nold2\n"),
+            "{:?}: {said}{told}",
+            writing.arguments
+        );
+        assert!(told.contains("No space left on device"), "{told}");
+        tried += 1;
+    }
+    assert!(tried >= 8);
+}
