@@ -1,4 +1,4 @@
-// The profile `flagred-battery` with the rule set `../flagred-battery.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
+// The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
 // 8672 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 71800 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 

@@ -34,16 +34,14 @@ pub const PROFILES: [&str; 3] = [
 )]
 pub fn estimator(profile: &str) -> Estimator {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../rules"));
-    let file = match profile {
-        "flagred" => "profiles/multirotor.yaml",
-        "flagred-paper" => "profiles/flagred-paper.yaml",
-        _ => "profiles/flagred-battery.yaml",
+    let (profile, rules) = match profile {
+        "flagred" => ("profiles/multirotor.yaml", "flagred.yaml"),
+        "flagred-paper" => ("profiles/flagred-paper.yaml", "flagred-paper.yaml"),
+        _ => ("profiles/flagred-battery.yaml", "flagred-battery.yaml"),
     };
-    let text = std::fs::read_to_string(folder.join(file)).unwrap();
-    let profile = text.parse::<Profile>().unwrap();
-    let name = profile.rules.rsplit('/').next().unwrap_or_default();
-    let name = name.trim_end_matches(".yaml");
-    let rules = std::fs::read_to_string(folder.join(format!("{name}.yaml"))).unwrap();
+    let read = |file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
+    let profile = read(profile).parse::<Profile>().unwrap();
+    let rules = read(rules);
     let model = fuzzy::yaml::parse(&rules).unwrap().model;
     Estimator::new(&profile, &model).unwrap()
 }

@@ -68,7 +68,6 @@ pub(crate) fn program(
     let header = folder.at("profile.h");
     let status = flagred()
         .args(["export", "--c", profile, "--output"])
-        .env("FLAGRED_RULES", super::RULES)
         .arg(&header)
         .status();
     assert!(status.unwrap().success(), "{profile}");

@@ -96,16 +96,12 @@ fn along(estimator: &Estimator) -> usize {
     }
 }
 
-/// The folder that the profile of the battery takes its rule set from.
-const RULES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules");
-
 #[test]
 fn exported_files_are_what_export_writes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("exported");
     for (profile, (file, _)) in PROFILES.iter().zip(exported()) {
         let output = flagred()
             .args(["export", "--rust", profile])
-            .env("FLAGRED_RULES", RULES)
             .output()
             .unwrap();
         let text = String::from_utf8(output.stdout).unwrap();
