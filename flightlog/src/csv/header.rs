@@ -1,0 +1,210 @@
+//! The `# key: value` lines on top of a flight CSV.
+
+use std::io::BufRead as _;
+
+use super::{BOM, Layout, problem};
+use crate::error::io_error;
+use crate::flight::whole_range;
+use crate::geometry::{Declared, tables};
+use crate::input::Input;
+use crate::outputs::{Bounds, FRACTIONS, PULSES_US};
+use crate::{Flight, Range, ReadError, VehicleKind};
+
+/// An entry, and the line it stands in.
+pub(super) struct HeaderLine {
+    line: u64,
+    key: String,
+    value: String,
+}
+
+/// The `# key: value` lines on top, and how many lines were read.
+pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64), ReadError> {
+    let mut header = Vec::new();
+    let mut lines = 0;
+    loop {
+        let mut next = input.fill_buf().map_err(io_error)?;
+        if lines == 0 && next.starts_with(BOM) {
+            input.consume(BOM.len());
+            next = input.fill_buf().map_err(io_error)?;
+        }
+        if !matches!(next.first(), Some(b'#' | b'\r' | b'\n')) {
+            return Ok((header, lines));
+        }
+        let mut text = Vec::new();
+        input.read_until(b'\n', &mut text).map_err(io_error)?;
+        lines += 1;
+        let text = String::from_utf8_lossy(&text);
+        if let Some((key, value)) = text.trim().trim_start_matches('#').split_once(':') {
+            header.push(HeaderLine {
+                line: lines,
+                key: key.trim().into(),
+                value: value.trim().into(),
+            });
+        }
+    }
+}
+
+/// Gives the flight what the header says of it: limits, vehicle, geometry.
+pub(super) fn apply_header(
+    flight: &mut Flight,
+    header: Vec<HeaderLine>,
+    layout: &Layout,
+) -> Result<Declared, ReadError> {
+    let value = |key: &str| -> Result<Option<f64>, ReadError> {
+        let Some(entry) = header.iter().find(|entry| entry.key == key) else {
+            return Ok(None);
+        };
+        match entry.value.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Some(value)),
+            _ => {
+                let text = format!("`{key}` is `{}`, not a number", entry.value);
+                Err(problem(entry.line, text, "write it as `# key: number`"))
+            }
+        }
+    };
+    let line_of = |key: &str| {
+        let entry = header.iter().find(|entry| entry.key == key);
+        entry.map_or(1, |entry| entry.line)
+    };
+    let pair = |low: &str, high: &str, bounds: Bounds| -> Result<Option<(f64, f64)>, ReadError> {
+        let Bounds { least, most, width } = bounds;
+        for key in [low, high] {
+            if let Some(value) = value(key)?.filter(|value| !(least..=most).contains(value)) {
+                let text = format!("`{key}` is {value}, not in {least} to {most}");
+                let help = "write the limit of the vehicle";
+                return Err(problem(line_of(key), text, help));
+            }
+        }
+        let (low_value, high_value) = match (value(low)?, value(high)?) {
+            (Some(low_value), Some(high_value)) => (low_value, high_value),
+            (None, None) => return Ok(None),
+            (Some(_), None) => {
+                let text = format!("`{low}` has no `{high}`");
+                return Err(problem(line_of(low), text, "write both or neither"));
+            }
+            (None, Some(_)) => {
+                let text = format!("`{high}` has no `{low}`");
+                return Err(problem(line_of(high), text, "write both or neither"));
+            }
+        };
+        if high_value <= low_value {
+            let text = format!("`{high}` is not above `{low}`");
+            return Err(problem(line_of(high), text, "swap or correct the two"));
+        }
+        if !bounds.allow((low_value, high_value)) {
+            let text = format!("`{high}` is less than {width} above `{low}`");
+            let help = "write the limits of the vehicle";
+            return Err(problem(line_of(high), text, help));
+        }
+        Ok(Some((low_value, high_value)))
+    };
+    let pwm = pair("pwm_low_us", "pwm_high_us", PULSES_US)?;
+    if layout.stem == "motor" && !layout.motors.is_empty() {
+        flight.range = Some(Range {
+            low: 0.0,
+            high: 1.0,
+            unit: "1",
+            source: "columns `motor1`.. are fractions".into(),
+        });
+    } else if let Some((low, high)) = pwm {
+        flight.range = Some(Range {
+            low,
+            high,
+            unit: "us",
+            source: "header pwm_low_us, pwm_high_us".into(),
+        });
+    }
+    flight.effective = match pair("effective_low", "effective_high", FRACTIONS)? {
+        Some((low, high)) => Range {
+            low,
+            high,
+            unit: "1",
+            source: "header effective_low, effective_high".into(),
+        },
+        None => whole_range("no effective_low and effective_high in the header"),
+    };
+    for entry in &header {
+        match entry.key.as_str() {
+            "vehicle" => flight.vehicle.frame = Some(entry.value.clone()),
+            "vehicle_id" => flight.vehicle.id = Some(entry.value.clone()),
+            "firmware" => flight.vehicle.firmware = Some(entry.value.clone()),
+            "vehicle_kind" => {
+                flight.vehicle.kind = VehicleKind::from_name(&entry.value);
+                flight.vehicle.source = "header vehicle_kind".into();
+            }
+            _ => {}
+        }
+    }
+    flight.utc_at_zero_s = value("utc_at_zero_s")?;
+    let declared = geometry_of(&header, layout.motors.len())?;
+    flight.header = header
+        .into_iter()
+        .map(|entry| (entry.key, entry.value))
+        .collect();
+    Ok(declared)
+}
+
+/// The motor layout by `motorN_factors` of every motor, by `frame`, or by `frame_class` and
+/// `frame_type`.
+fn geometry_of(header: &[HeaderLine], motors: usize) -> Result<Declared, ReadError> {
+    let entry = |key: &str| header.iter().find(|entry| entry.key == key);
+    let frame = entry("frame")
+        .map(|entry| {
+            let known = tables::parse(&entry.value).ok_or_else(|| {
+                let text = format!("unknown frame `{}`", entry.value);
+                problem(
+                    entry.line,
+                    text,
+                    "write class and type as ArduPilot does, such as `QUAD/X` or `HEXA/PLUS`",
+                )
+            })?;
+            Ok((entry.value.clone(), known))
+        })
+        .transpose()?;
+    let factors = (1..=motors)
+        .filter_map(|number| Some((number as u16, entry(&format!("motor{number}_factors"))?)))
+        .map(|(number, entry)| {
+            let parts: Vec<f64> = entry
+                .value
+                .split_whitespace()
+                .map_while(|part| part.parse().ok().filter(|part: &f64| part.is_finite()))
+                .collect();
+            match parts.as_slice() {
+                &[roll, pitch, yaw] => Ok((number, [roll, pitch, yaw])),
+                _ => {
+                    let text = format!("`{}` is `{}`", entry.key, entry.value);
+                    Err(problem(
+                        entry.line,
+                        text,
+                        "write three numbers: roll, pitch and yaw, such as `-1 1 1`",
+                    ))
+                }
+            }
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    if motors > 0 && factors.len() == motors {
+        return Ok(Declared::Factors {
+            frame: frame.map(|(name, _)| name),
+            factors,
+            source: "header motorN_factors".into(),
+        });
+    }
+    let number = |key: &str| entry(key)?.value.parse::<i64>().ok();
+    Ok(match (frame, number("frame_class")) {
+        (Some((name, (class, kind))), _) => Declared::Frame {
+            class,
+            kind,
+            source: format!("header frame `{name}`"),
+        },
+        (None, Some(class)) => {
+            let kind = number("frame_type");
+            let text = kind.map_or(String::new(), |kind| format!(", frame_type {kind}"));
+            Declared::Frame {
+                class,
+                kind,
+                source: format!("header frame_class {class}{text}"),
+            }
+        }
+        (None, None) => Declared::Nothing,
+    })
+}
