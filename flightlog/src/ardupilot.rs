@@ -82,30 +82,42 @@ const TRI: u16 = 3;
 const REAR_OF_TRI: u16 = 4;
 const SERVO_OF_TRI: u16 = 7;
 
+/// Changes of armed, or of in the air, that are kept where the commands tell them.
+const MOST_CHANGES: usize = 10_000;
+
 /// Armed and in-air times from the commands alone, for logs without events: armed while
-/// any motor runs, in the air while the mean command is above 0.2.
-pub(crate) fn air_from_commands(flight: &Flight) -> (Option<Intervals>, Option<Intervals>) {
-    let (Some(range), Some(last_s)) = (&flight.range, flight.commands.t_s().last()) else {
+/// any motor runs, in the air while the mean command is above 0.2. Changes after the last that is kept are counted.
+pub(crate) fn air_from_commands(
+    flight: &Flight,
+    left_out: &mut u64,
+) -> (Option<Intervals>, Option<Intervals>) {
+    let (Some(range), Some(&last_s)) = (&flight.range, flight.commands.t_s().last()) else {
         return (None, None);
     };
     let first_s = flight.commands.t_s().first().copied().unwrap_or_default();
-    let changes = |state: &dyn Fn(&[f64]) -> bool| {
-        let mut changes: Vec<(f64, bool)> = flight
-            .commands
-            .rows()
-            .map(|(t_s, row)| (t_s, state(row)))
-            .collect();
-        changes.dedup_by_key(|&mut (_, state)| state);
-        changes
-    };
     let running = |row: &[f64]| row.iter().any(|&raw| raw > range.low + 1.0);
     let flying = |row: &[f64]| {
         let known: Vec<f64> = row.iter().filter_map(|&raw| flight.command(raw)).collect();
         known.iter().sum::<f64>() > 0.2 * known.len() as f64
     };
-    let intervals = |state: &dyn Fn(&[f64]) -> bool, rule: &str| {
+    let mut intervals = |state: &dyn Fn(&[f64]) -> bool, rule: &str| {
         let rule = format!("{rule} (the log has no events that tell)");
-        Intervals::from_changes(&changes(state), false, first_s, *last_s, rule)
+        let mut changes: Vec<(f64, bool)> = Vec::new();
+        let (mut last, mut end_s) = (None, None);
+        for (t_s, row) in flight.commands.rows() {
+            let state = state(row);
+            if last.replace(state) == Some(state) {
+                continue;
+            }
+            if changes.len() < MOST_CHANGES {
+                changes.push((t_s, state));
+            } else {
+                end_s.get_or_insert(t_s);
+                *left_out += 1;
+            }
+        }
+        let end_s = end_s.unwrap_or(last_s);
+        Intervals::from_changes(&changes, false, first_s, end_s, rule)
     };
     (
         Some(intervals(&running, "any motor above its lowest command")),

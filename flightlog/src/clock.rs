@@ -9,6 +9,9 @@ const SLOWEST_S: f64 = 60.0;
 /// A clock that goes back by more than this, in seconds, was started again.
 const BOOT_STEP_S: f64 = -10.0;
 
+/// Boots that are kept of a log.
+const MOST_BOOTS: usize = 1000;
+
 /// What to do with a message, by its time stamp.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Checked {
@@ -131,9 +134,16 @@ impl Clock {
             .is_none_or(|last_s| (BACK_S..=self.longest_s).contains(&(t_s - last_s)))
     }
 
+    /// Whether there were more boots than are kept.
+    pub(crate) fn is_full(&self) -> bool {
+        self.boots_s.len() >= MOST_BOOTS
+    }
+
     fn boot(&mut self, last_s: f64) {
         self.offset_s += last_s;
-        self.boots_s.push(self.offset_s);
+        if !self.is_full() {
+            self.boots_s.push(self.offset_s);
+        }
     }
 }
 

@@ -57,6 +57,6 @@ pub use gap::Gap;
 pub use geometry::{Basis, Geometry};
 pub use interval::{Interval, Intervals};
 pub use read::{Options, open, read};
-pub use report::Report;
+pub use report::{LeftOut, Report};
 pub use signal::{Hold, Label, Series, Signal};
 pub use statistics::Statistics;

@@ -102,21 +102,20 @@ impl Outputs {
     /// Number of motors, where nothing else gives it: 4, 6 or 8 if that many of the first outputs,
     /// and not the next ones, move together.
     pub(crate) fn like_motors(&self) -> Option<u16> {
-        let rows: Vec<[f64; MOST_LIKE]> = (0..self.t_s.len())
-            .map(|row| {
-                std::array::from_fn(|output| {
-                    let column = self.columns.get(output);
-                    match column.and_then(|column| column.get(row)) {
-                        Some(&pulse) if pulse != MISSING => f64::from(pulse),
-                        _ => 0.0,
-                    }
-                })
+        let row = |row: usize| -> [f64; MOST_LIKE] {
+            std::array::from_fn(|output| {
+                let column = self.columns.get(output);
+                match column.and_then(|column| column.get(row)) {
+                    Some(&pulse) if pulse != MISSING => f64::from(pulse),
+                    _ => 0.0,
+                }
             })
-            .collect();
-        let count = rows.len() as f64;
+        };
+        let count = self.t_s.len();
         let first = |row: &[f64; MOST_LIKE]| row[..4].iter().sum::<f64>() / 4.0;
-        let mean =
-            |value: &dyn Fn(&[f64; MOST_LIKE]) -> f64| rows.iter().map(value).sum::<f64>() / count;
+        let mean = |value: &dyn Fn(&[f64; MOST_LIKE]) -> f64| {
+            (0..count).map(|i| value(&row(i))).sum::<f64>() / count as f64
+        };
         let first_mean = mean(&first);
         let is_motor = |output: usize| {
             let own_mean = mean(&|row| row[output]);

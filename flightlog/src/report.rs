@@ -1,4 +1,6 @@
-//! Report on the reading of a log: amount of data and damage.
+//! Report on the reading of a log: amount of data, damage, and what was left out.
+
+use std::fmt;
 
 /// Report on the reading of a log.
 ///
@@ -19,10 +21,76 @@ pub struct Report {
     pub truncated: bool,
     /// The first reason for which bytes were skipped or a message was rejected.
     pub reason: Option<String>,
+    /// What the log has beyond the bounds of what is kept.
+    pub left_out: LeftOut,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) room: Room,
+}
+
+/// What a log has beyond the bounds of what is kept of it: counted only. No flight comes near a bound; damaged and
+/// hostile logs do.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct LeftOut {
+    /// Texts after the first 10,000.
+    pub texts: u64,
+    /// Changes of the flight mode after the first 10,000.
+    pub modes: u64,
+    /// Values of parameters after the first 16,384 names, and those with names longer than 64 bytes.
+    pub parameters: u64,
+    /// Changes of armed and in the air after the first 10,000 of each, where only the commands tell them. Nothing after
+    /// these counts as in the air.
+    pub changes: u64,
+    /// Messages after those that fill a flight: 67,108,864 numbers, 10,000 events of arming and flying, or 1,000 boots.
+    /// The flight ends there.
+    pub messages: u64,
+}
+
+impl LeftOut {
+    /// Whether all of the log was kept.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl fmt::Display for LeftOut {
+    /// What was left out, such as `12 texts and 3 flight modes`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let counts = [
+            (self.texts, "texts"),
+            (self.modes, "flight modes"),
+            (self.parameters, "values of parameters"),
+            (self.changes, "changes of armed and in the air"),
+            (self.messages, "messages after the flight that is kept"),
+        ];
+        let counts = counts.iter().filter(|(count, _)| *count > 0);
+        for (i, (count, what)) in counts.enumerate() {
+            let before = if i > 0 { ", " } else { "" };
+            write!(f, "{before}{count} {what}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Texts that are kept.
+const MOST_TEXTS: usize = 10_000;
+/// Changes of the flight mode that are kept.
+const MOST_MODES: usize = 10_000;
+/// Numbers that are kept of all rows, their times included: about three hours of commands and attitude at 400 Hz.
+const MOST_NUMBERS: u64 = 1 << 26;
+/// Events of arming and flying that are kept.
+const MOST_CHANGES: u64 = 10_000;
+
+/// What is kept so far, where rows and changes share a bound.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Room {
+    numbers: u64,
+    changes: u64,
 }
 
 impl Report {
-    /// Whether nothing was skipped, rejected or cut off.
+    /// Whether nothing was skipped, rejected or cut off. What was left out is no damage: see [`Report::left_out`].
     pub fn is_clean(&self) -> bool {
         self.skipped_bytes == 0 && self.bad_messages == 0 && !self.truncated
     }
@@ -33,16 +101,56 @@ impl Report {
         self.because(|| why.into());
     }
 
-    /// Counts a row that is dropped because its time goes back.
-    pub(crate) fn dropped_row(&mut self, dropped: bool) {
+    /// Counts a row of so many numbers, with its time; `dropped` tells that one is dropped because its time goes back.
+    pub(crate) fn row(&mut self, numbers: usize, dropped: bool) {
+        self.room.numbers += numbers as u64 + 1;
         if dropped {
             self.bad("a time that goes back");
         }
+    }
+
+    /// Counts a change of armed or in the air.
+    pub(crate) fn change(&mut self) {
+        self.room.changes += 1;
+    }
+
+    /// Keeps a state that is reported repeatedly, where it changes.
+    pub(crate) fn state(&mut self, states: &mut Vec<(f64, bool)>, t_s: f64, state: Option<bool>) {
+        let last = states.last().map(|(_, last)| *last);
+        if let Some(state) = state.filter(|state| last != Some(*state)) {
+            self.change();
+            states.push((t_s, state));
+        }
+    }
+
+    /// Counts a message that is left out because the flight is full, of boots or else; gives whether it is.
+    pub(crate) fn leaves_out(&mut self, of_boots: bool) -> bool {
+        let Room { numbers, changes } = self.room;
+        let is_full = of_boots || numbers >= MOST_NUMBERS || changes >= MOST_CHANGES;
+        self.left_out.messages += u64::from(is_full);
+        is_full
+    }
+
+    /// Keeps a text among the first.
+    pub(crate) fn text<T>(&mut self, texts: &mut Vec<T>, text: T) {
+        keep(texts, text, MOST_TEXTS, &mut self.left_out.texts);
+    }
+
+    /// Keeps a flight mode among the first.
+    pub(crate) fn mode<T>(&mut self, modes: &mut Vec<T>, mode: T) {
+        keep(modes, mode, MOST_MODES, &mut self.left_out.modes);
     }
 
     pub(crate) fn because(&mut self, reason: impl FnOnce() -> String) {
         if self.reason.is_none() {
             self.reason = Some(reason());
         }
+    }
+}
+
+fn keep<T>(kept: &mut Vec<T>, item: T, most: usize, left_out: &mut u64) {
+    match kept.len() < most {
+        true => kept.push(item),
+        false => *left_out += 1,
     }
 }

@@ -121,6 +121,8 @@ fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
 /// Bytes of a row, with the comments above it. Longer header lines are not taken for a flight CSV.
 const LONGEST_ROW: usize = 1_000_000;
 const MOST_COLUMNS: usize = 4096;
+/// ArduPilot's frames have up to 12 motors, its outputs 32.
+const MOST_MOTORS: usize = 32;
 
 fn too_long(line: u64) -> ReadError {
     let text = format!("the row is longer than {LONGEST_ROW} bytes");
@@ -196,6 +198,10 @@ impl Layout {
             true => ("motor", motor),
         };
         motors.sort_unstable();
+        if motors.len() > MOST_MOTORS {
+            let text = format!("there are {} motors, more than {MOST_MOTORS}", motors.len());
+            return Err(problem(line, text, "name other columns otherwise"));
+        }
         for (index, &(number, _)) in motors.iter().enumerate() {
             if number != index as u64 + 1 {
                 let text = format!(
@@ -288,9 +294,12 @@ impl Rows {
         let Some(position) = record.position() else {
             return;
         };
+        if report.leaves_out(false) {
+            return;
+        }
         let line = lines + position.line();
         self.last_was_short = false;
-        match self.try_add(layout, record) {
+        match self.try_add(layout, record, report) {
             Ok(()) => report.messages += 1,
             Err(why) => {
                 report.bad(&format!("line {line}: {why}"));
@@ -299,7 +308,12 @@ impl Rows {
         }
     }
 
-    fn try_add(&mut self, layout: &Layout, record: &ByteRecord) -> Result<(), String> {
+    fn try_add(
+        &mut self,
+        layout: &Layout,
+        record: &ByteRecord,
+        report: &mut Report,
+    ) -> Result<(), String> {
         if record.len() < layout.columns {
             return Err(format!("{} of {} columns", record.len(), layout.columns));
         }
@@ -318,9 +332,10 @@ impl Rows {
             signals.extend(keep.then_some(value));
         }
         if let Some(column) = layout.in_air {
-            self.air_changes.push((t_s, read(&column)? > 0.5));
-            self.air_changes.dedup_by_key(|&mut (_, state)| state);
+            let in_air = read(&column)? > 0.5;
+            report.state(&mut self.air_changes, t_s, Some(in_air));
         }
+        report.row(commands.len() + signals.len(), false);
         self.first_s = self.first_s.min(t_s);
         self.last_s = t_s;
         if !commands.is_empty() {

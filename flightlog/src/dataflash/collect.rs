@@ -120,6 +120,9 @@ impl<'o> Collector<'o> {
 
     /// Takes in a message.
     pub(super) fn message(&mut self, type_id: u8, cells: Cells<'_>) {
+        if self.report.leaves_out(self.clock.is_full()) {
+            return;
+        }
         let Some(kind) = kind(&self.kinds, type_id) else {
             return;
         };
@@ -201,12 +204,14 @@ impl<'o> Collector<'o> {
             Role::Nothing | Role::Parameter { .. } => {}
             Role::Text(column) => {
                 if let Some(text) = cells.text(format, *column) {
-                    self.texts.push(Event::new(t_s, text));
+                    self.report.text(&mut self.texts, Event::new(t_s, text));
                 }
             }
             Role::Event(column) => {
-                let landing = number(*column).and_then(Landing::of);
-                self.events.extend(landing.map(|landing| (t_s, landing)));
+                if let Some(landing) = number(*column).and_then(Landing::of) {
+                    self.report.change();
+                    self.events.push((t_s, landing));
+                }
             }
             Role::Arm(column) => {
                 let landing = match number(*column) {
@@ -214,6 +219,7 @@ impl<'o> Collector<'o> {
                     Some(_) => Landing::Armed,
                     None => return,
                 };
+                self.report.change();
                 self.events.push((t_s, landing));
             }
             Role::Mode { number: id, name } => {
@@ -222,15 +228,15 @@ impl<'o> Collector<'o> {
                     Some(id) => Mode::Number(id as i64),
                     None => Mode::Name(cells.text(format, *name).unwrap_or_default()),
                 };
-                self.modes.push((t_s, mode));
+                self.report.mode(&mut self.modes, (t_s, mode));
             }
             Role::Outputs(_, columns) => {
                 let values = columns
                     .iter()
                     .filter_map(|(column, output)| Some((*output, number(*column)?)));
                 let first = columns.first().is_none_or(|(_, output)| *output == 1);
-                self.report
-                    .dropped_row(self.outputs.add(t_s, first, values));
+                let dropped = self.outputs.add(t_s, first, values);
+                self.report.row(columns.len(), dropped);
             }
             Role::Series(index, parts) => {
                 if self.utc_at_zero_s.is_none() && format.name == "GPS" {
@@ -245,8 +251,9 @@ impl<'o> Collector<'o> {
                             .unwrap_or(f64::NAN)
                     }
                 });
-                if let Some((_, series)) = self.series.get_mut(*index) {
-                    self.report.dropped_row(series.push(t_s, values));
+                match self.series.get_mut(*index) {
+                    Some((_, series)) => self.report.row(parts.len(), series.push(t_s, values)),
+                    None => self.report.bad("more than 256 definitions of signals"),
                 }
             }
         }
@@ -287,7 +294,10 @@ impl<'o> Collector<'o> {
         flight.range = ardupilot::pwm_range(&self.parameters);
         flight.commands = self.outputs.commands(&outputs);
         let span_s = self.clock.first_s().zip(self.clock.now_s());
-        (flight.armed, flight.in_air) = ardupilot::air_from_commands(&flight);
+        let left_out = &mut self.report.left_out;
+        left_out.parameters = self.parameters.left_out();
+        (flight.armed, flight.in_air) =
+            ardupilot::air_from_commands(&flight, &mut left_out.changes);
         if !self.events.is_empty() {
             let span_s = span_s.unwrap_or_default();
             let (armed, in_air) = air_from_events(&self.events, self.clock.boots_s(), span_s);
@@ -321,6 +331,9 @@ fn kind(kinds: &[Option<Kind>], type_id: u8) -> Option<&Kind> {
     kinds.get(usize::from(type_id))?.as_ref()
 }
 
+/// Series of different signals that definitions which change can make; any log has fewer.
+const MOST_SERIES: usize = 256;
+
 /// The series with these signals of that message: where the definitions are repeated, the
 /// one of before.
 fn series_of(known: &mut Vec<(&str, Series)>, name: &'static str, labels: Vec<Label>) -> usize {
@@ -328,8 +341,12 @@ fn series_of(known: &mut Vec<(&str, Series)>, name: &'static str, labels: Vec<La
         *of == name && series.signals().map(|signal| signal.label).eq(&labels)
     };
     known.iter().position(same).unwrap_or_else(|| {
-        known.push((name, Series::new(labels)));
-        known.len() - 1
+        // The index after the last stands for none: its rows go nowhere.
+        if known.len() < MOST_SERIES {
+            known.push((name, Series::new(labels)));
+            return known.len() - 1;
+        }
+        MOST_SERIES
     })
 }
 

@@ -8,7 +8,7 @@ use super::format::{Cells, FMT, Format};
 use crate::input::Input;
 use crate::{Flight, Options};
 
-/// Longer lines are damaged.
+/// Bytes of a line; longer lines are damaged, and skipped.
 const LONGEST_LINE: u64 = 4096;
 
 /// Lines above the definitions that are kept: the firmware's name is among them.
@@ -34,11 +34,33 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> io::Result<Fligh
         if read == 0 {
             break;
         }
+        if line.len() as u64 == LONGEST_LINE && !line.ends_with(b"\n") {
+            let skipped = LONGEST_LINE + skip_line(input)?;
+            let report = &mut reader.collector.report;
+            report.skipped_bytes += skipped;
+            report.bad(&format!("a line longer than {LONGEST_LINE} bytes"));
+            continue;
+        }
         reader.line(&line);
     }
     Ok(reader
         .collector
         .finish(Flight::empty(crate::Format::DataFlashText)))
+}
+
+/// Skips the rest of a line; gives its length.
+fn skip_line(input: &mut Input<'_>) -> io::Result<u64> {
+    let mut skipped = 0;
+    loop {
+        let seen = input.fill_buf()?;
+        let end = seen.iter().position(|&byte| byte == b'\n');
+        let count = end.map_or(seen.len(), |end| end + 1);
+        input.consume(count);
+        skipped += count as u64;
+        if end.is_some() || count == 0 {
+            return Ok(skipped);
+        }
+    }
 }
 
 struct Lines<'o> {
@@ -102,6 +124,8 @@ impl Lines<'_> {
         self.collector.report.messages += 1;
         let (type_id, name) = (format.type_id, format.name.clone());
         if self.collector.define(format) && type_id != FMT {
+            // A type has one name at a time: there are 256 at most.
+            self.types.retain(|_, known| *known != type_id);
             self.types.insert(name, type_id);
         }
     }

@@ -2,30 +2,38 @@
 
 use super::format::Cells;
 
-/// Most messages kept: a log without any time must not fill the memory.
-const MOST: usize = 1 << 16;
+/// Most bytes kept, an allowance for each message included: a log without any time must not fill the memory.
+const MOST_BYTES: usize = 1 << 24;
+const BYTES_A_MESSAGE: usize = 64;
 
 /// A message that is kept until its time is known.
 pub(super) enum Kept {
     Binary(u8, Vec<u8>),
-    Text(u8, Vec<String>),
+    /// The cells with commas between them: no cell holds one.
+    Text(u8, String),
 }
 
 impl Kept {
     pub(super) fn new(type_id: u8, cells: Cells<'_>) -> Self {
         match cells {
             Cells::Binary(payload) => Self::Binary(type_id, payload.to_vec()),
-            Cells::Text(cells) => {
-                Self::Text(type_id, cells.iter().map(|&cell| cell.to_owned()).collect())
-            }
+            Cells::Text(cells) => Self::Text(type_id, cells.join(",")),
         }
+    }
+
+    fn bytes(&self) -> usize {
+        BYTES_A_MESSAGE
+            + match self {
+                Self::Binary(_, payload) => payload.len(),
+                Self::Text(_, cells) => cells.len(),
+            }
     }
 
     pub(super) fn give(&self, take: impl FnOnce(u8, Cells<'_>)) {
         match self {
             Self::Binary(type_id, payload) => take(*type_id, Cells::Binary(payload)),
             Self::Text(type_id, cells) => {
-                let cells: Vec<&str> = cells.iter().map(String::as_str).collect();
+                let cells: Vec<&str> = cells.split(',').collect();
                 take(*type_id, Cells::Text(&cells));
             }
         }
@@ -37,6 +45,7 @@ impl Kept {
 #[derive(Default)]
 pub(super) struct Untimed {
     kept: Vec<Kept>,
+    kept_bytes: usize,
     /// How many of them came before the first message that had a time.
     before_first: usize,
     /// Time of the last message that had one.
@@ -48,11 +57,13 @@ pub(super) struct Untimed {
 impl Untimed {
     /// Sets a message aside; `false` when there are too many already.
     pub(super) fn keep(&mut self, type_id: u8, cells: Cells<'_>) -> bool {
-        let room = self.kept.len() < MOST;
-        if room {
-            self.kept.push(Kept::new(type_id, cells));
+        let has_room = self.kept_bytes < MOST_BYTES;
+        if has_room {
+            let kept = Kept::new(type_id, cells);
+            self.kept_bytes += kept.bytes();
+            self.kept.push(kept);
         }
-        room
+        has_room
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -92,6 +103,7 @@ impl Untimed {
     /// `from_s` is the time of the message that came after `before` of those set aside.
     fn spread(&mut self, from_s: f64, before: usize) -> impl Iterator<Item = (f64, Kept)> + use<> {
         let step_s = self.step_s;
+        self.kept_bytes = 0;
         std::mem::take(&mut self.kept)
             .into_iter()
             .enumerate()

@@ -56,6 +56,10 @@ impl<'o> Collector<'o> {
 
     /// Takes in a packet.
     pub(super) fn packet(&mut self, stamp_us: u64, packet: &Packet<'_>) {
+        let is_full_of_boots = self.systems.iter().any(|(_, heard)| heard.time.is_full());
+        if self.report.leaves_out(is_full_of_boots) {
+            return;
+        }
         let zero_us = *self.zero_us.get_or_insert(stamp_us);
         let t_s = (stamp_us as f64 - zero_us as f64) * 1e-6;
         if !self.latest.believe(t_s) {
@@ -67,8 +71,7 @@ impl<'o> Collector<'o> {
             self.systems.len() - 1
         });
         if let Some((_, heard)) = self.systems.get_mut(index) {
-            let dropped = heard.message(t_s, packet, self.options);
-            self.report.dropped_row(dropped);
+            heard.message(t_s, packet, self.options, &mut self.report);
         }
     }
 
@@ -93,25 +96,29 @@ impl<'o> Collector<'o> {
 }
 
 impl Heard {
-    /// Takes in a message of the system; `true` when a row was dropped because times go back. On the vehicle's clock that
-    /// is a packet that comes late or twice, and no damage.
-    fn message(&mut self, received_s: f64, packet: &Packet<'_>, options: &Options) -> bool {
+    /// Takes in a message of the system. A row that is dropped because times go back is damage, but on the vehicle's
+    /// clock it is a packet that comes late or twice.
+    fn message(
+        &mut self,
+        received_s: f64,
+        packet: &Packet<'_>,
+        options: &Options,
+        report: &mut Report,
+    ) {
         let payload = filled(packet);
         let t_s = self.time.other(received_s, packet.id, &payload);
         match self.decoder.message(packet.component, packet.id, &payload) {
-            Told::State => self.state(t_s),
-            Told::Outputs(outputs) => return self.commands(received_s, outputs),
-            Told::Text(text) => self.texts.push(Event::new(t_s, text)),
+            Told::State => self.state(t_s, report),
+            Told::Outputs(outputs) => self.commands(received_s, outputs, report),
+            Told::Text(text) => report.text(&mut self.texts, Event::new(t_s, text)),
             Told::Nothing if packet.component == AUTOPILOT => {
-                let dropped = self.signals(t_s, packet.id, &payload, options);
-                return dropped && !self.time.is_known();
+                self.signals(t_s, packet.id, &payload, options, report);
             }
             Told::Nothing | Told::Parameter => {}
         }
-        false
     }
 
-    fn commands(&mut self, received_s: f64, outputs: ServoOutputs) -> bool {
+    fn commands(&mut self, received_s: f64, outputs: ServoOutputs, report: &mut Report) {
         let timed = self.time.commands(received_s, outputs);
         if let Some(ahead_s) = timed.ahead_s {
             self.shift(ahead_s);
@@ -120,7 +127,7 @@ impl Heard {
         for (t_s, outputs) in timed.rows.iter().flatten() {
             dropped |= self.servos(*t_s, outputs) && !self.time.is_known();
         }
-        dropped
+        report.row(outputs.pulses_us.len(), dropped);
     }
 
     /// Brings what came before the first motor commands to the vehicle's clock.
@@ -140,13 +147,13 @@ impl Heard {
         }
     }
 
-    fn state(&mut self, t_s: f64) {
-        self.armed.push((t_s, self.decoder.is_armed()));
-        self.in_air
-            .extend(self.decoder.is_in_air().map(|in_air| (t_s, in_air)));
+    fn state(&mut self, t_s: f64, report: &mut Report) {
+        report.state(&mut self.armed, t_s, Some(self.decoder.is_armed()));
+        report.state(&mut self.in_air, t_s, self.decoder.is_in_air());
         let last = self.modes.last().map(|(_, last)| *last);
-        let mode = self.decoder.mode().filter(|mode| last != Some(*mode));
-        self.modes.extend(mode.map(|mode| (t_s, mode)));
+        if let Some(mode) = self.decoder.mode().filter(|mode| last != Some(*mode)) {
+            report.mode(&mut self.modes, (t_s, mode));
+        }
     }
 
     /// Outputs 1 to 8 of a port, and 9 to 16 in version 2; those of port 1 complete the row that port 0 began.
@@ -164,12 +171,19 @@ impl Heard {
         self.outputs.add(t_s, first, pulses)
     }
 
-    fn signals(&mut self, t_s: f64, id: u32, payload: &Payload, options: &Options) -> bool {
+    fn signals(
+        &mut self,
+        t_s: f64,
+        id: u32,
+        payload: &Payload,
+        options: &Options,
+        report: &mut Report,
+    ) {
         // Only the first battery.
         let is_other = id == BATTERY_STATUS && payload[32] != 0;
         let index = SPECS.iter().position(|spec| spec.id == id);
         let Some(index) = index.filter(|_| !is_other) else {
-            return false;
+            return;
         };
         let spec = &SPECS[index];
         let known = self.series.iter().position(|(of, _)| *of == index);
@@ -183,14 +197,15 @@ impl Heard {
             .iter()
             .filter(|(_, name, _)| options.wants(name));
         let values = wanted.map(|(from, _, _)| from.value(payload).unwrap_or(f64::NAN));
-        match self.series.get_mut(slot) {
-            Some((_, series)) => series.push(t_s, values),
-            None => false,
+        if let Some((_, series)) = self.series.get_mut(slot) {
+            let dropped = series.push(t_s, values) && !self.time.is_known();
+            report.row(spec.signals.len(), dropped);
         }
     }
 
     fn finish(mut self, flight: &mut Flight) {
         self.decoder.finish();
+        flight.report.left_out.parameters = self.decoder.parameters.left_out();
         flight.boots_s = self.time.boots_s().to_vec();
         self.name_vehicle(flight);
         let known = self.decoder.outputs(&flight.vehicle);

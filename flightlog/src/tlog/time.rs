@@ -79,6 +79,11 @@ impl VehicleTime {
         self.latest.is_some()
     }
 
+    /// Whether there were more boots than are kept.
+    pub(super) fn is_full(&self) -> bool {
+        self.clock.is_full()
+    }
+
     /// The start of each boot but the first.
     pub(super) fn boots_s(&self) -> &[f64] {
         self.clock.boots_s()

@@ -17,11 +17,14 @@ use crate::{Event, Flight, Format, Intervals, Options, Report, Series, px4};
 const LONGEST_PAUSE_S: f64 = 60.0;
 /// Logged values of an outputs message.
 const OUTPUTS: usize = 16;
+/// Announcements of topics that are heeded; a log of PX4 has some hundreds.
+const MOST_ANNOUNCED: usize = 4096;
 
 pub(super) struct Collector<'o> {
     options: &'o Options,
     pub(super) report: Report,
     pub(super) topics: Topics,
+    announced: usize,
     roles: Vec<Option<(NumericField, Role)>>,
     latest: Latest,
     parameters: Parameters,
@@ -44,6 +47,7 @@ impl<'o> Collector<'o> {
             options,
             report: Report::default(),
             topics: Topics::default(),
+            announced: 0,
             roles: Vec::new(),
             latest: Latest::new(LONGEST_PAUSE_S),
             parameters: Parameters::default(),
@@ -72,8 +76,8 @@ impl<'o> Collector<'o> {
             b'D' => self.data(body),
             b'F' => {
                 let text = String::from_utf8_lossy(body);
-                if self.topics.formats.define(&text).is_none() {
-                    self.report.bad("a definition that is not valid");
+                if let Err(why) = self.topics.formats.define(&text) {
+                    self.report.bad(why);
                 }
             }
             b'A' => self.announce(body),
@@ -84,27 +88,27 @@ impl<'o> Collector<'o> {
                 }
             }
             b'I' => self.information(body),
-            b'L' => self.text(body.get(1..), 0),
-            b'C' => self.text(body.get(3..), 0),
+            b'L' => self.text(body.get(1..)),
+            b'C' => self.text(body.get(3..)),
             b'O' => {
                 let lost_ms = body
                     .first_chunk()
                     .map_or(0, |bytes| u16::from_le_bytes(*bytes));
                 let t_s = self.latest.time_s().unwrap_or_default();
                 let what = format!("the logger lost {lost_ms} ms of data");
-                self.texts.push(Event::new(t_s, what));
+                self.report.text(&mut self.texts, Event::new(t_s, what));
             }
             _ => {}
         }
     }
 
-    fn text(&mut self, body: Option<&[u8]>, skip: usize) {
-        let Some((time, text)) = body.and_then(|body| body.get(skip..)?.split_first_chunk()) else {
+    fn text(&mut self, body: Option<&[u8]>) {
+        let Some((time, text)) = body.and_then(|body| body.split_first_chunk()) else {
             return;
         };
         let t_s = u64::from_le_bytes(*time) as f64 * 1e-6;
         let text = String::from_utf8_lossy(text).trim_end().to_owned();
-        self.texts.push(Event::new(t_s, text));
+        self.report.text(&mut self.texts, Event::new(t_s, text));
     }
 
     fn information(&mut self, body: &[u8]) {
@@ -127,6 +131,10 @@ impl<'o> Collector<'o> {
 
     /// `A`: instance, number, name of a topic.
     fn announce(&mut self, body: &[u8]) {
+        self.announced += 1;
+        if self.announced > MOST_ANNOUNCED {
+            return self.report.bad("more than 4096 announced topics");
+        }
         let Some((&[instance, low, high], name)) = body.split_first_chunk() else {
             return;
         };
@@ -194,7 +202,7 @@ impl<'o> Collector<'o> {
         let Some((time, role)) = self.roles.get(index).and_then(Option::as_ref) else {
             return;
         };
-        if matches!(role, Role::Nothing) {
+        if matches!(role, Role::Nothing) || self.report.leaves_out(false) {
             return;
         }
         let Some(t_s) = time.number(body).map(|time_us| time_us * 1e-6) else {
@@ -203,7 +211,7 @@ impl<'o> Collector<'o> {
         if !self.latest.believe(t_s) {
             return self.report.bad("a time stamp that does not fit the others");
         }
-        let flag = |field: &NumericField, yes: f64| Some((t_s, field.number(body)? == yes));
+        let flag = |field: &NumericField, yes: f64| Some(field.number(body)? == yes);
         match role {
             Role::Nothing => {}
             Role::Outputs(index, fields) => {
@@ -213,27 +221,27 @@ impl<'o> Collector<'o> {
                 let Some(outputs) = self.outputs.get_mut(*index) else {
                     return;
                 };
-                self.report.dropped_row(outputs.push(t_s, values));
+                self.report.row(fields.len(), outputs.push(t_s, values));
             }
             Role::Status {
                 arming,
                 mode,
                 system_type,
             } => {
-                self.armed
-                    .extend(arming.as_ref().and_then(|field| flag(field, 2.0)));
+                let is_armed = arming.as_ref().and_then(|field| flag(field, 2.0));
+                self.report.state(&mut self.armed, t_s, is_armed);
                 let mode = mode
                     .and_then(|field| field.number(body))
                     .map(|mode| mode as i64);
                 if let Some(mode) = mode
                     && self.modes.last().is_none_or(|(_, last)| *last != mode)
                 {
-                    self.modes.push((t_s, mode));
+                    self.report.mode(&mut self.modes, (t_s, mode));
                 }
                 let system_type = system_type.and_then(|field| field.number(body));
                 self.system_type = self.system_type.or(system_type);
             }
-            Role::Land(field) => self.landed.extend(flag(field, 1.0)),
+            Role::Land(field) => self.report.state(&mut self.landed, t_s, flag(field, 1.0)),
             Role::Series(index, parts, utc) => {
                 if let (None, Some(field)) = (self.utc_at_zero_s, utc) {
                     let utc_us = field.number(body).filter(|&utc_us| utc_us > 0.0);
@@ -243,7 +251,7 @@ impl<'o> Collector<'o> {
                     let values = parts
                         .iter()
                         .map(|part| part.value(body).unwrap_or(f64::NAN));
-                    self.report.dropped_row(series.push(t_s, values));
+                    self.report.row(parts.len(), series.push(t_s, values));
                 }
             }
         }
@@ -268,6 +276,7 @@ impl<'o> Collector<'o> {
         flight.messages = self.texts;
         flight.utc_at_zero_s = self.utc_at_zero_s;
         flight.report = self.report;
+        flight.report.left_out.parameters = self.parameters.left_out();
         let span_s = flight.time_span_s().unwrap_or_default();
         if !self.armed.is_empty() {
             let rule = "vehicle_status.arming_state = 2";

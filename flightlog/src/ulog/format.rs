@@ -8,6 +8,11 @@ use crate::field::{Kind, NumericField};
 const DEEPEST: usize = 8;
 /// No message is longer: its length has 16 bits.
 const LONGEST: usize = u16::MAX as usize;
+/// Fields of a topic, those of the topics in it included; PX4's have under 200. Nested definitions could otherwise take
+/// for ever.
+const MOST_FIELDS: usize = 1024;
+/// Bytes of all definitions; PX4's take under a quarter.
+const MOST_BYTES: usize = 1_000_000;
 
 /// One field of a topic.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +24,10 @@ struct Member {
 
 /// All definitions of a log.
 #[derive(Debug, Default)]
-pub(super) struct Formats(HashMap<String, Vec<Member>>);
+pub(super) struct Formats {
+    topics: HashMap<String, Vec<Member>>,
+    bytes: usize,
+}
 
 /// The type of that name.
 fn kind_of(name: &str) -> Option<Kind> {
@@ -50,39 +58,52 @@ pub(super) fn keyed_number<'k>(key: &'k str, value: &[u8]) -> Option<(&'k str, f
 
 impl Formats {
     /// Takes in a definition, `name:type field;type field;...`. The first of a name holds.
-    pub(super) fn define(&mut self, text: &str) -> Option<()> {
-        let (name, fields) = text.split_once(':')?;
+    pub(super) fn define(&mut self, text: &str) -> Result<(), &'static str> {
+        const INVALID: &str = "a definition that is not valid";
+        let (name, fields) = text.split_once(':').ok_or(INVALID)?;
+        if self.topics.contains_key(name) {
+            return Ok(());
+        }
+        if self.bytes + text.len() > MOST_BYTES {
+            return Err("definitions of more than 1 MB in all");
+        }
         let fields = fields
             .split(';')
             .filter(|field| !field.is_empty())
             .map(member)
-            .collect::<Option<Vec<Member>>>()?;
-        self.0.entry(name.to_owned()).or_insert(fields);
-        Some(())
+            .collect::<Option<Vec<Member>>>()
+            .ok_or(INVALID)?;
+        self.bytes += text.len();
+        self.topics.insert(name.to_owned(), fields);
+        Ok(())
     }
 
     /// Bytes of a topic as it is logged: with its padding, but for that at the end.
     pub(super) fn logged_size(&self, topic: &str) -> Option<usize> {
-        let fields = self.0.get(topic)?;
+        let fields = self.topics.get(topic)?;
         let padding = |field: &&Member| field.name.starts_with("_padding");
         let end = fields.iter().rev().take_while(padding).count();
-        self.size_of(fields.get(..fields.len() - end)?, DEEPEST)
+        let mut left = MOST_FIELDS;
+        self.size_of(fields.get(..fields.len() - end)?, DEEPEST, &mut left)
     }
 
-    fn size_of(&self, fields: &[Member], depth: usize) -> Option<usize> {
+    /// `left` fields may still be looked at.
+    fn size_of(&self, fields: &[Member], depth: usize, left: &mut usize) -> Option<usize> {
         fields.iter().try_fold(0_usize, |size, field| {
-            let one = self.field_size(field, depth)?;
+            let one = self.field_size(field, depth, left)?;
             let size = size.checked_add(one.checked_mul(field.count)?)?;
             (size <= LONGEST).then_some(size)
         })
     }
 
     /// Bytes of one element of a field.
-    fn field_size(&self, field: &Member, depth: usize) -> Option<usize> {
+    fn field_size(&self, field: &Member, depth: usize, left: &mut usize) -> Option<usize> {
+        *left = left.checked_sub(1)?;
         if let Some(kind) = kind_of(&field.kind) {
             return Some(kind.width());
         }
-        self.size_of(self.0.get(&field.kind)?, depth.checked_sub(1)?)
+        let nested = self.topics.get(&field.kind)?;
+        self.size_of(nested, depth.checked_sub(1)?, left)
     }
 
     /// Where the field called `name`, with its index as in `q[2]`, is in a topic.
@@ -92,8 +113,9 @@ impl Formats {
             None => (name, 0_usize),
         };
         let mut offset = 0;
-        for field in self.0.get(topic)? {
-            let size = self.field_size(field, DEEPEST)?;
+        let mut left = MOST_FIELDS;
+        for field in self.topics.get(topic)? {
+            let size = self.field_size(field, DEEPEST, &mut left)?;
             if field.name == name {
                 let kind = kind_of(&field.kind)?;
                 return (index < field.count).then_some(NumericField {
@@ -155,14 +177,27 @@ mod tests {
     fn damaged_definitions_are_none() {
         let mut formats = formats();
         for text in ["no colon", "a:float", "a:float[x] b", "a:float[3 b"] {
-            assert_eq!(formats.define(text), None, "{text}");
+            assert!(formats.define(text).is_err(), "{text}");
         }
         formats.define("loop:loop inner").unwrap();
-        formats
-            .define("huge:float[9999999999999999999] x")
-            .unwrap_or_default();
+        assert!(
+            formats
+                .define("huge:float[99999999999999999999] x")
+                .is_err()
+        );
+        // Without a bound the size of the last would take a week.
+        formats.define("deep0:float[0] x").unwrap();
+        for depth in 1..=8 {
+            let inner = format!("deep{} x;", depth - 1).repeat(1000);
+            formats.define(&format!("deep{depth}:{inner}")).unwrap();
+        }
+        assert!(
+            formats
+                .define(&format!("much:{}", "float x;".repeat(125_000)))
+                .is_err()
+        );
         formats.define("wide:double[1000000] x").unwrap();
-        for topic in ["loop", "wide", "unknown"] {
+        for topic in ["loop", "wide", "deep8", "unknown"] {
             assert_eq!(formats.logged_size(topic), None, "{topic}");
         }
     }

@@ -90,7 +90,7 @@ impl Topics {
         match message[2] {
             b'D' => self.expected(message) == u16::try_from(body.len()).ok(),
             b'S' => body == SYNC,
-            b'F' => body.contains(&b':') && printable(body),
+            b'F' => body.iter().take(CHECKED).any(|&byte| byte == b':') && printable(body),
             b'A' => printable(&body[3..]),
             b'I' | b'P' => key(body).is_some(),
             b'M' | b'Q' => key(&body[1..]).is_some(),
@@ -110,7 +110,12 @@ pub(super) fn key(body: &[u8]) -> Option<(&str, &[u8])> {
     Some((key, value))
 }
 
+/// Bytes of a text that are looked at: damage is searched for a message at every byte, and any may look like the
+/// beginning of a long one.
+const CHECKED: usize = 64;
+
 fn printable(text: &[u8]) -> bool {
     text.iter()
+        .take(CHECKED)
         .all(|&byte| byte >= b' ' || byte.is_ascii_whitespace())
 }
