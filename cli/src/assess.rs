@@ -108,7 +108,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         };
         if arguments.json {
             let document = document::document(log, &flight, estimator, &assessed);
-            json.push(serde_json::to_value(document).map_err(std::io::Error::from)?);
+            json.push(serde_json::to_string_pretty(&document).map_err(std::io::Error::from)?);
         } else if arguments.csv {
             let name = several.then_some(log.as_str());
             document::write_csv(&mut out, name, head, estimator, &assessed)?;
@@ -173,11 +173,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     out.write_all(&waiting)?;
     if arguments.json {
-        match (json.as_slice(), several) {
-            ([], _) => {}
-            ([document], false) => write_json(&mut out, document)?,
-            (documents, _) => write_json(&mut out, &documents)?,
-        }
+        write_json(&mut out, &json, several)?;
     }
     out.finish()?;
     reported?;
@@ -222,10 +218,19 @@ fn options(estimator: &flagred::estimator::Estimator, reports: bool) -> flightlo
     }
 }
 
-fn write_json(out: &mut impl Write, document: &impl serde::Serialize) -> Result<(), Failure> {
-    serde_json::to_writer_pretty(&mut *out, document).map_err(std::io::Error::from)?;
-    writeln!(out)?;
-    Ok(())
+/// Writes a document, or an array of them where there are several flights.
+fn write_json(out: &mut impl Write, documents: &[String], several: bool) -> Result<(), Failure> {
+    if !several || documents.is_empty() {
+        for document in documents {
+            writeln!(out, "{document}")?;
+        }
+        return Ok(());
+    }
+    for (i, document) in documents.iter().enumerate() {
+        let before = if i == 0 { "[" } else { "," };
+        write!(out, "{before}\n  {}", document.replace('\n', "\n  "))?;
+    }
+    Ok(writeln!(out, "\n]")?)
 }
 
 /// An unknown risk is an exit code of its own, so that nobody takes it for GOOD.

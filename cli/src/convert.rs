@@ -32,5 +32,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             arguments.log.display()
         ));
     }
+    if !flight.report.left_out.is_empty() {
+        output::say(&format!(
+            "warning: not all of `{}` is converted: {} are left out",
+            arguments.log.display(),
+            flight.report.left_out
+        ));
+    }
     Ok(Exit::Clean)
 }

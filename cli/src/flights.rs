@@ -23,6 +23,14 @@ pub(crate) fn open_complete(
         signals: Some(wanted.collect()),
     };
     let flight = flightlog::open(path, &options)?;
+    let left_out = &flight.report.left_out;
+    if left_out.messages > 0 || left_out.changes > 0 {
+        return Err(Failure::unreadable(format!(
+            "`{}` {cannot}: not all of it is kept, which leaves out {left_out}",
+            path.display()
+        ))
+        .help("docs/limits.md has the bounds"));
+    }
     let gaps = flight.gaps();
     match gaps.iter().find(|gap| !matches!(gap, Gap::TooSlow { .. })) {
         None => Ok(flight),

@@ -26,6 +26,13 @@ pub use serialize::Steps;
 /// The least share of the time in the air in which the risk must be known for a verdict of GOOD.
 const KNOWN_SHARE: f64 = 0.5;
 
+/// Findings that are kept of a flight, the gravest.
+const MOST_FINDINGS: usize = 1000;
+/// Steps that are kept of a flight: seven hours at ten a second.
+pub const MOST_STEPS: usize = 250_000;
+/// Judged risks closer together than this wait as one for the landing that may take them back, in seconds.
+const PENDING_S: f64 = 1e-4;
+
 /// A motor with a smaller margin counts as saturated.
 const SATURATED_MARGIN: f64 = 0.005;
 
@@ -35,14 +42,18 @@ const SATURATED_MARGIN: f64 = 0.005;
 pub struct Assessment {
     /// How risky the flight was.
     pub verdict: Verdict,
-    /// The gravest first, those of equal level in order of time.
+    /// The gravest first, those of equal level in order of time; of many the gravest 1,000.
     pub findings: Vec<Finding>,
+    /// How many findings were left out.
+    pub findings_left_out: u64,
     /// The flight in a few numbers.
     pub summary: Summary,
     /// The names of the inputs of the rule set, in the order of [`Step::inputs`].
     pub inputs: Vec<String>,
     /// The risk over time.
     pub steps: Vec<Step>,
+    /// Seconds between the steps, where they are further apart than was asked for: 250,000 are kept at most.
+    pub widened_step_s: Option<f64>,
 }
 
 /// A flight in a few numbers. The risks are those of judged time ([`Update::judged`]).
@@ -152,8 +163,10 @@ pub struct Assessor {
 #[derive(Debug, Clone)]
 struct Flight {
     findings: Vec<Finding>,
+    findings_left_out: u64,
     steps: Vec<Step>,
     next_step_s: f64,
+    widened_step_s: Option<f64>,
     last: Option<Last>,
     summary: Summary,
     judged_s: f64,
@@ -173,11 +186,13 @@ struct Last {
     in_air: bool,
 }
 
-/// A judged risk.
+/// A judged risk, or several at nearly the same time.
 #[derive(Debug, Clone, Copy)]
 struct Pending {
     t_s: f64,
     held_s: f64,
+    risk_times_s: f64,
+    /// The highest.
     risk_pct: f64,
     elevated_risk_pct: Option<f64>,
 }
@@ -262,6 +277,7 @@ impl Assessor {
     }
 
     fn keep_findings(&mut self, ended: Ended) {
+        self.flight.bound_findings();
         self.ended_before = self.flight.findings.len();
         for found in ended.into_iter().flatten() {
             let finding = self.open.explain(found, self.monitor.estimator());
@@ -287,6 +303,10 @@ impl Assessor {
         if update.t_s < flight.next_step_s {
             return;
         }
+        if flight.steps.len() >= MOST_STEPS {
+            flight.widen_steps();
+        }
+        let step_s = flight.widened_step_s.unwrap_or(step_s);
         // On a grid of `step_s`; every sample where samples are rarer.
         flight.next_step_s = match flight.next_step_s + step_s {
             next_s if next_s > update.t_s => next_s,
@@ -308,8 +328,10 @@ impl Flight {
     fn new() -> Flight {
         Flight {
             findings: Vec::new(),
+            findings_left_out: 0,
             steps: Vec::new(),
             next_step_s: f64::NEG_INFINITY,
+            widened_step_s: None,
             last: None,
             summary: Summary::default(),
             judged_s: 0.0,
@@ -354,9 +376,10 @@ impl Flight {
                     self.summary.filled_s += flown_s;
                 }
                 if update.judged {
-                    self.pending.push_back(Pending {
+                    self.wait(Pending {
                         t_s,
                         held_s: flown_s,
+                        risk_times_s: estimate.risk_pct * flown_s,
                         risk_pct: estimate.risk_pct,
                         elevated_risk_pct: update.elevated_risk_pct,
                     });
@@ -375,11 +398,58 @@ impl Flight {
         self.settle(t_s - quiet_s);
     }
 
+    /// Sets a judged risk aside until no landing can take it back.
+    fn wait(&mut self, risk: Pending) {
+        match self.pending.back_mut() {
+            Some(last) if risk.t_s - last.t_s < PENDING_S => {
+                last.held_s += risk.held_s;
+                last.risk_times_s += risk.risk_times_s;
+                last.risk_pct = last.risk_pct.max(risk.risk_pct);
+                // Unknown is less than any.
+                if risk.elevated_risk_pct > last.elevated_risk_pct {
+                    last.elevated_risk_pct = risk.elevated_risk_pct;
+                }
+            }
+            _ => self.pending.push_back(risk),
+        }
+    }
+
+    /// Leaves out the least grave of many findings.
+    fn bound_findings(&mut self) {
+        if self.findings.len() >= 2 * MOST_FINDINGS {
+            self.keep_gravest();
+        }
+    }
+
+    fn keep_gravest(&mut self) {
+        let by_gravity =
+            |a: &Finding, b: &Finding| b.level.cmp(&a.level).then(a.from_s.total_cmp(&b.from_s));
+        self.findings.sort_by(by_gravity);
+        let left_out = self.findings.len().saturating_sub(MOST_FINDINGS);
+        self.findings.truncate(MOST_FINDINGS);
+        self.findings_left_out += left_out as u64;
+    }
+
+    /// Keeps every other step, and from now on steps that are twice as far apart.
+    fn widen_steps(&mut self) {
+        let mut index = 0;
+        self.steps.retain(|_| {
+            index += 1;
+            index % 2 == 1
+        });
+        let span_s = match (self.steps.first(), self.steps.last()) {
+            (Some(first), Some(last)) => last.t_s - first.t_s,
+            _ => 0.0,
+        };
+        let mean_s = span_s / (MOST_STEPS / 2) as f64;
+        self.widened_step_s = Some(self.widened_step_s.map_or(mean_s, |s| mean_s.max(2.0 * s)));
+    }
+
     /// Counts the judged risks up to a time: no landing takes them back any more.
     fn settle(&mut self, until_s: f64) {
         while let Some(risk) = self.pending.front().filter(|risk| risk.t_s <= until_s) {
             self.judged_s += risk.held_s;
-            self.risk_times_s += risk.risk_pct * risk.held_s;
+            self.risk_times_s += risk.risk_times_s;
             Peak::keep_larger(&mut self.summary.risk_max, risk.t_s, risk.risk_pct);
             if let Some(elevated_pct) = risk.elevated_risk_pct {
                 Peak::keep_larger(&mut self.summary.elevated_risk_max, risk.t_s, elevated_pct);
@@ -401,9 +471,7 @@ impl Flight {
     }
 
     fn assessment(mut self, known_in_air_s: Option<f64>, profile: &Profile) -> Assessment {
-        let by_gravity =
-            |a: &Finding, b: &Finding| b.level.cmp(&a.level).then(a.from_s.total_cmp(&b.from_s));
-        self.findings.sort_by(by_gravity);
+        self.keep_gravest();
         let share = |part: f64, whole: f64| (whole > 0.0).then(|| part / whole);
         let summary = Summary {
             in_air_s: known_in_air_s.unwrap_or(self.summary.in_air_s),
@@ -414,9 +482,11 @@ impl Flight {
         Assessment {
             verdict: self.verdict(&summary, profile),
             findings: self.findings,
+            findings_left_out: self.findings_left_out,
             summary,
             inputs: profile.inputs.iter().map(|i| i.name.clone()).collect(),
             steps: self.steps,
+            widened_step_s: self.widened_step_s,
         }
     }
 
@@ -454,9 +524,11 @@ impl Assessment {
         Assessment {
             verdict: Verdict::NotAvailable(reason.into()),
             findings: Vec::new(),
+            findings_left_out: 0,
             summary: Summary::default(),
             inputs: Vec::new(),
             steps: Vec::new(),
+            widened_step_s: None,
         }
     }
 }

@@ -213,6 +213,14 @@ pub(crate) fn pwm_range(parameters: &Parameters) -> Option<Range> {
     Some(range(radio, source))
 }
 
+/// Why MOT_SPIN_MIN and MOT_SPIN_MAX, where both are set, are no limits of commands.
+pub(crate) fn effective_doubt(parameters: &Parameters) -> Option<String> {
+    let [low, high] = ["MOT_SPIN_MIN", "MOT_SPIN_MAX"].map(|name| parameters.get(name));
+    let (low, high) = low.zip(high)?;
+    (!FRACTIONS.allow((low, high)))
+        .then(|| format!("MOT_SPIN_MIN/MAX, {low} and {high}, are no limits"))
+}
+
 /// The part of the range that is used in flight: MOT_SPIN_MIN to MOT_SPIN_MAX. Before firmware
 /// 3.4 it begins at THR_MIN per mille; firmware 3.3 goes up to the share MOT_THST_MAX of what
 /// is left, and 3.1 and 3.2 to MOT_TCRV_MAXPCT percent of all, if that curve is in use.
@@ -223,14 +231,11 @@ pub(crate) fn effective_range(parameters: &Parameters) -> Range {
         unit: "1",
         source,
     };
-    let spin = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX");
-    if let Some((low, high)) = spin {
-        return match FRACTIONS.allow((low, high)) {
-            true => range(low, high, "MOT_SPIN_MIN/MAX".into()),
-            false => crate::flight::whole_range(&format!(
-                "MOT_SPIN_MIN/MAX, {low} and {high}, are no limits"
-            )),
-        };
+    if let Some(doubt) = effective_doubt(parameters) {
+        return crate::flight::whole_range(&doubt);
+    }
+    if let Some((low, high)) = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX") {
+        return range(low, high, "MOT_SPIN_MIN/MAX".into());
     }
     let low = parameters.get("THR_MIN").map(|value| value / 1000.0);
     let Some(low) = low.filter(|&low| FRACTIONS.allow((low, 1.0))) else {

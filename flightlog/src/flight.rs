@@ -245,6 +245,9 @@ pub struct Flight {
     /// upper end is saturated although the range goes further.
     #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
     pub effective: Range,
+    /// Why the used part counts as the whole range although the log tells limits.
+    #[cfg_attr(feature = "serde", serde(rename = "effective_range_doubt"))]
+    pub effective_doubt: Option<String>,
     /// The motor commands.
     pub commands: Commands,
     /// All other signals.
@@ -277,6 +280,7 @@ impl Flight {
             geometry: None,
             range: None,
             effective: whole_range("the log names no tighter limits"),
+            effective_doubt: None,
             commands: Commands::default(),
             series: Vec::new(),
             modes: Vec::new(),

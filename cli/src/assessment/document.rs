@@ -27,8 +27,10 @@ pub(crate) struct Document<'a> {
     #[serde(flatten)]
     verdict: &'a Verdict,
     findings: Vec<FindingDocument<'a>>,
+    findings_left_out: u64,
     summary: &'a Summary,
     steps: Steps<'a>,
+    widened_step_s: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -45,6 +47,7 @@ struct Vehicle<'a> {
     motors: &'a [Motor],
     range: Option<&'a Range>,
     effective_range: &'a Range,
+    effective_range_doubt: Option<&'a str>,
 }
 
 /// What the verdict rests on beside the flight.
@@ -100,6 +103,7 @@ pub(crate) fn document<'a>(
             motors: &flight.motors,
             range: flight.range.as_ref(),
             effective_range: &flight.effective,
+            effective_range_doubt: flight.effective_doubt.as_deref(),
         },
         read: &flight.report,
         profile: Profile {
@@ -111,8 +115,10 @@ pub(crate) fn document<'a>(
         findings: findings
             .map(|finding| FindingDocument::new(finding, teller))
             .collect(),
+        findings_left_out: assessed.findings_left_out,
         summary: &assessed.summary,
         steps: assessed.steps_by_name(),
+        widened_step_s: assessed.widened_step_s,
     }
 }
 

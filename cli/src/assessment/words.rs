@@ -42,18 +42,20 @@ pub(crate) fn write(
     if !flight.report.is_clean() {
         indented(out, &damage(&flight.report))?;
     }
+    for note in notes(flight, assessed) {
+        indented(out, &note)?;
+    }
     if let Some(spans) = &flight.in_air
         && assessed.summary.in_air_s > 0.0
     {
-        let when: Vec<String> = spans
+        let when = spans
             .spans
             .iter()
-            .map(|s| format!("{:.1} to {:.1} s", s.start_s, s.end_s))
-            .collect();
+            .map(|s| format!("{:.1} to {:.1} s", s.start_s, s.end_s));
         let mut text = format!(
             "in the air {:.1} s ({})",
             assessed.summary.in_air_s,
-            when.join(", ")
+            first_spans(when)
         );
         if verbose {
             let rate_hz = flight.command_rate_hz().unwrap_or(0.0);
@@ -132,6 +134,45 @@ pub(crate) fn effective_range(effective: &flightlog::Range) -> String {
         number(100.0 * effective.low, 1),
         number(100.0 * effective.high, 1)
     )
+}
+
+/// Spans of time that are listed in a line.
+const MOST_SPANS: usize = 12;
+
+/// The first of many spans, the others counted.
+pub(crate) fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
+    let first: Vec<String> = spans.by_ref().take(MOST_SPANS).collect();
+    match spans.len() {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
+}
+
+/// What the verdict does not rest on: limits that are none, and what is left out of a log that is too large.
+pub(crate) fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(doubt) = &flight.effective_doubt {
+        notes.push(format!("the effective range is the whole range: {doubt}"));
+    }
+    let left_out = &flight.report.left_out;
+    if !left_out.is_empty() {
+        notes.push(format!("not all of the log is kept: {left_out} are left out"));
+    }
+    if assessed.findings_left_out > 0 {
+        notes.push(format!(
+            "the {} gravest findings are kept, {} others are left out",
+            assessed.findings.len(),
+            assessed.findings_left_out
+        ));
+    }
+    if let Some(step_s) = assessed.widened_step_s {
+        notes.push(format!(
+            "the steps are {} s apart, so that not more than {} are kept",
+            number(step_s, 6),
+            flagred::flight::MOST_STEPS
+        ));
+    }
+    notes
 }
 
 /// Most logs that are cut off inside a message, when the power goes, lose less than this.

@@ -18,6 +18,7 @@ pub(super) struct Document<'a> {
     geometry: Option<&'a Geometry>,
     range: Option<&'a Range>,
     effective_range: &'a Range,
+    effective_range_doubt: Option<&'a str>,
     clock: Clock<'a>,
     commands: Commands,
     statistics: Option<Statistics>,
@@ -66,6 +67,7 @@ impl<'a> Document<'a> {
             geometry: flight.geometry.as_ref(),
             range: flight.range.as_ref(),
             effective_range: &flight.effective,
+            effective_range_doubt: flight.effective_doubt.as_deref(),
             clock: Clock {
                 first_s: span_s.map(|span| span.0),
                 last_s: span_s.map(|span| span.1),

@@ -5,8 +5,12 @@ use std::io::{self, Write};
 use flightlog::{Flight, Intervals, Range};
 use fuzzy::drawing::visible;
 
-/// Texts of the autopilot that are shown; the JSON document has them all.
+use crate::assessment::words::first_spans;
+
+/// Texts of the autopilot, and boots, that are shown; the JSON document has more.
 const MESSAGES: usize = 12;
+/// Flight modes that are shown.
+const MODES: usize = 200;
 
 pub(super) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Result<()> {
     writeln!(out, "{}: {}", visible(name), flight.format)?;
@@ -23,7 +27,7 @@ pub(super) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Re
     line(out, "armed", &spans(flight.armed.as_ref()))?;
     line(out, "in the air", &spans(flight.in_air.as_ref()))?;
     lines(out, "statistics", statistics(flight))?;
-    lines(out, "modes", events(&flight.modes, usize::MAX))?;
+    lines(out, "modes", events(&flight.modes, MODES))?;
     lines(out, "messages", events(&flight.messages, MESSAGES))?;
     lines(out, "header", header(flight))?;
     lines(out, "signals", signals(flight))?;
@@ -132,12 +136,12 @@ fn clock(flight: &Flight) -> Vec<String> {
     let mut lines = vec![format!(
         "{first_s:.3} to {last_s:.3} s on the log's clock{utc}"
     )];
-    lines.extend(
-        flight
-            .boots_s
-            .iter()
-            .map(|boot_s| format!("the autopilot booted again at {boot_s:.3} s")),
-    );
+    let boots = flight.boots_s.iter().take(MESSAGES);
+    lines.extend(boots.map(|boot_s| format!("the autopilot booted again at {boot_s:.3} s")));
+    if flight.boots_s.len() > MESSAGES {
+        let more = flight.boots_s.len() - MESSAGES;
+        lines.push(format!("and {more} more boots (see --json)"));
+    }
     lines
 }
 
@@ -168,24 +172,20 @@ fn spans(intervals: Option<&Intervals>) -> String {
     let Some(intervals) = intervals else {
         return "NA".into();
     };
-    let spans: Vec<String> = intervals
-        .spans
-        .iter()
-        .map(|span| {
-            let end = if span.ends_with_log {
-                " (end of the log)"
-            } else {
-                ""
-            };
-            format!("{:.1} to {:.1}{end}", span.start_s, span.end_s)
-        })
-        .collect();
-    match spans.is_empty() {
-        true => format!("never ({})", intervals.rule),
-        false => format!(
+    let spans = intervals.spans.iter().map(|span| {
+        let end = if span.ends_with_log {
+            " (end of the log)"
+        } else {
+            ""
+        };
+        format!("{:.1} to {:.1}{end}", span.start_s, span.end_s)
+    });
+    match spans.len() {
+        0 => format!("never ({})", intervals.rule),
+        _ => format!(
             "{:.1} s: {} ({})",
             intervals.duration_s(),
-            spans.join(", "),
+            first_spans(spans),
             intervals.rule
         ),
     }
@@ -272,6 +272,9 @@ fn report(flight: &Flight) -> Vec<String> {
             .as_ref()
             .map(|reason| format!("reason: {reason}")),
     );
+    if !report.left_out.is_empty() {
+        lines.push(format!("left out: {}", report.left_out));
+    }
     lines
 }
 

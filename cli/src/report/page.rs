@@ -63,6 +63,7 @@ pub(crate) fn report(subject: &Subject, loaded: &Loaded) -> String {
         @if !flight.report.is_clean() {
             p.soft { (words::damage(&flight.report)) }
         }
+        @for note in words::notes(flight, assessed) { p.soft { (note) } }
         (findings(subject, model))
         (figures(subject))
         (section("Risk over time", "", risk, &timeline))
@@ -144,6 +145,7 @@ pub(crate) fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
             section id={ "flight" (i) } {
                 h2 { (badge(&subject.assessed.verdict)) " " (subject.title()) }
                 p.soft { (words::vehicle(&subject.flight)) }
+                @for note in words::notes(&subject.flight, &subject.assessed) { p.soft { (note) } }
                 (findings(subject, &loaded.model))
                 @if let Some(risk) = charts::risk(&subject.assessed, &loaded.estimator, timeline.stretch) {
                     (panel(&risk, timeline, None))

@@ -26,14 +26,18 @@ impl Serialize for Assessment {
             #[serde(flatten)]
             verdict: &'a Verdict,
             findings: &'a [Finding],
+            findings_left_out: u64,
             summary: &'a Summary,
             steps: Steps<'a>,
+            widened_step_s: Option<f64>,
         }
         let fields = Fields {
             verdict: &self.verdict,
             findings: &self.findings,
+            findings_left_out: self.findings_left_out,
             summary: &self.summary,
             steps: self.steps_by_name(),
+            widened_step_s: self.widened_step_s,
         };
         fields.serialize(serializer)
     }

@@ -305,6 +305,7 @@ impl<'o> Collector<'o> {
             flight.in_air = in_air.or(flight.in_air);
         }
         flight.effective = ardupilot::range_in_force(&self.parameters, &flight);
+        flight.effective_doubt = ardupilot::effective_doubt(&self.parameters);
         self.series
             .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.message == *name));
         let series = self.series.into_iter().map(|(_, series)| series);

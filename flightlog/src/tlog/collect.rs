@@ -235,9 +235,13 @@ impl Heard {
             let rule = "EXTENDED_SYS_STATE.landed_state, or HEARTBEAT.system_status, and armed";
             flight.in_air = intervals(&self.in_air, rule);
         }
-        flight.effective = match is_px4 {
-            true => known.effective,
-            false => ardupilot::range_in_force(&self.decoder.parameters, flight),
+        let parameters = &self.decoder.parameters;
+        (flight.effective, flight.effective_doubt) = match is_px4 {
+            true => (known.effective, None),
+            false => (
+                ardupilot::range_in_force(parameters, flight),
+                ardupilot::effective_doubt(parameters),
+            ),
         };
         flight.geometry = geometry::find(flight, &known.declared);
     }
