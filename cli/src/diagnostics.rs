@@ -1,6 +1,8 @@
 //! Findings in a text, drawn as a compiler draws them.
 
 use std::{
+    borrow::Cow,
+    cmp::Reverse,
     fs,
     io::{self, Read, Write},
     ops::Range,
@@ -11,9 +13,13 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use fuzzy::{
     diagnostic::{Diagnostic, Findings, Severity},
     drawing::{visible, visible_lines},
+    yaml::LARGEST_BYTES,
 };
 
 use crate::failure::Failure;
+
+/// Findings that are drawn of a file, errors first; the others are counted.
+const MOST_DRAWN: usize = 100;
 
 /// Draws findings with their lines. `colored` text goes through `anstream`, which drops colours that a terminal lacks.
 pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: bool) -> String {
@@ -23,22 +29,33 @@ pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: boo
         Renderer::plain()
     };
     let (shown_file, shown_text) = (visible(file), visible_lines(text));
-    let drawn = findings.iter().map(|finding| {
-        let finding = shown(finding, text);
+    let is_same = matches!(shown_text, Cow::Borrowed(_));
+    let mut first: Vec<&Diagnostic> = findings.iter().collect();
+    if first.len() > MOST_DRAWN {
+        first.sort_by_key(|finding| Reverse(finding.severity));
+        first.truncate(MOST_DRAWN);
+        first.sort_by_key(|finding| finding.span.start);
+    }
+    let drawn = first.into_iter().map(|finding| {
+        let finding = shown(finding, text, is_same);
         renderer.render(&report(&finding, &shown_file, &shown_text))
     });
     let mut drawn = drawn.collect::<Vec<_>>().join("\n\n");
     if !drawn.is_empty() {
         drawn.push('\n');
     }
+    if findings.len() > MOST_DRAWN {
+        let more = findings.len() - MOST_DRAWN;
+        drawn += &format!("\nand {more} more findings; `flagred check --json` lists them\n");
+    }
     drawn
 }
 
-/// A finding in the text as it is shown.
-fn shown(finding: &Diagnostic, text: &str) -> Diagnostic {
-    let at = |offset: usize| {
-        text.get(..offset)
-            .map_or(offset, |t| visible_lines(t).len())
+/// A finding in the text as it is shown, which may be the same.
+fn shown(finding: &Diagnostic, text: &str, is_same: bool) -> Diagnostic {
+    let at = |offset: usize| match text.get(..offset) {
+        Some(before) if !is_same => visible_lines(before).len(),
+        _ => offset,
     };
     let moved = |span: &Range<usize>| at(span.start)..at(span.end);
     let mut shown = finding.clone();
@@ -102,9 +119,6 @@ pub(crate) fn refuse(findings: &Findings, file: &str, text: &str) -> Failure {
     Failure::shown(3)
 }
 
-/// Rule sets and profiles larger than this are refused, in bytes: 10,000 rules take about a tenth of it.
-const LARGEST_TEXT: usize = 4_000_000;
-
 /// Reads a rule set or a profile, or standard input for `-`.
 pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     let shown = path.display();
@@ -116,8 +130,8 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     let bytes = bytes.map_err(|error| {
         Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
     })?;
-    if bytes.len() > LARGEST_TEXT {
-        let limit = LARGEST_TEXT / 1_000_000;
+    if bytes.len() > LARGEST_BYTES {
+        let limit = LARGEST_BYTES / 1_000_000;
         return Err(
             Failure::unreadable(format!("`{shown}` is larger than {limit} MB"))
                 .help("rule sets and profiles are small YAML files"),
@@ -136,7 +150,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
 fn read_up_to_limit(source: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     source
-        .take(LARGEST_TEXT as u64 + 1)
+        .take(LARGEST_BYTES as u64 + 1)
         .read_to_end(&mut bytes)?;
     Ok(bytes)
 }

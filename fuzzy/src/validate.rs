@@ -3,7 +3,12 @@
 //!
 //! This is the only place that decides it. Reading a rule set, checking one and compiling one ask the same function.
 
-use alloc::{collections::BTreeMap, format, string::String, vec::Vec};
+use alloc::{
+    collections::{BTreeMap, BTreeSet},
+    format,
+    string::String,
+    vec::Vec,
+};
 use core::ops::Range;
 
 use crate::{
@@ -15,6 +20,17 @@ use crate::{
     },
     rule::{Condition, DEEPEST_NESTING, Hedge, Name, Proposition},
 };
+
+/// Inputs and outputs of a model.
+const MOST_VARIABLES: usize = 1000;
+/// Terms of one input or output.
+const MOST_TERMS: usize = 1000;
+/// Terms of all inputs and outputs.
+const MOST_TERMS_IN_ALL: usize = 10_000;
+/// Rules of a model.
+const MOST_RULES: usize = 100_000;
+/// Errors that are told of a model; what follows is not looked at.
+const MOST_FINDINGS: usize = 1000;
 
 /// More samples than this add no accuracy and make an evaluation hang.
 const MOST_SAMPLES: usize = 10_000_000;
@@ -36,6 +52,9 @@ const MOST_SAMPLES: usize = 10_000_000;
 /// ```
 #[must_use]
 pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
+    if let Some(finding) = too_large(model, spans) {
+        return Vec::from([finding]);
+    }
     let inputs = model.inputs.iter().zip(&spans.inputs);
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let unread = inputs
@@ -92,6 +111,13 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     }
     for (i, rule) in model.rules.iter().enumerate() {
         let first = validator.findings.len();
+        if first >= MOST_FINDINGS {
+            let message = format!("rule {} and those after it are not looked at", i + 1);
+            let here = spans.rules.get(i).map_or(0..0, |rule| rule.whole.clone());
+            let help = format!("correct the {first} errors above first");
+            validator.error("too-many-errors", &here, message, &help);
+            break;
+        }
         let spans = spans.rules.get(i);
         validator.rule(
             &format!("rule {}", i + 1),
@@ -106,6 +132,34 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
         }
     }
     validator.findings
+}
+
+/// What a model has too much of: with more its analysis takes minutes, and nobody means it.
+fn too_large(model: &Model, spans: &Spans) -> Option<Diagnostic> {
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    let variables = || model.inputs.iter().chain(outputs.clone());
+    let all_spans = || spans.inputs.iter().chain(&spans.outputs);
+    let refuse = |here: Option<Range<usize>>, count: usize, most: usize, what: &str| {
+        (count > most).then(|| {
+            let message = format!("{count} {what} are more than {most}");
+            let here = here.unwrap_or_default();
+            Diagnostic::error("too-large", here, message).help("split the rule set into several")
+        })
+    };
+    let name = |index: usize| all_spans().nth(index).map(|spans| spans.name.clone());
+    let most = variables().enumerate().max_by_key(|(_, v)| v.terms.len());
+    let (widest, terms, of) = most.map_or((0, 0, ""), |(i, v)| (i, v.terms.len(), &*v.name));
+    let in_all = variables().map(|v| v.terms.len()).sum();
+    let rules = model.rules.len();
+    refuse(
+        name(0),
+        variables().count(),
+        MOST_VARIABLES,
+        "inputs and outputs",
+    )
+    .or_else(|| refuse(name(widest), terms, MOST_TERMS, &format!("terms of `{of}`")))
+    .or_else(|| refuse(name(0), in_all, MOST_TERMS_IN_ALL, "terms"))
+    .or_else(|| refuse(Some(spans.rules_key.clone()), rules, MOST_RULES, "rules"))
 }
 
 struct Validator<'m> {
@@ -298,7 +352,11 @@ impl<'m> Validator<'m> {
 
     /// The inputs that a linear function names.
     fn coefficients(&mut self, what: &str, coefficients: &[(String, f64)], spans: &TermSpans) {
+        let mut seen = BTreeSet::new();
         for (i, (input, _)) in coefficients.iter().enumerate() {
+            if self.findings.len() >= MOST_FINDINGS {
+                return;
+            }
             let here = spans.parameters.get(i).unwrap_or(&spans.name);
             if input == "constant" {
                 // In a rule set this key is the constant part.
@@ -308,7 +366,7 @@ impl<'m> Validator<'m> {
                 let finding = unknown("input", input, here, self.inputs.keys().copied());
                 self.findings.push(finding);
             }
-            if coefficients.iter().take(i).any(|(other, _)| other == input) {
+            if !seen.insert(input) {
                 let message = format!("{what} has two coefficients for `{input}`");
                 self.error("duplicate-key", here, message, "keep one of them");
             }

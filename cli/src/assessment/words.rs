@@ -156,7 +156,9 @@ pub(crate) fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     }
     let left_out = &flight.report.left_out;
     if !left_out.is_empty() {
-        notes.push(format!("not all of the log is kept: {left_out} are left out"));
+        notes.push(format!(
+            "not all of the log is kept: {left_out} are left out"
+        ));
     }
     if assessed.findings_left_out > 0 {
         notes.push(format!(

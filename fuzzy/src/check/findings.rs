@@ -10,7 +10,7 @@ use core::ops::Range;
 
 use super::{
     AgainstTrend, Coordinate, Counterexample, Direction, Hole, Jump, Reach, Report, TermOf,
-    Uncovered, shown, terms::outside,
+    Uncovered, shown, terms::is_outside,
 };
 use crate::{
     diagnostic::{Diagnostic, listed},
@@ -257,10 +257,7 @@ impl At<'_> {
             .inputs
             .iter()
             .find(|input| input.name == one.variable);
-        let outside = input.filter(|input| {
-            let is_outside = |i: &usize| input.terms.get(*i).is_some_and(|t| t.name == term);
-            outside(input).iter().any(is_outside)
-        });
+        let outside = input.filter(|input| is_outside(input, term));
         if let Some(Variable {
             name, low, high, ..
         }) = outside

@@ -1,7 +1,7 @@
 //! Rules compared with each other: contradictory and subsumed ones; and rules that can never fire.
 
 use alloc::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     string::{String, ToString},
     vec::Vec,
 };
@@ -105,7 +105,7 @@ fn canonical(condition: &Condition) -> String {
     }
 }
 
-/// Pairs of rules with one condition and different conclusions.
+/// Rules with the condition of an earlier one and another conclusion, each with the first that it contradicts.
 pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
     let mut numbers = Numbers::default();
     let mut by_parts: BTreeMap<Parts, Vec<usize>> = BTreeMap::new();
@@ -115,9 +115,19 @@ pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
     }
     let mut found = Vec::new();
     for rules in by_parts.values() {
-        for (k, &second) in rules.iter().enumerate() {
-            for &first in rules.get(..k).unwrap_or_default() {
-                found.extend(disagreement(model, first, second));
+        // Of rules with one conclusion the first stands for all.
+        let mut firsts: Vec<usize> = Vec::new();
+        let mut seen: BTreeSet<String> = BTreeSet::new();
+        for &second in rules {
+            let earlier = firsts.iter();
+            found.extend(
+                earlier
+                    .clone()
+                    .find_map(|&first| disagreement(model, first, second)),
+            );
+            let rule = model.rules.get(second).map(|rule| conclusion(&rule.rule));
+            if rule.is_some_and(|conclusion| seen.insert(conclusion)) {
+                firsts.push(second);
             }
         }
     }
@@ -142,6 +152,9 @@ fn disagreement(model: &Model, first: usize, second: usize) -> Option<Contradict
     })
 }
 
+/// Pairs of rules that are compared: all of 10,000 rules with one conclusion. Of more the first are.
+const MOST_COMPARISONS: usize = 100_000_000;
+
 /// Rules that add nothing to a wider one of the same conclusion. Equal rules are told elsewhere.
 pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
     let mut numbers = Numbers::default();
@@ -165,8 +178,13 @@ pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
             });
     }
     let mut found = Vec::new();
+    let mut left = MOST_COMPARISONS;
     for group in groups.values() {
         for narrow in group {
+            left = left.saturating_sub(group.len());
+            if left == 0 {
+                break;
+            }
             let wider = group.iter().find(|wide| {
                 wide.index != narrow.index && wide.weight >= narrow.weight && wide.includes(narrow)
             });

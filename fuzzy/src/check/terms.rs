@@ -102,19 +102,29 @@ pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> 
     found
 }
 
+/// Whether the term of that name is 0 on the whole range of its variable.
+pub(super) fn is_outside(variable: &Variable, term: &str) -> bool {
+    let values = axis::values(variable);
+    let mut terms = variable.terms.iter().filter(|one| one.name == term);
+    terms.any(|term| is_set(&term.membership_function) && is_zero(term, &values))
+}
+
+fn is_zero(term: &Term, values: &[f64]) -> bool {
+    values.iter().all(|&x| term.membership(x) == 0.0)
+}
+
 /// The terms that are 0 on the whole range of a variable.
-pub(super) fn outside(variable: &Variable) -> Vec<usize> {
+fn outside(variable: &Variable) -> Vec<usize> {
     let range = variable.high - variable.low;
     if range.is_nan() || range <= 0.0 {
         // Where the range could not be read, that is the finding.
         return Vec::new();
     }
     let values = axis::values(variable);
-    let is_zero = |term: &Term| values.iter().all(|&x| term.membership(x) == 0.0);
     let terms = variable.terms.iter().enumerate();
     // A linear or constant function of a weighted output is no fuzzy set, and a shape that could not be read is none yet.
     terms
-        .filter(|(_, term)| is_set(&term.membership_function) && is_zero(term))
+        .filter(|(_, term)| is_set(&term.membership_function) && is_zero(term, &values))
         .map(|(i, _)| i)
         .collect()
 }

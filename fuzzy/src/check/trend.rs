@@ -77,21 +77,23 @@ impl Table {
             .enumerate()
             .map(|(i, v)| (v.name.as_str(), i))
             .collect();
+        let middles: BTreeMap<&str, Option<f64>> = output
+            .terms
+            .iter()
+            .map(|term| (term.name.as_str(), middle(term, output)))
+            .collect();
         let mut rows = BTreeMap::new();
         for (rule, written) in model.rules.iter().enumerate() {
             let consequents = &written.rule.consequents;
             let Some(consequent) = consequents.iter().find(|c| c.output.text == output.name) else {
                 continue;
             };
-            let term = output
-                .terms
-                .iter()
-                .find(|t| t.name == consequent.term.text)?;
-            let Some(middle) = middle(term, output) else {
+            let term = consequent.term.text.as_str();
+            let Some(middle) = *middles.get(term)? else {
                 continue;
             };
             if let Some(key) = key(model, &names, &order, &written.rule.condition) {
-                let term = term.name.clone();
+                let term = String::from(term);
                 rows.insert(key, Row { rule, term, middle });
             }
         }

@@ -1,6 +1,7 @@
 //! Inputs and outputs: ranges, partitions, terms.
 
 use alloc::{
+    collections::BTreeMap,
     format,
     string::{String, ToString},
     vec::Vec,
@@ -212,6 +213,7 @@ fn partition(
     findings: &mut Vec<Diagnostic>,
 ) {
     let mut names: Vec<(&str, &Node)> = Vec::new();
+    let mut seen: BTreeMap<&str, &Node> = BTreeMap::new();
     let mut peaks: Option<Vec<f64>> = None;
     match &node.value {
         Value::List(items) => {
@@ -219,7 +221,7 @@ fn partition(
                 let Some(name) = item.words(&format!("a term of {what}"), findings) else {
                     continue;
                 };
-                if let Some((_, first)) = names.iter().find(|(other, _)| *other == name.text) {
+                if let Some(first) = seen.insert(&name.text, item) {
                     let (span, first) = (item.span.clone(), first.span.clone());
                     findings.push(duplicate("term", &name.text, what, span, first));
                     continue;

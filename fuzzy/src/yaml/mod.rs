@@ -22,6 +22,9 @@ mod write;
 #[doc(hidden)]
 pub use write::to_text;
 
+/// Bytes of a text; larger ones are refused. 100,000 short rules take less.
+pub const LARGEST_BYTES: usize = 4_000_000;
+
 /// Lists and mappings nested deeper than this are an error.
 const DEEPEST: usize = 64;
 
@@ -34,6 +37,12 @@ const MOST_FROM_ALIASES: usize = 100_000;
 /// The first syntax error; parsing stops there.
 #[doc(hidden)]
 pub fn read(text: &str) -> Result<Node, Findings> {
+    if text.len() > LARGEST_BYTES {
+        let message = alloc::format!("the text is larger than {} MB", LARGEST_BYTES / 1_000_000);
+        let finding = Diagnostic::error("yaml-too-large", 0..0, message);
+        let finding = finding.help("rule sets and profiles are small YAML files");
+        return Err(Findings::locate(alloc::vec![finding], ""));
+    }
     build(text).map_err(|finding| Findings::locate(alloc::vec![*finding], text))
 }
 
