@@ -17,6 +17,7 @@ use crate::{
     failure::{Exit, Failure},
     output::{self, Files, Stdout, number_or_cell},
     rule_set,
+    table::Bounded,
 };
 
 #[derive(clap::Args)]
@@ -31,6 +32,8 @@ pub(crate) struct Arguments {
 
 /// Rows that are evaluated at a time, split over the threads.
 const BLOCK: usize = 16_384;
+/// Bytes of text that are enough for a block: rows may be long.
+const BLOCK_BYTES: usize = 16_000_000;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Files::reading([&arguments.model, &arguments.points])?;
@@ -44,6 +47,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 .help("check the path")
         })?))
     };
+    let (input, left) = Bounded::new(input);
     // Fields are copied with their padding, and trimmed where they are read as numbers.
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
@@ -64,8 +68,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut rows = 0;
     loop {
         let mut block: Vec<csv::StringRecord> = Vec::with_capacity(BLOCK);
+        let mut bytes = 0;
         for record in reader.records().take(BLOCK) {
-            block.push(record.map_err(|error| unreadable(&error))?);
+            left.begin();
+            let record = record.map_err(|error| unreadable(&error))?;
+            bytes += record.as_slice().len();
+            block.push(record);
+            if bytes > BLOCK_BYTES {
+                break;
+            }
         }
         if block.is_empty() {
             break;

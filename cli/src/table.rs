@@ -1,8 +1,60 @@
 //! A table of numbers from a CSV file, every bad cell with its place.
 
-use std::{fs::File, io::Read, path::Path};
+use std::{
+    cell::Cell,
+    fs::File,
+    io::{self, Read},
+    path::Path,
+    rc::Rc,
+};
 
 use crate::failure::Failure;
+
+/// Bytes of a row, with the comments above it.
+const LONGEST_ROW: usize = 1_000_000;
+/// Cells of a table that is read whole.
+const MOST_CELLS: usize = 20_000_000;
+
+/// A source of rows of which each is bounded: a single one could fill the memory.
+pub(crate) struct Bounded<R> {
+    source: R,
+    left: Left,
+}
+
+/// The bytes that are left for a row.
+#[derive(Clone)]
+pub(crate) struct Left(Rc<Cell<usize>>);
+
+impl Left {
+    /// A row begins.
+    pub(crate) fn begin(&self) {
+        self.0.set(LONGEST_ROW);
+    }
+}
+
+impl<R: Read> Bounded<R> {
+    pub(crate) fn new(source: R) -> (Bounded<R>, Left) {
+        let left = Left(Rc::new(Cell::new(LONGEST_ROW)));
+        let bounded = Bounded {
+            source,
+            left: left.clone(),
+        };
+        (bounded, left)
+    }
+}
+
+impl<R: Read> Read for Bounded<R> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        let Left(left) = &self.left;
+        if left.get() == 0 {
+            let message = format!("a row is longer than {LONGEST_ROW} bytes");
+            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+        }
+        let count = self.source.read(to)?;
+        left.set(left.get().saturating_sub(count));
+        Ok(count)
+    }
+}
 
 /// A CSV file with a header.
 pub(crate) struct Table {
@@ -30,6 +82,7 @@ impl Table {
         } else {
             Box::new(File::open(path).map_err(|e| unreadable(&e).help("check the path"))?)
         };
+        let (source, left) = Bounded::new(source);
         let mut reader = csv::ReaderBuilder::new()
             .comment(Some(b'#'))
             .trim(csv::Trim::All)
@@ -45,8 +98,15 @@ impl Table {
                 .help("the first line names the columns, the others hold the rows"));
         }
         let mut records = Vec::new();
+        let mut cells = 0;
         for record in reader.records() {
+            left.begin();
             let record = record.map_err(|error| broken(&file, &error))?;
+            cells += record.len();
+            if cells > MOST_CELLS {
+                let message = format!("`{file}` has more than {MOST_CELLS} cells");
+                return Err(Failure::unreadable(message).help("use fewer rows or columns"));
+            }
             let line = record.position().map_or(0, csv::Position::line);
             records.push((line, record));
         }
