@@ -1,0 +1,533 @@
+//! Inputs of any size: memory and time stay bounded, and what is left out is told. Inputs are made as they are read; nothing
+//! large is stored.
+
+use std::{
+    fs,
+    io::{BufWriter, Write},
+    process::{Command, Output, Stdio},
+    time::{Duration, Instant},
+};
+
+use flagred_tests::{
+    Folder, flagred,
+    log_writer::{DataFlash, STATUSTEXT, Tlog, ULog, Value},
+};
+use serde_json::Value as Json;
+
+/// Virtual memory of a call, in kB; most of it is address space of threads and libraries that is never touched.
+#[cfg(unix)]
+const MEMORY_KB: u64 = 1_200_000;
+
+/// Runs the binary within bounded memory on what `write` gives to its standard input.
+#[cfg(unix)]
+fn run(arguments: &[&str], memory_kb: u64, write: impl FnOnce(&mut dyn Write) + Send) -> Output {
+    let binary = flagred();
+    let mut child = Command::new("sh")
+        .args(["-c", &format!("ulimit -v {memory_kb}; exec \"$0\" \"$@\"")])
+        .arg(binary.get_program())
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = BufWriter::new(child.stdin.take().unwrap());
+    std::thread::scope(|scope| {
+        scope.spawn(move || write(&mut input));
+        child.wait_with_output().unwrap()
+    })
+}
+
+/// The document that a call prints.
+#[cfg(unix)]
+fn json(command: &str, write: impl FnOnce(&mut dyn Write) + Send) -> Json {
+    let output = run(&[command, "--json", "-"], MEMORY_KB, write);
+    assert!(output.stdout.len() < 40_000_000, "{}", output.stdout.len());
+    serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&output.stderr)))
+}
+
+/// A copter that is defined, with its first messages.
+fn copter() -> DataFlash {
+    let mut log = DataFlash::new();
+    log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
+    log.define(130, "RCOU", "QHHHH", "TimeUS,C1,C2,C3,C4");
+    log.define(132, "EV", "QB", "TimeUS,Id");
+    log.define(133, "MSG", "QZ", "TimeUS,Message");
+    log.define(134, "MODE", "QMBB", "TimeUS,Mode,ModeNum,Rsn");
+    log.write("MSG", [1e6.into(), "ArduCopter V4.5.7 (2a3dc4b7)".into()]);
+    for motor in 1..=4 {
+        let name = format!("SERVO{motor}_FUNCTION");
+        log.parameter(1e6, &name, f64::from(32 + motor));
+    }
+    log.parameter(1e6, "MOT_PWM_MIN", 1000.0);
+    log.parameter(1e6, "MOT_PWM_MAX", 2000.0);
+    log
+}
+
+/// What `more` adds to a log.
+fn added(log: &mut DataFlash, more: impl FnOnce(&mut DataFlash)) -> Vec<u8> {
+    log.bytes.clear();
+    more(log);
+    std::mem::take(&mut log.bytes)
+}
+
+#[cfg(unix)]
+#[test]
+fn texts_modes_and_parameters_of_a_log_are_counted_beyond_the_first() {
+    let log = json("inspect", |out| {
+        let mut log = copter();
+        out.write_all(&log.bytes).unwrap();
+        let text = added(&mut log, |log| {
+            log.write("MSG", [1.1e6.into(), "all is well".into()]);
+        });
+        for _ in 0..200_000 {
+            out.write_all(&text).unwrap();
+        }
+        for i in 0..30_000 {
+            let message = added(&mut log, |log| {
+                let time = Value::Number(1.2e6 + f64::from(i));
+                let mode = Value::Number(f64::from(i % 3));
+                log.write("MODE", [time, mode, mode, 0.0.into()]);
+                log.parameter(1.2e6, &format!("P{i}"), 1.0);
+            });
+            out.write_all(&message).unwrap();
+        }
+    });
+    let left_out = &log["read"]["left_out"];
+    assert_eq!(left_out["texts"], 190_001);
+    assert_eq!(left_out["modes"], 20_000);
+    assert_eq!(left_out["parameters"], 30_006 - 16_384);
+    assert_eq!(left_out["messages"], 0);
+    assert_eq!(log["messages"].as_array().unwrap().len(), 10_000);
+    assert_eq!(log["modes"].as_array().unwrap().len(), 10_000);
+}
+
+/// `count` flights of a second each.
+fn flights(out: &mut dyn Write, count: u32) {
+    let mut log = copter();
+    out.write_all(&log.bytes).unwrap();
+    let mut t_us = 1e6;
+    for _ in 0..count {
+        let flight = added(&mut log, |log| {
+            log.write("EV", [t_us.into(), 10.0.into()]);
+            log.write("EV", [t_us.into(), 28.0.into()]);
+            for step in 0..20 {
+                t_us += 1e5;
+                let pulse = Value::Number(if step < 10 { 1500.0 } else { 1000.0 });
+                log.write("RCOU", [t_us.into(), pulse, pulse, pulse, pulse]);
+                if step == 10 {
+                    log.write("EV", [t_us.into(), 18.0.into()]);
+                }
+            }
+        });
+        out.write_all(&flight).unwrap();
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn take_offs_end_the_flight_that_is_kept_and_all_outputs_say_so() {
+    let folder = Folder::new();
+    let html = folder.at("report.html");
+    let log = json("assess", |out| flights(out, 4_000));
+    let left_out = log["read"]["left_out"]["messages"].as_u64().unwrap();
+    assert!((10_000..20_000).contains(&left_out), "{left_out}");
+    let said = format!("not all of the log is kept: {left_out} messages");
+    let arguments = ["assess", "-", "--html", &html];
+    let output = run(&arguments, MEMORY_KB, |out| flights(out, 4_000));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains(&said), "{text}");
+    assert!(text.contains(" and 3321 more)"), "{text}");
+    assert!(text.len() < 10_000, "{}", text.len());
+    let html = fs::read_to_string(html).unwrap();
+    assert!(html.contains(&said));
+    assert!(html.len() < 3_000_000, "{}", html.len());
+    // What is left out must not be learned from.
+    let log = folder.at("flights.bin");
+    flights(&mut fs::File::create(&log).unwrap(), 4_000);
+    let rows = flagred()
+        .args(["dataset", &log, "--output", &folder.at("rows.csv")])
+        .output()
+        .unwrap();
+    assert_eq!(rows.status.code(), Some(3), "{rows:?}");
+}
+
+/// Without events the commands tell, and may do so at every row.
+#[cfg(unix)]
+#[test]
+fn changes_that_only_the_commands_tell_are_counted() {
+    let log = json("inspect", |out| {
+        let mut log = copter();
+        out.write_all(&log.bytes).unwrap();
+        for i in 0..30_000 {
+            let row = added(&mut log, |log| {
+                let pulse = Value::Number(if i % 2 == 0 { 1000.0 } else { 1500.0 });
+                let time = Value::Number(1e6 + 2e6 * f64::from(i));
+                log.write("RCOU", [time, pulse, pulse, pulse, pulse]);
+            });
+            out.write_all(&row).unwrap();
+        }
+    });
+    assert_eq!(log["read"]["left_out"]["changes"], 2 * 20_000);
+    let spans = log["in_air"]["spans"].as_array().unwrap();
+    assert_eq!(spans.len(), 5_000);
+    assert!(spans[4_999]["end_s"].as_f64().unwrap() < 20_010.0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_line_of_a_text_log_is_bounded() {
+    let log = json("inspect", |out| {
+        let log = copter();
+        out.write_all(log.text.as_bytes()).unwrap();
+        out.write_all(b"MSG, 1000000, ").unwrap();
+        for _ in 0..50 {
+            out.write_all(&[b'a'; 1_000_000]).unwrap();
+        }
+        // What follows in the same line is no message of its own.
+        out.write_all(b"\nMSG, 1000000, the next line\n").unwrap();
+    });
+    assert_eq!(log["read"]["bad_messages"], 1);
+    assert_eq!(log["read"]["reason"], "a line longer than 4096 bytes");
+    assert!(log["read"]["skipped_bytes"].as_u64().unwrap() > 50_000_000);
+    assert_eq!(log["messages"][1]["what"], "the next line");
+}
+
+#[cfg(unix)]
+#[test]
+fn texts_and_definitions_of_a_ulog_are_bounded() {
+    let log = json("inspect", |out| {
+        let mut log = ULog::new(0);
+        for i in 0..60 {
+            log.define(&format!("topic{i}:{}", "uint64_t timestamp;".repeat(1000)));
+        }
+        log.define("last:uint64_t timestamp;");
+        for _ in 0..5_000 {
+            log.announce(0, 1, "topic0");
+        }
+        let mut text = vec![b'6'];
+        text.extend(1_000_000_u64.to_le_bytes());
+        text.extend(b"all is well");
+        for _ in 0..50_000 {
+            log.message(b'L', &text);
+        }
+        out.write_all(&log.bytes).unwrap();
+    });
+    assert_eq!(log["read"]["left_out"]["texts"], 40_000);
+    assert_eq!(
+        log["read"]["reason"],
+        "definitions of more than 1 MB in all"
+    );
+    // Those of 8 definitions and of all announcements but the first 4096.
+    assert_eq!(log["read"]["bad_messages"], 8 + 904);
+}
+
+#[cfg(unix)]
+#[test]
+fn texts_of_a_telemetry_log_are_bounded() {
+    let log = json("inspect", |out| {
+        let mut log = Tlog::default();
+        let mut text = vec![6];
+        text.extend(b"all is well");
+        for i in 0..12_000 {
+            let stamp_us = 1_700_000_000_000_000 + i;
+            log.packet(stamp_us, 1, (1, 1), STATUSTEXT, &text);
+        }
+        out.write_all(&log.bytes).unwrap();
+    });
+    assert_eq!(log["read"]["left_out"]["texts"], 2_000);
+    assert_eq!(log["messages"].as_array().unwrap().len(), 10_000);
+}
+
+/// A flight of which a step is asked for at every sample.
+#[cfg(unix)]
+fn long_flight(out: &mut dyn Write, rows: u32) {
+    out.write_all(b"# pwm_low_us: 1000\n# pwm_high_us: 2000\nt_s,pwm1,pwm2,pwm3,pwm4\n")
+        .unwrap();
+    for i in 0..rows {
+        let t_s = f64::from(i) * 0.01;
+        writeln!(out, "{t_s},{},1500,1400,1600", 1400 + i % 200).unwrap();
+    }
+}
+
+#[cfg(unix)]
+#[test]
+#[ignore = "takes a minute in a debug build"]
+fn steps_are_further_apart_where_there_are_too_many() {
+    let arguments = ["assess", "--json", "--step", "0", "-"];
+    let output = run(&arguments, MEMORY_KB, |out| long_flight(out, 300_000));
+    let log: Json = serde_json::from_slice(&output.stdout).unwrap();
+    let steps = log["steps"].as_array().unwrap();
+    assert!(
+        (125_000..=250_000).contains(&steps.len()),
+        "{}",
+        steps.len()
+    );
+    assert_eq!(log["widened_step_s"], 0.02);
+}
+
+#[cfg(unix)]
+#[test]
+#[ignore = "reads 1.5 GB: a minute in a release build"]
+fn rows_at_one_time_end_the_flight_that_is_kept() {
+    for step_us in [0.0, 1.0] {
+        let log = json("inspect", |out| {
+            let mut log = copter();
+            out.write_all(&log.bytes).unwrap();
+            for i in 0..40_000_000 {
+                let row = added(&mut log, |log| {
+                    let time = Value::Number(1e6 + step_us * f64::from(i));
+                    let pulse = Value::Number(1500.0);
+                    log.write("RCOU", [time, pulse, pulse, pulse, pulse]);
+                });
+                out.write_all(&row).unwrap();
+            }
+        });
+        let rows = log["commands"]["rows"].as_u64().unwrap();
+        assert_eq!(rows, (1_u64 << 26).div_ceil(5));
+        assert_eq!(log["read"]["left_out"]["messages"], 40_000_000 - rows);
+    }
+}
+
+/// Spin limits that are none are told: with the whole range a motor at its limit may go unseen.
+#[test]
+fn limits_that_are_none_are_told() {
+    let folder = Folder::new();
+    for (low, high) in [(0.9, 0.2), (0.5, 0.55)] {
+        let mut log = copter();
+        log.parameter(1e6, "MOT_SPIN_MIN", low);
+        log.parameter(1e6, "MOT_SPIN_MAX", high);
+        let path = folder.file("spin.bin", &log.bytes);
+        let output = flagred().args(["assess", &path]).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        let said = "the effective range is the whole range: MOT_SPIN_MIN/MAX, ";
+        assert!(text.contains(said), "{text}");
+        assert!(text.contains(", are no limits"), "{text}");
+    }
+}
+
+/// A rule set with so many inputs, terms of each and rules, each rule about two inputs.
+fn rule_set(
+    inputs: usize,
+    terms: usize,
+    rules: usize,
+    conclusion: impl Fn(usize) -> usize,
+) -> String {
+    let names: Vec<String> = (0..terms).map(|term| format!("t{term}")).collect();
+    let names = names.join(", ");
+    let mut text = "fuzzy: 1\nname: large\ninputs:\n".to_owned();
+    for input in 0..inputs {
+        text += &format!("  x{input}: {{range: [0, 1], partition: [{names}]}}\n");
+    }
+    text += "outputs:\n  y: {range: [0, 1], partition: [t0, t1, t2, t3]}\nrules:\n";
+    for rule in 0..rules {
+        let (a, b) = (rule % inputs, (rule / inputs + rule) % inputs);
+        let (s, t) = (rule / 7 % terms, rule / 11 % terms);
+        let and = if a == b {
+            String::new()
+        } else {
+            format!(" AND x{b} IS t{t}")
+        };
+        text += &format!("  - IF x{a} IS t{s}{and} THEN y IS t{}\n", conclusion(rule));
+    }
+    text
+}
+
+#[test]
+fn large_rule_sets_are_checked_in_time() {
+    let folder = Folder::new();
+    let wrong = rule_set(2, 2, 20_000, |_| 9);
+    for (name, text, code, said) in [
+        (
+            "10,000 rules",
+            rule_set(20, 10, 10_000, |rule| rule % 4),
+            0,
+            "more findings; `flagred",
+        ),
+        (
+            "equal rules",
+            rule_set(1, 2, 10_000, |_| 0),
+            0,
+            "more findings; `flagred",
+        ),
+        (
+            "contradictory rules",
+            rule_set(1, 2, 10_000, |rule| rule % 4),
+            0,
+            "more findings; `flagred",
+        ),
+        ("wrong rules", wrong, 1, "1001 errors"),
+        (
+            "100,000 terms",
+            rule_set(1, 100_000, 2, |_| 0),
+            1,
+            "100000 terms of `x0` are more than 1000",
+        ),
+        (
+            "terms in all",
+            rule_set(20, 1000, 2, |_| 0),
+            1,
+            "20004 terms are more than 10000",
+        ),
+        (
+            "inputs",
+            rule_set(20_000, 2, 2, |_| 0),
+            1,
+            "20001 inputs and outputs are more than 1000",
+        ),
+        (
+            "rules",
+            rule_set(1, 2, 100_001, |_| 0),
+            1,
+            "100001 rules are more than 100000",
+        ),
+    ] {
+        let path = folder.file("large.yaml", text);
+        let started = Instant::now();
+        let output = flagred().args(["check", &path]).output().unwrap();
+        // A debug build on a busy machine; where the time was quadratic these took from minutes to hours.
+        assert!(
+            started.elapsed() < Duration::from_secs(30),
+            "{name}: {:?}",
+            started.elapsed()
+        );
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{name}");
+        assert!(
+            text.contains(said),
+            "{name}: {}",
+            &text[text.len().saturating_sub(500)..]
+        );
+        assert!(text.len() < 200_000, "{name}: {}", text.len());
+    }
+}
+
+#[test]
+fn large_rule_sets_are_used_in_time() {
+    let folder = Folder::new();
+    let inputs = 20;
+    let rules = folder.file("large.yaml", rule_set(inputs, 10, 10_000, |rule| rule % 4));
+    let names: Vec<String> = (0..inputs).map(|input| format!("x{input}")).collect();
+    let values: Vec<String> = names.iter().map(|name| format!("{name}=0.4")).collect();
+    let points = format!("{}\n{}\n", names.join(","), vec!["0.4"; inputs].join(","));
+    let points = folder.file("points.csv", points);
+    let explain: Vec<&str> = ["explain", &rules]
+        .into_iter()
+        .chain(values.iter().map(String::as_str))
+        .collect();
+    for arguments in [&["eval", &rules, &points][..], &explain] {
+        let started = Instant::now();
+        let output = flagred().args(arguments).output().unwrap();
+        assert!(output.status.success(), "{output:?}");
+        assert!(
+            started.elapsed() < Duration::from_secs(30),
+            "{:?}",
+            started.elapsed()
+        );
+    }
+}
+
+/// A coefficient for the same input again and again, and a topic of names that are all the same.
+#[test]
+fn names_that_repeat_are_found_in_time() {
+    let folder = Folder::new();
+    let repeated = "x: 1, ".repeat(60_000);
+    let text = format!(
+        "fuzzy: 1\nname: repeated\ninputs: {{x: {{range: [0, 1], partition: [low, high]}}}}\n\
+         outputs: {{y: {{range: [0, 1], defuzzifier: weighted_average, terms: {{a: {{linear: {{{repeated}}}}}}}}}}}\n\
+         rules: [IF x IS low THEN y IS a]\n"
+    );
+    let path = folder.file("repeated.yaml", text);
+    let started = Instant::now();
+    let output = flagred().args(["check", &path]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(output.stdout.len() < 200_000);
+    assert!(
+        started.elapsed() < Duration::from_secs(30),
+        "{:?}",
+        started.elapsed()
+    );
+}
+
+/// Every reader of tables: one cell without end, and a header of many columns.
+#[cfg(unix)]
+#[test]
+fn tables_are_bounded() {
+    let folder = Folder::new();
+    let rules = folder.file("large.yaml", rule_set(1, 2, 2, |_| 0));
+    let output = folder.at("learned.yaml");
+    for arguments in [
+        &["eval", &rules, "-"][..],
+        &["learn", &rules, "-", "--output", &output],
+        &["evaluate", "-"],
+    ] {
+        for start in ["x0,y\n0.5,", "x0,y\n0.5,\"", "x0"] {
+            let output = run(arguments, 600_000, |out| {
+                // The reader may end before all is written.
+                let _ = out.write_all(start.as_bytes());
+                for _ in 0..1000 {
+                    if out.write_all(&[b'5'; 1_000_000]).is_err() {
+                        return;
+                    }
+                }
+            });
+            let told = String::from_utf8(output.stderr).unwrap();
+            assert_ne!(output.status.code(), Some(0), "{arguments:?}: {told}");
+            assert!(output.status.code().is_some(), "{arguments:?}: {told}");
+        }
+    }
+    let wide: Vec<String> = (0..100_000).map(|column| format!("c{column}")).collect();
+    let header = wide.join(",");
+    let points = folder.file(
+        "wide.csv",
+        format!("x0,{header}\n0.5{}\n", ",1".repeat(100_000)),
+    );
+    let started = Instant::now();
+    let evaluated = flagred().args(["eval", &rules, &points]).output().unwrap();
+    assert!(evaluated.status.success(), "{evaluated:?}");
+    assert!(
+        started.elapsed() < Duration::from_secs(30),
+        "{:?}",
+        started.elapsed()
+    );
+}
+
+/// The rows of docs/limits.md that name a constant.
+#[test]
+fn the_table_of_limits_agrees_with_the_constants() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    let table = fs::read_to_string(format!("{root}/docs/limits.md")).unwrap();
+    let mut compared = 0;
+    for row in table.lines().filter(|line| line.starts_with("| ")) {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let Some((path, name)) = cells.last().and_then(|cell| {
+            let (path, name) = cell
+                .strip_prefix('`')?
+                .strip_suffix('`')?
+                .split_once("` `")?;
+            path.ends_with(".rs").then_some((path, name))
+        }) else {
+            continue;
+        };
+        let source = fs::read_to_string(format!("{root}/{path}")).unwrap();
+        let line = source
+            .lines()
+            .find(|line| line.contains(&format!("const {name}: ")))
+            .unwrap_or_else(|| panic!("{path} has no {name}"));
+        let value = line.split_once("= ").unwrap().1.trim_end_matches(';');
+        let value = match value.split_once(" << ") {
+            Some(("1", bits)) => 1_u64 << bits.parse::<u32>().unwrap(),
+            _ => value.replace('_', "").parse().unwrap(),
+        };
+        let told = &cells[cells.len() - 3];
+        let digits: String = told
+            .chars()
+            .take_while(|c| c.is_ascii_digit() || *c == ',')
+            .filter(char::is_ascii_digit)
+            .collect();
+        assert_eq!(digits.parse(), Ok(value), "{row}");
+        compared += 1;
+    }
+    assert!(compared > 40, "{compared}");
+}
