@@ -31,6 +31,7 @@ Examples:
   flagred check my-rules.yaml
   flagred check my-rules.yaml --monotone temperature:increasing
   flagred check --deny warnings rules/*.yaml
+  flagred check my-profile.yaml                  a profile with its rule set
   flagred check --json my-rules.yaml";
 
 pub(crate) const CONVERT: &str = "\
@@ -91,12 +92,20 @@ Examples:
   flagred map my-rules.yaml --surface --svg surface.svg
   flagred map my-rules.yaml --activations        the dominant rule of each cell
   flagred map my-rules.yaml --fix battery=20 --x margin:0..0.3 --y spread
-  flagred map my-rules.yaml --csv --fill none";
+  flagred map my-profile.yaml                    interpolated as the profile says
+  flagred map my-rules.yaml --csv";
 
 pub(crate) const NEW: &str = "\
 Examples:
   flagred new my-rules
+  flagred new my-profile --profile
   flagred new --output - my-rules";
+
+pub(crate) const SCHEMA: &str = "\
+Examples:
+  flagred schema rule-set > rule-set-schema.json
+  flagred schema profile
+  flagred schema assess";
 
 pub(crate) const COMPLETIONS: &str = "\
 Examples:

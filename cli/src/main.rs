@@ -26,6 +26,7 @@ mod parallel;
 mod profile;
 mod report;
 mod rule_set;
+mod schema;
 mod table;
 mod watch;
 
@@ -59,10 +60,10 @@ enum Command {
     /// Convert a flight log to flight CSV
     #[command(after_help = help::CONVERT)]
     Convert(convert::Arguments),
-    /// Write a commented rule set to start from
+    /// Write a commented rule set or profile to start from
     #[command(after_help = help::NEW)]
     New(new::Arguments),
-    /// Find errors, gaps and conflicts in a rule set
+    /// Find errors, gaps and conflicts in a rule set, and whether a profile fits its rule set
     #[command(after_help = help::CHECK)]
     Check(check::Arguments),
     /// Explain the outputs of a rule set at one point: degrees, rules, result
@@ -86,6 +87,9 @@ enum Command {
     /// Export a profile and its rule set as Rust or C constants for firmware
     #[command(after_help = help::EXPORT)]
     Export(export::Arguments),
+    /// Print the JSON Schema of a format: rule set, profile, or what a command prints
+    #[command(after_help = help::SCHEMA)]
+    Schema(schema::Arguments),
     /// Print completions for a shell
     #[command(after_help = help::COMPLETIONS)]
     Completions(completions::Arguments),
@@ -110,6 +114,7 @@ impl Command {
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Evaluate(arguments) => evaluate::run(&arguments),
             Command::Export(arguments) => export::run(&arguments),
+            Command::Schema(arguments) => schema::run(&arguments),
             Command::Completions(arguments) => completions::run(&arguments),
             Command::Man(arguments) => man::run(&arguments),
         }
