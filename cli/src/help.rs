@@ -72,6 +72,15 @@ Examples:
   flagred export --c --output profile.h flagred-paper
   flagred export --c my-profile.yaml";
 
+pub(crate) const FMT: &str = "\
+Examples:
+  flagred fmt my-rules.yaml
+  flagred fmt --check rules/*.yaml               in a test: 1 where a layout differs";
+
+pub(crate) const LSP: &str = "\
+Examples:
+  flagred lsp                                    started by the editor: see docs/editors.md";
+
 pub(crate) const INSPECT: &str = "\
 Examples:
   flagred inspect flight.bin

@@ -15,9 +15,11 @@ mod explain;
 mod export;
 mod failure;
 mod flights;
+mod fmt;
 mod help;
 mod inspect;
 mod learn;
+mod lsp;
 mod man;
 mod map;
 mod new;
@@ -72,6 +74,12 @@ enum Command {
     /// Evaluate a rule set at the points of a CSV file
     #[command(after_help = help::EVAL)]
     Eval(eval::Arguments),
+    /// Give rule sets and profiles one layout; comments stay
+    #[command(after_help = help::FMT)]
+    Fmt(fmt::Arguments),
+    /// Serve an editor: findings, completion, renaming and more for rule sets and profiles (language server protocol)
+    #[command(after_help = help::LSP)]
+    Lsp(lsp::Arguments),
     /// Draw the output of a rule set over its inputs
     #[command(after_help = help::MAP)]
     Map(map::Arguments),
@@ -109,6 +117,8 @@ impl Command {
             Command::Check(arguments) => check::run(&arguments),
             Command::Explain(arguments) => explain::run(&arguments),
             Command::Eval(arguments) => eval::run(&arguments),
+            Command::Fmt(arguments) => fmt::run(&arguments),
+            Command::Lsp(arguments) => lsp::run(&arguments),
             Command::Map(arguments) => map::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),

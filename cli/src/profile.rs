@@ -124,18 +124,18 @@ fn file_name(path: &Path) -> String {
     file.to_string_lossy().into_owned()
 }
 
-/// Whether a text is meant to be a profile: whether it has the key `flagred`.
+/// Whether a text is meant to be a profile: whether it has the key `flagred`, also where it is no YAML yet.
 pub(crate) fn is_profile(text: &str) -> bool {
     let tree = fuzzy::yaml::read(text).map(|tree| tree.value);
     let Ok(Value::Mapping(pairs)) = tree else {
-        return false;
+        return text.lines().any(|line| line.starts_with("flagred:"));
     };
     let mut keys = pairs.iter().map(|(key, _)| &key.value);
     keys.any(|key| matches!(key, Value::Scalar(key) if key.text == "flagred"))
 }
 
 /// The file and the text of the rule set that a profile names.
-fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String, String), Failure> {
+pub(crate) fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String, String), Failure> {
     let beside = folder.map(|folder| folder.join(&profile.rules));
     if let Some(path) = beside.filter(|path| path.is_file()) {
         if !is_allowed(&path, folder) {
