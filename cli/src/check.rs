@@ -1,7 +1,11 @@
-//! `flagred check`: errors, gaps and conflicts in a rule set.
+//! `flagred check`: errors, gaps and conflicts in a rule set; whether a profile fits its rule set.
 
-use std::{io::Write, path::PathBuf};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
 
+use flagred::profile::Profile;
 use fuzzy::{
     check,
     diagnostic::{Diagnostic, Findings, Severity},
@@ -14,12 +18,12 @@ use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
     output::{Files, Stdout},
-    rule_set::profile_instead,
+    profile,
 };
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Rule sets in YAML; `-` is standard input
+    /// Rule sets or profiles in YAML; `-` is standard input
     #[arg(required = true, value_name = "MODEL")]
     models: Vec<PathBuf>,
     /// Print one JSON document per rule set instead of text
@@ -57,8 +61,11 @@ fn degree(text: &str) -> Result<f64, String> {
 struct Json<'a> {
     schema: &'static str,
     file: &'a str,
-    /// Absent where the rule set has errors.
+    /// The name of the rule set; absent where it has errors, and of a profile.
     model: Option<&'a str>,
+    /// The name of the profile; absent where it cannot be read, and of a rule set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    profile: Option<String>,
     findings: &'a [Diagnostic],
     report: Option<&'a check::Report>,
 }
@@ -78,12 +85,14 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     for path in &arguments.models {
         let text = read_text(path)?;
         let file = path.display().to_string();
-        let (findings, analysed) = examine(&text, arguments)?;
-        if analysed.is_none()
-            && let Some(failure) = profile_instead(&file, &text)
-        {
-            return Err(failure);
-        }
+        let mut profile = None;
+        let (findings, analysed) = if profile::is_profile(&text) {
+            let (name, findings) = examine_profile(path, &text)?;
+            profile = name;
+            (findings, None)
+        } else {
+            examine(&text, arguments)?
+        };
         let mut out = Stdout::text();
         if arguments.json {
             let json = Json {
@@ -92,6 +101,7 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                 model: analysed
                     .as_ref()
                     .map(|(document, _)| document.model.name.as_str()),
+                profile,
                 findings: &findings.0,
                 report: analysed.as_ref().map(|(_, report)| report),
             };
@@ -126,6 +136,19 @@ fn examine(
         Failure::usage(format!("--monotone: {}", finding.message)).help_if(finding.help)
     })?;
     Ok((findings, report.map(|report| (document, report))))
+}
+
+/// The name of a profile, and all findings about it and the rule set that it names. A rule set with errors is refused:
+/// they are in another file.
+fn examine_profile(path: &Path, text: &str) -> Result<(Option<String>, Findings), Failure> {
+    let profile = match text.parse::<Profile>() {
+        Ok(profile) => profile,
+        Err(findings) => return Ok((None, findings)),
+    };
+    let folder = (path != Path::new("-")).then(|| path.parent()).flatten();
+    let (model, _) = profile::model(&profile, folder)?;
+    let (findings, _) = profile::examine(text, &model);
+    Ok((Some(profile.name), findings))
 }
 
 fn summary(findings: &Findings) -> String {

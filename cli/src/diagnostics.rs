@@ -111,11 +111,16 @@ fn command(code: &str) -> Option<&'static str> {
     }
 }
 
-/// Draws the findings that make a file unusable on standard error, and returns the exit code.
-pub(crate) fn refuse(findings: &Findings, file: &str, text: &str) -> Failure {
+/// Draws findings on standard error.
+pub(crate) fn show(findings: &Findings, file: &str, text: &str) {
     let mut err = anstream::stderr().lock();
     // Nothing is left to tell a user whose standard error is closed.
     let _ = write!(err, "{}", draw(&findings.0, file, text, true));
+}
+
+/// Draws the findings that make a file unusable on standard error, and returns the exit code.
+pub(crate) fn refuse(findings: &Findings, file: &str, text: &str) -> Failure {
+    show(findings, file, text);
     Failure::shown(3)
 }
 

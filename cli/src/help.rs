@@ -31,6 +31,7 @@ Examples:
   flagred check my-rules.yaml
   flagred check my-rules.yaml --monotone temperature:increasing
   flagred check --deny warnings rules/*.yaml
+  flagred check my-profile.yaml                  a profile with its rule set
   flagred check --json my-rules.yaml";
 
 pub(crate) const CONVERT: &str = "\
@@ -71,6 +72,15 @@ Examples:
   flagred export --c --output profile.h flagred-paper
   flagred export --c my-profile.yaml";
 
+pub(crate) const FMT: &str = "\
+Examples:
+  flagred fmt my-rules.yaml
+  flagred fmt --check rules/*.yaml               in a test: 1 where a layout differs";
+
+pub(crate) const LSP: &str = "\
+Examples:
+  flagred lsp                                    started by the editor: see docs/editors.md";
+
 pub(crate) const INSPECT: &str = "\
 Examples:
   flagred inspect flight.bin
@@ -91,12 +101,20 @@ Examples:
   flagred map my-rules.yaml --surface --svg surface.svg
   flagred map my-rules.yaml --activations        the dominant rule of each cell
   flagred map my-rules.yaml --fix battery=20 --x margin:0..0.3 --y spread
-  flagred map my-rules.yaml --csv --fill none";
+  flagred map my-profile.yaml                    interpolated as the profile says
+  flagred map my-rules.yaml --csv";
 
 pub(crate) const NEW: &str = "\
 Examples:
   flagred new my-rules
+  flagred new my-profile --profile
   flagred new --output - my-rules";
+
+pub(crate) const SCHEMA: &str = "\
+Examples:
+  flagred schema rule-set > rule-set-schema.json
+  flagred schema profile
+  flagred schema assess";
 
 pub(crate) const COMPLETIONS: &str = "\
 Examples:

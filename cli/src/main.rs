@@ -15,9 +15,11 @@ mod explain;
 mod export;
 mod failure;
 mod flights;
+mod fmt;
 mod help;
 mod inspect;
 mod learn;
+mod lsp;
 mod man;
 mod map;
 mod new;
@@ -26,6 +28,7 @@ mod parallel;
 mod profile;
 mod report;
 mod rule_set;
+mod schema;
 mod table;
 mod watch;
 
@@ -59,10 +62,10 @@ enum Command {
     /// Convert a flight log to flight CSV
     #[command(after_help = help::CONVERT)]
     Convert(convert::Arguments),
-    /// Write a commented rule set to start from
+    /// Write a commented rule set or profile to start from
     #[command(after_help = help::NEW)]
     New(new::Arguments),
-    /// Find errors, gaps and conflicts in a rule set
+    /// Find errors, gaps and conflicts in a rule set, and whether a profile fits its rule set
     #[command(after_help = help::CHECK)]
     Check(check::Arguments),
     /// Explain the outputs of a rule set at one point: degrees, rules, result
@@ -71,6 +74,12 @@ enum Command {
     /// Evaluate a rule set at the points of a CSV file
     #[command(after_help = help::EVAL)]
     Eval(eval::Arguments),
+    /// Give rule sets and profiles one layout; comments stay
+    #[command(after_help = help::FMT)]
+    Fmt(fmt::Arguments),
+    /// Serve an editor: findings, completion, renaming and more for rule sets and profiles (language server protocol)
+    #[command(after_help = help::LSP)]
+    Lsp(lsp::Arguments),
     /// Draw the output of a rule set over its inputs
     #[command(after_help = help::MAP)]
     Map(map::Arguments),
@@ -86,6 +95,9 @@ enum Command {
     /// Export a profile and its rule set as Rust or C constants for firmware
     #[command(after_help = help::EXPORT)]
     Export(export::Arguments),
+    /// Print the JSON Schema of a format: rule set, profile, or what a command prints
+    #[command(after_help = help::SCHEMA)]
+    Schema(schema::Arguments),
     /// Print completions for a shell
     #[command(after_help = help::COMPLETIONS)]
     Completions(completions::Arguments),
@@ -105,11 +117,14 @@ impl Command {
             Command::Check(arguments) => check::run(&arguments),
             Command::Explain(arguments) => explain::run(&arguments),
             Command::Eval(arguments) => eval::run(&arguments),
+            Command::Fmt(arguments) => fmt::run(&arguments),
+            Command::Lsp(arguments) => lsp::run(&arguments),
             Command::Map(arguments) => map::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Evaluate(arguments) => evaluate::run(&arguments),
             Command::Export(arguments) => export::run(&arguments),
+            Command::Schema(arguments) => schema::run(&arguments),
             Command::Completions(arguments) => completions::run(&arguments),
             Command::Man(arguments) => man::run(&arguments),
         }

@@ -1,4 +1,4 @@
-//! `flagred new`: a commented rule set to start from.
+//! `flagred new`: a commented rule set or profile to start from.
 
 use std::{io::Write, path::PathBuf};
 
@@ -11,12 +11,15 @@ use crate::{
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The name of the rule set and of the file NAME.yaml
+    /// The name of the rule set or profile, and of the file NAME.yaml
     #[arg(value_name = "NAME", value_parser = name)]
     name: String,
     /// The file to write [default: NAME.yaml]; `-` is standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Write a profile instead of a rule set
+    #[arg(long)]
+    profile: bool,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
@@ -33,9 +36,13 @@ fn name(text: &str) -> Result<String, String> {
 }
 
 const STARTER: &str = include_str!("new.yaml");
+const PROFILE: &str = include_str!("new-profile.yaml");
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let text = STARTER.replace("my-rules", &arguments.name);
+    let text = match arguments.profile {
+        true => PROFILE.replace("my-profile", &arguments.name),
+        false => STARTER.replace("my-rules", &arguments.name),
+    };
     let path = match &arguments.output {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.yaml", arguments.name)),
@@ -49,7 +56,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let mut out = Stdout::text();
         writeln!(out, "wrote {shown}; edit it, then try:")?;
         writeln!(out, "  flagred check {shown}")?;
-        writeln!(out, "  flagred explain {shown} temperature=24 humidity=70")?;
+        match arguments.profile {
+            true => writeln!(out, "  flagred assess --profile {shown} flight.bin")?,
+            false => writeln!(out, "  flagred explain {shown} temperature=24 humidity=70")?,
+        }
         out.finish()?;
     }
     Ok(Exit::Clean)

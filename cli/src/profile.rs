@@ -6,11 +6,12 @@ use std::{
 };
 
 use flagred::{estimator::Estimator, profile::Profile, shipped};
-use fuzzy::Model;
+use fuzzy::{Findings, Model, tree::Value};
 
 use crate::{
-    diagnostics::{read_text, refuse},
+    diagnostics::{read_text, refuse, show},
     failure::Failure,
+    rule_set,
 };
 
 /// The profile that is used where none is named.
@@ -26,39 +27,67 @@ pub(crate) struct Loaded {
     pub(crate) files: Vec<PathBuf>,
 }
 
-/// Compiles a profile, which is a shipped one's name or a file, with its rule set.
+/// Compiles a profile, which is a shipped one's name or a file, with its rule set. Warnings are drawn on standard error.
 ///
-/// A shipped name wins over a file of that name (`./flagred` is the file); a file's rule set is looked for beside it first, and then among the shipped ones.
-/// A profile may come from somebody else: the rule set lies in its folder, or in the one that `FLAGRED_RULES` names, and
-/// a file that is no rule set is not quoted.
+/// A shipped name wins over a file of that name (`./flagred` is the file); a file's rule set is looked for beside it first,
+/// and then among the shipped ones. A profile may come from somebody else: the rule set lies in its folder, or in the one
+/// that `FLAGRED_RULES` names, and a file that is no rule set is not quoted.
 pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
-    let (profile, profile_text, folder) = read(name)?;
-    let (rules_file, rules_text) = rules(&profile, folder.as_deref())?;
-    let beside = |folder: &PathBuf| [PathBuf::from(name), folder.join(&profile.rules)];
-    let files = folder.iter().flat_map(beside).collect();
-    let model = fuzzy::yaml::parse(&rules_text)
-        .map_err(|findings| match names_a_key(&rules_text) {
-            true => refuse(&findings, &rules_file, &rules_text),
-            false => Failure::unreadable(format!(
-                "profile `{}` names `{rules_file}`, which is not a rule set",
-                profile.name
-            ))
-            .help("a rule set has the keys `inputs`, `outputs` and `rules`"),
-        })?
-        .model;
-    let estimator = Estimator::new(&profile, &model).map_err(|error| {
-        Failure::unreadable(format!(
-            "profile `{}` with rule set `{}`: {error}",
-            profile.name, profile.rules
-        ))
-    })?;
+    let (profile, text, folder) = read(name)?;
+    compile(name, &profile, text, folder.as_deref())
+}
+
+/// As [`load`], of a text that was read from a file.
+pub(crate) fn from_text(path: &Path, text: String) -> Result<Loaded, Failure> {
+    let name = path.display().to_string();
+    let profile = parse(&name, &text)?;
+    let is_stdin = path == Path::new("-");
+    let folder = path.parent().filter(|_| !is_stdin);
+    compile(&name, &profile, text, folder)
+}
+
+fn compile(
+    name: &str,
+    profile: &Profile,
+    profile_text: String,
+    folder: Option<&Path>,
+) -> Result<Loaded, Failure> {
+    let (model, rules_text) = model(profile, folder)?;
+    let (findings, estimator) = examine(&profile_text, &model);
+    let Some(estimator) = estimator else {
+        return Err(refuse(&findings, name, &profile_text));
+    };
+    show(&findings, name, &profile_text);
+    let beside = |folder: &Path| [PathBuf::from(name), folder.join(&profile.rules)];
     Ok(Loaded {
+        files: folder.into_iter().flat_map(beside).collect(),
         estimator,
         model,
         profile_text,
         rules_text,
-        files,
     })
+}
+
+/// The findings about the text of a profile and the rule set that it names.
+pub(crate) fn examine(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
+    let known = flightlog::known_signals();
+    let signals: Vec<(&str, &str)> = known.iter().map(|s| (s.name, s.unit)).collect();
+    flagred::profile::check(profile_text, model, &signals)
+}
+
+/// The rule set that a profile names, and its text.
+pub(crate) fn model(profile: &Profile, folder: Option<&Path>) -> Result<(Model, String), Failure> {
+    let (file, text) = rules(profile, folder)?;
+    let document = fuzzy::yaml::parse(&text).map_err(|findings| match names_a_key(&text) {
+        true => refuse(&findings, &file, &text),
+        false => Failure::unreadable(format!(
+            "profile `{}` names `{file}`, which is not a rule set",
+            profile.name
+        ))
+        .help("a rule set has the keys `inputs`, `outputs` and `rules`"),
+    })?;
+    rule_set::compile(&document, &file, &text)?;
+    Ok((document.model, text))
 }
 
 /// Reads a profile without its rule set: also its text, and of a file the folder it is in.
@@ -77,14 +106,17 @@ pub(crate) fn read(name: &str) -> Result<(Profile, String, Option<PathBuf>), Fai
             (text, path.parent().map(Path::to_owned))
         }
     };
-    let profile = text.parse::<Profile>().map_err(|findings| {
-        if fuzzy::yaml::parse(&text).is_ok() {
+    Ok((parse(name, &text)?, text, folder))
+}
+
+fn parse(name: &str, text: &str) -> Result<Profile, Failure> {
+    text.parse::<Profile>().map_err(|findings| {
+        if fuzzy::yaml::parse(text).is_ok() {
             return Failure::unreadable(format!("`{name}` is a rule set, not a profile"))
-                .help(format!("write a profile that names it, with `rules: {}` and where each input comes from", file_name(path)));
+                .help(format!("write a profile that names it, with `rules: {}` and where each input comes from", file_name(Path::new(name))));
         }
-        refuse(&findings, name, &text)
-    })?;
-    Ok((profile, text, folder))
+        refuse(&findings, name, text)
+    })
 }
 
 fn file_name(path: &Path) -> String {
@@ -92,8 +124,18 @@ fn file_name(path: &Path) -> String {
     file.to_string_lossy().into_owned()
 }
 
+/// Whether a text is meant to be a profile: whether it has the key `flagred`, also where it is no YAML yet.
+pub(crate) fn is_profile(text: &str) -> bool {
+    let tree = fuzzy::yaml::read(text).map(|tree| tree.value);
+    let Ok(Value::Mapping(pairs)) = tree else {
+        return text.lines().any(|line| line.starts_with("flagred:"));
+    };
+    let mut keys = pairs.iter().map(|(key, _)| &key.value);
+    keys.any(|key| matches!(key, Value::Scalar(key) if key.text == "flagred"))
+}
+
 /// The file and the text of the rule set that a profile names.
-fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String, String), Failure> {
+pub(crate) fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String, String), Failure> {
     let beside = folder.map(|folder| folder.join(&profile.rules));
     if let Some(path) = beside.filter(|path| path.is_file()) {
         if !is_allowed(&path, folder) {

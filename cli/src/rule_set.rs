@@ -14,28 +14,36 @@ use crate::{
 /// `flagred check` tells them.
 pub(crate) fn read(path: &Path) -> Result<(Document, String), Failure> {
     let text = read_text(path)?;
-    let file = path.display().to_string();
-    let document = fuzzy::yaml::parse(&text).map_err(|findings| {
-        profile_instead(&file, &text).unwrap_or_else(|| refuse(&findings, &file, &text))
-    })?;
+    let document = parse(&path.display().to_string(), &text)?;
     Ok((document, text))
+}
+
+/// As [`read`], of a text that was read from a file.
+pub(crate) fn parse(file: &str, text: &str) -> Result<Document, Failure> {
+    fuzzy::yaml::parse(text).map_err(|findings| {
+        profile_instead(file, text).unwrap_or_else(|| refuse(&findings, file, text))
+    })
 }
 
 /// Reads and compiles a rule set.
 pub(crate) fn load(path: &Path) -> Result<(Model, Engine), Failure> {
     let (document, text) = read(path)?;
-    let refuse = |findings| refuse(&findings, &path.display().to_string(), &text);
+    let engine = compile(&document, &path.display().to_string(), &text)?;
+    Ok((document.model, engine))
+}
+
+/// Compiles a rule set that was read. Its errors are drawn on standard error.
+pub(crate) fn compile(document: &Document, file: &str, text: &str) -> Result<Engine, Failure> {
     let invalid = validate(&document.model, &document.spans);
     if !invalid.is_empty() {
-        return Err(refuse(Findings::locate(invalid, &text)));
+        return Err(refuse(&Findings::locate(invalid, text), file, text));
     }
-    let engine = Engine::new(&document.model).map_err(refuse)?;
-    Ok((document.model, engine))
+    Engine::new(&document.model).map_err(|findings| refuse(&findings, file, text))
 }
 
 /// What to say of a text that is no rule set because it is a profile: one thing, where its keys would be a page of
 /// mistakes.
-pub(crate) fn profile_instead(file: &str, text: &str) -> Option<Failure> {
+fn profile_instead(file: &str, text: &str) -> Option<Failure> {
     let profile = text.parse::<Profile>().ok()?;
     let failure = Failure::unreadable(format!("`{file}` is a profile, not a rule set"));
     Some(failure.help(format!("its rule set is `{}`", profile.rules)))

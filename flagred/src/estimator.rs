@@ -75,7 +75,7 @@ pub enum EstimatorError {
         output: String,
     },
     /// The output is no percentage.
-    #[error("output `{output}` goes from {low} to {high}, but a risk goes from 0 to 100 %")]
+    #[error("output `{output}` has the range [{low}, {high}], but a risk has the range [0, 100] %")]
     NoPercentage {
         /// The output.
         output: String,
@@ -118,7 +118,7 @@ impl Estimator {
                     output: profile.output.clone(),
                 })?;
         if let Some(variable) = model.outputs.get(output).map(|o| &o.variable)
-            && (variable.low < 0.0 || variable.high <= 1.0 || variable.high > 100.0)
+            && (variable.low, variable.high) != (0.0, 100.0)
         {
             return Err(EstimatorError::NoPercentage {
                 output: profile.output.clone(),
@@ -168,6 +168,11 @@ impl Estimator {
     /// The rule set.
     pub fn model(&self) -> &Model {
         self.0.engine.model()
+    }
+
+    /// The rule set, compiled.
+    pub fn engine(&self) -> &Engine {
+        &self.0.engine
     }
 
     /// Which rules fire at values of the inputs, in the order of the profile; `None` where a value is not finite.
@@ -226,6 +231,11 @@ impl Estimator {
         })
     }
 
+    /// The values that fill gaps; empty where nothing is filled.
+    pub(crate) fn filled(&self) -> &[f64] {
+        self.0.filling.lend().map_or(&[], |knots| knots.values)
+    }
+
     fn lookup(&self) -> Lookup<'_> {
         Lookup {
             order: &self.0.order,
@@ -264,7 +274,12 @@ mod tests {
     #[test]
     fn a_risk_is_a_percentage() {
         let profile = shipped::flagred_paper().profile().clone();
-        for (range, is_percentage) in [("[0, 1]", false), ("[0, 100]", true), ("[0, 200]", false)] {
+        for (range, is_percentage) in [
+            ("[0, 1]", false),
+            ("[0, 10]", false),
+            ("[0, 100]", true),
+            ("[0, 200]", false),
+        ] {
             let text = shipped::RULE_SETS[1].text.replace("[0, 100]", range);
             let rules = fuzzy::yaml::parse(&text).unwrap().model;
             let made = Estimator::new(&profile, &rules);

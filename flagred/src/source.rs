@@ -63,6 +63,12 @@ impl Signal {
         OF_MOTORS.iter().map(|(name, _)| *name)
     }
 
+    /// The names of the signals that are made of the motors' commands.
+    pub fn names() -> impl Iterator<Item = &'static str> + Clone {
+        let all = OF_MOTORS.iter().chain(&OF_ALL_MOTORS);
+        all.map(|(name, _)| *name)
+    }
+
     /// The signal of a name; an unknown name is a signal of the flight's own.
     pub fn named(name: &str) -> Signal {
         OF_MOTORS

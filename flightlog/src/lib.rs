@@ -36,6 +36,7 @@ mod gap;
 mod geometry;
 mod input;
 mod interval;
+mod known;
 mod mav_type;
 pub mod mavlink;
 mod outputs;
@@ -56,6 +57,7 @@ pub use flight::{Commands, Event, Flight, Format, Motor, Range, Vehicle, Vehicle
 pub use gap::Gap;
 pub use geometry::{Basis, Geometry};
 pub use interval::{Interval, Intervals};
+pub use known::{KnownSignal, known_signals};
 pub use read::{Options, open, read};
 pub use report::{LeftOut, Report};
 pub use signal::{Hold, Label, Series, Signal};

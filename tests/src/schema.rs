@@ -1,4 +1,4 @@
-//! A check of JSON against the schemas in `docs/schemas`.
+//! A check of JSON against the schemas in `cli/schemas`.
 //!
 //! It knows the keywords that these use and fails on any other. A validator of all of JSON Schema costs some fifty packages.
 #![expect(
@@ -10,11 +10,31 @@
 
 use serde_json::Value;
 
-/// The schema of a document.
+/// The schema of a document, as `flagred schema` prints it, references resolved.
 pub fn schema(name: &str) -> Value {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/schemas");
-    let text = std::fs::read_to_string(format!("{folder}/{name}.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
+    let output = crate::flagred().args(["schema", name]).output().unwrap();
+    let schema: Value = serde_json::from_slice(&output.stdout).unwrap();
+    resolved(&schema, &schema)
+}
+
+/// A part of a schema with what its references name in their place.
+fn resolved(root: &Value, part: &Value) -> Value {
+    match part {
+        Value::Object(fields) => {
+            let of = |(name, value): (&String, &Value)| (name.clone(), resolved(root, value));
+            let mut all: serde_json::Map<String, Value> = fields.iter().map(of).collect();
+            if let Some(Value::String(reference)) = all.remove("$ref") {
+                let named = root.pointer(reference.strip_prefix('#').unwrap()).unwrap();
+                let Value::Object(named) = resolved(root, named) else {
+                    panic!("{reference}")
+                };
+                all.extend(named);
+            }
+            Value::Object(all)
+        }
+        Value::Array(items) => items.iter().map(|item| resolved(root, item)).collect(),
+        other => other.clone(),
+    }
 }
 
 /// Where a value is not what its schema says, as `path: what`.
@@ -28,7 +48,7 @@ fn check(schema: &Value, value: &Value, path: &str, found: &mut Vec<String>) {
     let mut wrong = |what: String| found.push(format!("{path}: {what}"));
     for (keyword, rule) in schema.as_object().unwrap() {
         match keyword.as_str() {
-            "$schema" | "$id" | "title" | "description" | "additionalProperties" => {}
+            "$schema" | "$id" | "$defs" | "title" | "description" | "additionalProperties" => {}
             "type" => {
                 let types = rule
                     .as_array()
@@ -50,6 +70,20 @@ fn check(schema: &Value, value: &Value, path: &str, found: &mut Vec<String>) {
                     .is_some_and(|value| Some(value) < rule.as_f64()) =>
             {
                 wrong(format!("{value} is below {rule}"))
+            }
+            "maximum"
+                if value
+                    .as_f64()
+                    .is_some_and(|value| Some(value) > rule.as_f64()) =>
+            {
+                wrong(format!("{value} is above {rule}"))
+            }
+            "exclusiveMinimum"
+                if value
+                    .as_f64()
+                    .is_some_and(|value| Some(value) <= rule.as_f64()) =>
+            {
+                wrong(format!("{value} is not above {rule}"))
             }
             "minItems" | "maxItems" => {
                 let items = value.as_array().map(|items| items.len() as u64);
@@ -79,7 +113,8 @@ fn check(schema: &Value, value: &Value, path: &str, found: &mut Vec<String>) {
                     wrong(format!("{value} is valid for {count} of {keyword}"));
                 }
             }
-            "const" | "enum" | "minimum" | "items" | "properties" => {}
+            "const" | "enum" | "minimum" | "maximum" | "exclusiveMinimum" | "items"
+            | "properties" => {}
             other => panic!("the keyword `{other}` is not checked"),
         }
     }

@@ -33,13 +33,13 @@ fn what_stands_in_the_wrong_place_is_told_where_it_belongs() {
             "`rules: flagred.yaml`",
         ),
         (
-            &["check", profile],
+            &["explain", profile, "x=1"],
             3,
             "is a profile, not a rule set",
             "`flagred`",
         ),
         (
-            &["map", profile],
+            &["eval", profile],
             3,
             "is a profile, not a rule set",
             "`flagred`",

@@ -9,6 +9,11 @@ use fuzzy::{
 };
 
 const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred-paper.yaml");
+/// The paper's profile: it interpolates where no rule applies.
+const PROFILE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../rules/profiles/flagred-paper.yaml"
+);
 const FLAGRED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/flagred.yaml");
 
 /// A rule set that changes what it decides changes its picture, and someone has to look at it.
@@ -61,9 +66,11 @@ fn map(arguments: &[&str]) -> (Option<i32>, String, String) {
 
 #[test]
 fn a_map_in_the_terminal_marks_what_was_filled() {
-    let (code, text, _) = map(&[PAPER]);
+    let (code, text, _) = map(&[PROFILE]);
     assert_eq!(code, Some(0));
     insta::assert_snapshot!(text);
+    let (_, same, _) = map(&[PAPER, "--fill", "thin-plate"]);
+    assert_eq!(same, text);
 }
 
 /// The middles of all ranges lie where every motor is at a limit: a picture of nothing but danger.
@@ -94,7 +101,7 @@ fn the_rule_that_dominates_in_the_terminal() {
 
 #[test]
 fn a_table_of_all_cells() {
-    let (code, text, _) = map(&[PAPER, "--csv"]);
+    let (code, text, _) = map(&[PROFILE, "--csv"]);
     assert_eq!(code, Some(0));
     let mut lines = text.lines();
     assert_eq!(
@@ -124,6 +131,35 @@ fn a_table_of_all_cells() {
     assert_eq!((code, text.lines().count()), (Some(0), 1 + 5usize.pow(6)));
 }
 
+/// Without a profile a map is what `flagred eval` gives, cell by cell, also where the rules hardly fire.
+#[test]
+fn the_map_of_a_rule_set_is_what_eval_gives() {
+    let shown = map(&[PAPER, "--csv"]).1;
+    let points: String = shown
+        .lines()
+        .map(|line| line.split(',').take(2).collect::<Vec<_>>().join(",") + "\n")
+        .collect();
+    let folder = flagred_tests::Folder::new();
+    let points = folder.file("points.csv", points);
+    let evaluated = flagred().args(["eval", PAPER, &points]).output().unwrap();
+    let evaluated = String::from_utf8(evaluated.stdout).unwrap();
+    let third = |line: &str| line.split(',').nth(2).unwrap().parse::<f64>().ok();
+    let mut empty = 0;
+    for (shown, evaluated) in shown.lines().zip(evaluated.lines()).skip(1) {
+        let (shown, evaluated) = (third(shown), third(evaluated));
+        match (shown, evaluated) {
+            (Some(shown), Some(evaluated)) => {
+                approx::assert_relative_eq!(shown, evaluated, max_relative = 1e-5);
+            }
+            _ => assert_eq!(shown, evaluated),
+        }
+        empty += usize::from(shown.is_none());
+    }
+    assert!((1..15 * 5).contains(&empty), "{empty} cells have no value");
+    let rows = [FLAGRED, "--csv", "--points", "3", "--fill", "none"];
+    assert_eq!(map(&rows).1.lines().count(), 1 + 3usize.pow(6));
+}
+
 #[test]
 fn pictures_are_well_formed_and_complete() {
     let fixed = [
@@ -136,7 +172,7 @@ fn pictures_are_well_formed_and_complete() {
     ];
     for (arguments, expected) in [
         (
-            vec![PAPER],
+            vec![PROFILE],
             vec![
                 "margin",
                 "spread",
@@ -146,7 +182,7 @@ fn pictures_are_well_formed_and_complete() {
             ],
         ),
         (
-            vec![PAPER, "--surface"],
+            vec![PROFILE, "--surface"],
             vec![
                 "margin",
                 "spread",
@@ -245,7 +281,7 @@ fn long_headings_stay_within_the_picture() {
              rules:\n  - IF quantity_number_0 IS low THEN y IS low\n"
         ),
     );
-    let (code, text, _) = map(&[&model, "--fill", "none", "--svg", "-"]);
+    let (code, text, _) = map(&[&model, "--svg", "-"]);
     assert_eq!(code, Some(0));
     let document = roxmltree::Document::parse(&text).unwrap();
     let number = |node: roxmltree::Node<'_, '_>, name: &str| -> f64 {

@@ -16,7 +16,7 @@ use crate::{failure::Failure, output::cell};
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.assess/1";
 
-/// `docs/json.md` and `docs/schemas/assess.json` describe it.
+/// `docs/json.md` and `cli/schemas/assess.json` describe it.
 #[derive(Serialize)]
 pub(crate) struct Document<'a> {
     schema: &'static str,

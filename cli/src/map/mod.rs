@@ -7,7 +7,10 @@ use std::{io::Write, path::PathBuf};
 
 use anstyle::{RgbColor, Style};
 use clap::ValueEnum;
-use flagred::gap::{FilledMap, Filling, GapMethod, GapSettings};
+use flagred::{
+    estimator::Estimator,
+    gap::{Filling, GapMethod, GapSettings},
+};
 use fuzzy::{
     Engine, Model,
     drawing::{Colour, Slice, map_svg, map_text, rules_svg, rules_text, short, surface_svg},
@@ -15,8 +18,10 @@ use fuzzy::{
 };
 
 use crate::{
+    diagnostics::read_text,
     failure::{Exit, Failure},
     output::{self, Files, Stdout},
+    profile::{self, Loaded},
     rule_set,
 };
 
@@ -25,7 +30,7 @@ const POINTS: usize = 51;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set in YAML; `-` is standard input
+    /// The rule set in YAML, or a profile: its rule set, interpolated as the profile says; `-` is standard input
     #[arg(value_name = "MODEL")]
     model: PathBuf,
 
@@ -51,11 +56,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "OUTPUT")]
     output: Option<String>,
 
-    /// How to interpolate cells where no rule applies
-    #[arg(long, value_enum, value_name = "METHOD", default_value = "thin-plate")]
-    fill: Fill,
+    /// How to interpolate cells where no rule applies [default: none; of a profile, as it says]
+    #[arg(long, value_enum, value_name = "METHOD")]
+    fill: Option<Fill>,
 
-    /// Interpolate cells in which all firing strengths are below this [default: from AND and the terms; 0.5 for the minimum]
+    /// With an interpolation: interpolate cells in which all firing strengths are below this [default: from AND and the
+    /// terms; 0.5 for the minimum]
     #[arg(long, value_name = "DEGREE")]
     coverage_below: Option<f64>,
 
@@ -140,12 +146,12 @@ fn fix(text: &str) -> Result<(String, f64), String> {
     }
 }
 
-/// A rule set, compiled, and what fills its gaps.
+/// A rule set, compiled, and what fills its gaps, with the name of the method.
 struct Evaluated {
     model: Model,
     engine: Engine,
     output: usize,
-    filling: Option<Filling>,
+    filling: Option<(Filling, &'static str)>,
 }
 
 /// The most cells of a whole map by default.
@@ -161,8 +167,7 @@ pub(crate) fn points_along(inputs: usize) -> usize {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model])?;
     let svg = files.optional(arguments.svg.as_ref())?;
-    let (model, _) = rule_set::load(&arguments.model)?;
-    let evaluated = evaluate(arguments, model)?;
+    let evaluated = evaluate(arguments)?;
     let mut out = Stdout::text();
     let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();
     if arguments.csv && whole && evaluated.model.inputs.len() > 2 {
@@ -209,37 +214,50 @@ fn painted(cell: char, colour: Option<Colour>) -> String {
     }
 }
 
-fn evaluate(arguments: &Arguments, model: Model) -> Result<Evaluated, Failure> {
-    let name = arguments.model.display();
-    let unusable = |error: &dyn std::fmt::Display| {
-        Failure::unreadable(format!("`{name}` cannot be mapped: {error}"))
+fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
+    let file = arguments.model.display().to_string();
+    let text = read_text(&arguments.model)?;
+    let (model, engine, estimator) = if profile::is_profile(&text) {
+        let Loaded {
+            model, estimator, ..
+        } = profile::from_text(&arguments.model, text)?;
+        (model, estimator.engine().clone(), Some(estimator))
+    } else {
+        let document = rule_set::parse(&file, &text)?;
+        let engine = rule_set::compile(&document, &file, &text)?;
+        (document.model, engine, None)
     };
-    let engine = Engine::new(&model)
-        .map_err(|error| unusable(&error).help("`flagred check` shows where"))?;
-    let output = match &arguments.output {
+    let profile = estimator.as_ref().map(Estimator::profile);
+    let wanted = arguments.output.as_deref();
+    let output = match wanted.or(profile.map(|profile| profile.output.as_str())) {
         None => 0,
         Some(wanted) => engine.output(wanted).ok_or_else(|| {
             let outputs = engine.output_names();
-            let failure = Failure::usage(format!("`{name}` has no output `{wanted}`"));
+            let failure = Failure::usage(format!("`{file}` has no output `{wanted}`"));
             failure.help_if(fuzzy::diagnostic::suggest(wanted, outputs))
         })?,
     };
-    let gap = GapSettings {
-        method: arguments.fill.method().unwrap_or_default(),
-        coverage_below: arguments.coverage_below,
+    let method = match arguments.fill {
+        Some(fill) => fill.method(),
+        None => profile.map(|profile| profile.gap.method),
     };
-    let filling = match arguments.fill.method() {
-        None => None,
-        Some(_) => {
-            let filling = Filling::new(&engine, &model, output, &gap);
-            Some(filling.map_err(|error| unusable(&error))?)
-        }
+    let settings = |method| GapSettings {
+        method,
+        coverage_below: arguments
+            .coverage_below
+            .or(profile.and_then(|profile| profile.gap.coverage_below)),
     };
+    let filling = method.map(|method| {
+        let filling = Filling::new(&engine, &model, output, &settings(method));
+        filling
+            .map(|filling| (filling, method.name()))
+            .map_err(|error| Failure::unreadable(format!("`{file}` cannot be mapped: {error}")))
+    });
     Ok(Evaluated {
+        filling: filling.transpose()?,
         model,
         engine,
         output,
-        filling,
     })
 }
 
@@ -249,12 +267,6 @@ fn write_whole(
     arguments: &Arguments,
     evaluated: Evaluated,
 ) -> Result<(), Failure> {
-    let Some(filling) = evaluated.filling else {
-        return Err(
-            Failure::usage("`--fill none` is for maps of one or two inputs")
-                .help("fix the other inputs with `--fix`, or name two axes with `--x` and `--y`"),
-        );
-    };
     let points = match arguments.points {
         Some(points) => usize::from(points),
         None => points_along(evaluated.model.inputs.len()),
@@ -269,19 +281,21 @@ fn write_whole(
         .map_err(|error| no_map(&error).help("use fewer `--points`"))?;
     let map = DecisionMap::new(&evaluated.engine, grid, evaluated.output)
         .map_err(|error| no_map(&error))?;
-    let filled = FilledMap::new(map, filling);
-    let map = filled.map();
+    let filling = evaluated.filling.map(|(filling, _)| filling);
     let axes = map.grid().axes().iter().map(|axis| &*axis.name);
     write_head(out, axes, map.output())?;
     for cell in 0..map.grid().cells() {
-        for x in map.grid().point(cell) {
-            write!(out, "{},", short(x))?;
+        let point = map.grid().point(cell);
+        for x in &point {
+            write!(out, "{},", short(*x))?;
         }
-        let reading = filled.filled(cell);
+        let is_gap = |filling: &&Filling| filling.is_gap(map.coverage(cell));
+        let reading = filling.as_ref().filter(is_gap);
+        let reading = reading.and_then(|filling| filling.read(&point));
         let (value, distance) = match reading {
             Some(reading) => (Some(reading.value), Some(reading.distance)),
             None => {
-                let value = filled.value(cell);
+                let value = map.value(cell);
                 (value, value.map(|_| 0.0))
             }
         };

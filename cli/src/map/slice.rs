@@ -139,10 +139,10 @@ pub(super) fn cut(
         x: x_axis,
         y: y_axis,
         held,
-        filling: arguments
-            .fill
-            .method()
-            .map(|method| method.name().replace('_', " ")),
+        filling: evaluated
+            .filling
+            .as_ref()
+            .map(|(_, method)| method.replace('_', " ")),
         cells,
     };
     Ok((slice, notes))
@@ -151,8 +151,8 @@ pub(super) fn cut(
 fn cell(evaluated: &Evaluated, outcome: &Outcome, point: &[f64]) -> Cell {
     let filling = evaluated.filling.as_ref();
     let reading = filling
-        .filter(|filling| filling.is_gap(outcome.coverage))
-        .and_then(|filling| filling.read(point));
+        .filter(|(filling, _)| filling.is_gap(outcome.coverage))
+        .and_then(|(filling, _)| filling.read(point));
     Cell {
         value: reading.map(|r| r.value).or_else(|| outcome.value()),
         coverage: outcome.coverage,

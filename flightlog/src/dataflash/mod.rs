@@ -25,6 +25,12 @@ const FMT_LENGTH: usize = 89;
 /// No record is longer: its length is one byte.
 const LONGEST: usize = 255;
 
+/// The names and units of the signals that these logs can carry.
+pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let signals = signals::SPECS.iter().flat_map(|spec| spec.signals);
+    signals.map(|(_, name, unit)| (*name, *unit))
+}
+
 /// Whether the start of a file holds a DataFlash definition.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     start.starts_with(&[HEAD[0], HEAD[1], FMT])

@@ -19,6 +19,12 @@ const LONGEST: usize = STAMP + LONGEST_PACKET;
 /// Microseconds since 1970 of the years 2000 and 2100.
 const STAMPS_US: std::ops::Range<u64> = 946_684_800_000_000..4_102_444_800_000_000;
 
+/// The names and units of the signals that these logs can carry.
+pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let signals = signals::SPECS.iter().flat_map(|spec| spec.signals);
+    signals.map(|(_, name, unit)| (*name, *unit))
+}
+
 /// Whether one of the first bytes starts a packet whose checksum holds.
 pub(crate) fn looks_like(start: &[u8]) -> bool {
     let start = &start[..start.len().min(16 * LONGEST)];

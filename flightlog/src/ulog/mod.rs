@@ -25,6 +25,12 @@ const LONGEST: usize = HEAD + u16::MAX as usize;
 /// Body of a synchronisation message.
 const SYNC: [u8; 8] = [0x2f, 0x73, 0x13, 0x20, 0x25, 0x0c, 0xbb, 0x12];
 
+/// The names and units of the signals that these logs can carry.
+pub(crate) fn known_signals() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let signals = signals::SPECS.iter().flat_map(|spec| spec.signals);
+    signals.map(|(_, name, unit)| (*name, *unit))
+}
+
 /// Whether a file starts as ULog does; where its head is damaged, whether it holds the
 /// definition of a topic.
 pub(crate) fn looks_like(start: &[u8]) -> bool {

@@ -18,6 +18,7 @@ use crate::{
 
 mod axis;
 mod coverage;
+mod extent;
 mod findings;
 mod jumps;
 mod logic;
@@ -31,6 +32,7 @@ mod tests;
 mod trend;
 
 pub use coverage::{Antecedent, Side, Uncovered};
+pub use extent::extent;
 pub use jumps::Jump;
 pub use monotone::{Counterexample, Direction, Monotone};
 pub use probe::Coordinate;

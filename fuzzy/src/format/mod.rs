@@ -25,6 +25,8 @@ mod write;
 pub use crate::model::document::{Document, RuleSpans, Spans, TermSpans, VariableSpans};
 #[cfg(feature = "serde")]
 pub use schema::schema;
+#[doc(hidden)]
+pub use shapes::text as shape_text;
 
 /// The version of the format this library reads and writes.
 pub const VERSION: u64 = 1;
@@ -55,6 +57,30 @@ pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
         }),
         _ => Err(findings),
     }
+}
+
+/// A rule set as far as it can be read, for editors.
+#[doc(hidden)]
+#[derive(Debug, Clone, PartialEq)]
+pub struct Partial {
+    /// What could be read. Of a part that could not, there is only the name.
+    pub model: Model,
+    /// Where its parts stand.
+    pub spans: Spans,
+    /// Some rule could not be read.
+    pub rules_unread: bool,
+}
+
+/// Reads as much as possible of a model from a tree; `None` without inputs and outputs.
+#[doc(hidden)]
+pub fn read_partly(tree: &Node) -> Option<Partial> {
+    let mut spans = Spans::default();
+    let model = model(tree, &mut spans, &mut Vec::new())?;
+    Some(Partial {
+        model,
+        rules_unread: spans.rules_unread,
+        spans,
+    })
 }
 
 /// The model as far as it can be read. A part that cannot be read is a finding, and in the model only its name.

@@ -219,3 +219,25 @@ pub(super) fn write(shape: &MembershipFunction) -> (&'static str, Node) {
         }
     }
 }
+
+/// A membership function as it stands in a file, in one line: `triangle: [0, 2, 4]`.
+pub fn text(shape: &MembershipFunction) -> String {
+    fn flow(node: &Node) -> String {
+        match &node.value {
+            Value::Scalar(scalar) => scalar.text.clone(),
+            Value::List(items) => {
+                let items: Vec<String> = items.iter().map(flow).collect();
+                format!("[{}]", items.join(", "))
+            }
+            Value::Mapping(pairs) => {
+                let pairs = pairs.iter();
+                let pairs: Vec<String> = pairs
+                    .map(|(k, v)| format!("{}: {}", flow(k), flow(v)))
+                    .collect();
+                format!("{{{}}}", pairs.join(", "))
+            }
+        }
+    }
+    let (name, parameters) = write(shape);
+    format!("{name}: {}", flow(&parameters))
+}

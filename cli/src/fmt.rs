@@ -1,0 +1,122 @@
+//! `flagred fmt`: one layout for rule sets and profiles. Comments stay.
+
+use std::{io::Write, path::PathBuf};
+
+use fuzzy::drawing::visible;
+use pretty_yaml::config::FormatOptions;
+
+use crate::{
+    diagnostics::read_text,
+    failure::{Exit, Failure},
+    output::{Files, Replace, Stdout},
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Rule sets or profiles in YAML; `-` is standard input, written to standard output
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Change nothing: name the files that have another layout, and exit with 1
+    #[arg(long)]
+    check: bool,
+}
+
+/// The width of a line.
+const WIDTH: usize = 120;
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut exit = Exit::Clean;
+    let mut out = Stdout::text();
+    for path in &arguments.files {
+        let text = read_text(path)?;
+        let file = path.display().to_string();
+        let formatted = formatted(&text).map_err(|why| {
+            Failure::unreadable(format!("`{file}` cannot be formatted: {why}"))
+                .help("`flagred check` shows its mistakes")
+        })?;
+        let is_stdin = file == "-";
+        if arguments.check {
+            if formatted != text {
+                exit = Exit::Findings;
+                writeln!(out, "{}: has another layout", visible(&file))?;
+            }
+        } else if is_stdin {
+            write!(out, "{formatted}")?;
+        } else if formatted != text {
+            let mut files = Files::reading::<PathBuf>([])?;
+            files.output(path, Replace::Yes)?.write(&formatted)?;
+        }
+    }
+    out.finish()?;
+    Ok(exit)
+}
+
+/// A text in the common layout: indentation by two spaces, one space where there were several, rules with keywords in
+/// capitals. It means the same, comments included, or there is a reason why not.
+pub(crate) fn formatted(text: &str) -> Result<String, String> {
+    let before = fuzzy::yaml::read(text).map_err(|findings| findings.to_string())?;
+    let rules = with_capitals(text);
+    let mut options = FormatOptions::default();
+    options.layout.print_width = WIDTH;
+    options.language.brace_spacing = false;
+    let formatted =
+        pretty_yaml::format_text(&rules, &options).map_err(|error| error.to_string())?;
+    let same = match fuzzy::yaml::parse(text) {
+        Ok(document) => fuzzy::yaml::parse(&formatted).is_ok_and(|new| new.model == document.model),
+        Err(_) => {
+            let after = fuzzy::yaml::read(&formatted);
+            after.is_ok_and(|after| means(&after) == means(&before))
+        }
+    };
+    match same {
+        true => Ok(formatted),
+        false => Err("another layout would change its meaning".into()),
+    }
+}
+
+/// A tree without its places in the text.
+fn means(tree: &fuzzy::tree::Node) -> serde_json::Value {
+    serde_json::to_value(tree).unwrap_or_default()
+}
+
+/// The text with each rule in one line as the rule language prints it, where nothing else is on that line.
+fn with_capitals(text: &str) -> String {
+    let Ok(document) = fuzzy::yaml::parse(text) else {
+        return text.to_owned();
+    };
+    let mut changed = text.to_owned();
+    let rules = document.model.rules.iter().zip(&document.spans.rules);
+    for (rule, spans) in rules.rev() {
+        let written = text.get(spans.whole.clone()).unwrap_or("");
+        let is_plain = written
+            .get(..3)
+            .is_some_and(|start| start.eq_ignore_ascii_case("if "));
+        if is_plain && !written.contains(['\n', '"', '\'', '(']) {
+            changed.replace_range(spans.whole.clone(), &rule.rule.to_string());
+        }
+    }
+    changed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_layout_keeps_comments_and_meaning() {
+        let text = "# my fan\nfuzzy:   1\nname: fan # short\n\ninputs:\n    heat: {range: [0,100],   partition: [low, high]}\n\
+                    outputs: {speed: {range: [0, 9], partition: [slow, fast]}}\nrules:\n- if heat is high then   speed is fast # why\n";
+        insta::assert_snapshot!(formatted(text).unwrap());
+        let once = formatted(text).unwrap();
+        assert_eq!(formatted(&once).unwrap(), once);
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_left_alone() {
+        assert!(formatted("a: [1").is_err());
+        assert_eq!(
+            formatted("flagred: 1\nname:   x\n").unwrap(),
+            "flagred: 1\nname: x\n"
+        );
+    }
+}

@@ -1,0 +1,233 @@
+//! An open text: what it means, its findings, and the places in it as an editor counts them.
+
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+};
+
+use fuzzy::{
+    check,
+    diagnostic::{Diagnostic, Findings, Severity},
+    format::Partial,
+};
+use gen_lsp_types as lsp;
+use percent_encoding::percent_decode_str;
+
+use crate::profile;
+
+/// A text that an editor shows.
+pub(super) struct Document {
+    pub(super) text: String,
+    /// The rule set as far as it can be read; of a profile, the one that it names.
+    pub(super) rules: Option<Partial>,
+    pub(super) is_profile: bool,
+    findings: Findings,
+}
+
+impl Document {
+    pub(super) fn new(uri: &lsp::Uri, text: String) -> Document {
+        if profile::is_profile(&text) {
+            let path = path(uri);
+            let named = text.parse().map(|parsed| {
+                let folder = path.as_deref().and_then(Path::parent);
+                profile::rules(&parsed, folder)
+            });
+            let rules = named
+                .ok()
+                .and_then(|rules| rules.ok())
+                .map(|(_, text)| text);
+            let model = rules
+                .as_deref()
+                .and_then(|text| fuzzy::yaml::parse(text).ok());
+            let findings = match (&model, text.parse::<flagred::profile::Profile>()) {
+                (Some(document), Ok(_)) => profile::examine(&text, &document.model).0,
+                (None, Ok(parsed)) => unusable_rules(&text, &parsed.rules),
+                (_, Err(findings)) => findings,
+            };
+            return Document {
+                text,
+                rules: rules.as_deref().and_then(partial),
+                is_profile: true,
+                findings,
+            };
+        }
+        Document {
+            rules: partial(&text),
+            is_profile: false,
+            findings: findings(&text),
+            text,
+        }
+    }
+
+    pub(super) fn diagnostics(&self, uri: &lsp::Uri, encoding: Encoding) -> Vec<lsp::Diagnostic> {
+        let shown = |finding: &Diagnostic| {
+            let mut message = finding.message.clone();
+            if let Some(help) = &finding.help {
+                message = format!("{message}\nhelp: {help}");
+            }
+            let related = finding.related.iter().map(|related| {
+                let range = encoding.range(&self.text, &related.span);
+                lsp::DiagnosticRelatedInformation {
+                    location: lsp::Location {
+                        uri: uri.clone(),
+                        range,
+                    },
+                    message: related.message.clone(),
+                }
+            });
+            lsp::Diagnostic {
+                range: encoding.range(&self.text, &finding.span),
+                severity: Some(match finding.severity {
+                    Severity::Error => lsp::DiagnosticSeverity::Error,
+                    Severity::Warning => lsp::DiagnosticSeverity::Warning,
+                    Severity::Note => lsp::DiagnosticSeverity::Information,
+                }),
+                code: Some(finding.code.to_owned().into()),
+                source: Some("flagred".into()),
+                message: message.into(),
+                related_information: Some(related.collect()),
+                ..lsp::Diagnostic::default()
+            }
+        };
+        self.findings.0.iter().map(shown).collect()
+    }
+}
+
+fn partial(text: &str) -> Option<Partial> {
+    fuzzy::format::read_partly(&fuzzy::yaml::read(text).ok()?)
+}
+
+/// What `flagred check` finds in a rule set.
+fn findings(text: &str) -> Findings {
+    let document = match fuzzy::yaml::parse(text) {
+        Ok(document) => document,
+        Err(findings) => return findings,
+    };
+    match check::document(&document, text, &check::Options::default()) {
+        Ok((findings, _)) => findings,
+        Err(finding) => Findings::locate(vec![*finding], text),
+    }
+}
+
+/// The finding of a profile whose rule set cannot be used.
+fn unusable_rules(text: &str, rules: &str) -> Findings {
+    let place = text.find("rules:").unwrap_or(0);
+    let message = format!("the rule set `{rules}` cannot be used");
+    let finding = Diagnostic::error("rule-set", place..place + 5, message).help(
+        "`flagred check` shows why; a rule set is a shipped one, or a file beside the profile",
+    );
+    Findings::locate(vec![finding], text)
+}
+
+fn path(uri: &lsp::Uri) -> Option<PathBuf> {
+    let encoded = uri.0.strip_prefix("file://")?;
+    let path = percent_decode_str(encoded).decode_utf8().ok()?;
+    Some(PathBuf::from(&*path))
+}
+
+/// How an editor counts the columns of a line.
+#[derive(Clone, Copy)]
+pub(super) enum Encoding {
+    Utf8,
+    Utf16,
+}
+
+impl Encoding {
+    /// Bytes where the editor can, else the protocol's default.
+    pub(super) fn of(initialize: &serde_json::Value) -> Encoding {
+        let offered = initialize.pointer("/capabilities/general/positionEncodings");
+        let offered = offered.and_then(|offered| offered.as_array());
+        match offered.is_some_and(|all| all.iter().any(|one| one == "utf-8")) {
+            true => Encoding::Utf8,
+            false => Encoding::Utf16,
+        }
+    }
+
+    pub(super) fn kind(self) -> lsp::PositionEncodingKind {
+        match self {
+            Encoding::Utf8 => lsp::PositionEncodingKind::UTF8,
+            Encoding::Utf16 => lsp::PositionEncodingKind::UTF16,
+        }
+    }
+
+    fn width(self, letter: char) -> usize {
+        match self {
+            Encoding::Utf8 => letter.len_utf8(),
+            Encoding::Utf16 => letter.len_utf16(),
+        }
+    }
+
+    /// The byte at a place; the end of a line where the column is beyond it.
+    pub(super) fn offset(self, text: &str, at: lsp::Position) -> usize {
+        let mut start = 0;
+        for line in text.split_inclusive('\n').take(at.line as usize) {
+            start += line.len();
+        }
+        let line = text
+            .get(start..)
+            .unwrap_or("")
+            .split('\n')
+            .next()
+            .unwrap_or("");
+        let mut column = 0;
+        for (offset, letter) in line.char_indices() {
+            if column >= at.character as usize {
+                return start + offset;
+            }
+            column += self.width(letter);
+        }
+        start + line.len()
+    }
+
+    fn position(self, text: &str, offset: usize) -> lsp::Position {
+        let mut end = offset.min(text.len());
+        while !text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let before = text.get(..end).unwrap_or("");
+        let line = before.matches('\n').count();
+        let start = before.rfind('\n').map_or(0, |at| at + 1);
+        let letters = before.get(start..).unwrap_or("").chars();
+        let column: usize = letters.map(|letter| self.width(letter)).sum();
+        lsp::Position {
+            line: u32::try_from(line).unwrap_or(u32::MAX),
+            character: u32::try_from(column).unwrap_or(u32::MAX),
+        }
+    }
+
+    pub(super) fn range(self, text: &str, span: &Range<usize>) -> lsp::Range {
+        lsp::Range {
+            start: self.position(text, span.start),
+            end: self.position(text, span.end.max(span.start)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_counted_as_the_editor_does() {
+        let text = "a: °C 𝛼 x\nb: y";
+        let x = text.find('x').unwrap();
+        for (encoding, column) in [(Encoding::Utf8, 12), (Encoding::Utf16, 9)] {
+            let there = lsp::Position {
+                line: 0,
+                character: column,
+            };
+            assert_eq!(encoding.position(text, x), there);
+            assert_eq!(encoding.offset(text, there), x);
+            let far = lsp::Position {
+                line: 0,
+                character: 99,
+            };
+            assert_eq!(encoding.offset(text, far), text.find('\n').unwrap());
+            let below = lsp::Position {
+                line: 9,
+                character: 0,
+            };
+            assert_eq!(encoding.offset(text, below), text.len());
+        }
+    }
+}

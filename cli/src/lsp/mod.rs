@@ -1,0 +1,251 @@
+//! `flagred lsp`: a language server for rule sets and profiles, over standard input and output.
+
+mod complete;
+mod document;
+mod names;
+
+use std::collections::HashMap;
+
+use gen_lsp_types as lsp;
+use lsp_server::{Connection, ErrorCode, ExtractError, Message, Notification, Request, Response};
+use serde::{Serialize, de::DeserializeOwned};
+
+use crate::{
+    failure::{Exit, Failure},
+    fmt,
+};
+use document::{Document, Encoding};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Speak over standard input and output, as it always does: editors add this option
+    #[arg(long, hide = true)]
+    stdio: bool,
+}
+
+pub(crate) fn run(_: &Arguments) -> Result<Exit, Failure> {
+    let (connection, threads) = Connection::stdio();
+    let ended = serve(&connection);
+    drop(connection);
+    let joined = threads.join();
+    ended?;
+    joined.map_err(broken)?;
+    Ok(Exit::Clean)
+}
+
+fn broken(error: impl std::fmt::Display) -> Failure {
+    Failure::unreadable(format!("the editor broke the protocol: {error}"))
+}
+
+fn serve(connection: &Connection) -> Result<(), Failure> {
+    let (id, parameters) = connection.initialize_start().map_err(broken)?;
+    let encoding = Encoding::of(&parameters);
+    let answer = serde_json::to_value(abilities(encoding)).map_err(broken)?;
+    connection.initialize_finish(id, answer).map_err(broken)?;
+    let mut server = Server {
+        encoding,
+        open: HashMap::new(),
+    };
+    for message in &connection.receiver {
+        let answers = match message {
+            Message::Request(request) => {
+                if connection.handle_shutdown(&request).map_err(broken)? {
+                    return Ok(());
+                }
+                vec![Message::Response(server.answer(request))]
+            }
+            Message::Notification(notification) => server.take(notification),
+            Message::Response(_) => Vec::new(),
+        };
+        for answer in answers {
+            if connection.sender.send(answer).is_err() {
+                return Ok(());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn abilities(encoding: Encoding) -> lsp::InitializeResult {
+    let triggers = [" ", ":", "[", "{", ","].map(str::to_owned);
+    lsp::InitializeResult {
+        capabilities: lsp::ServerCapabilities {
+            position_encoding: Some(encoding.kind()),
+            text_document_sync: Some(lsp::TextDocumentSyncKind::Full.into()),
+            completion_provider: Some(lsp::CompletionOptions {
+                trigger_characters: Some(triggers.to_vec()),
+                ..lsp::CompletionOptions::default()
+            }),
+            hover_provider: Some(true.into()),
+            definition_provider: Some(true.into()),
+            rename_provider: Some(true.into()),
+            document_formatting_provider: Some(true.into()),
+            ..lsp::ServerCapabilities::default()
+        },
+        server_info: Some(lsp::ServerInfo {
+            name: "flagred".into(),
+            version: Some(env!("CARGO_PKG_VERSION").into()),
+        }),
+    }
+}
+
+struct Server {
+    encoding: Encoding,
+    open: HashMap<lsp::Uri, Document>,
+}
+
+impl Server {
+    /// A change of a document; its diagnostics are the answer.
+    fn take(&mut self, notification: Notification) -> Vec<Message> {
+        let notification =
+            match of::<lsp::DidOpenTextDocumentParams>(notification, "textDocument/didOpen") {
+                Ok(opened) => {
+                    return self.read(opened.text_document.uri, opened.text_document.text);
+                }
+                Err(notification) => notification,
+            };
+        let notification = match of::<lsp::DidChangeTextDocumentParams>(
+            notification,
+            "textDocument/didChange",
+        ) {
+            Ok(changed) => {
+                let uri = changed.text_document.text_document_identifier.uri;
+                // Each change is the whole text, as the server asked for.
+                let text = changed.content_changes.into_iter().last().map(|change| match change {
+                    lsp::TextDocumentContentChangeEvent::TextDocumentContentChangeWholeDocument(whole) => whole.text,
+                    lsp::TextDocumentContentChangeEvent::TextDocumentContentChangePartial(part) => part.text,
+                });
+                return text.map_or_else(Vec::new, |text| self.read(uri, text));
+            }
+            Err(notification) => notification,
+        };
+        match of::<lsp::DidCloseTextDocumentParams>(notification, "textDocument/didClose") {
+            Ok(closed) => {
+                self.open.remove(&closed.text_document.uri);
+                vec![diagnostics(closed.text_document.uri, Vec::new())]
+            }
+            Err(_) => Vec::new(),
+        }
+    }
+
+    fn read(&mut self, uri: lsp::Uri, text: String) -> Vec<Message> {
+        let document = Document::new(&uri, text);
+        let found = document.diagnostics(&uri, self.encoding);
+        self.open.insert(uri.clone(), document);
+        vec![diagnostics(uri, found)]
+    }
+
+    fn answer(&self, request: Request) -> Response {
+        let id = request.id.clone();
+        let encoding = self.encoding;
+        let at = |there: &lsp::TextDocumentPositionParams| {
+            let document = self.open.get(&there.text_document.uri)?;
+            Some((document, encoding.offset(&document.text, there.position)))
+        };
+        let done = match request.method.as_str() {
+            "textDocument/completion" => reply(request, |asked: lsp::CompletionParams| {
+                let (document, offset) = at(&asked.text_document_position_params)?;
+                Some(complete::items(document, offset))
+            }),
+            "textDocument/hover" => reply(request, |asked: lsp::HoverParams| {
+                let (document, offset) = at(&asked.text_document_position_params)?;
+                let (span, text) = names::describe(document, offset)?;
+                let markdown = lsp::MarkupContent::new(lsp::MarkupKind::Markdown, text);
+                let range = encoding.range(&document.text, &span);
+                Some(lsp::Hover {
+                    contents: markdown.into(),
+                    range: Some(range),
+                })
+            }),
+            "textDocument/definition" => reply(request, |asked: lsp::DefinitionParams| {
+                let there = &asked.text_document_position_params;
+                let (document, offset) = at(there)?;
+                let span = names::definition(document, offset)?;
+                let range = encoding.range(&document.text, &span);
+                Some(lsp::Location {
+                    uri: there.text_document.uri.clone(),
+                    range,
+                })
+            }),
+            "textDocument/rename" => {
+                let asked: lsp::RenameParams = match serde_json::from_value(request.params) {
+                    Ok(asked) => asked,
+                    Err(error) => {
+                        return Response::new_err(
+                            id,
+                            ErrorCode::InvalidParams as i32,
+                            error.to_string(),
+                        );
+                    }
+                };
+                let there = &asked.text_document_position_params;
+                let Some((document, offset)) = at(there) else {
+                    return Response::new_ok(id, None::<lsp::WorkspaceEdit>);
+                };
+                match names::rename(document, offset, &asked.new_name) {
+                    Err(why) => return Response::new_err(id, ErrorCode::RequestFailed as i32, why),
+                    Ok(spans) => {
+                        let edit = |span| lsp::TextEdit {
+                            range: encoding.range(&document.text, span),
+                            new_text: asked.new_name.clone(),
+                        };
+                        let edits = spans.iter().map(edit).collect();
+                        let changes = HashMap::from([(there.text_document.uri.clone(), edits)]);
+                        Ok(lsp::WorkspaceEdit {
+                            changes: Some(changes),
+                            ..lsp::WorkspaceEdit::default()
+                        })
+                        .and_then(serde_json::to_value)
+                    }
+                }
+            }
+            "textDocument/formatting" => reply(request, |asked: lsp::DocumentFormattingParams| {
+                let document = self.open.get(&asked.text_document.uri)?;
+                let formatted = fmt::formatted(&document.text).ok()?;
+                let range = encoding.range(&document.text, &(0..document.text.len()));
+                Some(vec![lsp::TextEdit {
+                    range,
+                    new_text: formatted,
+                }])
+            }),
+            other => {
+                let why = format!("`{other}` is not supported");
+                return Response::new_err(id, ErrorCode::MethodNotFound as i32, why);
+            }
+        };
+        match done {
+            Ok(value) => Response::new_ok(id, value),
+            Err(error) => Response::new_err(id, ErrorCode::InvalidParams as i32, error.to_string()),
+        }
+    }
+}
+
+/// The answer to a request; `null` where there is none.
+fn reply<P: DeserializeOwned, A: Serialize>(
+    request: Request,
+    answer: impl FnOnce(P) -> Option<A>,
+) -> serde_json::Result<serde_json::Value> {
+    serde_json::to_value(answer(serde_json::from_value(request.params)?))
+}
+
+/// The parameters of a notification of this method; else the notification.
+fn of<P: DeserializeOwned>(notification: Notification, method: &str) -> Result<P, Notification> {
+    match notification.extract(method) {
+        Ok(parameters) => Ok(parameters),
+        Err(ExtractError::MethodMismatch(notification)) => Err(notification),
+        // One that is damaged changes nothing: the next one carries the whole text again.
+        Err(ExtractError::JsonError { method, .. }) => Err(Notification::new(method, ())),
+    }
+}
+
+fn diagnostics(uri: lsp::Uri, diagnostics: Vec<lsp::Diagnostic>) -> Message {
+    let parameters = lsp::PublishDiagnosticsParams {
+        uri,
+        version: None,
+        diagnostics,
+    };
+    Message::Notification(Notification::new(
+        "textDocument/publishDiagnostics".into(),
+        parameters,
+    ))
+}

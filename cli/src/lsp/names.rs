@@ -1,0 +1,164 @@
+//! The names of a rule set: where they are defined and used, what they mean, and new ones for them.
+
+use std::ops::Range;
+
+use fuzzy::{
+    format::Partial,
+    model::{Term, Variable},
+    rule::{self, Name},
+};
+
+use super::document::Document;
+
+/// What a name in the text means.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Meaning {
+    Variable(usize),
+    Term(usize, usize),
+}
+
+/// The variables, inputs first, each with the place of its name and the places of its terms' names.
+fn variables(rules: &Partial) -> Vec<(&Variable, Range<usize>, Vec<Range<usize>>)> {
+    let inputs = rules.model.inputs.iter().zip(&rules.spans.inputs);
+    let outputs = rules.model.outputs.iter().map(|output| &output.variable);
+    inputs
+        .chain(outputs.zip(&rules.spans.outputs))
+        .map(|(variable, spans)| {
+            let terms = spans.terms.iter().map(|term| term.name.clone());
+            (variable, spans.name.clone(), terms.collect())
+        })
+        .collect()
+}
+
+/// Every name in the text, and what it means.
+fn all(rules: &Partial) -> Vec<(Range<usize>, Meaning)> {
+    let variables = variables(rules);
+    let mut found = Vec::new();
+    for (v, (_, name, terms)) in variables.iter().enumerate() {
+        found.push((name.clone(), Meaning::Variable(v)));
+        let terms = terms.iter().cloned().enumerate();
+        found.extend(terms.map(|(t, span)| (span, Meaning::Term(v, t))));
+    }
+    let mut used = |variable: &Name, term: Option<&Name>| {
+        let named = variables.iter().enumerate();
+        let Some((v, (known, ..))) = named
+            .into_iter()
+            .find(|(_, (known, ..))| known.name == variable.text)
+        else {
+            return;
+        };
+        found.push((variable.span.clone(), Meaning::Variable(v)));
+        if let Some(term) = term
+            && let Some(t) = known.terms.iter().position(|known| known.name == term.text)
+        {
+            found.push((term.span.clone(), Meaning::Term(v, t)));
+        }
+    };
+    for rule in &rules.model.rules {
+        rule.rule.condition.visit(&mut |proposition| {
+            used(&proposition.variable, proposition.term.as_ref());
+        });
+        for consequent in &rule.rule.consequents {
+            used(&consequent.output, Some(&consequent.term));
+        }
+    }
+    found
+}
+
+fn at(document: &Document, offset: usize) -> Option<(&Partial, Range<usize>, Meaning)> {
+    if document.is_profile {
+        return None;
+    }
+    let rules = document.rules.as_ref()?;
+    let names = all(rules).into_iter();
+    let (span, meaning) = names
+        .filter(|(span, _)| !span.is_empty())
+        .find(|(span, _)| span.start <= offset && offset <= span.end)?;
+    Some((rules, span, meaning))
+}
+
+/// What the name at a place means, in Markdown.
+pub(super) fn describe(document: &Document, offset: usize) -> Option<(Range<usize>, String)> {
+    let (rules, span, meaning) = at(document, offset)?;
+    let variables = variables(rules);
+    let text = match meaning {
+        Meaning::Variable(v) => variable(variables.get(v)?.0),
+        Meaning::Term(v, t) => {
+            let of = variables.get(v)?.0;
+            term(of.terms.get(t)?, of)
+        }
+    };
+    Some((span, text))
+}
+
+fn unit(variable: &Variable) -> String {
+    let unit = variable.unit.as_ref();
+    unit.map(|unit| format!(" {unit}")).unwrap_or_default()
+}
+
+fn variable(variable: &Variable) -> String {
+    let terms: Vec<String> = variable
+        .terms
+        .iter()
+        .map(|t| format!("`{}`", t.name))
+        .collect();
+    let range = format!("[{}, {}]{}", variable.low, variable.high, unit(variable));
+    let mut text = format!("**{}** {range}", variable.name);
+    if let Some(description) = &variable.description {
+        text = format!("{text}\n\n{description}");
+    }
+    format!("{text}\n\nterms: {}", terms.join(", "))
+}
+
+fn term(term: &Term, of: &Variable) -> String {
+    let shape = fuzzy::format::shape_text(&term.membership_function);
+    let range = format!("[{}, {}]{}", of.low, of.high, unit(of));
+    format!("**{}** of `{}` {range}\n\n`{shape}`", term.name, of.name)
+}
+
+/// Where the name at a place is defined.
+pub(super) fn definition(document: &Document, offset: usize) -> Option<Range<usize>> {
+    let (rules, _, meaning) = at(document, offset)?;
+    let variables = variables(rules);
+    match meaning {
+        Meaning::Variable(v) => variables.get(v).map(|(_, name, _)| name.clone()),
+        Meaning::Term(v, t) => variables.get(v)?.2.get(t).cloned(),
+    }
+}
+
+/// All places of the name at a place, for a new one; or why it cannot be renamed.
+pub(super) fn rename(
+    document: &Document,
+    offset: usize,
+    new: &str,
+) -> Result<Vec<Range<usize>>, String> {
+    let (rules, _, meaning) =
+        at(document, offset).ok_or("there is no variable and no term here")?;
+    if rules.rules_unread {
+        return Err("a rule cannot be read, so its names are unknown; mend it first".into());
+    }
+    let plain = rule::parse(&format!("IF {new} IS {new} THEN {new} IS {new}"));
+    if plain.is_err() || new.contains(|c: char| c.is_whitespace() || "'\":#,[]{}".contains(c)) {
+        return Err(format!(
+            "`{new}` is not a name: write letters, digits, `_` and `-`, and no keyword"
+        ));
+    }
+    let variables = variables(rules);
+    let taken = match meaning {
+        Meaning::Variable(_) => variables.iter().any(|(known, ..)| known.name == new),
+        Meaning::Term(v, _) => variables
+            .get(v)
+            .is_some_and(|(known, ..)| known.terms.iter().any(|term| term.name == new)),
+    };
+    if taken {
+        return Err(format!("there is a `{new}` already"));
+    }
+    let places = all(rules).into_iter();
+    let mut spans: Vec<Range<usize>> = places
+        .filter(|(span, known)| *known == meaning && !span.is_empty())
+        .map(|(span, _)| span)
+        .collect();
+    spans.sort_by_key(|span| span.start);
+    spans.dedup();
+    Ok(spans)
+}

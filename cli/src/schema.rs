@@ -1,0 +1,58 @@
+//! `flagred schema`: the JSON Schemas of the formats that are read and written.
+
+use std::io::Write;
+
+use crate::{
+    failure::{Exit, Failure},
+    output::Stdout,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The format
+    format: Format,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Format {
+    /// A rule set
+    RuleSet,
+    /// A profile
+    Profile,
+    /// What `flagred assess --json` prints
+    Assess,
+    /// What `flagred check --json` prints
+    Check,
+    /// What `flagred evaluate --json` prints
+    Evaluate,
+    /// What `flagred explain --json` prints
+    Explain,
+    /// What `flagred inspect --json` prints
+    Inspect,
+    /// What `flagred learn --json` prints
+    Learn,
+    /// A line of `flagred watch --jsonl`
+    Watch,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut out = Stdout::data();
+    let text = match arguments.format {
+        Format::RuleSet => {
+            let schema = fuzzy::format::schema();
+            serde_json::to_writer_pretty(&mut out, &schema).map_err(std::io::Error::from)?;
+            "\n"
+        }
+        Format::Profile => flagred::profile::SCHEMA,
+        Format::Assess => include_str!("../schemas/assess.json"),
+        Format::Check => include_str!("../schemas/check.json"),
+        Format::Evaluate => include_str!("../schemas/evaluate.json"),
+        Format::Explain => include_str!("../schemas/explain.json"),
+        Format::Inspect => include_str!("../schemas/inspect.json"),
+        Format::Learn => include_str!("../schemas/learn.json"),
+        Format::Watch => include_str!("../schemas/watch.json"),
+    };
+    write!(out, "{text}")?;
+    out.finish()?;
+    Ok(Exit::Clean)
+}

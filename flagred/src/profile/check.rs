@@ -1,0 +1,342 @@
+//! Whether a profile and its rule set fit together: what cannot work, and what cannot be meant.
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::ops::Range;
+
+use fuzzy::{
+    Findings, Model,
+    check::extent,
+    diagnostic::{Diagnostic, Severity, nearest, suggest},
+    tree::{Node, Value},
+    yaml,
+};
+
+use super::{Profile, ProfileInput};
+use crate::{
+    estimator::{Estimator, EstimatorError},
+    source::{Motors, Signal, Source, Statistic},
+    verdict::{LevelSettings, Threshold},
+};
+
+/// The least share of an input's range that the values of its signal have to cover.
+const LEAST_SHARE: f64 = 0.02;
+
+/// Reads a profile and compiles it with the rule set that it names.
+///
+/// The findings are located in the profile's text. With an error among them there is no estimator. Warnings: a threshold
+/// that the risk cannot reach or never leaves, WARN above FAIL, an input whose signal has another unit or another range,
+/// and a signal that is spelled almost like a known one. `signals` are the names and units of the signals that flights
+/// are known to carry; others are possible.
+///
+/// # Example: a threshold above what the rules can say
+/// ```
+/// use flagred::{profile, shipped};
+///
+/// let rules = shipped::flagred_paper_rules();
+/// let text = shipped::PROFILES[1].text.replace("inputs:", "verdict: {fail: {risk: 99}}\ninputs:");
+/// let (findings, estimator) = profile::check(&text, &rules, &[]);
+/// assert_eq!(findings.0[0].code, "out-of-reach");
+/// assert!(estimator.is_some());
+/// ```
+pub fn check(text: &str, model: &Model, signals: &[(&str, &str)]) -> (Findings, Option<Estimator>) {
+    let (tree, profile) = match yaml::read(text).and_then(|tree| Ok((tree, text.parse()?))) {
+        Ok(read) => read,
+        Err(findings) => return (findings, None),
+    };
+    let mut found = Vec::new();
+    let at = Places(&tree);
+    let estimator = compile(&profile, model, &at, &mut found);
+    if let Some(estimator) = &estimator {
+        thresholds(&profile, estimator, &at, &mut found);
+        for input in &profile.inputs {
+            found.extend(signal(input, model, signals, &at));
+        }
+    }
+    let is_usable = found.iter().all(|one| one.severity < Severity::Error);
+    let estimator = estimator.filter(|_| is_usable);
+    (Findings::locate(found, text), estimator)
+}
+
+/// The values of a document by their keys.
+struct Places<'t>(&'t Node);
+
+impl Places<'_> {
+    /// The place of the value behind a path of keys; of the deepest one that is written where it is a default.
+    fn of(&self, path: &[&str]) -> Range<usize> {
+        let mut node = self.0;
+        let mut span = node.span.start..node.span.start;
+        for key in path {
+            let Value::Mapping(pairs) = &node.value else {
+                break;
+            };
+            let is_key = |node: &Node| matches!(&node.value, Value::Scalar(s) if s.text == *key);
+            let Some((name, value)) = pairs.iter().find(|(name, _)| is_key(name)) else {
+                break;
+            };
+            node = value;
+            span = match value.value {
+                Value::Scalar(_) => value.span.clone(),
+                _ => name.span.clone(),
+            };
+        }
+        span
+    }
+}
+
+/// The estimator, or why there is none, at the place of the profile that is to be changed.
+fn compile(
+    profile: &Profile,
+    model: &Model,
+    at: &Places,
+    found: &mut Vec<Diagnostic>,
+) -> Option<Estimator> {
+    let error = match Estimator::new(profile, model) {
+        Ok(estimator) => return Some(estimator),
+        Err(error) => error,
+    };
+    let (code, place, help) = match &error {
+        EstimatorError::NoSource { input } => (
+            "missing-input",
+            at.of(&["inputs"]),
+            format!("add `{input}: {{mean: SIGNAL}}` to `inputs`"),
+        ),
+        EstimatorError::NoSuchInput { input } => {
+            let inputs = model.inputs.iter().map(|i| i.name.as_str());
+            let help = suggest(input, inputs).unwrap_or_else(|| "remove it".into());
+            ("unknown-input", at.of(&["inputs", input]), help)
+        }
+        EstimatorError::NoSuchOutput { output } => {
+            let outputs = model.outputs.iter().map(|o| o.variable.name.as_str());
+            let help = suggest(output, outputs)
+                .unwrap_or_else(|| "name the output with `output: NAME`".into());
+            ("unknown-output", at.of(&["output"]), help)
+        }
+        EstimatorError::NoPercentage { .. } => (
+            "not-a-percentage",
+            at.of(&["output"]),
+            "write the output of the rule set with `range: [0, 100]`".into(),
+        ),
+        EstimatorError::Rules(_) | EstimatorError::Evaluate(_) => (
+            "rule-set",
+            at.of(&["rules"]),
+            "`flagred check` shows what is wrong with the rule set".into(),
+        ),
+    };
+    found.push(Diagnostic::error(code, place, error.to_string()).help(help));
+    None
+}
+
+/// Thresholds that are never or always reached, and WARN above FAIL.
+fn thresholds(profile: &Profile, estimator: &Estimator, at: &Places, found: &mut Vec<Diagnostic>) {
+    let verdict = &profile.verdict;
+    let levels = [("warn", &verdict.warn), ("fail", &verdict.fail)];
+    let never_rises = profile.elevated_risk.rise_pct_per_s == 0.0;
+    if let Some((low, high)) = estimator.extent() {
+        let is_possible = |level: &LevelSettings| {
+            let Threshold {
+                risk_pct,
+                elevated_risk_pct,
+            } = level.raise;
+            let by_risk = risk_pct.is_some_and(|limit| !is_above(limit, high));
+            by_risk || (elevated_risk_pct.is_some() && !never_rises)
+        };
+        if !levels.iter().any(|(_, level)| is_possible(level)) {
+            let message = format!(
+                "neither `warn` nor `fail` can be reached: the rules give at most {}",
+                shown(high)
+            );
+            found.push(
+                Diagnostic::error("out-of-reach", at.of(&["verdict"]), message)
+                    .help("lower the thresholds: with these every flight would be GOOD"),
+            );
+            return;
+        }
+        for (name, level) in levels {
+            found.extend(reached(name, level, (low, high), at));
+        }
+    }
+    if never_rises {
+        for (name, level) in levels {
+            if level
+                .raise
+                .elevated_risk_pct
+                .is_some_and(|limit| limit > 0.0)
+            {
+                let message =
+                    format!("`{name}` is never reached by the elevated risk, which never rises");
+                let place = at.of(&["verdict", name, "elevated_risk"]);
+                let help = "write `rise_per_s` in `elevated_risk`, or remove the threshold";
+                found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
+            }
+        }
+    }
+    type Limit = fn(&Threshold) -> Option<f64>;
+    let measures: [(&str, Limit); 2] = [
+        ("risk", |threshold| threshold.risk_pct),
+        ("elevated_risk", |threshold| threshold.elevated_risk_pct),
+    ];
+    for (measure, of) in measures {
+        if let (Some(warn), Some(fail)) = (of(&verdict.warn.raise), of(&verdict.fail.raise))
+            && warn > fail
+        {
+            let message =
+                format!("`warn` at {measure} {warn} is above `fail` at {fail}: FAIL comes first");
+            let place = at.of(&["verdict", "warn", measure]);
+            let finding = Diagnostic::warning("order", place, message)
+                .help("WARN is the lower level; exchange the two")
+                .related(at.of(&["verdict", "fail", measure]), "FAIL");
+            found.push(finding);
+        }
+    }
+}
+
+fn is_above(limit: f64, high: f64) -> bool {
+    const ROUNDING: f64 = 1e-6;
+    limit > high + ROUNDING
+}
+
+/// A percentage for a message.
+fn shown(x: f64) -> f64 {
+    (x * 10.0).round() / 10.0
+}
+
+/// What the risk cannot reach, or always reaches.
+fn reached(
+    name: &str,
+    level: &LevelSettings,
+    (low, high): (f64, f64),
+    at: &Places,
+) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    let place = |key: &[&str]| at.of(&[&["verdict", name], key].concat());
+    if let Some(limit) = level.raise.risk_pct {
+        let above = is_above(limit, high);
+        if above || limit <= low {
+            let (what, bound) = match above {
+                true => ("is never reached", format!("at most {}", shown(high))),
+                false => ("is always reached", format!("at least {}", shown(low))),
+            };
+            let message = format!("`{name}` at risk {limit} {what}: the rules give {bound}");
+            let help = match above {
+                true => {
+                    "lower it in `verdict`, or let the last term of the output reach beyond the range: the centroid of a term lies inside it"
+                }
+                false => "raise it in `verdict` above what the rules give at rest",
+            };
+            found.push(Diagnostic::warning("out-of-reach", place(&["risk"]), message).help(help));
+        }
+    }
+    if let Some(until) = level.until.risk_pct
+        && until <= low
+        && level.raise.risk_pct.is_none_or(|limit| limit > low)
+    {
+        let message = format!(
+            "`{name}` is never lowered: it is held down to risk {until}, and the rules give at least {}",
+            shown(low)
+        );
+        let help = "raise `until` above what the rules give at rest";
+        let place = place(&["until", "risk"]);
+        found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
+    }
+    found
+}
+
+/// What does not fit between an input of the rule set and its signal.
+fn signal(
+    input: &ProfileInput,
+    model: &Model,
+    known: &[(&str, &str)],
+    at: &Places,
+) -> Option<Diagnostic> {
+    let place = at.of(&["inputs", &input.name]);
+    let variable = model.inputs.iter().find(|v| v.name == input.name)?;
+    if let Signal::Named(name) = &input.source.signal {
+        let Some((_, unit)) = known.iter().find(|(known, _)| known == name) else {
+            // Logs in CSV name their signals as they like; only a near miss is a mistake.
+            let logged = known.iter().map(|(name, _)| *name);
+            let meant = nearest(name, logged).or_else(|| nearest(name, Signal::names()))?;
+            let message = format!("no log format has a signal `{name}`");
+            return Some(
+                Diagnostic::warning("unknown-signal", place, message)
+                    .help(format!("did you mean `{meant}`?")),
+            );
+        };
+        let is_share = matches!(
+            input.source.statistic,
+            Statistic::ShareBelow(_) | Statistic::ShareAbove(_)
+        );
+        let unit = if is_share { "1" } else { unit };
+        let wanted = variable.unit.as_deref().map(normal)?;
+        let is_unit = known.iter().any(|(_, unit)| normal(unit) == wanted);
+        if is_unit && !unit.is_empty() && wanted != normal(unit) {
+            let message = format!(
+                "input `{}` of the rule set is in `{}`, but `{name}` is in `{unit}`",
+                input.name,
+                variable.unit.as_deref().unwrap_or_default()
+            );
+            let help = "take a signal of that unit, or write the terms of the input in the unit of the signal";
+            return Some(Diagnostic::warning("unit", place, message).help(help));
+        }
+    }
+    let (low, high) = range(&input.source)?;
+    let shared = high.min(variable.high) - low.max(variable.low);
+    if shared >= LEAST_SHARE * (variable.high - variable.low) {
+        return None;
+    }
+    let message = format!(
+        "input `{}` goes from {} to {}, but its values are from {low} to {high}",
+        input.name, variable.low, variable.high
+    );
+    let help = "motors are shares of their range, from 0 to 1; write the terms of the input so";
+    Some(Diagnostic::warning("unit", place, message).help(help))
+}
+
+/// A unit in one spelling.
+fn normal(unit: &str) -> String {
+    let unit = unit.trim().replace('°', "deg").replace('²', "2");
+    unit.to_lowercase()
+}
+
+/// The least and the largest value of a source; `None` where it has no bounds.
+fn range(source: &Source) -> Option<(f64, f64)> {
+    let (low, high) = match &source.signal {
+        Signal::MotorMargin => (0.0, 0.5),
+        Signal::MotorCommand | Signal::MotorMarginLowSide | Signal::MotorMarginHighSide => {
+            (0.0, 1.0)
+        }
+        Signal::CommandNoise => (0.0, 1.0),
+        _ => (f64::NEG_INFINITY, f64::INFINITY),
+    };
+    let width = high - low;
+    let (low, high) = match source.motors {
+        Motors::Std => (0.0, width / 2.0),
+        Motors::Pooled | Motors::Mean | Motors::Min | Motors::Max => (low, high),
+    };
+    let (low, high) = match source.statistic {
+        Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => (0.0, 1.0),
+        Statistic::Std | Statistic::StdLessNoise => (0.0, (high - low) / 2.0),
+        Statistic::Noise => (0.0, high - low),
+        Statistic::Mean | Statistic::Rms | Statistic::Min | Statistic::Max | Statistic::Last => {
+            (low, high)
+        }
+    };
+    high.is_finite().then_some((low, high))
+}
+
+impl Estimator {
+    /// The smallest and the largest risk that the rules and the filled gaps can give; `None` where that is not known.
+    fn extent(&self) -> Option<(f64, f64)> {
+        let (low, high) = extent(self.model(), &self.profile().output)?;
+        let filled = self.filled().iter().copied();
+        Some(filled.fold((low, high), |(low, high), value| {
+            (low.min(value), high.max(value))
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,109 @@
+use fuzzy::Model;
+
+use super::*;
+
+const RULES: &str = "
+fuzzy: 1
+name: rules
+inputs:
+  margin: {range: [0, 0.5], partition: [low, high]}
+  battery: {range: [0, 100], unit: '%', partition: [empty, full]}
+outputs:
+  risk: {range: [0, 100], partition: [low, medium, high]}
+rules:
+  - IF margin IS low OR battery IS empty THEN risk IS high
+  - IF margin IS high AND battery IS full THEN risk IS low
+";
+
+const PROFILE: &str = "flagred: 1
+name: mine
+rules: rules.yaml
+inputs:
+  margin: {mean: motor_margin}
+  battery: {last: battery_remaining_pct}
+verdict:
+  warn: {risk: 60, until: {risk: 30}}
+  fail: {risk: 80}
+";
+
+const SIGNALS: [(&str, &str); 2] = [("battery_v", "V"), ("battery_remaining_pct", "%")];
+
+fn rules(text: &str) -> Model {
+    fuzzy::yaml::parse(text).unwrap().model
+}
+
+/// What is found after a part of the profile, or of the rule set, is replaced: the text it is about, and the finding.
+fn found(replaced: &str, by: &str) -> Vec<String> {
+    let (profile, model) = (PROFILE.replace(replaced, by), RULES.replace(replaced, by));
+    assert_ne!((PROFILE, RULES), (profile.as_str(), model.as_str()));
+    let (findings, estimator) = check(&profile, &rules(&model), &SIGNALS);
+    let is_error = |one: &Diagnostic| one.severity == Severity::Error;
+    assert_eq!(estimator.is_none(), findings.0.iter().any(is_error));
+    let shown = |one: &Diagnostic| format!("{}: {one}", &profile[one.span.clone()]);
+    findings.0.iter().map(shown).collect()
+}
+
+#[test]
+fn a_profile_that_fits_its_rule_set_has_no_finding() {
+    let (findings, estimator) = check(PROFILE, &rules(RULES), &SIGNALS);
+    assert_eq!(findings.0, []);
+    assert!(estimator.is_some());
+    for (profile, rules) in crate::shipped::PROFILES.iter().zip([0, 1]) {
+        let model = self::rules(crate::shipped::RULE_SETS[rules].text);
+        let (findings, estimator) = check(profile.text, &model, &SIGNALS);
+        assert_eq!(findings.0, [], "{}", profile.name);
+        assert!(estimator.is_some());
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_told_at_its_place() {
+    let cases = [
+        ("  battery: {last: battery_remaining_pct}\n", ""),
+        ("  battery: {last", "  batery: {last"),
+        ("rules: rules.yaml", "rules: rules.yaml\noutput: danger"),
+        (
+            "range: [0, 100], partition: [low",
+            "range: [0, 1], partition: [low",
+        ),
+        (
+            "range: [0, 100], partition: [low",
+            "range: [0, 10], partition: [low",
+        ),
+        ("fail: {risk: 80}", "fail: {risk: 85}"),
+        (
+            "warn: {risk: 60, until: {risk: 30}}\n  fail: {risk: 80}",
+            "warn: {risk: 84}\n  fail: {risk: 85}",
+        ),
+        ("warn: {risk: 60, until: {risk: 30}}", "warn: {risk: 82}"),
+        ("warn: {risk: 60, until: {risk: 30}}", "warn: {risk: 15}"),
+        ("until: {risk: 30}", "until: {risk: 10}"),
+        (
+            "verdict:",
+            "elevated_risk: {rise_per_s: 0}\nverdict:\n  quiet_after_take_off_s: 3",
+        ),
+        (
+            "fail: {risk: 80}",
+            "fail: {elevated_risk: 80}\nelevated_risk: {rise_per_s: 0}",
+        ),
+        ("battery_remaining_pct", "battery_v"),
+        ("battery_remaining_pct", "baterry_v"),
+        ("battery_remaining_pct", "coffee_level"),
+        ("range: [0, 0.5]", "range: [0, 50]"),
+    ];
+    let shown: Vec<String> = cases
+        .iter()
+        .map(|(replaced, by)| {
+            let found = found(replaced, by);
+            format!("# {replaced} -> {by}\n{}\n", found.join("\n"))
+        })
+        .collect();
+    insta::assert_snapshot!(shown.join("\n"));
+}
+
+#[test]
+fn a_mistake_in_the_profile_is_told_first() {
+    let (findings, estimator) = check("flagred: 1\nname: x", &rules(RULES), &SIGNALS);
+    assert!(estimator.is_none());
+    assert!(findings.0.iter().all(|one| one.code == "missing-key"));
+}

@@ -1,0 +1,116 @@
+//! The values that an output can take, from its consequents alone.
+
+use alloc::{format, string::String};
+
+use crate::{
+    Engine,
+    model::{Defuzzifier, MembershipFunction, Model, NoRuleFires, Variable},
+    rule::{Condition, Rule},
+};
+
+/// The firing strengths that are tried for each term: the centroid of a cut set moves with the height of the cut.
+const STRENGTHS: [f64; 7] = [1.0, 0.9, 0.75, 0.5, 0.25, 0.1, 0.01];
+
+/// The smallest and the largest value that one consequent of the rules alone gives to an output, whatever the inputs are.
+///
+/// Where terms are a partition, several consequents together lie between these values. In general they can go a
+/// little beyond. The value where no rule fires counts too. `None` where the model does not compile, has no such output or
+/// no rule for it, and where values have no bound of this kind: of linear terms, and of the weighted sum.
+///
+/// # Example: the centroid of the last term is not the end of the range
+/// ```
+/// use fuzzy::check;
+///
+/// let model = fuzzy::yaml::parse("
+/// fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 1], partition: [low, high]}}
+/// outputs: {fan: {range: [0, 90], partition: [slow, medium, fast]}}
+/// rules: [IF heat IS low THEN fan IS slow, IF heat IS high THEN fan IS fast]
+/// ")?.model;
+/// let (low, high) = check::extent(&model, "fan").ok_or("no rule")?;
+/// assert!((low - 15.0).abs() < 1e-9 && (high - 75.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[must_use]
+pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
+    let found = model.outputs.iter().find(|o| o.variable.name == output)?;
+    if found.defuzzifier == Defuzzifier::WeightedSum {
+        return None;
+    }
+    let concluded = |term: &str| {
+        let consequents = model.rules.iter().flat_map(|rule| &rule.rule.consequents);
+        consequents
+            .filter(|c| c.output.text == output)
+            .any(|c| c.term.text == term)
+    };
+    let terms = found.variable.terms.iter();
+    let terms: alloc::vec::Vec<_> = terms.filter(|term| concluded(&term.name)).collect();
+    let is_linear = |f: &MembershipFunction| matches!(f, MembershipFunction::Linear { .. });
+    if terms
+        .iter()
+        .any(|term| is_linear(&term.membership_function))
+    {
+        return None;
+    }
+    // A model with one rule for each term, of which one at a time fires: at i + strength, the rule of term i.
+    let name = |term: usize| -> String { format!("term {term}") };
+    let mut selector = Variable::new("selector", 0.0, 2.0 * terms.len().max(1) as f64);
+    let mut alone = Model::builder("extent").operators(model.operators);
+    for (i, term) in terms.iter().enumerate() {
+        let left = 2.0 * i as f64;
+        let (peak, right) = (left + 1.0, left + 1.5);
+        let ramp = MembershipFunction::Triangle { left, peak, right };
+        selector = selector.term(name(i), ramp);
+        let condition = Condition::is("selector", &name(i));
+        alone = alone.rule(Rule::new(condition, output, term.name.as_str()));
+    }
+    let mut only = found.clone();
+    only.when_no_rule_fires = NoRuleFires::Undefined;
+    let engine = Engine::new(&alone.input(selector).output(only).build()).ok()?;
+    let mut found_values = alloc::vec::Vec::new();
+    if let NoRuleFires::Value(value) = found.when_no_rule_fires {
+        found_values.push(value);
+    }
+    for i in 0..terms.len() {
+        for strength in STRENGTHS {
+            let outcomes = engine.evaluate(&[2.0 * i as f64 + strength]).ok()?;
+            found_values.extend(outcomes.first().and_then(|outcome| outcome.value()));
+        }
+    }
+    let low = found_values.iter().copied().reduce(f64::min)?;
+    let high = found_values.iter().copied().reduce(f64::max)?;
+    Some((low, high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(output: &str, rules: &str) -> Option<(f64, f64)> {
+        let text = format!(
+            "fuzzy: 1\nname: t\ninputs: {{x: {{range: [0, 1], partition: [a, b]}}}}\noutputs: {{y: {output}}}\nrules: {rules}"
+        );
+        extent(&crate::yaml::parse(&text).unwrap().model, "y")
+    }
+
+    #[test]
+    fn only_consequents_of_rules_count() {
+        let output = "{range: [0, 12], partition: [low, medium, high]}";
+        let (low, high) = of(output, "[IF x IS a THEN y IS medium]").unwrap();
+        assert!((low - 6.0).abs() < 1e-9 && (high - 6.0).abs() < 1e-9);
+        // A ramp that is cut at its foot is as good as flat: its middle moves.
+        let (low, high) = of(output, "[IF x IS a THEN y IS high]").unwrap();
+        assert!((high - 10.0).abs() < 1e-9, "{high}");
+        assert!((low - 9.0).abs() < 0.02, "{low}");
+    }
+
+    #[test]
+    fn a_default_value_counts_and_linear_terms_have_no_bound() {
+        let output = "{range: [0, 12], partition: [low, high], when_no_rule_fires: 12}";
+        assert_eq!(of(output, "[IF x IS a THEN y IS low]").unwrap().1, 12.0);
+        let takagi = "{range: [0, 9], defuzzifier: weighted_average, terms: {c: {constant: 4}, l: {linear: {x: 2, constant: 1}}}}";
+        assert_eq!(of(takagi, "[IF x IS a THEN y IS c]"), Some((4.0, 4.0)));
+        assert_eq!(of(takagi, "[IF x IS a THEN y IS l]"), None);
+    }
+}
