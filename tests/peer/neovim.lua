@@ -34,10 +34,10 @@ local ran, why = pcall(function()
   local labels = {}
   for _, item in ipairs(ask("textDocument/completion", 8, 15)) do labels[item.label] = true end
   must(labels.low and labels.high, "completion: " .. vim.inspect(labels))
-  must(ask("textDocument/hover", 7, 31).contents.value:find("slow"), "hover")
-  must(ask("textDocument/definition", 7, 31).range.start.line == 5, "definition")
+  must(ask("textDocument/hover", 7, 34).contents.value:find("slow"), "hover")
+  must(ask("textDocument/definition", 7, 34).range.start.line == 5, "definition")
 
-  local edit = ask("textDocument/rename", 7, 13, { newName = "cold" })
+  local edit = ask("textDocument/rename", 7, 16, { newName = "cold" })
   vim.lsp.util.apply_workspace_edit(edit, "utf-16")
   local text = table.concat(vim.api.nvim_buf_get_lines(0, 0, -1, false), "\n")
   must(text:find("%[cold, high%]") and text:find("IF heat IS cold"), "rename: " .. text)
