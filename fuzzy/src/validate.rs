@@ -309,7 +309,8 @@ impl<'m> Validator<'m> {
             } else if !self.inputs.contains_key(input.as_str())
                 && !self.outputs.contains_key(input.as_str())
             {
-                let finding = unknown("input", input, here, self.inputs.keys().copied());
+                let known = self.inputs.keys().chain(self.outputs.keys()).copied();
+                let finding = unknown("input", input, here, known);
                 self.findings.push(finding);
             }
             if coefficients.iter().take(i).any(|(other, _)| other == input) {
@@ -418,7 +419,7 @@ impl<'m> Validator<'m> {
             (Some(input), _) => ("input", input),
             (None, Some(output)) => ("output", output),
             (None, None) => {
-                let known = self.inputs.keys().copied();
+                let known = self.inputs.keys().chain(self.outputs.keys()).copied();
                 let finding = unknown("input", &name.text, &name.span, known);
                 self.findings.push(finding);
                 return;

@@ -183,7 +183,10 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             .filter_map(|(by, output)| step(*by, *output))
             .collect();
         let path: Vec<&str> = steps.iter().map(|(text, _)| text.as_str()).collect();
-        let message = format!("outputs read one another in a circle: {}", path.join(", "));
+        let message = match path.as_slice() {
+            [itself] => format!("an output cannot read itself: {itself}"),
+            path => format!("outputs read one another in a circle: {}", path.join(", ")),
+        };
         let first = steps.first().map_or(0..0, |(_, span)| span.clone());
         let finding = Diagnostic::error("circular-outputs", first, message);
         let others = steps.iter().skip(1);
@@ -191,7 +194,7 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             .fold(finding, |finding, (text, span)| {
                 finding.related(span.clone(), text.as_str())
             })
-            .help("remove one of these conditions, or conclude an output of another name")
+            .help("let one of them read inputs alone, or conclude an output of another name")
     });
     circles.collect()
 }
