@@ -8,7 +8,7 @@ use core::ops::Range;
 
 use crate::{
     defuzzify::Defuzzify,
-    diagnostic::{Diagnostic, duplicate, suggest},
+    diagnostic::{Diagnostic, duplicate, nearest, suggest},
     model::{
         MembershipFunction, Model, NoRuleFires, Output, Rule, Variable,
         chain::circles,
@@ -309,8 +309,7 @@ impl<'m> Validator<'m> {
             } else if !self.inputs.contains_key(input.as_str())
                 && !self.outputs.contains_key(input.as_str())
             {
-                let known = self.inputs.keys().chain(self.outputs.keys()).copied();
-                let finding = unknown("input", input, here, known);
+                let finding = self.unknown_input(input, here);
                 self.findings.push(finding);
             }
             if coefficients.iter().take(i).any(|(other, _)| other == input) {
@@ -419,8 +418,7 @@ impl<'m> Validator<'m> {
             (Some(input), _) => ("input", input),
             (None, Some(output)) => ("output", output),
             (None, None) => {
-                let known = self.inputs.keys().chain(self.outputs.keys()).copied();
-                let finding = unknown("input", &name.text, &name.span, known);
+                let finding = self.unknown_input(&name.text, &name.span);
                 self.findings.push(finding);
                 return;
             }
@@ -448,6 +446,15 @@ impl<'m> Validator<'m> {
     fn is_weighted(&self, variable: &Variable) -> bool {
         let mut outputs = self.model.outputs.iter();
         outputs.any(|o| o.variable.name == variable.name && o.defuzzifier.is_weighted())
+    }
+
+    /// Suggests an output only where the name is nearly that of one.
+    fn unknown_input(&self, name: &str, span: &Range<usize>) -> Diagnostic {
+        let inputs = self.inputs.keys().copied();
+        match nearest(name, inputs.clone().chain(self.outputs.keys().copied())) {
+            Some(near) => unknown("input", name, span, core::iter::once(near)),
+            None => unknown("input", name, span, inputs),
+        }
     }
 
     fn known_output(&mut self, name: &Name) -> Option<&'m Variable> {
