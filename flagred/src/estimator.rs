@@ -86,20 +86,39 @@ pub enum EstimatorError {
     },
 }
 
-/// An output has no closed form, so the profile cannot be exported.
+/// Why a profile and its rule set cannot be exported.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the value of output `{output}` has no closed form, so it cannot be written as a table")]
-pub struct NoClosedForm {
-    /// The output.
-    pub output: String,
+#[non_exhaustive]
+pub enum NoPlan {
+    /// The risk has no closed form.
+    #[error(
+        "the value of output `{output}` has no closed form, so it cannot be written as a table"
+    )]
+    NoClosedForm {
+        /// The output.
+        output: String,
+    },
+    /// An output reads another one.
+    #[error("output `{output}` reads output `{read}`, and what flies on board has no chains")]
+    Chained {
+        /// The output that reads.
+        output: String,
+        /// The output that is read.
+        read: String,
+    },
 }
 
-impl NoClosedForm {
-    /// Which outputs have a closed form.
+impl NoPlan {
+    /// What can be exported.
     pub fn help(&self) -> &'static str {
-        "closed forms have: the centroid over straight terms that overlap only where one falls while the next one rises \
-         (a `partition`), with minimum and maximum; the centroid with `implication: product` and `aggregation: sum`, over \
-         any terms; the Takagi-Sugeno defuzzifiers. All of them without `samples`"
+        match self {
+            NoPlan::NoClosedForm { .. } => {
+                "closed forms have: the centroid over straight terms that overlap only where one falls while the next one \
+                 rises (a `partition`), with minimum and maximum; the centroid with `implication: product` and \
+                 `aggregation: sum`, over any terms; the Takagi-Sugeno defuzzifiers. All of them without `samples`"
+            }
+            NoPlan::Chained { .. } => "write rules whose conditions name inputs only",
+        }
     }
 }
 
@@ -208,12 +227,14 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// The output has no closed form.
-    pub fn plan(&self) -> Result<Plan<'_>, NoClosedForm> {
-        let table = self.0.engine.table();
+    /// The output has no closed form, or an output reads another one.
+    pub fn plan(&self) -> Result<Plan<'_>, NoPlan> {
+        let Some(table) = self.0.engine.table() else {
+            return Err(self.chained());
+        };
         let open = |output: &fuzzy::table::Output| output.form == ClosedForm::NONE;
         if table.outputs.get(self.0.output).is_none_or(open) {
-            return Err(NoClosedForm {
+            return Err(NoPlan::NoClosedForm {
                 output: self.0.profile.output.clone(),
             });
         }
@@ -234,6 +255,19 @@ impl Estimator {
     /// The values that fill gaps; empty where nothing is filled.
     pub(crate) fn filled(&self) -> &[f64] {
         self.0.filling.lend().map_or(&[], |knots| knots.values)
+    }
+
+    /// That an output reads another one, with the first such output.
+    fn chained(&self) -> NoPlan {
+        let model = self.model();
+        let names = model.outputs.iter().map(|output| &output.variable.name);
+        let mut reads =
+            names.flat_map(|by| model.reads(by).into_iter().map(move |read| (by, read)));
+        let (output, read) = reads.next().unzip();
+        NoPlan::Chained {
+            output: output.cloned().unwrap_or_default(),
+            read: read.unwrap_or_default().into(),
+        }
     }
 
     fn lookup(&self) -> Lookup<'_> {
@@ -306,6 +340,42 @@ mod tests {
         let estimator = Estimator::new(&profile, &rules).unwrap();
         assert!(estimator.at(&[0.3, 0.1]).is_some());
         let output = "risk".into();
-        assert_eq!(estimator.plan().err(), Some(NoClosedForm { output }));
+        assert_eq!(
+            estimator.plan().err(),
+            Some(NoPlan::NoClosedForm { output })
+        );
+    }
+
+    /// The risk of the paper through an output of its own, which the other one only passes on.
+    #[test]
+    fn a_chain_is_assessed_and_makes_no_plan() {
+        let profile = shipped::flagred_paper().profile().clone();
+        let mut rules = shipped::flagred_paper_rules();
+        let mut passed_on = rules.outputs[0].clone();
+        rules.outputs[0].variable.name = "strain".into();
+        for rule in &mut rules.rules {
+            rule.rule.consequents[0].output = "strain".into();
+        }
+        for term in &passed_on.variable.terms {
+            let rule = format!("IF strain IS '{0}' THEN risk IS '{0}'", term.name);
+            let rule: fuzzy::rule::Rule = rule.parse().unwrap();
+            rules.rules.push(rule.into());
+        }
+        passed_on.variable.name = "risk".into();
+        rules.outputs.push(passed_on);
+        let estimator = Estimator::new(&profile, &rules).unwrap();
+        let direct = shipped::flagred_paper();
+        for inputs in [[0.05, 0.2], [0.12, 0.31], [0.3, 0.1]] {
+            let explained = estimator.explain(&inputs).unwrap();
+            let strain = direct.explain(&inputs).unwrap().outputs[0].value;
+            assert!(strain.is_some() && explained.outputs[0].value == strain);
+            let risk = estimator.at(&inputs).unwrap();
+            let is_filled = risk.filled_from.is_some();
+            assert!(is_filled || explained.outputs[1].value == Some(risk.risk_pct));
+        }
+        assert_eq!(
+            estimator.plan().unwrap_err().to_string(),
+            "output `risk` reads output `strain`, and what flies on board has no chains"
+        );
     }
 }

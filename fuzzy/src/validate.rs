@@ -13,9 +13,10 @@ use core::ops::Range;
 
 use crate::{
     defuzzify::Defuzzify,
-    diagnostic::{Diagnostic, duplicate, suggest},
+    diagnostic::{Diagnostic, duplicate, nearest, suggest},
     model::{
         MembershipFunction, Model, NoRuleFires, Output, Rule, Variable,
+        chain::circles,
         document::{RuleSpans, Spans, TermSpans, VariableSpans},
     },
     rule::{Condition, DEEPEST_NESTING, Hedge, Name, Proposition},
@@ -131,6 +132,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             }
         }
     }
+    validator.findings.extend(circles(model, spans));
     validator.findings
 }
 
@@ -362,8 +364,10 @@ impl<'m> Validator<'m> {
                 // In a rule set this key is the constant part.
                 let message = format!("{what} has a coefficient for an input called `constant`");
                 self.error("wrong-term", here, message, "rename the input");
-            } else if !self.inputs.contains_key(input.as_str()) {
-                let finding = unknown("input", input, here, self.inputs.keys().copied());
+            } else if !self.inputs.contains_key(input.as_str())
+                && !self.outputs.contains_key(input.as_str())
+            {
+                let finding = self.unknown_input(input, here);
                 self.findings.push(finding);
             }
             if !seen.insert(input) {
@@ -466,19 +470,27 @@ impl<'m> Validator<'m> {
 
     fn proposition(&mut self, proposition: &'m Proposition) {
         let name = &proposition.variable;
-        let Some(input) = self.inputs.get(name.text.as_str()).copied() else {
-            let finding = if self.outputs.contains_key(name.text.as_str()) {
-                let message = format!("`{}` is an output; a condition reads inputs", name.text);
-                let help = "to build on an output, feed its value in as an input";
-                Diagnostic::error("output-in-condition", name.span.clone(), message).help(help)
-            } else {
-                unknown("input", &name.text, &name.span, self.inputs.keys().copied())
-            };
-            self.findings.push(finding);
-            return;
+        let input = self.inputs.get(name.text.as_str()).copied();
+        let output = self.outputs.get(name.text.as_str()).copied();
+        let (kind, variable) = match (input, output) {
+            (Some(input), _) => ("input", input),
+            (None, Some(output)) => ("output", output),
+            (None, None) => {
+                let finding = self.unknown_input(&name.text, &name.span);
+                self.findings.push(finding);
+                return;
+            }
         };
         match &proposition.term {
-            Some(term) => self.known_term("input", input, term),
+            Some(_) if kind == "output" && self.is_weighted(variable) => {
+                let message = format!(
+                    "`{}` is a Takagi-Sugeno output, whose terms are numbers; a condition reads fuzzy sets",
+                    name.text
+                );
+                let help = "let a linear function read it, or give it another defuzzifier and fuzzy sets as terms";
+                self.error("output-in-condition", &name.span, message, help);
+            }
+            Some(term) => self.known_term(kind, variable, term),
             // What a rule without a term reads back as.
             None if proposition.hedges.last() == Some(&Hedge::Any) => {}
             None => {
@@ -486,6 +498,20 @@ impl<'m> Validator<'m> {
                 let help = "add a term, or the hedge `any`";
                 self.error("missing-term", &name.span, message, help);
             }
+        }
+    }
+
+    fn is_weighted(&self, variable: &Variable) -> bool {
+        let mut outputs = self.model.outputs.iter();
+        outputs.any(|o| o.variable.name == variable.name && o.defuzzifier.is_weighted())
+    }
+
+    /// Suggests an output only where the name is nearly that of one.
+    fn unknown_input(&self, name: &str, span: &Range<usize>) -> Diagnostic {
+        let inputs = self.inputs.keys().copied();
+        match nearest(name, inputs.clone().chain(self.outputs.keys().copied())) {
+            Some(near) => unknown("input", name, span, core::iter::once(near)),
+            None => unknown("input", name, span, inputs),
         }
     }
 

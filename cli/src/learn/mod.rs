@@ -12,7 +12,7 @@ use flagred::{
 };
 use fuzzy::{
     Engine, Model,
-    learn::{Direction, Learned, Learner, Resolution, Settings},
+    learn::{Direction, LearnError, Learned, Learner, Resolution, Settings},
     map::{DecisionMap, Grid},
 };
 
@@ -130,8 +130,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let settings = settings(arguments);
     let mut learner = Learner::new(&model, settings.clone()).map_err(|error| {
-        Failure::usage(format!("`{name}`: {error}"))
-            .help("name inputs and terms as the rule set does")
+        let help = match error {
+            LearnError::Outputs { .. } => {
+                "learn from a rule set with this output alone; outputs that chain are learned one by one"
+            }
+            _ => "name inputs and terms as the rule set does",
+        };
+        Failure::usage(format!("`{name}`: {error}")).help(help)
     })?;
     let data = data::read(arguments, &model)?;
     let mut rows = Vec::with_capacity(data.rows.len());

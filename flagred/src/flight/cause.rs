@@ -5,7 +5,7 @@ use core::ops::Deref;
 
 use fuzzy::{
     Model,
-    engine::{ExplainedInput, Share},
+    engine::{Degree, Explanation, Share},
     rule::{Condition, Proposition},
 };
 
@@ -42,9 +42,10 @@ impl Deref for Finding {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Cause {
-    /// The input of the rule that distinguishes it: of the propositions of its antecedent, that of the fewest rules.
+    /// The input of the rule that distinguishes it: of the propositions of its antecedent, that of the fewest rules. In a chain it may
+    /// be an output that the rule reads.
     pub input: String,
-    /// The value of that input.
+    /// Its value.
     pub value: f64,
     /// The term, with its hedges.
     pub term: String,
@@ -72,12 +73,12 @@ impl Cause {
         let shares = output.rules.iter();
         let highest = shares.max_by(|a, b| raises(a).total_cmp(&raises(b)))?;
         let condition = &model.rules.get(highest.rule)?.rule.condition;
-        let proposition = distinguishing(model, condition, &explanation.inputs)?;
+        let proposition = distinguishing(model, condition, &explanation)?;
         let input = &proposition.variable.text;
-        let explained = explanation.inputs.iter().find(|i| i.name == *input)?;
+        let (value, _) = read(&explanation, input)?;
         Some(Cause {
             input: input.clone(),
-            value: explained.given,
+            value,
             term: term(proposition),
             rule: highest.rule,
         })
@@ -121,16 +122,12 @@ fn centre(model: &Model, output: &str, term: &str) -> f64 {
 fn distinguishing<'m>(
     model: &'m Model,
     condition: &'m Condition,
-    inputs: &[ExplainedInput],
+    explanation: &Explanation,
 ) -> Option<&'m Proposition> {
     let holds = |proposition: &&Proposition| {
-        let input = inputs.iter().find(|i| i.name == proposition.variable.text);
-        let degree = input
+        let degree = read(explanation, &proposition.variable.text)
             .zip(proposition.term.as_ref())
-            .and_then(|(input, term)| {
-                let mut degrees = input.terms.iter();
-                degrees.find(|degree| degree.term == term.text)
-            });
+            .and_then(|((_, terms), term)| terms.iter().find(|degree| degree.term == term.text));
         !proposition.hedges.is_empty() || degree.is_some_and(|degree| degree.degree > 0.0)
     };
     let rules_with = |proposition: &Proposition| {
@@ -140,6 +137,16 @@ fn distinguishing<'m>(
     };
     let propositions = propositions(condition).into_iter();
     propositions.filter(holds).min_by_key(|p| rules_with(p))
+}
+
+/// The value of an input, or of an output that rules read, and the degree of each of its terms.
+fn read<'e>(explanation: &'e Explanation, name: &str) -> Option<(f64, &'e [Degree])> {
+    let inputs = explanation.inputs.iter();
+    let inputs = inputs.map(|one| (&one.name, Some(one.given), &*one.terms));
+    let outputs = explanation.outputs.iter();
+    let outputs = outputs.map(|one| (&one.name, one.value, &*one.terms));
+    let (_, value, terms) = inputs.chain(outputs).find(|one| one.0 == name)?;
+    Some((value?, terms))
 }
 
 fn propositions(condition: &Condition) -> Vec<&Proposition> {
@@ -221,7 +228,7 @@ rules:
   - IF shake IS very violent AND at_limit IS none THEN risk IS medium
 ";
 
-    fn cause(inputs: [f64; 2]) -> (Cause, bool) {
+    fn cause(rules: &str, inputs: [f64; 2]) -> (Cause, bool) {
         let profile = "
 flagred: 1
 name: shaken
@@ -232,7 +239,7 @@ inputs:
 "
         .parse::<Profile>()
         .unwrap();
-        let rules = fuzzy::yaml::parse(RULES).unwrap().model;
+        let rules = fuzzy::yaml::parse(rules).unwrap().model;
         let estimator = Estimator::new(&profile, &rules).unwrap();
         let estimate = estimator.at(&inputs).unwrap();
         let cause = Cause::of(&estimator, &inputs, &estimate).unwrap();
@@ -248,7 +255,7 @@ inputs:
             ([0.9, 0.5], "at_limit 0.9 much, rule 0", true),
             ([0.0, 0.0], "shake 0 calm, rule 1", false),
         ] {
-            let (cause, is_motor) = cause(inputs);
+            let (cause, is_motor) = cause(RULES, inputs);
             let Cause {
                 input,
                 value,
@@ -265,6 +272,22 @@ inputs:
         let rules = fuzzy::yaml::parse(RULES).unwrap().model;
         let condition = &rules.rules[3].rule.condition;
         assert_eq!(term(propositions(condition)[0]), "very violent");
+    }
+
+    #[test]
+    fn in_a_chain_the_cause_may_be_an_output() {
+        let (head, _) = RULES.split_once("rules:").unwrap();
+        let strain = "outputs: {strain: {range: [0, 1], partition: {small: 0.3, large: 0.7}}, risk";
+        let rules = head.replace("outputs: {risk", strain)
+            + "rules:
+  - IF at_limit IS much THEN risk IS high
+  - IF shake IS violent THEN strain IS large
+  - IF shake IS calm THEN strain IS small
+  - IF strain IS large AND at_limit IS none THEN risk IS high
+";
+        let (cause, is_motor) = cause(&rules, [0.0, 1.0]);
+        assert_eq!((cause.input.as_str(), cause.rule), ("strain", 3));
+        assert!((cause.value - 0.736_666_666).abs() < 1e-6 && !is_motor);
     }
 
     #[test]

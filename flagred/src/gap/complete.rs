@@ -20,8 +20,12 @@ type Least = Vec<Vec<f64>>;
 ///
 /// The range of each input is cut at the corners of its terms and half way between them. In between, degrees are linear, so
 /// the least is at an end. The least strength of a rule in a cell follows from the least degrees in the intervals. Rules with
-/// other words than AND and IS, and curved terms, count as 0.
+/// other words than AND and IS, and curved terms, count as 0. Nothing is certain of an output that reads other outputs: these
+/// may have no value.
 pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) -> bool {
+    if !model.reads(&output.variable.name).is_empty() {
+        return false;
+    }
     let inputs: Vec<Least> = model.inputs.iter().map(least_degrees).collect();
     let is_output = |name: &Name| name.text == output.variable.name;
     let concludes = |rule: &Rule| rule.consequents.iter().any(|c| is_output(&c.output));

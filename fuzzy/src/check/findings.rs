@@ -199,11 +199,10 @@ impl At<'_> {
     }
 
     fn side(&self, side: &super::Side) -> String {
-        let input = self
-            .model
-            .inputs
-            .iter()
-            .find(|input| input.name == side.input);
+        // An output that rules read is an input of theirs.
+        let outputs = self.model.outputs.iter().map(|output| &output.variable);
+        let mut variables = self.model.inputs.iter().chain(outputs);
+        let input = variables.find(|input| input.name == side.input);
         let (low, high) = input.map_or((f64::NAN, f64::NAN), |input| (input.low, input.high));
         let name = &side.input;
         // A stretch that ends just inside the range ends at the range for a reader.

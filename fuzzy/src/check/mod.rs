@@ -11,6 +11,7 @@ use crate::{
     diagnostic::{Diagnostic, Findings, suggest},
     model::{
         Aggregation, Model,
+        chain::{Stage, stages},
         document::{Document, Spans},
     },
     validate::validate,
@@ -110,6 +111,9 @@ pub struct Report {
 
 /// Analyses the model of an engine.
 ///
+/// Where rules read an output, it counts as an input with all values of its range in what looks at conditions and terms:
+/// uncovered boxes, rules that never fire, holes, trends. Reach, claims and jumps are those of the whole model over its inputs.
+///
 /// # Errors
 /// A claim of `options` about an input or output that the model does not have.
 ///
@@ -139,8 +143,16 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
     for claim in &options.monotone {
         known(model, claim)?;
     }
-    let never_firing = rules::never_firing(model);
-    let (uncovered, uncovered_complete) = all_uncovered(model, options.coverage);
+    let (first, later) = stages(model);
+    let stages: Vec<Stage<'_>> = core::iter::once(first).chain(later).collect();
+    let never_firing = never_firing(&stages);
+    let (uncovered, uncovered_complete) = all_uncovered(&stages, options.coverage);
+    let read = model.outputs.iter().map(|output| &output.variable);
+    let read = read.filter(|variable| {
+        let mut inputs = stages.iter().flat_map(|stage| &stage.model.inputs);
+        inputs.any(|input| input.name == variable.name)
+    });
+    let holes = model.inputs.iter().chain(read).flat_map(terms::holes);
     let mut probe = probe::Probe::new(model, engine);
     let claims = options.monotone.iter();
     let counterexamples = claims
@@ -160,9 +172,9 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
         unused: terms::unused(model),
         unreachable: terms::unreachable(model, &never_firing),
         never_firing,
-        holes: model.inputs.iter().flat_map(terms::holes).collect(),
+        holes: holes.collect(),
         reach: probe.reach(),
-        against_trend: trend::against(model),
+        against_trend: stages.iter().flat_map(against_trend).collect(),
         counterexamples,
         jumps: probe.jumps(),
     })
@@ -192,13 +204,42 @@ pub fn document(
     Ok((Findings::locate(findings, text), Some(report)))
 }
 
+/// The rules that fire nowhere, ascending.
+fn never_firing(stages: &[Stage<'_>]) -> Vec<usize> {
+    let of_stage = |stage: &Stage<'_>| {
+        let rules = rules::never_firing(&stage.model).into_iter();
+        rules
+            .filter_map(|rule| stage.rules.get(rule).copied())
+            .collect::<Vec<_>>()
+    };
+    let mut found: Vec<usize> = stages.iter().flat_map(of_stage).collect();
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// The rules of a stage against the trend, with the numbers of the whole model.
+fn against_trend(stage: &Stage<'_>) -> Vec<AgainstTrend> {
+    let mut found = trend::against(&stage.model);
+    for one in &mut found {
+        for rule in [&mut one.from_rule, &mut one.to_rule] {
+            *rule = stage.rules.get(*rule).copied().unwrap_or(*rule);
+        }
+    }
+    found
+}
+
 /// The uncovered boxes of all outputs: those where no rule fires at all, then those where none reaches the coverage.
 /// Outputs with the same boxes are listed once.
-fn all_uncovered(model: &Model, coverage: f64) -> (Vec<Uncovered>, bool) {
+fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<Uncovered>, bool) {
     let mut found: Vec<Uncovered> = Vec::new();
     let mut complete = true;
     for level in [None, Some(coverage)] {
-        for output in &model.outputs {
+        let outputs = stages.iter().flat_map(|stage| {
+            let outputs = stage.model.outputs.iter();
+            outputs.map(|output| (&*stage.model, output))
+        });
+        for (model, output) in outputs {
             let boxes = coverage::uncovered(model, &output.variable.name, level);
             complete &= boxes.complete;
             let new = boxes.found.into_iter().filter(|one| {

@@ -263,3 +263,86 @@ fn jumps_are_found_where_they_are() {
         .is_empty()
     );
 }
+
+/// `mid` is read by the rules of `z`; it stays inside its range.
+#[test]
+fn an_output_that_is_read_counts_as_an_input_over_its_range() {
+    let outputs = "outputs: {z: {range: [0, 1], partition: [low, medium, high]}, \
+                   mid: {range: [0, 1], terms: {low: {triangle: [-0.4, 0, 0.4]}, high: {triangle: [0.6, 1, 1.4]}}}}";
+    let text = format!(
+        "fuzzy: 1\nname: a\n{INPUTS}\n{outputs}\nrules:
+  - IF mid IS low AND mid IS high THEN z IS medium
+  - IF x IS low THEN mid IS low
+  - IF x IS medium THEN mid IS low
+  - IF x IS high THEN mid IS high
+  - IF mid IS low AND y IS low THEN z IS low
+  - IF mid IS low AND y IS high THEN z IS medium
+  - IF mid IS high THEN z IS low
+"
+    );
+    let mut options = Options::default();
+    options.monotone.push("x:increasing:z".parse().unwrap());
+    let (report, findings) = report_of(&text, &options);
+    assert_eq!(report.never_firing, [0]);
+    assert_eq!(report.holes.len(), 1);
+    let Hole {
+        input, low, high, ..
+    } = &report.holes[0];
+    assert_eq!((input.as_str(), *low, *high), ("mid", 0.4, 0.6));
+    let silent: Vec<&Uncovered> = report.uncovered.iter().filter(|one| one.silent).collect();
+    let [one] = silent.as_slice() else {
+        panic!("{silent:?}");
+    };
+    let side = &one.sides[0];
+    assert_eq!((one.output.as_str(), side.input.as_str()), ("z", "mid"));
+    assert_eq!((side.low, side.high, one.sides.len()), (0.4, 0.6, 1));
+    // A claim is about an input of the whole, through the chain.
+    let wrong: Vec<_> = report
+        .counterexamples
+        .iter()
+        .map(|one| one.claim.output.as_deref())
+        .collect();
+    assert_eq!(wrong, [Some("z")]);
+    let told: Vec<&str> = findings
+        .iter()
+        .map(|finding| finding.message.as_str())
+        .collect();
+    assert!(
+        told.contains(&"no rule for `z` fires where 0.4 < mid < 0.6: 20 % of the input space"),
+        "{told:?}"
+    );
+    let unknown = Monotone {
+        input: "mid".into(),
+        ..options.monotone[0].clone()
+    };
+    options.monotone.push(unknown);
+    let engine = Engine::new(&yaml::parse(&text).unwrap().model).unwrap();
+    assert!(check(&engine, &options).is_err());
+}
+
+/// The rules of a chain keep their numbers.
+#[test]
+fn rules_of_a_later_stage_are_told_by_their_numbers() {
+    let text = format!(
+        "fuzzy: 1\nname: a\n{INPUTS}
+outputs: {{mid: {{range: [0, 1], partition: [low, medium, high]}}, z: {{range: [0, 1], partition: [low, medium, high]}}}}
+rules:
+  - IF x IS low THEN mid IS low
+  - IF x IS high THEN mid IS high
+  - IF mid IS low AND y IS low THEN z IS low
+  - IF mid IS medium AND y IS low THEN z IS medium
+  - IF mid IS high AND y IS low THEN z IS high
+  - IF mid IS low AND y IS high THEN z IS medium
+  - IF mid IS medium AND y IS high THEN z IS high
+  - IF mid IS high AND y IS high THEN z IS low
+"
+    );
+    let (report, _) = report_of(&text, &Options::default());
+    let along_mid: Vec<_> = report
+        .against_trend
+        .iter()
+        .filter(|one| one.input == "mid")
+        .collect();
+    assert_eq!(along_mid.len(), 1, "{:?}", report.against_trend);
+    assert_eq!((along_mid[0].from_rule, along_mid[0].to_rule), (6, 7));
+}

@@ -76,7 +76,7 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
             at,
             Anchor::Start,
             "title",
-            &answer(output, &written.variable),
+            &titles(output, &written.variable, explanation),
         );
         if output.set.is_empty() {
             let scale = Scale::new(written.variable.low, written.variable.high);
@@ -125,12 +125,39 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
     sheet.finish(&format!("{}: an evaluation with its reasons", model.name))
 }
 
+/// The value of an output, and the values of outputs that it reads.
+fn titles(output: &ExplainedOutput, variable: &Variable, all: &Explanation) -> String {
+    let answer = answer(output, variable, all);
+    match read_values(output, all) {
+        reads if reads.is_empty() => answer,
+        reads => format!("{answer}; reads {}", reads.join(", ")),
+    }
+}
+
+/// The outputs that an output reads, each with its value.
+pub(super) fn read_values(output: &ExplainedOutput, all: &Explanation) -> Vec<String> {
+    let reads = all
+        .outputs
+        .iter()
+        .filter(|one| output.reads.contains(&one.name));
+    let reads = reads.map(|read| match read.value {
+        Some(value) => format!("{} = {}", read.name, digits(value)),
+        None => format!("{}, which is undefined", read.name),
+    });
+    reads.collect()
+}
+
 /// The value of an output in words.
-pub(super) fn answer(output: &ExplainedOutput, variable: &Variable) -> String {
+pub(super) fn answer(output: &ExplainedOutput, variable: &Variable, all: &Explanation) -> String {
     let unit = variable.unit.iter().map(|unit| format!(" {unit}"));
     let unit: String = unit.collect();
+    let mut reads = all.outputs.iter();
+    let unknown = reads.find(|one| one.value.is_none() && output.reads.contains(&one.name));
     match output.value {
-        None => format!("{} is undefined: no rule fired", output.name),
+        None => match unknown {
+            Some(read) => format!("{} is undefined, because {} is", output.name, read.name),
+            None => format!("{} is undefined: no rule fired", output.name),
+        },
         Some(value) if output.is_default => {
             format!(
                 "{} = {}{unit}, the default value: no rule fired",

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{
-    explanation::{answer, digits},
+    explanation::{answer, digits, read_values},
     scale::Scale,
     text::{bar, block, visible},
 };
@@ -73,7 +73,11 @@ fn add_degrees(text: &mut String, terms: &[Degree]) {
 }
 
 fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, all: &Explanation) {
-    let _ = writeln!(text, "\n{}", visible(&answer(output, variable)));
+    let _ = writeln!(text, "\n{}", visible(&answer(output, variable, all)));
+    let reads = read_values(output, all);
+    if !reads.is_empty() {
+        let _ = writeln!(text, "  reads {}", visible(&reads.join(", ")));
+    }
     let _ = writeln!(
         text,
         "  coverage {:.5}, the largest firing strength",

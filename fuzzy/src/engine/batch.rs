@@ -113,7 +113,7 @@ impl Engine {
         range: Range<usize>,
         mut put: impl FnMut(&[Outcome]),
     ) {
-        if let Some(lanes) = &self.lanes {
+        if let (None, Some(lanes)) = (&self.chain, &self.first.lanes) {
             lanes.rows(columns, range, |outcome| put(&[outcome]));
             return;
         }

@@ -1,16 +1,19 @@
 //! From names to indices, once a model has been validated.
 
-use alloc::{collections::BTreeMap, string::String, sync::Arc, vec, vec::Vec};
+use alloc::{boxed::Box, collections::BTreeMap, string::String, sync::Arc, vec, vec::Vec};
 
 use super::arrays::OwnedTable;
+use super::chain::Chain;
 use super::lanes::Lanes;
 use super::literal::{Literal, Literals};
 use super::rules::Draft;
-use super::{CompiledOutput, Engine, Input};
+use super::{CompiledOutput, Engine, Input, NamedOutput, Stage};
 use crate::defuzzify::weighted::Consequents;
 use crate::defuzzify::{Defuzzify, Merging};
 use crate::diagnostic::Findings;
-use crate::model::{MembershipFunction, Model, Output, Term, document::Spans};
+use crate::model::{
+    MembershipFunction, Model, NoRuleFires, Output, Term, Variable, chain::stages, document::Spans,
+};
 use crate::rule::{Condition, Hedge, Proposition};
 use crate::table::{Action, Op, Step};
 use crate::validate::validate;
@@ -43,13 +46,43 @@ impl Engine {
         if !invalid.is_empty() {
             return Err(Findings(invalid));
         }
+        let (first, later) = stages(model);
+        let inputs = model.inputs.iter().map(Input::of);
+        let outputs = model.outputs.iter().map(|output| NamedOutput {
+            name: Arc::from(output.variable.name.as_str()),
+            must_fire: output.when_no_rule_fires == NoRuleFires::Error,
+        });
+        let chain = (!later.is_empty()).then(|| Box::new(Chain::new(&first, &later)));
+        Ok(Engine {
+            inputs: inputs.collect(),
+            outputs: outputs.collect(),
+            first: Stage::new(&first.model),
+            chain,
+            model: Arc::new(model.clone()),
+        })
+    }
+}
+
+impl Stage {
+    /// Compiles a valid model in which no output reads another one.
+    pub(super) fn new(model: &Model) -> Self {
         let mut compiler = Compiler {
             model,
             literals: BTreeMap::new(),
         };
         compiler.literals();
         let drafts = compiler.drafts();
-        Ok(compiler.engine(drafts))
+        compiler.stage(drafts)
+    }
+}
+
+impl Input {
+    fn of(variable: &Variable) -> Self {
+        Input {
+            name: Arc::from(variable.name.as_str()),
+            low: variable.low,
+            high: variable.high,
+        }
     }
 }
 
@@ -187,7 +220,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn engine(&self, mut drafts: Vec<Draft>) -> Engine {
+    fn stage(&self, mut drafts: Vec<Draft>) -> Stage {
         let model = self.model;
         let mut outputs = Vec::new();
         let mut first_strength = 0;
@@ -220,18 +253,12 @@ impl Compiler<'_> {
                 variable.high,
             ));
             first += count;
-            inputs.push(Input {
-                name: Arc::from(variable.name.as_str()),
-                low: variable.low,
-                high: variable.high,
-            });
+            inputs.push(Input::of(variable));
         }
         let operators = model.operators;
-        Engine {
+        Stage {
             lanes: Lanes::new(operators.and, &inputs, &by_input, &drafts, &outputs),
             arrays: OwnedTable::new(operators, &inputs, &literals, &drafts, &outputs),
-            model: Arc::new(model.clone()),
-            inputs,
             outputs,
         }
     }
@@ -278,7 +305,6 @@ impl Compiler<'_> {
         let last = offsets.last().copied().unwrap_or(0);
         let count = defuzzify.ranks().map_or(last, |(count, _)| count);
         CompiledOutput {
-            name: Arc::from(variable.name.as_str()),
             low: variable.low,
             high: variable.high,
             when_no_rule_fires: output.when_no_rule_fires,

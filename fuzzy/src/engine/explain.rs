@@ -82,6 +82,8 @@ pub struct ExplainedOutput {
     pub value: Option<f64>,
     /// Whether no rule fires and the value is the model's default.
     pub is_default: bool,
+    /// The outputs whose values it reads. Where one of them has no value, no rule of this output fires, and it has none.
+    pub reads: Vec<String>,
     /// The largest firing strength of a rule of this output.
     pub coverage: f64,
     /// The rules that contribute to it, the largest share first.
@@ -161,11 +163,15 @@ impl Engine {
             return Err(EvaluateError::InputNotFinite);
         }
         let explained: Vec<ExplainedInput> = model.inputs.iter().zip(inputs).map(input).collect();
-        let values: Vec<f64> = explained.iter().map(|input| input.value).collect();
-        let rules = fired(model, &values);
+        let known = Known {
+            model,
+            inputs: &explained,
+            outcomes: &outcomes,
+        };
+        let rules = fired(&known);
         let outputs = model.outputs.iter().zip(&outcomes);
         let outputs =
-            outputs.map(|(output, outcome)| explain_output(model, output, outcome, &rules));
+            outputs.map(|(output, outcome)| explain_output(&known, output, outcome, &rules));
         Ok(Explanation {
             outputs: outputs.collect(),
             inputs: explained,
@@ -175,7 +181,7 @@ impl Engine {
 }
 
 fn input((variable, &given): (&Variable, &f64)) -> ExplainedInput {
-    let value = larger(variable.low, smaller(variable.high, given));
+    let value = clamped(variable, given);
     ExplainedInput {
         name: variable.name.clone(),
         given,
@@ -192,10 +198,61 @@ fn degrees(terms: &[Term], value: f64) -> Vec<Degree> {
     terms.iter().map(degree).collect()
 }
 
-fn fired(model: &Model, values: &[f64]) -> Vec<FiredRule> {
+/// The values that conditions read.
+struct Known<'a> {
+    model: &'a Model,
+    inputs: &'a [ExplainedInput],
+    outcomes: &'a [Outcome],
+}
+
+impl<'a> Known<'a> {
+    /// An input or output by its name, and its value.
+    fn variable(&self, name: &str) -> Option<(&'a Variable, Option<f64>)> {
+        let inputs = self.model.inputs.iter().zip(self.inputs);
+        let inputs = inputs.map(|(variable, input)| (variable, Some(input.value)));
+        let outputs = self.model.outputs.iter().zip(self.outcomes);
+        let outputs = outputs.map(|(output, outcome)| {
+            let (variable, value) = (&output.variable, outcome.value());
+            // As an input: clamped to the range.
+            (variable, value.map(|value| clamped(variable, value)))
+        });
+        inputs
+            .chain(outputs)
+            .find(|(variable, _)| variable.name == name)
+    }
+
+    /// Whether all outputs that an output reads have values. Otherwise none of its rules is evaluated.
+    fn is_evaluated(&self, output: &str) -> bool {
+        let mut reads = self.model.reads(output).into_iter();
+        reads.all(|read| {
+            self.variable(read)
+                .is_some_and(|(_, value)| value.is_some())
+        })
+    }
+}
+
+fn clamped(variable: &Variable, value: f64) -> f64 {
+    larger(variable.low, smaller(variable.high, value))
+}
+
+fn fired(known: &Known<'_>) -> Vec<FiredRule> {
     let mut fired: Vec<FiredRule> = Vec::new();
-    for (index, rule) in model.rules.iter().enumerate() {
-        let degree = holds(&rule.rule.condition, model, values, model.operators);
+    let evaluated: Vec<bool> = known
+        .model
+        .outputs
+        .iter()
+        .map(|output| known.is_evaluated(&output.variable.name))
+        .collect();
+    for (index, rule) in known.model.rules.iter().enumerate() {
+        let mut outputs = known.model.outputs.iter().zip(&evaluated);
+        let concludes = |output: &Output| {
+            let mut consequents = rule.rule.consequents.iter();
+            consequents.any(|c| c.output.text == output.variable.name)
+        };
+        if !outputs.any(|(output, evaluated)| *evaluated && concludes(output)) {
+            continue;
+        }
+        let degree = holds(&rule.rule.condition, known);
         let strength = rule.rule.weight * degree;
         if strength > 0.0 {
             fired.push(FiredRule {
@@ -212,10 +269,11 @@ fn fired(model: &Model, values: &[f64]) -> Vec<FiredRule> {
 }
 
 /// The degree of a condition, read from its tree.
-fn holds(condition: &Condition, model: &Model, values: &[f64], operators: Operators) -> f64 {
-    let degree = |part: &Condition| holds(part, model, values, operators);
+fn holds(condition: &Condition, known: &Known<'_>) -> f64 {
+    let operators = known.model.operators;
+    let degree = |part: &Condition| holds(part, known);
     match condition {
-        Condition::Is(proposition) => proposition_holds(proposition, model, values),
+        Condition::Is(proposition) => proposition_holds(proposition, known),
         Condition::Not(inner) => 1.0 - degree(inner),
         Condition::And(parts) => {
             let joined = parts
@@ -234,25 +292,29 @@ fn holds(condition: &Condition, model: &Model, values: &[f64], operators: Operat
     }
 }
 
-fn proposition_holds(proposition: &Proposition, model: &Model, values: &[f64]) -> f64 {
-    let inputs = model.inputs.iter().zip(values);
-    let mut named = inputs.filter(|(input, _)| input.name == proposition.variable.text);
-    let membership = named.next().and_then(|(input, &value)| {
+fn proposition_holds(proposition: &Proposition, known: &Known<'_>) -> f64 {
+    let named = known.variable(&proposition.variable.text);
+    let membership = named.and_then(|(variable, value)| {
         let name = &proposition.term.as_ref()?.text;
-        let term = input.terms.iter().find(|term| term.name == *name)?;
-        Some(term.membership(value))
+        let term = variable.terms.iter().find(|term| term.name == *name)?;
+        Some(term.membership(value?))
     });
     let hedges = proposition.hedges.iter().rev();
     hedges.fold(membership.unwrap_or(0.0), |degree, hedge| hedge.of(degree))
 }
 
 fn explain_output(
-    model: &Model,
+    known: &Known<'_>,
     output: &Output,
     outcome: &Outcome,
     fired: &[FiredRule],
 ) -> ExplainedOutput {
-    let variable = &output.variable;
+    let (model, variable) = (known.model, &output.variable);
+    let fired = if known.is_evaluated(&variable.name) {
+        fired
+    } else {
+        &[]
+    };
     let weighted = output.defuzzifier.is_weighted();
     let mut active: Vec<Active<'_>> = Vec::new();
     for rule in fired {
@@ -312,6 +374,11 @@ fn explain_output(
         value,
         is_default: matches!(outcome.state, State::Default(_)),
         coverage: outcome.coverage,
+        reads: model
+            .reads(&variable.name)
+            .into_iter()
+            .map(String::from)
+            .collect(),
         rules,
         terms: match value {
             Some(value) if sets && !weighted => degrees(&variable.terms, value),

@@ -1,6 +1,6 @@
 //! The compiled model: immutable, evaluated without allocation.
 
-use alloc::{sync::Arc, vec, vec::Vec};
+use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use crate::defuzzify::polyline::Workspace;
@@ -8,10 +8,12 @@ use crate::defuzzify::{Defuzzify, Strengths};
 use crate::model::{Model, NoRuleFires};
 use crate::table::{self, Buffers, Partial, Strongest, Table};
 use arrays::OwnedTable;
+use chain::Chain;
 use lanes::Lanes;
 
 mod arrays;
 mod batch;
+mod chain;
 mod compile;
 mod error;
 mod explain;
@@ -49,6 +51,16 @@ pub struct Engine {
     /// What it was compiled from.
     model: Arc<Model>,
     inputs: Vec<Input>,
+    outputs: Vec<NamedOutput>,
+    /// The outputs that read no other output: all of them, unless the model chains.
+    first: Stage,
+    /// The other outputs, which are evaluated after those they read.
+    chain: Option<Box<Chain>>,
+}
+
+/// Outputs that are evaluated at once.
+#[derive(Debug, Clone)]
+struct Stage {
     outputs: Vec<CompiledOutput>,
     /// What is evaluated.
     arrays: OwnedTable,
@@ -64,8 +76,14 @@ struct Input {
 }
 
 #[derive(Debug, Clone)]
-struct CompiledOutput {
+struct NamedOutput {
     name: Arc<str>,
+    /// Whether evaluation is an error where no rule fires.
+    must_fire: bool,
+}
+
+#[derive(Debug, Clone)]
+struct CompiledOutput {
     low: f64,
     high: f64,
     when_no_rule_fires: NoRuleFires,
@@ -79,6 +97,17 @@ struct CompiledOutput {
 /// Working memory of an evaluation: made once by [`Engine::scratch`], then reused.
 #[derive(Debug, Clone)]
 pub struct Scratch {
+    first: StageScratch,
+    /// Of the later stages of a model that chains.
+    later: Vec<StageScratch>,
+    /// The values of the inputs, then of the outputs that a later stage reads.
+    values: Vec<f64>,
+    /// The outcomes of a stage of a model that chains.
+    own: Vec<Outcome>,
+}
+
+#[derive(Debug, Clone)]
+struct StageScratch {
     table: Buffers<Vec<f64>, Vec<Partial>, Vec<Strongest>>,
     /// For outputs that have no closed form.
     workspace: Workspace,
@@ -118,28 +147,28 @@ impl Engine {
 
     /// Working memory for [`Engine::evaluate_with`]; each thread needs its own.
     pub fn scratch(&self) -> Scratch {
-        let sizes = self.arrays.sizes;
-        let strengths = sizes.strengths as usize;
-        let cuts = self.outputs.iter().map(|output| output.defuzzify.cuts());
+        let Some(chain) = &self.chain else {
+            return Scratch {
+                first: self.first.scratch(),
+                later: Vec::new(),
+                values: Vec::new(),
+                own: Vec::new(),
+            };
+        };
+        let later = chain.later().iter().map(|later| later.stage.scratch());
         Scratch {
-            table: Buffers {
-                values: vec![0.0; self.inputs.len()],
-                degrees: vec![0.0; sizes.degrees as usize],
-                alive: vec![Partial::NONE; sizes.alive as usize],
-                partial: vec![Partial::NONE; sizes.partial as usize],
-                next: vec![Partial::NONE; sizes.partial as usize],
-                stack: vec![0.0; sizes.stack as usize],
-                strengths: vec![0.0; strengths],
-                strongest: vec![Strongest::NONE; self.outputs.len()],
-            },
-            workspace: Workspace::new(strengths, strengths + cuts.max().unwrap_or(0)),
+            first: self.first.scratch(),
+            later: later.collect(),
+            values: vec![0.0; self.inputs.len() + chain.most_reads()],
+            own: vec![Outcome::default(); self.outputs.len()],
         }
     }
 
-    /// The compiled arrays, to be evaluated without this engine or written out: see [`table`]. Outputs whose set is
+    /// The compiled arrays, to be evaluated without this engine or written out: see [`table`]. `None` where an output
+    /// [reads](Model::reads) another one, because a table has one stage. Outputs whose set is
     /// [`ClosedForm::NONE`](table::ClosedForm::NONE) have no closed form, and only the engine knows their values.
-    pub fn table(&self) -> Table<'_> {
-        self.arrays.table()
+    pub fn table(&self) -> Option<Table<'_>> {
+        self.chain.is_none().then(|| self.first.arrays.table())
     }
 
     /// Evaluates one value for each input, in the order of the model, and gives one outcome for each output.
@@ -214,9 +243,7 @@ impl Engine {
         }
         self.outcomes(scratch, inputs, outcomes);
         for (output, outcome) in self.outputs.iter().zip(outcomes) {
-            if output.when_no_rule_fires == NoRuleFires::Error
-                && outcome.state == State::NoRuleFired
-            {
+            if output.must_fire && outcome.state == State::NoRuleFired {
                 return Err(EvaluateError::NoRuleFired {
                     output: Arc::clone(&output.name),
                 });
@@ -228,7 +255,36 @@ impl Engine {
     /// Evaluates as many values as there are inputs into as many outcomes as there are outputs.
     #[inline(always)]
     fn outcomes(&self, scratch: &mut Scratch, inputs: &[f64], outcomes: &mut [Outcome]) {
-        let Scratch {
+        match &self.chain {
+            None => self.first.outcomes(&mut scratch.first, inputs, outcomes),
+            Some(chain) => self.chained(chain, scratch, inputs, outcomes),
+        }
+    }
+}
+
+impl Stage {
+    fn scratch(&self) -> StageScratch {
+        let sizes = self.arrays.sizes;
+        let strengths = sizes.strengths as usize;
+        let cuts = self.outputs.iter().map(|output| output.defuzzify.cuts());
+        StageScratch {
+            table: Buffers {
+                values: vec![0.0; self.arrays.inputs.len()],
+                degrees: vec![0.0; sizes.degrees as usize],
+                alive: vec![Partial::NONE; sizes.alive as usize],
+                partial: vec![Partial::NONE; sizes.partial as usize],
+                next: vec![Partial::NONE; sizes.partial as usize],
+                stack: vec![0.0; sizes.stack as usize],
+                strengths: vec![0.0; strengths],
+                strongest: vec![Strongest::NONE; self.outputs.len()],
+            },
+            workspace: Workspace::new(strengths, strengths + cuts.max().unwrap_or(0)),
+        }
+    }
+
+    #[inline(always)]
+    fn outcomes(&self, scratch: &mut StageScratch, inputs: &[f64], outcomes: &mut [Outcome]) {
+        let StageScratch {
             table: buffers,
             workspace,
         } = scratch;

@@ -273,7 +273,7 @@ mod laws {
         ) {
             let when = if default { NoRuleFires::Value(0.5) } else { NoRuleFires::Undefined };
             let engine = Engine::new(&slopes(when)).unwrap();
-            prop_assert!(engine.lanes.is_some());
+            prop_assert!(engine.first.lanes.is_some());
             let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
             let batch = engine.evaluate_batch(&[&x, &y]).unwrap();
             for ((x, y), outcome) in points.iter().zip(&batch) {

@@ -233,7 +233,7 @@ fn with_condition(model: &mut Model, condition: Condition) {
 type Mistake = (&'static str, fn(&mut Model));
 
 /// Every way to break a model, and the code of what is wrong then.
-const MISTAKES: [Mistake; 32] = [
+const MISTAKES: [Mistake; 33] = [
     ("missing-key", |m| m.outputs.clear()),
     ("missing-key", |m| m.outputs[0].variable.terms.clear()),
     ("empty-name", |m| m.inputs[0].name.clear()),
@@ -337,8 +337,16 @@ const MISTAKES: [Mistake; 32] = [
     ("unknown-term", |m| {
         with_condition(m, Condition::is(&m.inputs[0].name.clone(), "nothing"))
     }),
-    ("output-in-condition", |m| {
+    ("circular-outputs", |m| {
         with_condition(m, Condition::is("the output", "t 0"))
+    }),
+    ("output-in-condition", |m| {
+        let mut number = Variable::new("a number", 0.0, 1.0);
+        number = number.term("one", MembershipFunction::Constant { value: 1.0 });
+        let mut output = Output::new(number);
+        output.defuzzifier = Defuzzifier::WeightedSum;
+        m.outputs.push(output);
+        with_condition(m, Condition::is("a number", "one"));
     }),
     ("missing-term", |m| {
         let condition = Condition::is_hedged(&m.inputs[0].name, &[Hedge::Any, Hedge::Very], "");

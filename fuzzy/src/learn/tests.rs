@@ -1,7 +1,7 @@
 use alloc::string::String;
 
 use super::*;
-use crate::Engine;
+use crate::{Engine, model::Output};
 use alloc::format;
 use proptest::prelude::*;
 
@@ -306,4 +306,21 @@ proptest! {
             prop_assert_eq!(format!("{once:?}"), format!("{:?}", learn(&turned)));
         }
     }
+}
+
+#[test]
+fn outputs_that_chain_are_refused() {
+    let mut model = variables();
+    let strain = Output::new(Variable::new("strain", 0.0, 1.0).partition(["low", "high"]));
+    model.outputs.push(strain);
+    for rule in [
+        "IF margin IS low THEN strain IS high",
+        "IF strain IS high THEN risk IS high",
+    ] {
+        model
+            .rules
+            .push(rule.parse::<crate::rule::Rule>().unwrap().into());
+    }
+    let refused = Learner::new(&model, Settings::default()).unwrap_err();
+    assert_eq!(refused, LearnError::Outputs { outputs: 2 });
 }

@@ -5,6 +5,7 @@ use alloc::{string::String, vec::Vec};
 use crate::rule;
 
 mod builder;
+pub(crate) mod chain;
 pub(crate) mod document;
 mod partition;
 #[cfg(feature = "serde")]

@@ -145,7 +145,7 @@ impl Table<'_> {
     ///     .rule(rule::parse("IF temperature IS hot THEN speed IS fast")?)
     ///     .build();
     /// let engine = Engine::new(&model)?;
-    /// let table = engine.table();
+    /// let table = engine.table().ok_or("the model chains")?;
     /// let sizes = table.sizes;
     /// let mut scratch = Scratch {
     ///     values: &mut [0.0],

@@ -1,50 +1,96 @@
 //! What a rule set means, by definition: every formula written out a second time, apart from the engine, and
 //! every integral a plain sum over many samples. Slow, and nothing else.
 
-use std::f64::consts::PI;
+use std::{collections::BTreeMap, f64::consts::PI};
 
 use fuzzy::model::{
     Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, Model,
-    NoRuleFires, Output, Term,
+    NoRuleFires, Output, Term, Variable,
 };
 use fuzzy::rule::{Condition, Hedge, Proposition};
 
 /// The value of each output at a point; `None` where no rule fires and the author chose no value.
 /// `samples` are taken between every two places at which a shape has a parameter.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
-    let mut values = Vec::new();
+    let mut values = Values::new();
     for (variable, x) in model.inputs.iter().zip(point) {
-        values.push(x.clamp(variable.low, variable.high));
+        values.insert(
+            &variable.name,
+            Some((variable, x.clamp(variable.low, variable.high))),
+        );
     }
-    let strengths: Vec<f64> = model
-        .rules
-        .iter()
-        .map(|rule| rule.rule.weight * degree(model, &values, &rule.rule.condition))
-        .collect();
-    model
-        .outputs
-        .iter()
-        .map(|output| {
-            let mut fired: Vec<(f64, &Term)> = Vec::new();
-            for (rule, strength) in model.rules.iter().zip(&strengths) {
-                for consequent in &rule.rule.consequents {
-                    if consequent.output.text == output.variable.name && *strength > 0.0 {
-                        fired.push((
-                            *strength,
-                            term(&output.variable.terms, &consequent.term.text),
-                        ));
-                    }
-                }
+    // Of a chain, each round adds the outputs whose conditions read nothing that is still to come.
+    let mut numbers = vec![None; model.outputs.len()];
+    while values.len() < model.inputs.len() + model.outputs.len() {
+        let before = values.clone();
+        for (output, number) in model.outputs.iter().zip(&mut numbers) {
+            let reads = reads(model, output);
+            let variable = &output.variable;
+            if before.contains_key(&*variable.name)
+                || !reads.iter().all(|read| before.contains_key(read))
+            {
+                continue;
             }
-            if fired.is_empty() {
-                return match output.when_no_rule_fires {
-                    NoRuleFires::Value(value) => Some(value),
-                    NoRuleFires::Undefined | NoRuleFires::Error => None,
-                };
+            if reads.iter().all(|read| before[read].is_some()) {
+                *number = value(model, output, &before, samples);
             }
-            Some(number(model, output, &fired, &values, samples))
-        })
-        .collect()
+            let clamped = number.map(|x: f64| (variable, x.clamp(variable.low, variable.high)));
+            values.insert(&variable.name, clamped);
+        }
+        assert!(values.len() > before.len(), "a circle");
+    }
+    numbers
+}
+
+/// The value of each input, and of each output that is known so far; `None` where it has none.
+type Values<'m> = BTreeMap<&'m str, Option<(&'m Variable, f64)>>;
+
+/// The names in the conditions of the rules of an output, and in its linear functions.
+fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
+    let mut names = Vec::new();
+    for rule in &model.rules {
+        if rule
+            .rule
+            .consequents
+            .iter()
+            .any(|c| c.output.text == output.variable.name)
+        {
+            rule.rule
+                .condition
+                .visit(&mut |proposition| names.push(&*proposition.variable.text));
+        }
+    }
+    for term in &output.variable.terms {
+        if let MembershipFunction::Linear { coefficients, .. } = &term.membership_function {
+            names.extend(coefficients.iter().map(|(name, _)| &**name));
+        }
+    }
+    names
+}
+
+fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) -> Option<f64> {
+    let mut fired: Vec<(f64, &Term)> = Vec::new();
+    for rule in &model.rules {
+        for consequent in &rule.rule.consequents {
+            if consequent.output.text != output.variable.name {
+                continue;
+            }
+            let strength = rule.rule.weight * degree(model, values, &rule.rule.condition);
+            if strength > 0.0 {
+                fired.push((
+                    strength,
+                    term(&output.variable.terms, &consequent.term.text),
+                ));
+            }
+        }
+    }
+    if fired.is_empty() {
+        return match output.when_no_rule_fires {
+            NoRuleFires::Value(value) => Some(value),
+            NoRuleFires::Undefined | NoRuleFires::Error => None,
+        };
+    }
+    Some(number(model, output, &fired, values, samples))
 }
 
 fn term<'m>(terms: &'m [Term], name: &str) -> &'m Term {
@@ -52,10 +98,10 @@ fn term<'m>(terms: &'m [Term], name: &str) -> &'m Term {
 }
 
 /// The degree of a condition.
-fn degree(model: &Model, values: &[f64], condition: &Condition) -> f64 {
+fn degree(model: &Model, values: &Values<'_>, condition: &Condition) -> f64 {
     let of = |condition: &Condition| degree(model, values, condition);
     match condition {
-        Condition::Is(proposition) => proposed(model, values, proposition),
+        Condition::Is(proposition) => proposed(values, proposition),
         Condition::Not(inner) => 1.0 - of(inner),
         Condition::And(all) => {
             let degrees = all.iter().map(of);
@@ -70,13 +116,12 @@ fn degree(model: &Model, values: &[f64], condition: &Condition) -> f64 {
     }
 }
 
-fn proposed(model: &Model, values: &[f64], proposition: &Proposition) -> f64 {
-    let name = &proposition.variable.text;
-    let input = model.inputs.iter().position(|v| &v.name == name).unwrap();
+fn proposed(values: &Values<'_>, proposition: &Proposition) -> f64 {
+    let (variable, value) = values[&*proposition.variable.text].unwrap();
     let mut x = match &proposition.term {
         Some(name) => {
-            let term = term(&model.inputs[input].terms, &name.text);
-            term.height * membership(&term.membership_function, values[input])
+            let term = term(&variable.terms, &name.text);
+            term.height * membership(&term.membership_function, value)
         }
         None => 1.0,
     };
@@ -131,14 +176,14 @@ fn number(
     model: &Model,
     output: &Output,
     fired: &[(f64, &Term)],
-    values: &[f64],
+    values: &Values<'_>,
     samples: usize,
 ) -> f64 {
     if let Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum = output.defuzzifier {
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
         let sum: f64 = fired
             .iter()
-            .map(|(weight, term)| weight * consequent(model, &term.membership_function, values))
+            .map(|(weight, term)| weight * consequent(&term.membership_function, values))
             .sum();
         return match output.defuzzifier {
             Defuzzifier::WeightedSum => sum,
@@ -207,7 +252,7 @@ fn number(
     }
 }
 
-fn consequent(model: &Model, shape: &MembershipFunction, values: &[f64]) -> f64 {
+fn consequent(shape: &MembershipFunction, values: &Values<'_>) -> f64 {
     match shape {
         MembershipFunction::Constant { value } | MembershipFunction::Singleton { at: value } => {
             *value
@@ -218,8 +263,7 @@ fn consequent(model: &Model, shape: &MembershipFunction, values: &[f64]) -> f64 
         } => {
             let mut z = *constant;
             for (name, coefficient) in coefficients {
-                let input = model.inputs.iter().position(|v| &v.name == name).unwrap();
-                z += coefficient * values[input];
+                z += coefficient * values[&**name].unwrap().1;
             }
             z
         }

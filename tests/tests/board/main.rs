@@ -403,6 +403,10 @@ fn every_compiled_table_is_whole() {
         let (rule_set, _) = text.split_once("\n---\n").unwrap();
         let model = fuzzy::yaml::parse(rule_set).unwrap().model;
         let engine = fuzzy::Engine::new(&model).unwrap();
-        assert_eq!(engine.table().check(), Ok(()), "{}", model.name);
+        let Some(table) = engine.table() else {
+            assert_eq!(model.name, "chain");
+            continue;
+        };
+        assert_eq!(table.check(), Ok(()), "{}", model.name);
     }
 }

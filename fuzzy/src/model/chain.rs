@@ -1,0 +1,293 @@
+//! Chains: outputs that the rules of other outputs read.
+//!
+//! An output reads another one where a rule that concludes it names the other one in its condition, or where a linear
+//! function of it has a coefficient for the other one. A model in which outputs read others is evaluated in stages. The
+//! first stage has the outputs that read none, each later stage has one output more. A stage is a model of its own whose
+//! inputs are those of the whole model and the outputs that it reads.
+
+use alloc::{borrow::Cow, format, string::String, vec, vec::Vec};
+use core::ops::Range;
+
+use super::{MembershipFunction, Model, Rule, Variable, document::Spans};
+use crate::diagnostic::Diagnostic;
+
+/// That an output reads another one.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Read {
+    /// The index of the output that is read.
+    pub(crate) output: usize,
+    /// The index of the first rule that reads it; `None` where only a linear function does.
+    pub(crate) rule: Option<usize>,
+    /// Where it is named.
+    pub(crate) span: Range<usize>,
+}
+
+/// A part of a model that is evaluated at once.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Stage<'m> {
+    /// Its inputs are those of the whole model, then `reads`.
+    pub(crate) model: Cow<'m, Model>,
+    /// The indices in the whole model of the outputs that it reads, ascending.
+    pub(crate) reads: Vec<usize>,
+    /// The index in the whole model of each of its outputs.
+    pub(crate) outputs: Vec<usize>,
+    /// The index in the whole model of each of its rules.
+    pub(crate) rules: Vec<usize>,
+}
+
+impl Model {
+    /// The other outputs that an output reads: in the conditions of its rules, or in its linear functions.
+    ///
+    /// # Example: a comfort that the speed of a fan is decided by
+    /// ```
+    /// let model: fuzzy::Model = "
+    /// fuzzy: 1
+    /// name: fan
+    /// inputs: {heat: {range: [0, 40], partition: [low, high]}}
+    /// outputs:
+    ///   comfort: {range: [0, 1], partition: [poor, good]}
+    ///   speed: {range: [0, 9], partition: [slow, fast]}
+    /// rules:
+    ///   - IF heat IS low THEN comfort IS good
+    ///   - IF heat IS high THEN comfort IS poor
+    ///   - IF comfort IS good THEN speed IS slow
+    ///   - IF comfort IS poor THEN speed IS fast
+    /// ".parse()?;
+    /// assert_eq!(model.reads("speed"), ["comfort"]);
+    /// assert!(model.reads("comfort").is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn reads(&self, output: &str) -> Vec<&str> {
+        let named = |o: &super::Output| o.variable.name == output;
+        let reads = self.outputs.iter().position(named);
+        let reads =
+            reads.and_then(|index| reads_of_all(self, &Spans::default()).into_iter().nth(index));
+        let mut reads: Vec<usize> = reads.iter().flatten().map(|read| read.output).collect();
+        reads.sort_unstable();
+        let names = reads.iter().filter_map(|read| self.outputs.get(*read));
+        names.map(|output| output.variable.name.as_str()).collect()
+    }
+}
+
+/// What each output reads, each output once.
+pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
+    let index = |name: &str| model.outputs.iter().position(|o| o.variable.name == name);
+    let mut reads: Vec<Vec<Read>> = vec![Vec::new(); model.outputs.len()];
+    let mut add = |by: usize, read: Read| {
+        if let Some(reads) = reads.get_mut(by)
+            && reads.iter().all(|known| known.output != read.output)
+        {
+            reads.push(read);
+        }
+    };
+    for (number, Rule { rule, .. }) in model.rules.iter().enumerate() {
+        rule.condition.visit(&mut |proposition| {
+            let name = &proposition.variable;
+            let Some(output) = index(&name.text) else {
+                return;
+            };
+            for by in rule
+                .consequents
+                .iter()
+                .filter_map(|c| index(&c.output.text))
+            {
+                let span = name.span.clone();
+                let rule = Some(number);
+                add(by, Read { output, rule, span });
+            }
+        });
+    }
+    for (by, output) in model.outputs.iter().enumerate() {
+        for (term, written) in output.variable.terms.iter().enumerate() {
+            let MembershipFunction::Linear { coefficients, .. } = &written.membership_function
+            else {
+                continue;
+            };
+            for (i, (name, _)) in coefficients.iter().enumerate() {
+                let span = spans
+                    .outputs
+                    .get(by)
+                    .and_then(|spans| spans.terms.get(term));
+                let span = span.and_then(|span| span.parameters.get(i).cloned());
+                if let Some(output) = index(name) {
+                    let span = span.unwrap_or_default();
+                    add(
+                        by,
+                        Read {
+                            output,
+                            rule: None,
+                            span,
+                        },
+                    );
+                }
+            }
+        }
+    }
+    reads
+}
+
+/// The outputs in an order in which each one comes after those it reads; else the circles that make this impossible, each as
+/// the outputs on it, of which each one reads the next and the last one reads the first.
+pub(crate) fn order(reads: &[Vec<Read>]) -> Result<Vec<usize>, Vec<Vec<usize>>> {
+    let (mut order, mut circles) = (Vec::new(), Vec::new());
+    let mut placed = vec![false; reads.len()];
+    let open = |output: usize, placed: &[bool]| {
+        let mut reads = reads.get(output)?.iter().map(|read| read.output);
+        reads.find(|read| !placed[*read])
+    };
+    while let Some(first) = placed.iter().position(|placed| !placed) {
+        let ready = (first..reads.len()).find(|i| !placed[*i] && open(*i, &placed).is_none());
+        if let Some(ready) = ready {
+            placed[ready] = true;
+            order.push(ready);
+            continue;
+        }
+        // Each one that is left reads another one that is left: following them ends in a circle.
+        let mut path = vec![first];
+        while let Some(next) = path.last().and_then(|last| open(*last, &placed)) {
+            if let Some(start) = path.iter().position(|output| *output == next) {
+                path.drain(..start);
+                break;
+            }
+            path.push(next);
+        }
+        for output in &path {
+            placed[*output] = true;
+        }
+        circles.push(path);
+    }
+    if circles.is_empty() {
+        Ok(order)
+    } else {
+        Err(circles)
+    }
+}
+
+/// An error for each circle of outputs that read one another, with all of it.
+pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
+    let reads = reads_of_all(model, spans);
+    let name = |output: usize| model.outputs.get(output).map(|o| &o.variable.name);
+    let step = |by: usize, output: usize| {
+        let mut reads = reads.get(by)?.iter();
+        let read = reads.find(|read| read.output == output)?;
+        let rule = read.rule.map(|rule| format!(" in rule {}", rule + 1));
+        let rule = rule.unwrap_or_default();
+        let text = format!("`{}` reads `{}`{rule}", name(by)?, name(output)?);
+        Some((text, read.span.clone()))
+    };
+    let circles = order(&reads).err().unwrap_or_default().into_iter();
+    let circles = circles.map(|circle| {
+        let next = circle.iter().cycle().skip(1);
+        let steps = circle.iter().zip(next);
+        let steps: Vec<(String, Range<usize>)> = steps
+            .filter_map(|(by, output)| step(*by, *output))
+            .collect();
+        let path: Vec<&str> = steps.iter().map(|(text, _)| text.as_str()).collect();
+        let message = match path.as_slice() {
+            [itself] => format!("an output cannot read itself: {itself}"),
+            path => format!("outputs read one another in a circle: {}", path.join(", ")),
+        };
+        let first = steps.first().map_or(0..0, |(_, span)| span.clone());
+        let finding = Diagnostic::error("circular-outputs", first, message);
+        let others = steps.iter().skip(1);
+        others
+            .fold(finding, |finding, (text, span)| {
+                finding.related(span.clone(), text.as_str())
+            })
+            .help("let one of them read inputs alone, or conclude an output of another name")
+    });
+    circles.collect()
+}
+
+/// The stages of a model in the order of their evaluation: the first one, and those after it. A model without a chain is one
+/// stage. Outputs on a circle, which a valid model does not have, are left out.
+pub(crate) fn stages(model: &Model) -> (Stage<'_>, Vec<Stage<'_>>) {
+    let reads = reads_of_all(model, &Spans::default());
+    if reads.iter().all(Vec::is_empty) {
+        let only = Stage {
+            model: Cow::Borrowed(model),
+            reads: Vec::new(),
+            outputs: (0..model.outputs.len()).collect(),
+            rules: (0..model.rules.len()).collect(),
+        };
+        return (only, Vec::new());
+    }
+    let order = order(&reads).unwrap_or_default();
+    let (mut first, later): (Vec<usize>, Vec<usize>) = order
+        .into_iter()
+        .partition(|output| reads[*output].is_empty());
+    first.sort_unstable();
+    let first = stage(model, Vec::new(), first);
+    let later = later.into_iter().map(|output| {
+        let mut reads: Vec<usize> = reads[output].iter().map(|read| read.output).collect();
+        reads.sort_unstable();
+        stage(model, reads, Vec::from([output]))
+    });
+    (first, later.collect())
+}
+
+fn stage(model: &Model, reads: Vec<usize>, outputs: Vec<usize>) -> Stage<'_> {
+    let of = |indices: &[usize]| {
+        let outputs = indices.iter().filter_map(|i| model.outputs.get(*i));
+        outputs.cloned().collect::<Vec<_>>()
+    };
+    let handed_over = of(&reads).into_iter().map(|output| output.variable);
+    let inputs: Vec<Variable> = model.inputs.iter().cloned().chain(handed_over).collect();
+    let own = of(&outputs);
+    let (mut numbers, mut rules) = (Vec::new(), Vec::new());
+    for (number, rule) in model.rules.iter().enumerate() {
+        let mut rule = rule.clone();
+        rule.rule.consequents.retain(|c| {
+            own.iter()
+                .any(|output| output.variable.name == c.output.text)
+        });
+        if !rule.rule.consequents.is_empty() {
+            numbers.push(number);
+            rules.push(rule);
+        }
+    }
+    Stage {
+        model: Cow::Owned(Model {
+            inputs,
+            outputs: own,
+            rules,
+            name: model.name.clone(),
+            description: None,
+            operators: model.operators,
+        }),
+        reads,
+        outputs,
+        rules: numbers,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reads by index, as `order` takes them.
+    fn reads(of_each: &[&[usize]]) -> Vec<Vec<Read>> {
+        let read = |output: &usize| Read {
+            output: *output,
+            rule: None,
+            span: 0..0,
+        };
+        let all = of_each.iter().map(|reads| reads.iter().map(read).collect());
+        all.collect()
+    }
+
+    #[test]
+    fn each_output_comes_after_those_it_reads() {
+        assert_eq!(order(&reads(&[&[2], &[], &[1]])), Ok(vec![1, 2, 0]));
+        assert_eq!(order(&reads(&[&[], &[], &[]])), Ok(vec![0, 1, 2]));
+        assert_eq!(order(&[]), Ok(vec![]));
+    }
+
+    #[test]
+    fn every_circle_is_found_once() {
+        assert_eq!(order(&reads(&[&[0]])), Err(vec![vec![0]]));
+        // 0 reads a circle but is on none; 3 and 4 are a second circle.
+        let two = reads(&[&[1], &[2], &[1], &[4], &[3]]);
+        assert_eq!(order(&two), Err(vec![vec![1, 2], vec![3, 4]]));
+    }
+}
