@@ -54,7 +54,7 @@ mod utc;
 pub use error::ReadError;
 pub use flight::{Commands, Event, Flight, Format, Motor, Range, Vehicle, VehicleKind};
 pub use gap::Gap;
-pub use geometry::{Basis, Geometry};
+pub use geometry::{Basis, Frame, Geometry, ardupilot_frames};
 pub use interval::{Interval, Intervals};
 pub use read::{Options, open, read};
 pub use report::Report;

@@ -2,6 +2,7 @@
 //! inputs and over every flight.
 
 mod c;
+mod lua;
 
 use std::{collections::BTreeSet, path::Path, process::Command};
 
