@@ -7,9 +7,9 @@
  *
  * FIRST_US is the clock at the first record; the parameters follow. A record of the flight is doubles: the time in us since the
  * first record, whether flying, the output of each motor in us (NaN: none), and what is left in the battery in % (NaN: not
- * monitored). Written are lines: `log RECORD RISK ELEVATED LEVEL`, `float RECORD NAME VALUE`, `text RECORD SEVERITY TEXT`,
+ * monitored). The parameter BROKEN=1 makes a binding fail. Written are lines: `log RECORD RISK ELEVATED LEVEL`, `float RECORD NAME VALUE`, `text RECORD SEVERITY TEXT`,
  * `stopped RECORD WHY`, and at the end the measures: `calls`, `instructions` (the first call, the second, the most of others,
- * their mean), `heap` (bytes before the script, then with it after a collection, and the most ever). */
+ * their mean), `heap` (the bytes of a pointer; the bytes in use before the script, with it after a collection, and ever). */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -99,6 +99,11 @@ static int get_output_pwm(lua_State *L) {
 }
 
 static int get_likely_flying(lua_State *L) {
+    for (int i = 0; i < parameters; i++) {
+        if (!strcmp(parameter[i], "BROKEN=1") && record > 0) {
+            luaL_error(L, "this vehicle tells nothing");
+        }
+    }
     lua_pushboolean(L, now[1] != 0);
     return 1;
 }
@@ -271,7 +276,7 @@ int main(int arguments, char **argument) {
         kept = used > kept ? used : kept;
     }
     printf("calls %ld\ninstructions %ld %ld %ld %.1f\n", calls, of_call[0], of_call[1], most, calls ? sum / calls : 0.0);
-    printf("heap %zu %zu %zu\n", before, kept, most_used);
+    printf("heap %zu %zu %zu %zu\n", sizeof(void *), before, kept, most_used);
     lua_close(L);
     return 0;
 }

@@ -11,14 +11,15 @@ use flagred::{
 use super::{Refused, comment, frames, number, template::Filling};
 
 /// The signals that a script can read, by the names of logs.
-const SIGNALS: [(&str, &str); 6] = [
+const SIGNALS: [(&str, &str); 4] = [
     ("battery_v", "battery:voltage(0)"),
     ("battery_a", "battery:current_amps(0)"),
     ("battery_used_mah", "battery:consumed_mah(0)"),
     ("battery_remaining_pct", "battery:capacity_remaining_pct(0)"),
-    ("roll_deg", "math.deg(ahrs:get_roll())"),
-    ("pitch_deg", "math.deg(ahrs:get_pitch())"),
 ];
+
+/// Of commands, in 32 bits.
+const ROUNDING: f64 = 1e-6;
 
 const AXES: [&str; 4] = ["roll", "pitch", "yaw", "thrust"];
 
@@ -152,8 +153,7 @@ fn signals(names: &[&str]) -> Result<Vec<&'static str>, Refused> {
         known.map(|(_, read)| *read).ok_or_else(|| {
             Refused::new(
                 format!("a script on the autopilot cannot read the signal `{name}`"),
-                "it can read battery_v, battery_a, battery_used_mah, battery_remaining_pct, roll_deg and pitch_deg, and all \
-                 signals of the motors",
+                "it can read battery_v, battery_a, battery_used_mah and battery_remaining_pct, and all signals of the motors",
             )
         })
     };
@@ -266,12 +266,15 @@ impl Script {
             return (counted(&value, channel.threshold, squared), None);
         }
         match (channel.threshold, statistic) {
-            (Some(Threshold::Below(limit)), _) => {
-                (self.of_list("share_of_below", list, Some(limit)), None)
-            }
-            (Some(Threshold::Above(limit)), _) => {
-                (self.of_list("share_of_above", list, Some(limit)), None)
-            }
+            // Outputs are whole microseconds: a value on the limit is on neither side, whatever its rounding.
+            (Some(Threshold::Below(limit)), _) => (
+                self.of_list("share_of_below", list, Some(limit - ROUNDING)),
+                None,
+            ),
+            (Some(Threshold::Above(limit)), _) => (
+                self.of_list("share_of_above", list, Some(limit + ROUNDING)),
+                None,
+            ),
             (None, Statistic::Min) => (self.of_list("lowest_of", list, None), None),
             (None, Statistic::Max) => (self.of_list("highest_of", list, None), None),
             (None, Statistic::Rms) => (self.of_list("mean_square_of", list, None), None),

@@ -160,6 +160,11 @@ fn fill_gaps(plan: &Plan<'_>, filling: &mut Filling) {
 fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused> {
     let range = output.first as usize..output.end as usize;
     let strengths = output.end_strength - output.first_strength;
+    // A partition has one more, which stays 0: the last term has no term to its right.
+    let strengths = match output.form {
+        ClosedForm::PARTITION => strengths.min(2 * (output.end - output.first)),
+        _ => strengths,
+    };
     let mut lines = vec![format!("local OUTPUT_TERMS = {strengths}")];
     match output.form {
         ClosedForm::MOMENTS => {

@@ -78,7 +78,7 @@ local function pair(low, high, least, most, width)
   end
 end
 
--- MOT_PWM_MIN and MAX, or the range of the throttle's channel, and of it MOT_SPIN_MIN to MAX.
+-- MOT_PWM_MIN and MAX, or the range of the throttle's channel, and of it MOT_SPIN_MIN to MAX. False where they are no limits.
 local function read_limits()
   local own = param:get("MOT_PWM_MIN")
   local low, high
@@ -89,13 +89,13 @@ local function read_limits()
     low, high = pair(channel .. "MIN", channel .. "MAX", 500, 2500, 100)
   end
   if not low then
-    motors = 0
-    return
+    return false
   end
   local spin_low, spin_high = pair("MOT_SPIN_MIN", "MOT_SPIN_MAX", 0, 1, 0.1)
   spin_low, spin_high = spin_low or 0, spin_high or 1
   low_us = low + spin_low * (high - low)
   scale = 1 / ((spin_high - spin_low) * (high - low))
+  return true
 end
 
 local function read_commands()
@@ -662,7 +662,7 @@ local function find_cause(risk)
   local most, rule = -huge, nil
   for i = 1, #CAUSES do
     local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
-    if (fired[i] or 0.0) > 0 and raises > most then
+    if (fired[i] or 0.0) > 0 and raises >= most then
       most, rule = raises, i
     end
   end
@@ -1157,7 +1157,9 @@ end
 set_up = function()
   add_parameters()
   find_motors()
-  read_limits()
+  if not read_limits() then
+    motors = 0
+  end
 -- @if geometry
   read_geometry()
 -- @end
