@@ -843,7 +843,7 @@ end
 
 local flown_us -- since take-off; nil on the ground
 local down_us -- for how long it seems to be on the ground
-local settled = false -- whether the take-off is dropped
+local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
 local idle -- "landing" or "trouble"
 local since_high_us, unknown_us -- since a high risk, and since a risk was known
 
@@ -851,7 +851,7 @@ local function forget()
   for _, window in ipairs(windows) do
     clear(window)
   end
-  flown_us, down_us, settled, idle, since_high_us, unknown_us = nil, nil, false, nil, nil, nil
+  flown_us, down_us, settled, settling, idle, since_high_us, unknown_us = nil, nil, false, huge, nil, nil, nil
   value = {}
   stop_judging()
 end
@@ -868,19 +868,21 @@ local function rests()
   return idle == "landing"
 end
 
--- Some time after take-off, drops it from the long windows and from the elevated risk.
+-- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
 local function settle()
-  if settled or flown_us < TAKE_OFF_US + WARM_UP_US then
-    return
-  end
-  settled = true
-  if TAKE_OFF_US > 0 then
-    for _, window in ipairs(windows) do
-      if window.length_us > TAKE_OFF_US then
-        drop_older(window, flown_us - TAKE_OFF_US - 1)
-      end
+  if not settled and flown_us >= TAKE_OFF_US + WARM_UP_US then
+    settled, settling = true, 1
+    if TAKE_OFF_US > 0 then
+      clear_elevated()
     end
-    clear_elevated()
+  end
+  while TAKE_OFF_US > 0 and settling <= #windows do
+    local window = windows[settling]
+    settling = settling + 1
+    if window.length_us > TAKE_OFF_US then
+      drop_older(window, flown_us - TAKE_OFF_US - 1)
+      return
+    end
   end
 end
 

@@ -353,7 +353,7 @@ fn eventful(vehicle: &Vehicle) -> Vec<Record> {
         let turn = if between(40.0, 50.0) { 0.1 } else { 0.0 };
         let weak = match () {
             () if between(140.0, 165.0) => 0.02 * (t_s - 140.0),
-            () if between(360.0, 390.0) => 0.1,
+            () if between(360.0, 390.0) => 0.25,
             () => 0.0,
         };
         let factors = vehicle.factors.iter().zip(0..);
