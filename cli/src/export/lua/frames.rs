@@ -2,7 +2,7 @@
 
 use flightlog::{Frame, ardupilot_frames};
 
-/// `["1/1"] = "1: -1 1 1 2: 1 -1 1 ...", -- QUAD/X`: the number, roll, pitch and yaw of each motor.
+/// `1/1 QUAD/X 1: -1 1 1 2: 1 -1 1 ...`: class and type, name, and the number, roll, pitch and yaw of each motor.
 pub(super) fn lines() -> Vec<String> {
     ardupilot_frames().map(|frame| line(&frame)).collect()
 }
@@ -23,10 +23,7 @@ fn line(frame: &Frame) -> String {
     let Frame {
         class, kind, name, ..
     } = frame;
-    format!(
-        "  [\"{class}/{kind}\"] = \"{}\", -- {name}",
-        motors.join(" ")
-    )
+    format!("{class}/{kind} {name} {}", motors.join(" "))
 }
 
 fn short(factor: f64) -> String {

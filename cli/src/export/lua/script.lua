@@ -1047,10 +1047,11 @@ local function add_parameters()
 end
 -- @if geometry
 
--- The frames of ArduPilot, by class and type: roll, pitch and yaw factor of each motor. Unset once read.
-local FRAMES = {
+-- The frames of ArduPilot: class and type, name, and number, roll, pitch and yaw factor of each motor. One text, since many
+-- short ones take more memory to load.
+local FRAMES = [[
 -- @put frames
-}
+]]
 -- @end
 
 local function output(motor_function)
@@ -1134,7 +1135,7 @@ end
 
 local function read_geometry()
   local class, kind = param:get("FRAME_CLASS"), param:get("FRAME_TYPE")
-  local frame = class and kind and FRAMES[string.format("%.0f/%.0f", class, kind)]
+  local frame = class and kind and string.match("\n" .. FRAMES, string.format("\n%.0f/%.0f [^:]* (%%d+: [^\n]*)", class, kind))
   local factors, known = {}, 0
   for number, roll, pitch, yaw in string.gmatch(frame or "", "(%d+): (%S+) (%S+) (%S+)") do
     known = known + 1
