@@ -69,6 +69,7 @@ impl std::fmt::Display for Basis {
 
 /// A frame of ArduPilot: its FRAME_CLASS and FRAME_TYPE, its name, and the number and the factors of each motor.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Frame {
     /// FRAME_CLASS.
     pub class: i64,

@@ -1,7 +1,8 @@
 -- @put heading
 --
 -- Put it into APM/scripts on the card. It reads the motor outputs and says how close the vehicle is to losing control:
--- FR_RISK and FR_ELEV in %, and a text when the level changes. It changes nothing on the vehicle.
+-- FR_RISK and FR_ELEV in %, and a text when the level changes. It changes nothing on the vehicle. How to install it, what it
+-- costs and how it was tested: docs/on-ardupilot.md of FLAGRED.
 
 local CALL_MS = 30 -- between two calls
 local SEND_US = 500000 -- between two values for the ground station
