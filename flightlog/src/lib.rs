@@ -55,7 +55,7 @@ mod utc;
 pub use error::ReadError;
 pub use flight::{Commands, Event, Flight, Format, Motor, Range, Vehicle, VehicleKind};
 pub use gap::Gap;
-pub use geometry::{Basis, Geometry};
+pub use geometry::{Basis, Frame, Geometry, ardupilot_frames};
 pub use interval::{Interval, Intervals};
 pub use known::{KnownSignal, known_signals};
 pub use read::{Options, open, read};

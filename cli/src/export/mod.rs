@@ -17,6 +17,7 @@ use crate::{
 };
 
 mod c;
+mod lua;
 mod rust;
 
 #[derive(clap::Args)]
@@ -28,6 +29,9 @@ pub(crate) struct Arguments {
     /// Write C for `flagred.h` and the library of `flagred-c`
     #[arg(long, group = "language")]
     c: bool,
+    /// Write a Lua script that ArduPilot runs from its card: docs/on-ardupilot.md
+    #[arg(long, group = "language")]
+    lua: bool,
     /// Profile: `flagred`, `flagred-paper`, or a file
     #[arg(value_name = "PROFILE", default_value = profile::DEFAULT)]
     profile: String,
@@ -47,8 +51,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let signals = loaded.estimator.profile().signals();
     let text = if arguments.rust {
         rust::text(&plan, rules, &signals)
-    } else {
+    } else if arguments.c {
         c::text(&plan, rules, &signals)
+    } else {
+        lua::text(&loaded.estimator, &plan)
+            .map_err(|refused| Failure::unreadable(refused.message).help(refused.help))?
     };
     output.write(&text)?;
     Ok(Exit::Clean)
@@ -57,11 +64,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// The comment above the data.
 fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<String> {
     let mut lines = vec![
-        format!(
-            "The profile `{}` with the rule set `{rules}`, written by `flagred export {option}` {}. Do not edit.",
-            plan.name,
-            env!("CARGO_PKG_VERSION")
-        ),
+        origin(plan, rules, option),
         format!(
             "{} bytes of constants, {} of them to fill gaps of the rules. A monitor of 4 motors takes {} bytes of memory.",
             bytes(plan),
@@ -78,6 +81,15 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
     // A name from outside must not end the comment.
     let harmless = |line: String| fuzzy::drawing::visible(&line).replace("*/", "* /");
     lines.into_iter().map(harmless).collect()
+}
+
+/// What a file was made of.
+fn origin(plan: &Plan<'_>, rules: &str, option: &str) -> String {
+    format!(
+        "The profile `{}` with the rule set `{rules}`, written by `flagred export {option}` {}. Do not edit.",
+        plan.name,
+        env!("CARGO_PKG_VERSION")
+    )
 }
 
 /// An array of a plan, as text.

@@ -67,6 +67,38 @@ impl std::fmt::Display for Basis {
     }
 }
 
+/// A frame of ArduPilot: its FRAME_CLASS and FRAME_TYPE, its name, and the number and the factors of each motor.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Frame {
+    /// FRAME_CLASS.
+    pub class: i64,
+    /// FRAME_TYPE.
+    pub kind: i64,
+    /// Such as `QUAD/X`.
+    pub name: String,
+    /// The number of each motor, and its roll, pitch and yaw as in [`Geometry::factors`].
+    pub motors: Vec<(u16, [f64; 3])>,
+}
+
+/// The frames of ArduPilot whose motors are known, for a program that reads FRAME_CLASS and FRAME_TYPE itself.
+///
+/// # Example
+/// ```
+/// let x = flightlog::ardupilot_frames().find(|frame| frame.name == "QUAD/X").unwrap();
+/// assert_eq!((x.class, x.kind, x.motors[0]), (1, 1, (1, [-1.0, 1.0, 1.0])));
+/// ```
+pub fn ardupilot_frames() -> impl Iterator<Item = Frame> {
+    tables::frames().filter_map(|(class, kind)| {
+        Some(Frame {
+            class,
+            kind,
+            name: tables::name(class, kind),
+            motors: tables::layout(class, kind)?,
+        })
+    })
+}
+
 /// The geometry of these motors by what is declared; quadrotors of an unknown type are assumed
 /// to be numbered as usual.
 pub(crate) fn of(motors: &[Motor], declared: &Declared) -> Option<Geometry> {

@@ -110,6 +110,12 @@ pub(super) fn candidates(motors: usize) -> &'static [(i64, i64)] {
     }
 }
 
+/// Every class with every type.
+pub(super) fn frames() -> impl Iterator<Item = (i64, i64)> {
+    let kinds = |class: i64| KINDS.iter().map(move |(kind, _)| (class, *kind));
+    CLASSES.iter().flat_map(move |(class, ..)| kinds(*class))
+}
+
 /// Number of motors of a class.
 pub(crate) fn motors_of_class(class: i64) -> Option<u16> {
     let (.., motors) = CLASSES.iter().find(|(number, ..)| *number == class)?;

@@ -270,3 +270,60 @@ fn mistakes_in_c_are_told_and_nothing_is_written() {
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{text}");
 }
+
+/// The module for PX4, with stand-ins for the parts of PX4 that it uses.
+#[test]
+#[ignore = "needs a compiler of C++"]
+fn the_module_for_px4_says_the_risk_and_the_level() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let example = root.join("bindings/c/examples/px4");
+    let folder = Folder::new();
+    let exported = flagred()
+        .args(["export", "--c", "flagred", "--output"])
+        .arg(folder.at("flagred_profile.h"))
+        .status();
+    assert!(exported.unwrap().success());
+    let compile = |compiler: &str, flags: &[&str]| {
+        let output = Command::new(compiler)
+            .args(["-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"])
+            .arg("-I")
+            .arg(root.join("bindings/c/include"))
+            .arg("-I")
+            .arg(folder.path())
+            .args(flags)
+            .output();
+        let output = output.unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{told}");
+    };
+    let source = |file: &str| example.join(file).display().to_string();
+    let object = folder.at("profile.o");
+    compile(
+        "cc",
+        &["-std=c11", "-c", &source("profile.c"), "-o", &object],
+    );
+    let binary = folder.at("fly");
+    let stand_ins = concat!(env!("CARGO_MANIFEST_DIR"), "/px4");
+    compile(
+        "c++",
+        &[
+            "-std=c++17",
+            "-I",
+            &format!("{stand_ins}/include"),
+            "-I",
+            &example.display().to_string(),
+            &source("FlagredMonitor.cpp"),
+            &format!("{stand_ins}/fly.cpp"),
+            &object,
+            &library().join("libflagred.a").display().to_string(),
+            "-o",
+            &binary,
+        ],
+    );
+    let output = Command::new(&binary).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let values = |name: &str| text.lines().filter(|line| line.starts_with(name)).count();
+    assert!(values("FR_RISK ") > 60 && values("FR_ELEV ") > 60, "{text}");
+    assert!(text.contains("critical FLAGRED: FAIL risk "), "{text}");
+}

@@ -2,6 +2,7 @@
 //! inputs and over every flight.
 
 mod c;
+mod lua;
 
 use std::{collections::BTreeSet, path::Path, process::Command};
 
@@ -100,21 +101,23 @@ fn along(estimator: &Estimator) -> usize {
 fn exported_files_are_what_export_writes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("exported");
     for (profile, (file, _)) in PROFILES.iter().zip(exported()) {
-        let output = flagred()
-            .args(["export", "--rust", profile])
-            .output()
-            .unwrap();
-        let text = String::from_utf8(output.stdout).unwrap();
-        assert!(output.status.success(), "{profile}");
-        let path = folder.join(format!("{file}.rs"));
-        if std::env::var_os("UPDATE_EXPORTED").is_some() {
-            std::fs::write(&path, &text).unwrap();
+        for (option, ending) in [("--rust", "rs"), ("--lua", "lua")] {
+            let output = flagred()
+                .args(["export", option, profile])
+                .output()
+                .unwrap();
+            let text = String::from_utf8(output.stdout).unwrap();
+            assert!(output.status.success(), "{profile}");
+            let path = folder.join(format!("{file}.{ending}"));
+            if std::env::var_os("UPDATE_EXPORTED").is_some() {
+                std::fs::write(&path, &text).unwrap();
+            }
+            assert!(
+                std::fs::read_to_string(&path).unwrap() == text,
+                "{} is not what `flagred export {option} {profile}` writes; UPDATE_EXPORTED=1 writes it anew",
+                path.display()
+            );
         }
-        assert!(
-            std::fs::read_to_string(&path).unwrap() == text,
-            "{} is not what `flagred export --rust {profile}` writes; UPDATE_EXPORTED=1 writes it anew",
-            path.display()
-        );
     }
 }
 
@@ -170,7 +173,7 @@ fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
 }
 
 /// A profile with every signal of motors, every statistic and every notice, and the file of it.
-fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
+pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
     const SOURCES: [&str; 12] = [
         "{std_less_noise: {std: motor_command_less_yaw}}",
         "{std_less_noise: {mean: motor_command_less_yaw}, window_s: 9}",

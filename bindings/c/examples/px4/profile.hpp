@@ -1,0 +1,21 @@
+/* The profile, which is C: PX4's C++ has no initialisers that name their fields. */
+#pragma once
+
+#include <stddef.h>
+
+#include "flagred.h"
+
+/* The most motors, and enough memory for as many. */
+#define FLAGRED_PROFILE_MOTORS 12
+#define FLAGRED_PROFILE_MEMORY 140000
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+const flagred_plan *flagred_profile(void);
+void *flagred_profile_memory(void);
+
+#ifdef __cplusplus
+}
+#endif

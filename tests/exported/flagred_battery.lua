@@ -1,0 +1,1095 @@
+-- The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --lua` 0.1.0. Do not edit.
+--
+-- Put it into APM/scripts on the card. It reads the motor outputs and says how close the vehicle is to losing control:
+-- FR_RISK and FR_ELEV in %, and a text when the level changes. It changes nothing on the vehicle. How to install it, what it
+-- costs and how it was tested: docs/on-ardupilot.md of FLAGRED.
+
+local CALL_MS = 30 -- between two calls
+local SEND_US = 500000 -- between two values for the ground station
+local BIN_US = 100000 -- of commands that are averaged before their noise is taken out
+local SLOTS = 128 -- of a window
+local LONG_US = 1000000000 -- longer times are this long
+local CRITICAL, ERROR, WARNING, INFO = 2, 3, 4, 6 -- severities of MAVLink
+local GOOD, WARN, FAIL = 0, 2, 3 -- levels
+local LEVELS = {[GOOD] = "GOOD", [WARN] = "WARN", [FAIL] = "FAIL"}
+local floor, sqrt, exp, huge, min, max = math.floor, math.sqrt, math.exp, math.huge, math.min, math.max
+
+-- The profile.
+local MIN_SAMPLES = 5
+local WARM_UP_US = 1000000
+local LONGEST_GAP_US = 2000000
+local TAKE_OFF_US = 0
+local ELEVATED_WINDOW_S = 10.0
+local ELEVATED_HIGH, ELEVATED_LOW = 50.0, 20.0
+local RISE, FALL = 1.5, 2.0 -- of the elevated risk, in % per second
+local WARN_RISK, WARN_ELEVATED = 67.0, 50.0
+local WARN_AFTER_US = 200000
+local WARN_UNTIL_RISK, WARN_UNTIL_ELEVATED = 25.0, 30.0
+local FAIL_RISK, FAIL_ELEVATED = 85.0, 90.0
+local FAIL_AFTER_US = 400000
+local FAIL_UNTIL_RISK, FAIL_UNTIL_ELEVATED = 67.0, 70.0
+local CLEAR_AFTER_US = 10000000
+local QUIET_US = 5000000
+local IDLE_BELOW = 0.1
+local COVERAGE_BELOW = 0.5
+local PARAMETER_TABLE = 157
+
+---------------------------------------------------------------------------------------------------------------------------
+-- The parameters of this script. FRISK_ENABLE = 0 silences it.
+
+local is_enabled = true
+
+local function read_parameters()
+  local enable = param:get("FRISK_ENABLE")
+  is_enabled = enable == nil or enable > 0
+  WARN_RISK = param:get("FRISK_WARN") or WARN_RISK
+  WARN_UNTIL_RISK = WARN_UNTIL_RISK and min(WARN_UNTIL_RISK, WARN_RISK)
+  FAIL_RISK = param:get("FRISK_FAIL") or FAIL_RISK
+  FAIL_UNTIL_RISK = FAIL_UNTIL_RISK and min(FAIL_UNTIL_RISK, FAIL_RISK)
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- Time. Whole microseconds that wrap after 71 min; only differences of under 35 min are used.
+
+local last_call -- the autopilot's clock
+local clock_us = 0
+local held_us, held_s = 0, 0.0 -- since the last call
+local bin, bin_us = 0, 0 -- the bin of commands, and the time into it
+local has_moved = false -- whether this call has done one of the longer works
+
+local function later(us, by_us)
+  return us < LONG_US and us + by_us or us
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- Motors. A command is 0 at the lower limit of the range that is used in flight, 1 at the upper one.
+
+local motors = 0
+local functions, numbers = {}, {} -- of the outputs
+local low_us, scale = 1000.0, 0.001
+local command, sum = {}, nil -- the sum is nil where the commands are unknown
+local margin = {} -- how far each motor is from its nearer limit
+
+local function pair(low, high, least, most, width)
+  low, high = low and param:get(low), high and param:get(high)
+  if low and high and low >= least and high <= most and high - low >= width then
+    return low, high
+  end
+end
+
+-- MOT_PWM_MIN and MAX, or the range of the throttle's channel, and of it MOT_SPIN_MIN to MAX. False where they are no limits.
+local function read_limits()
+  local own = param:get("MOT_PWM_MIN")
+  local low, high
+  if own and own > 0 then
+    low, high = pair("MOT_PWM_MIN", "MOT_PWM_MAX", 500, 2500, 100)
+  else
+    local channel = string.format("RC%.0f_", param:get("RCMAP_THROTTLE") or 3)
+    low, high = pair(channel .. "MIN", channel .. "MAX", 500, 2500, 100)
+  end
+  if not low then
+    return false
+  end
+  local spin_low, spin_high = pair("MOT_SPIN_MIN", "MOT_SPIN_MAX", 0, 1, 0.1)
+  spin_low, spin_high = spin_low or 0, spin_high or 1
+  low_us = low + spin_low * (high - low)
+  scale = 1 / ((spin_high - spin_low) * (high - low))
+  return true
+end
+
+local function read_commands()
+  local total = 0.0
+  for i = 1, motors do
+    local pwm = SRV_Channels:get_output_pwm(functions[i])
+    if not pwm then
+      sum = nil
+      return
+    end
+    local e = (pwm - low_us) * scale
+    if e < 0 then
+      e = 0.0
+    elseif e > 1 then
+      e = 1.0
+    end
+    command[i] = e
+    margin[i] = e < 0.5 and e or 1 - e
+    total = total + e
+  end
+  sum = total
+end
+
+local function deviation_of(list)
+  local mean, square = 0.0, 0.0
+  for i = 1, motors do
+    mean = mean + list[i]
+  end
+  mean = mean / motors
+  for i = 1, motors do
+    local d = list[i] - mean
+    square = square + d * d
+  end
+  return sqrt(square / motors)
+end
+
+local function mean_of(list)
+  local total = 0.0
+  for i = 1, motors do
+    total = total + list[i]
+  end
+  return total / motors
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- Windows: sums over the last seconds, in slots of time in which samples are merged. The slots lie in a ring, in three runs: the
+-- front, of whose slots each holds the sum of itself and the later ones of the front; the middle, which is made the same, two
+-- slots a call; and the back, to which slots are added. So a call costs the same whatever the length, and as nothing is
+-- subtracted from a sum that stays, nothing drifts.
+
+local windows = {}
+
+local FREE = {}
+for slot = 1, SLOTS + 2 do
+  FREE[slot] = 0
+end
+
+-- A list of numbers, one for each slot, of which `pick` gives the smaller or larger; without it they add up.
+local function new_list(window, pick, none)
+  local list = {table.unpack(FREE, 1, window.capacity)}
+  list.pick, list.none, list.middle, list.back = pick, none, none, none
+  window.lists[#window.lists + 1] = list
+  return list
+end
+
+-- `capacity` is the most slots in use at once.
+local function new_window(length_s, capacity, in_bins)
+  local window = {
+    length_us = floor(length_s * 1000000), needed_s = 0.99 * min(WARM_UP_US * 1e-6, length_s), capacity = capacity,
+    number = 0, phase = 0, -- the slot of the present, and 128 times the time into it
+    oldest = 1, newest = 0, newest_number = nil, slots = 0, front = 0, middle = 0, back = 0, turning = 0, unturned = 0,
+    samples = 0, start_us = 0, back_since_us = 0, is_full = false,
+    end_us = {table.unpack(FREE, 1, capacity)}, lists = {}, rows = {},
+    bin = 0, bin_samples = 0, bin_held = 0.0, bin_end_us = 0, bin_number = 0, -- the latest bin, not in a slot yet
+  }
+  window.weight = new_list(window, nil, 0.0)
+  windows[#windows + 1] = window
+  return window
+end
+
+-- Something to know of a window: a "mean", a "spread" about the mean, the "lowest" or the "highest" value. `x` is the value
+-- of a sample, nil where it is unknown, and `within` the variance that one sample has in itself.
+local function new_row(window, kind)
+  local row = {window = window, kind = kind, x = nil, within = 0.0, shift = nil, bin_sum = 0.0, before = nil}
+  if kind == "lowest" then
+    row.sum = new_list(window, min, huge)
+  elseif kind == "highest" then
+    row.sum = new_list(window, max, -huge)
+  else
+    row.sum = new_list(window, nil, 0.0)
+    row.square = kind == "spread" and new_list(window, nil, 0.0) or nil
+  end
+  window.rows[#window.rows + 1] = row
+  return row
+end
+
+local function clear(window)
+  window.slots, window.front, window.middle, window.back, window.unturned = 0, 0, 0, 0, 0
+  window.oldest, window.newest, window.samples, window.is_full = 1, 0, 0, false
+  window.bin_samples, window.bin_held = 0, 0.0
+  for _, list in ipairs(window.lists) do
+    list.middle, list.back = list.none, list.none
+  end
+  for _, row in ipairs(window.rows) do
+    row.bin_sum, row.before, row.shift = 0.0, nil, nil
+  end
+end
+
+-- The back becomes the middle.
+local function turn(window)
+  window.middle, window.back, window.unturned = window.back, 0, window.back - 1
+  window.turning = window.newest
+  for _, list in ipairs(window.lists) do
+    list.middle, list.back = list.back, list.none
+  end
+end
+
+-- Makes slots of the middle hold the sum of themselves and the later ones.
+local function sum_middle(window, count)
+  while count > 0 and window.unturned > 0 do
+    local later_slot = window.turning
+    local slot = (later_slot - 2) % window.capacity + 1
+    for _, list in ipairs(window.lists) do
+      local pick = list.pick
+      list[slot] = pick and pick(list[slot], list[later_slot]) or list[slot] + list[later_slot]
+    end
+    window.turning, window.unturned, count = slot, window.unturned - 1, count - 1
+  end
+end
+
+-- Where the front has run out, the middle becomes the front.
+local function keep_a_front(window)
+  if window.front > 0 then
+    return
+  end
+  if window.middle == 0 then
+    turn(window)
+    window.newest_number = nil
+  end
+  sum_middle(window, SLOTS + 2)
+  window.front, window.middle = window.middle, 0
+  for _, list in ipairs(window.lists) do
+    list.middle = list.none
+  end
+end
+
+-- Drops what ended so long ago or longer.
+local function drop_older(window, us)
+  while window.slots > 0 and clock_us - window.end_us[window.oldest] >= us do
+    keep_a_front(window)
+    window.oldest = window.oldest % window.capacity + 1
+    window.front, window.slots = window.front - 1, window.slots - 1
+    -- Not fewer than that many samples are left.
+    window.samples = window.slots
+  end
+end
+
+-- The slot for what ended at a time in a slot of that number.
+local function slot_of(window, number, end_us)
+  if window.slots == 0 or window.newest_number ~= number and window.slots < window.capacity then
+    if window.middle == 0 and window.back > 1 and 2 * (clock_us - window.back_since_us) >= window.length_us then
+      turn(window)
+    end
+    window.newest, window.newest_number = window.newest % window.capacity + 1, number
+    if window.back == 0 then
+      window.back_since_us = clock_us
+    end
+    if window.slots == 0 then
+      window.oldest, window.start_us = window.newest, end_us
+    end
+    window.slots, window.back = window.slots + 1, window.back + 1
+    for _, list in ipairs(window.lists) do
+      list[window.newest] = list.none
+    end
+  end
+  sum_middle(window, 2)
+  window.end_us[window.newest] = end_us
+  window.samples = window.samples + 1
+  return window.newest
+end
+
+local function put(list, slot, x)
+  local pick = list.pick
+  if pick then
+    list[slot], list.back = pick(list[slot], x), pick(list.back, x)
+  else
+    list[slot], list.back = list[slot] + x, list.back + x
+  end
+end
+
+-- Puts a value into a slot. Spreads are sums about a value near the mean, which keeps their digits.
+local function merge(row, slot, held, x, rest)
+  if row.kind == "mean" then
+    put(row.sum, slot, held * x)
+  elseif row.kind == "spread" then
+    row.shift = row.shift or x
+    local d = x - row.shift
+    put(row.sum, slot, held * d)
+    put(row.square, slot, held * (d * d + rest))
+  else
+    put(row.sum, slot, x)
+  end
+end
+
+-- The value of the latest bin, and its rest: of a spread the noise, half of the squared step from the bin before, is taken
+-- away; of a mean, the squared step itself is the value.
+local function of_bin(window, row)
+  local x = row.bin_sum / window.bin_samples
+  local step = row.before and x - row.before or 0.0
+  if row.kind == "mean" then
+    return x, step * step
+  end
+  return x, -0.5 * step * step
+end
+
+local function take_bin(window)
+  if window.bin_samples > 0 and window.bin ~= bin then
+    local held = window.bin_held
+    local slot = held > 0 and slot_of(window, window.bin_number, window.bin_end_us)
+    if slot then
+      put(window.weight, slot, held)
+    end
+    for _, row in ipairs(window.rows) do
+      local x, rest = of_bin(window, row)
+      if slot then
+        merge(row, slot, held, row.kind == "mean" and rest or x, rest)
+      end
+      row.before, row.bin_sum = x, 0.0
+    end
+    window.bin_samples, window.bin_held = 0, 0.0
+  end
+  drop_older(window, window.length_us - 1)
+  if window.rows[1].x then
+    window.bin, window.bin_end_us, window.bin_number = bin, clock_us, window.number
+    window.bin_samples = window.bin_samples + 1
+    window.bin_held = window.bin_held + held_s
+    for _, row in ipairs(window.rows) do
+      row.bin_sum = row.bin_sum + row.x
+    end
+  end
+end
+
+local function take_sample(window, held)
+  drop_older(window, window.length_us - 1)
+  if window.rows[1].x and held > 0 then
+    local slot = slot_of(window, window.number, clock_us)
+    put(window.weight, slot, held)
+    for _, row in ipairs(window.rows) do
+      merge(row, slot, held, row.x, row.within)
+    end
+  end
+end
+
+-- The numbers of a list together, without a share of the oldest slot.
+local function total_of(window, list, out)
+  local sum = list.middle + list.back
+  if window.front > 0 then
+    local first = list[window.oldest]
+    sum = sum + first
+    if out > 0 then
+      sum = sum - out * (window.front > 1 and first - list[window.oldest % window.capacity + 1] or first)
+    end
+  end
+  return sum
+end
+
+-- The share of the oldest slot that has left the window.
+local function outside(window)
+  if not window.is_full and clock_us - window.start_us < window.length_us - BIN_US or window.slots == 0 then
+    return 0.0
+  end
+  window.is_full = true
+  keep_a_front(window)
+  local inside_s = (window.end_us[window.oldest] - clock_us + window.length_us) * 1e-6
+  local weight = window.weight
+  local first = weight[window.oldest]
+  local own = window.front > 1 and first - weight[window.oldest % window.capacity + 1] or first
+  return inside_s < own and 1 - inside_s / own or 0.0
+end
+
+-- Sums about another value.
+local function move_shift(row, window, by)
+  local sum, square, weight = row.sum, row.square, window.weight
+  for slot = 1, window.capacity do
+    square[slot] = square[slot] + by * (by * weight[slot] - 2 * sum[slot])
+    sum[slot] = sum[slot] - by * weight[slot]
+  end
+  for _, run in ipairs({"middle", "back"}) do
+    square[run] = square[run] + by * (by * weight[run] - 2 * sum[run])
+    sum[run] = sum[run] - by * weight[run]
+  end
+  row.shift = row.shift + by
+end
+
+-- The mean, the lowest or the highest value; for a spread the mean and the variance.
+local function read_row(row, total, out)
+  local window, kind = row.window, row.kind
+  local held = window.bin_held
+  if kind == "lowest" or kind == "highest" then
+    local list = row.sum
+    local found = list.pick(list.middle, list.back)
+    return window.front > 0 and list.pick(found, list[window.oldest]) or found
+  end
+  local sum = total_of(window, row.sum, out)
+  if kind == "mean" then
+    if held > 0 then
+      local _, step = of_bin(window, row)
+      sum = sum + held * step
+    end
+    return sum / total
+  end
+  local square, shift = total_of(window, row.square, out), row.shift
+  if held > 0 then
+    local x, rest = of_bin(window, row)
+    shift = shift or x
+    local d = x - shift
+    sum = sum + held * d
+    square = square + held * (d * d + rest)
+  end
+  local off = sum / total
+  local variance = square / total - off * off
+  if off * off > 30 * variance and row.shift and not has_moved then
+    has_moved = true
+    move_shift(row, window, off)
+  end
+  return shift + off, max(variance, 0.0)
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- The inputs of the rules.
+
+local inputs, value = {}, {} -- their rows; their values, nil where one is unknown
+new_window(2.0, 70, false)
+inputs[1] = new_row(windows[1], "mean") -- margin
+inputs[2] = new_row(windows[1], "spread") -- spread
+
+-- Takes in a sample of flight.
+local function observe()
+  local mean_of_margin = sum and mean_of(margin) or nil
+  local deviation_of_command = sum and deviation_of(command) or nil
+  local mean_of_command = sum and mean_of(command) or nil
+  local signal_1 = battery:capacity_remaining_pct(0)
+  inputs[1].x = mean_of_margin -- margin
+  inputs[2].x = mean_of_command -- spread
+  inputs[2].within = sum and deviation_of_command * deviation_of_command or 0.0
+  value[3] = signal_1 -- battery
+  take_sample(windows[1], held_s)
+end
+
+-- The seconds that are known of a window and the share of its oldest slot that has left it; nil where too little is known.
+local function enough(window)
+  local out = outside(window)
+  local total = total_of(window, window.weight, out) + window.bin_held
+  local samples = window.samples + (window.bin_held > 0 and 1 or 0)
+  if total < window.needed_s or total <= 0 or samples < MIN_SAMPLES then
+    return nil
+  end
+  return total, out
+end
+
+local function deviation(row, total, out)
+  local _, variance = read_row(row, total, out)
+  return sqrt(variance)
+end
+
+-- The inputs' values; false where one is not known.
+local function read_inputs()
+  local all, total, out = true, nil, nil
+  total, out = enough(windows[1])
+  value[1] = total and read_row(inputs[1], total, out) -- margin
+  all = all and value[1]
+  value[2] = total and deviation(inputs[2], total, out) -- spread
+  all = all and value[2]
+  all = all and value[3]
+  return all
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- The rules.
+
+local fired, coverage = {}, 0.0 -- the firing strengths of rules, and the largest
+local by_rules -- the risk by the rules in %; nil where none fires
+do
+
+local strengths, degrees = {}, {} -- of output terms, and of terms of inputs
+
+-- Along the corners x1, degree 1, x2, degree 2 and so on.
+local function along(corners, x)
+  local count = #corners
+  if x < corners[1] then
+    return corners[2]
+  end
+  for i = 3, count, 2 do
+    if x < corners[i] then
+      local left, low = corners[i - 2], corners[i - 1]
+      return low + (corners[i + 1] - low) * ((x - left) / (corners[i] - left))
+    end
+  end
+  return corners[count]
+end
+
+local function fire(rule, term, strength)
+  fired[rule] = strength
+  if strength > strengths[term] then
+    strengths[term] = strength
+  end
+  if strength > coverage then
+    coverage = strength
+  end
+end
+
+-- The corners of the terms of inputs: value, degree, value, degree and so on.
+local TERMS = {
+  {0.2, 0.0, 0.3, 1.0}, -- margin high
+  {0.1, 0.0, 0.2, 1.0}, -- spread high
+  {10.0, 1.0, 25.0, 0.0}, -- battery empty
+  {0.0, 1.0, 0.1, 0.0}, -- spread low
+  {0.0, 0.0, 0.1, 1.0, 0.2, 0.0}, -- spread medium
+  {0.1, 0.0, 0.2, 1.0, 0.3, 0.0}, -- margin medium
+  {25.0, 0.0, 40.0, 1.0}, -- battery enough
+  {0.0, 0.0, 0.1, 1.0, 0.2, 0.0}, -- margin low
+  {0.0, 1.0, 0.1, 0.0}, -- margin very_low
+  {10.0, 0.0, 25.0, 1.0, 40.0, 0.0}, -- battery low
+}
+local OUTPUT_TERMS = 6
+-- The output's terms: area = a h + b h^2, moment about the middle of the range = c h + d h^2 + e h^3 at
+-- firing strength h; width and middle of the overlap with the next term.
+local PARTS = {
+  {25.0, -12.5, -937.5, 312.5, 104.166664, 25.0, -37.5},
+  {50.0, -25.0, -1250.0, 625.0, 0.0, 25.0, -12.5},
+  {50.0, -25.0, 0.0, 0.0, 0.0, 25.0, 12.5},
+  {50.0, -25.0, 1250.0, -625.0, 0.0, 25.0, 37.5},
+  {25.0, -12.5, 937.5, -312.5, -104.166664, 0.0, 0.0},
+  {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0},
+}
+
+by_rules = function(x)
+  coverage = 0.0
+  for term = 1, OUTPUT_TERMS do
+    strengths[term] = 0.0
+  end
+  local d = degrees
+  d[1] = along(TERMS[1], x[1]) -- margin high
+  d[2] = along(TERMS[2], x[2]) -- spread high
+  d[3] = along(TERMS[3], x[3]) -- battery empty
+  d[4] = along(TERMS[4], x[2]) -- spread low
+  d[5] = along(TERMS[5], x[2]) -- spread medium
+  d[6] = along(TERMS[6], x[1]) -- margin medium
+  d[7] = along(TERMS[7], x[3]) -- battery enough
+  d[8] = along(TERMS[8], x[1]) -- margin low
+  d[9] = along(TERMS[9], x[1]) -- margin very_low
+  d[10] = along(TERMS[10], x[3]) -- battery low
+  -- IF margin IS high AND spread IS high AND battery IS NOT empty THEN risk IS very_low
+  fire(1, 1, min(d[1], d[2], (1 - d[3])))
+  -- IF margin IS high AND spread IS low AND battery IS NOT empty THEN risk IS very_low
+  fire(2, 1, min(d[1], d[4], (1 - d[3])))
+  -- IF margin IS high AND spread IS medium AND battery IS NOT empty THEN risk IS very_low
+  fire(3, 1, min(d[1], d[5], (1 - d[3])))
+  -- IF margin IS medium AND spread IS high AND battery IS enough THEN risk IS very_low
+  fire(4, 1, min(d[6], d[2], d[7]))
+  -- IF margin IS medium AND spread IS low AND battery IS enough THEN risk IS very_low
+  fire(5, 1, min(d[6], d[4], d[7]))
+  -- IF margin IS medium AND spread IS medium AND battery IS enough THEN risk IS low
+  fire(6, 2, min(d[6], d[5], d[7]))
+  -- IF margin IS low AND spread IS high AND battery IS NOT empty THEN risk IS very_high
+  fire(7, 5, min(d[8], d[2], (1 - d[3])))
+  -- IF margin IS low AND spread IS medium AND battery IS NOT empty THEN risk IS medium
+  fire(8, 3, min(d[8], d[5], (1 - d[3])))
+  -- IF margin IS very_low AND spread IS high AND battery IS NOT empty THEN risk IS very_high
+  fire(9, 5, min(d[9], d[2], (1 - d[3])))
+  -- IF margin IS very_low AND spread IS medium AND battery IS NOT empty THEN risk IS very_high
+  fire(10, 5, min(d[9], d[5], (1 - d[3])))
+  -- IF margin IS medium AND battery IS low THEN risk IS medium
+  fire(11, 3, min(d[6], d[10]))
+  -- IF battery IS empty THEN risk IS very_high
+  fire(12, 5, d[3])
+  local area, moment = 0.0, 0.0
+  for term = 1, OUTPUT_TERMS do
+    local part, h = PARTS[term], strengths[term]
+    local v = min(h, strengths[term + 1] or 0.0, 0.5)
+    local common = part[6] * (v * (1 - v))
+    area = area + h * (part[1] + h * part[2]) - common
+    moment = moment + h * (part[3] + h * (part[4] + h * part[5])) - part[7] * common
+  end
+  if area > 0 then
+    return max(0.0, min(100.0, 50.0 + moment / area))
+  end
+  return nil -- no rule fires
+end
+
+end
+
+-- Where the rules leave a gap: values at knots, the last input running fastest; linear between them.
+local filled
+do
+
+local KNOTS = {
+  {0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5},
+  {0.0, 0.05, 0.1, 0.15, 0.2, 0.5},
+  {0.0, 10.0, 17.5, 25.0, 32.5, 40.0, 100.0},
+}
+local FILLED = {
+  91.67, 91.67, 90.28, 91.36, 89.11, 85.89, 85.89, 91.67, 91.67, 90.28, 90.28, 90.28, 90.28, 90.28,
+  91.67, 91.67, 90.28, 91.67, 91.67, 91.67, 91.67, 91.67, 91.67, 90.28, 90.28, 90.28, 90.28, 90.28,
+  91.67, 91.67, 90.28, 91.67, 91.67, 91.67, 91.67, 91.67, 91.67, 90.28, 91.67, 91.67, 91.67, 91.67,
+  91.67, 91.67, 90.28, 72.46, 65.11, 61.48, 61.48, 91.67, 91.67, 63.43, 63.43, 63.43, 63.43, 63.43,
+  91.67, 91.67, 63.43, 63.43, 63.43, 63.43, 63.43, 91.67, 91.67, 63.43, 63.43, 63.43, 63.43, 63.43,
+  91.67, 91.67, 90.28, 90.28, 90.28, 90.28, 90.28, 91.67, 91.67, 90.28, 90.28, 90.28, 90.28, 90.28,
+  91.67, 91.67, 90.28, 59.33, 49.14, 38.84, 38.84, 91.67, 91.67, 63.43, 50.0, 50.0, 50.0, 50.0, 91.67,
+  91.67, 63.43, 50.0, 50.0, 50.0, 50.0, 91.67, 91.67, 63.43, 63.43, 63.43, 63.43, 63.43, 91.67, 91.67,
+  90.28, 91.67, 91.67, 91.67, 91.67, 91.67, 91.67, 90.28, 91.67, 91.67, 91.67, 91.67, 91.67, 91.67,
+  63.43, 50.0, 36.57, 9.72, 9.72, 91.67, 91.67, 63.43, 50.0, 34.47, 34.47, 34.47, 91.67, 91.67, 63.43,
+  50.0, 37.5, 37.5, 37.5, 91.67, 91.67, 63.43, 63.43, 46.43, 46.43, 46.43, 91.67, 91.67, 63.43, 63.43,
+  50.0, 50.0, 50.0, 91.67, 91.67, 63.43, 63.43, 50.0, 50.0, 50.0, 91.67, 91.67, 63.43, 50.0, 36.57,
+  8.33, 8.33, 91.67, 91.67, 63.43, 50.0, 34.47, 22.02, 22.02, 91.67, 91.67, 63.43, 50.0, 37.5, 25.0,
+  25.0, 91.67, 91.67, 63.43, 50.0, 34.47, 22.02, 22.02, 91.67, 91.67, 63.43, 50.0, 36.57, 8.33, 8.33,
+  91.67, 91.67, 63.43, 50.0, 36.57, 8.33, 8.33, 91.67, 91.67, 50.0, 36.57, 36.57, 9.72, 9.72, 91.67,
+  91.67, 50.0, 36.57, 34.47, 22.02, 22.02, 91.67, 91.67, 50.0, 36.57, 34.47, 22.02, 22.02, 91.67, 91.67,
+  50.0, 36.57, 34.47, 22.02, 22.02, 91.67, 91.67, 50.0, 36.57, 36.57, 9.72, 9.72, 91.67, 91.67, 50.0,
+  36.57, 36.57, 9.72, 9.72, 91.67, 91.67, 50.0, 8.33, 8.33, 8.33, 8.33, 91.67, 91.67, 50.0, 9.72, 9.72,
+  9.72, 9.72, 91.67, 91.67, 50.0, 8.33, 8.33, 8.33, 8.33, 91.67, 91.67, 50.0, 9.72, 9.72, 9.72, 9.72,
+  91.67, 91.67, 50.0, 8.33, 8.33, 8.33, 8.33, 91.67, 91.67, 50.0, 8.33, 8.33, 8.33, 8.33, 91.67, 91.67,
+  50.0, 8.33, 8.33, 8.33, 8.33, 91.67, 91.67, 50.0, 9.72, 9.72, 9.72, 9.72, 91.67, 91.67, 50.0, 8.33,
+  8.33, 8.33, 8.33, 91.67, 91.67, 50.0, 9.72, 9.72, 9.72, 9.72, 91.67, 91.67, 50.0, 8.33, 8.33, 8.33,
+  8.33, 91.67, 91.67, 50.0, 8.33, 8.33, 8.33, 8.33,
+}
+
+filled = function(x, axis, knot)
+  local places = KNOTS[axis]
+  if not places then
+    return FILLED[knot + 1]
+  end
+  local count, behind = #places, 0
+  while behind < count and places[behind + 1] <= x[axis] do
+    behind = behind + 1
+  end
+  local first = knot * count
+  if behind == 0 or behind == count then
+    return filled(x, axis + 1, first + (behind == 0 and 0 or count - 1))
+  end
+  local left = places[behind]
+  local share = (x[axis] - left) / (places[behind + 1] - left)
+  local low = filled(x, axis + 1, first + behind - 1)
+  if share == 0 then
+    return low
+  end
+  return (1 - share) * low + share * filled(x, axis + 1, first + behind)
+end
+
+end
+
+local point = {} -- the inputs of the rules, in their order
+local is_filled = false
+
+local function estimate()
+  point[1] = max(0.0, min(0.5, value[1]))
+  point[2] = max(0.0, min(0.5, value[2]))
+  point[3] = max(0.0, min(100.0, value[3]))
+  local risk = by_rules(point)
+  -- A coverage a hair below the limit is rounding.
+  is_filled = coverage < COVERAGE_BELOW * (1 - 1e-5)
+  if is_filled then
+    risk = filled(point, 1, 0)
+  end
+  return risk and max(0.0, min(100.0, risk))
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- The elevated risk: what the risks of the last seconds add up to.
+
+local risks = new_window(ELEVATED_WINDOW_S, min(SLOTS + 2, floor(ELEVATED_WINDOW_S * 1000 / CALL_MS) + 4), false)
+local elevated, last_risk, last_rate = 0.0, nil, nil
+
+local function clear_elevated()
+  clear(risks)
+  elevated, last_risk, last_rate = 0.0, nil, nil
+end
+
+local add_up
+do
+
+local risk_row = new_row(risks, "spread")
+
+-- Abramowitz and Stegun 7.1.26, right to 1.5e-7.
+local function erf(x)
+  local t = 1 / (1 + 0.3275911 * math.abs(x))
+  local y = 1 - ((((1.061405429 * t - 1.453152027) * t + 1.421413741) * t - 0.284496736) * t + 0.254829592) * t * exp(-x * x)
+  return x < 0 and -y or y
+end
+
+-- The share of a normal distribution below x.
+local function share_below(x, mean, deviation)
+  local distance = x - mean
+  if deviation > 0 then
+    return 0.5 * (1 + erf(distance / deviation * 0.70710678))
+  end
+  return distance == 0 and 0.5 or distance > 0 and 1.0 or 0.0
+end
+
+add_up = function(risk)
+  local before = last_risk or risk
+  risk_row.x, risk_row.within = 0.5 * (before + risk), (risk - before) * (risk - before) / 12
+  take_sample(risks, held_s)
+  local out = outside(risks)
+  local total = total_of(risks, risks.weight, out)
+  if total > 0 then
+    local mean, variance = read_row(risk_row, total, out)
+    local deviation = sqrt(variance)
+    local rate = RISE * (1 - share_below(ELEVATED_HIGH, mean, deviation)) - FALL * share_below(ELEVATED_LOW, mean, deviation)
+    elevated = elevated + 0.5 * (rate + (last_rate or rate)) * held_s
+    elevated = max(0.0, min(100.0, elevated))
+    last_risk, last_rate = risk, rate
+  end
+end
+
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- Levels: raised after a while, held, lowered after a while.
+
+-- What each rule is about: the area and the centre of its consequent, an input and a term, whether motors are at a limit.
+local CAUSES = {
+  {12.75, 8.166667, "margin", "high", true}, -- 1
+  {12.75, 8.166667, "spread", "low", false}, -- 2
+  {12.75, 8.166667, "margin", "high", true}, -- 3
+  {12.75, 8.166667, "battery", "enough", false}, -- 4
+  {12.75, 8.166667, "spread", "low", false}, -- 5
+  {25.0, 25.0, "battery", "enough", false}, -- 6
+  {12.75, 91.833336, "margin", "low", true}, -- 7
+  {25.0, 50.0, "margin", "low", true}, -- 8
+  {12.75, 91.833336, "margin", "very_low", true}, -- 9
+  {12.75, 91.833336, "margin", "very_low", true}, -- 10
+  {25.0, 50.0, "battery", "low", false}, -- 11
+  {12.75, 91.833336, "battery", "empty", false}, -- 12
+}
+local risk_level = GOOD -- of the risk alone
+local reached_at = {} -- since when the thresholds of each level are reached
+local held_at = 0 -- when something last held the level
+local is_open, open_level, by_elevated, cause = false, GOOD, false, nil -- the time of trouble
+local seen, mean_margin, least_margin, is_upper = 0, {}, {}, {} -- the motors in it
+
+-- The rule that raises the risk most: the largest share of it, above half of its value.
+local function find_cause(risk)
+  if is_filled then
+    return nil
+  end
+  local most, rule = -huge, nil
+  for i = 1, #CAUSES do
+    local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
+    if (fired[i] or 0.0) > 0 and raises >= most then
+      most, rule = raises, i
+    end
+  end
+  return rule
+end
+
+local function is_reached(risk, risk_limit, elevated_limit)
+  if risk_limit and risk >= risk_limit then
+    return true, false
+  elseif elevated_limit and elevated >= elevated_limit then
+    return true, true
+  end
+  return false, false
+end
+
+local function raise(level, of_elevated, risk)
+  risk_level = level
+  if not is_open or open_level ~= level then
+    by_elevated = of_elevated
+  end
+  if not is_open or level > open_level then
+    cause, open_level = find_cause(risk), level
+  end
+  is_open = true
+end
+
+-- A level reached now; gives what holds it.
+local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, after_us, until_risk, until_elevated)
+  local reached, of_elevated = is_reached(risk, risk_limit, elevated_limit)
+  reached = reached and can_raise
+  if reached or is_reached(risk, until_risk, until_elevated) then
+    held = min(level, risk_level)
+  end
+  if not reached then
+    reached_at[level] = nil
+    return held
+  end
+  reached_at[level] = reached_at[level] or clock_us
+  if level > risk_level and clock_us - reached_at[level] >= after_us then
+    raise(level, of_elevated, risk)
+    held = level
+  end
+  return held
+end
+
+local function watch_motors()
+  if not reached_at[WARN] and not reached_at[FAIL] then
+    return
+  end
+  seen = seen + 1
+  for i = 1, motors do
+    local e = command[i]
+    local margin = e < 0.5 and e or 1 - e
+    local mean = mean_margin[i] or 0.0
+    mean_margin[i] = mean + (margin - mean) / seen
+    if margin < (least_margin[i] or huge) then
+      least_margin[i], is_upper[i] = margin, e >= 0.5
+    end
+  end
+end
+
+local function judge(risk, takes_off)
+  if not reached_at[WARN] and not reached_at[FAIL] and not is_open then
+    seen, mean_margin, least_margin = 0, {}, {}
+  end
+  local held = GOOD
+  held = follow(WARN, held, risk, not takes_off, WARN_RISK, WARN_ELEVATED, WARN_AFTER_US, WARN_UNTIL_RISK, WARN_UNTIL_ELEVATED)
+  held = follow(FAIL, held, risk, true, FAIL_RISK, FAIL_ELEVATED, FAIL_AFTER_US, FAIL_UNTIL_RISK, FAIL_UNTIL_ELEVATED)
+  watch_motors()
+  if held >= risk_level then
+    held_at = clock_us
+  elseif clock_us - held_at >= CLEAR_AFTER_US then
+    risk_level, held_at = held, clock_us
+    is_open = held > GOOD
+  end
+end
+
+local function stop_judging()
+  clear_elevated()
+  risk_level, is_open = GOOD, false
+  reached_at[WARN], reached_at[FAIL] = nil, nil
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- What the pilot reads, in at most 50 characters.
+
+local function level_now()
+  local level = risk_level
+  return level
+end
+
+local function cause_in_words(room)
+  local about = cause and CAUSES[cause]
+  if not about then
+    return ""
+  end
+  if about[5] then
+    local weakest
+    for i = 1, motors do
+      if mean_margin[i] and (not weakest or mean_margin[i] < mean_margin[weakest]) then
+        weakest = i
+      end
+    end
+    return weakest and string.format(", motor %d %s limit", numbers[weakest], is_upper[weakest] and "upper" or "lower") or ""
+  end
+  local text = ", " .. about[3] .. " " .. about[4]
+  if #text > room then
+    text = ", " .. about[3]
+  end
+  return #text <= room and text or ""
+end
+
+local function say(level, risk)
+  if level == GOOD and not risk then
+    gcs:send_text(INFO, "FLAGRED: risk unknown")
+    return
+  end
+  local severity = level == FAIL and CRITICAL or level == WARN and WARNING or INFO
+  local text = "FLAGRED: " .. LEVELS[level]
+  if is_open and by_elevated then
+    text = string.format("%s elevated %.0f %%", text, elevated)
+  elseif risk then
+    text = string.format("%s risk %.0f %%", text, risk)
+  end
+  if level > GOOD then
+    text = text .. cause_in_words(50 - #text)
+  end
+  gcs:send_text(severity, text)
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- A flight.
+
+local flown_us -- since take-off; nil on the ground
+local down_us -- for how long it seems to be on the ground
+local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
+local idle -- "landing" or "trouble"
+local since_high_us, unknown_us -- since a high risk, and since a risk was known
+
+local function forget()
+  for _, window in ipairs(windows) do
+    clear(window)
+  end
+  flown_us, down_us, settled, settling, idle, since_high_us, unknown_us = nil, nil, false, huge, nil, nil, nil
+  value = {}
+  stop_judging()
+end
+
+-- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end.
+local function rests()
+  if not sum or sum >= IDLE_BELOW * motors then
+    idle = nil
+    return false
+  end
+  if not idle then
+    idle = since_high_us and since_high_us <= 2000000 and "trouble" or "landing"
+  end
+  return idle == "landing"
+end
+
+-- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
+local function settle()
+  if not settled and flown_us >= TAKE_OFF_US + WARM_UP_US then
+    settled, settling = true, 1
+    if TAKE_OFF_US > 0 then
+      clear_elevated()
+    end
+  end
+  while TAKE_OFF_US > 0 and settling <= #windows do
+    local window = windows[settling]
+    settling = settling + 1
+    if window.length_us > TAKE_OFF_US then
+      drop_older(window, flown_us - TAKE_OFF_US - 1)
+      return
+    end
+  end
+end
+
+-- Takes in the time and the motors; gives the risk in %, nil where it is unknown.
+local function fly()
+  has_moved = false
+  clock_us = clock_us + held_us
+  bin_us = bin_us + held_us
+  bin, bin_us = bin + bin_us // BIN_US, bin_us % BIN_US
+  if held_us > LONGEST_GAP_US then
+    forget()
+    held_us, held_s = 0, 0.0
+  end
+  for _, window in ipairs(windows) do
+    local phase = window.phase + SLOTS * held_us
+    window.number = window.number + phase // window.length_us
+    window.phase = phase % window.length_us
+  end
+  since_high_us = since_high_us and later(since_high_us, held_us)
+  unknown_us = unknown_us and later(unknown_us, held_us)
+  flown_us = flown_us and later(flown_us, held_us)
+  read_commands()
+  if not vehicle:get_likely_flying() or rests() then
+    value = {}
+    if flown_us then
+      down_us = down_us and later(down_us, held_us) or 0
+      if down_us >= 1000000 then
+        forget()
+      end
+    end
+    return nil
+  end
+  down_us = nil
+  flown_us = flown_us or 0
+  observe()
+  settle()
+  local risk = read_inputs() and estimate()
+  if not risk then
+    if unknown_us and unknown_us > LONGEST_GAP_US then
+      stop_judging()
+      unknown_us = nil
+    end
+    return nil
+  end
+  unknown_us = 0
+  if WARN_RISK and risk >= WARN_RISK then
+    since_high_us = 0
+  end
+  add_up(risk)
+  judge(risk, flown_us < QUIET_US)
+  return risk
+end
+
+---------------------------------------------------------------------------------------------------------------------------
+-- The calls.
+
+local sent_us, logged_bin, settings_us = LONG_US, -1, 0
+local has_failed = false
+
+local set_up -- runs once; then its memory is free
+do
+
+local PARAMETERS = {
+  {"ENABLE", 1.0},
+  {"WARN", 67.0},
+  {"FAIL", 85.0},
+}
+
+local function add_parameters()
+  local added = param:add_table(PARAMETER_TABLE, "FRISK_", #PARAMETERS)
+  for i, parameter in ipairs(PARAMETERS) do
+    added = added and param:add_param(PARAMETER_TABLE, i, parameter[1], parameter[2])
+  end
+  if not added then
+    gcs:send_text(WARNING, "FLAGRED: no parameters, the defaults hold")
+  end
+end
+
+local function output(motor_function)
+  -- Older firmware has fewer functions, and refuses the others.
+  local is_known, pwm = pcall(SRV_Channels.get_output_pwm, SRV_Channels, motor_function)
+  return is_known and pwm
+end
+
+local function find_motors()
+  local is_tri = param:get("FRAME_CLASS") == 7
+  for number = 1, 32 do
+    local motor_function = number <= 8 and number + 32 or number <= 12 and number + 73 or number + 147
+    -- Motor 7 of a tricopter is a servo.
+    if output(motor_function) and not (is_tri and number == 7) then
+      motors = motors + 1
+      functions[motors], numbers[motors] = motor_function, number
+    end
+  end
+end
+
+set_up = function()
+  add_parameters()
+  find_motors()
+  if not read_limits() then
+    motors = 0
+  end
+  if motors == 0 then
+    gcs:send_text(ERROR, "FLAGRED: no motors or no limits, no risk")
+    return
+  end
+  gcs:send_text(INFO, string.format("FLAGRED: %d motors, %.0f to %.0f us", motors, low_us, low_us + 1 / scale))
+end
+
+end
+
+local function update()
+  if set_up then
+    local once = set_up
+    set_up = nil
+    once()
+    read_parameters()
+    return
+  end
+  local now = micros()
+  held_us = last_call and (now - last_call):toint() or 0
+  if held_us < 0 or held_us > LONG_US then
+    held_us = LONG_US
+  end
+  local is_repeated = last_call and held_us == 0
+  last_call = now
+  if motors == 0 or is_repeated then
+    return
+  end
+  held_s = held_us * 1e-6
+  -- Limits and parameters may change on the ground.
+  settings_us = later(settings_us, held_us)
+  if not flown_us and settings_us >= 1000000 then
+    settings_us = 0
+    read_parameters()
+    read_limits()
+  end
+  if not is_enabled then
+    return
+  end
+  local before = level_now()
+  local risk = fly()
+  local level = level_now()
+  if level ~= before and flown_us and not down_us then
+    say(level, risk)
+  end
+  sent_us = later(sent_us, held_us)
+  if risk and sent_us >= SEND_US then
+    sent_us = 0
+    gcs:send_named_float("FR_RISK", risk)
+    gcs:send_named_float("FR_ELEV", elevated)
+  end
+  if risk and logged_bin ~= bin then
+    logged_bin = bin
+    logger:write("FRSK", "Risk,Elev,Level", "ffB", risk, elevated, level)
+  end
+end
+
+-- An error that leaves a script stops it and blocks arming.
+local function protected()
+  local is_well, told = pcall(update)
+  if is_well then
+    return protected, CALL_MS
+  end
+  if not has_failed then
+    has_failed = true
+    gcs:send_text(ERROR, string.sub("FLAGRED failed: " .. tostring(told), 1, 50))
+  end
+  pcall(forget)
+  return protected, 1000
+end
+
+return protected, 1000

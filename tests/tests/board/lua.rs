@@ -1,0 +1,597 @@
+//! The exported script for ArduPilot, run by Lua 5.3 with floats and integers of 32 bits, says what the monitor says.
+
+use std::{
+    fmt::Write as _,
+    io::Write as _,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::OnceLock,
+};
+
+use flagred::{
+    board::Factors,
+    estimator::Estimator,
+    flight::Assessor,
+    monitor::{Craft, Monitor, Sample},
+    verdict::Level,
+};
+use flagred_tests::{
+    Folder,
+    board::{PROFILES, estimator, logs},
+    flagred,
+};
+use flightlog::{Flight, Options, ardupilot_frames};
+
+/// The most that a risk may differ, in percentage points.
+const TOLERANCE_PCT: f64 = 0.1;
+/// SCR_VM_I_COUNT.
+const BUDGET: u64 = 10_000;
+/// What the script may keep of the heap where pointers have 32 bits, as on the autopilot; with 64 bits nearly everything is
+/// twice as large. `CFLAGS=-m32` builds Lua with 32 bits, where the compiler can.
+const HEAP_BYTES: u64 = 90_000;
+/// The clock of the autopilot begins anew after 71 minutes; in the tests that is a minute after the first sample.
+const FIRST_US: u64 = (1 << 32) - 60_000_000;
+
+/// The sources of Lua 5.3, which come with the package `lua-src`.
+fn sources() -> PathBuf {
+    let metadata = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--offline"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    let metadata: serde_json::Value = serde_json::from_slice(&metadata.stdout).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
+    let package = packages.iter().find(|package| package["name"] == "lua-src");
+    let manifest = package.unwrap()["manifest_path"].as_str().unwrap();
+    Path::new(manifest).parent().unwrap().join("lua-5.3.6")
+}
+
+/// `tests/lua/autopilot.c` with Lua, compiled by `cc`, with which Rust links too.
+fn autopilot() -> Command {
+    static BUILT: OnceLock<(PathBuf, Folder)> = OnceLock::new();
+    let (binary, _) = BUILT.get_or_init(|| {
+        let (sources, folder) = (sources(), Folder::new());
+        let files = std::fs::read_dir(&sources).unwrap();
+        let files = files.map(|file| file.unwrap().path());
+        let binary = folder.path().join("autopilot");
+        let mut cc = Command::new("cc");
+        cc.args(["-O2", "-w", "-DLUA_32BITS", "-I"]).arg(&sources);
+        cc.args(files.filter(|file| file.extension().is_some_and(|end| end == "c")));
+        cc.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/lua/autopilot.c"));
+        if let Ok(flags) = std::env::var("CFLAGS") {
+            cc.args(flags.split_whitespace());
+        }
+        let compiled = cc.arg("-lm").arg("-o").arg(&binary).output().unwrap();
+        let told = String::from_utf8_lossy(&compiled.stderr);
+        assert!(compiled.status.success(), "{told}");
+        (binary, folder)
+    });
+    Command::new(binary)
+}
+
+/// A vehicle: the range of its motors in us, the effective range, and its frame, with the factors of its motors.
+struct Vehicle {
+    pwm: (f64, f64),
+    spin: (f64, f64),
+    /// FRAME_CLASS and FRAME_TYPE.
+    frame: (i64, i64),
+    factors: Vec<Factors>,
+}
+
+/// What the autopilot knows at a time.
+#[derive(Clone)]
+struct Record {
+    t_us: u64,
+    flying: bool,
+    /// In us; NaN: no output.
+    pwm: Vec<f64>,
+    /// NaN: not monitored.
+    battery_pct: f64,
+}
+
+impl Vehicle {
+    fn of(flight: &Flight) -> Vehicle {
+        let range = flight.range.as_ref().unwrap();
+        let geometry = flight.geometry.as_ref().unwrap();
+        let name = geometry.frame.as_deref().unwrap();
+        let frame = ardupilot_frames().find(|frame| frame.name == name).unwrap();
+        Vehicle {
+            pwm: (range.low, range.high),
+            spin: (flight.effective.low, flight.effective.high),
+            frame: (frame.class, frame.kind),
+            factors: geometry.factors.clone(),
+        }
+    }
+
+    fn named(name: &str) -> Vehicle {
+        let frame = ardupilot_frames().find(|frame| frame.name == name).unwrap();
+        Vehicle {
+            pwm: (1000.0, 2000.0),
+            spin: (0.15, 0.95),
+            frame: (frame.class, frame.kind),
+            factors: frame.motors.iter().map(|(_, factors)| *factors).collect(),
+        }
+    }
+
+    fn parameters(&self) -> Vec<String> {
+        vec![
+            format!("MOT_PWM_MIN={}", self.pwm.0),
+            format!("MOT_PWM_MAX={}", self.pwm.1),
+            format!("MOT_SPIN_MIN={}", self.spin.0),
+            format!("MOT_SPIN_MAX={}", self.spin.1),
+            format!("FRAME_CLASS={}", self.frame.0),
+            format!("FRAME_TYPE={}", self.frame.1),
+        ]
+    }
+
+    fn effective(&self, pwm: f64) -> f64 {
+        let command = ((pwm - self.pwm.0) / (self.pwm.1 - self.pwm.0)).clamp(0.0, 1.0);
+        ((command - self.spin.0) / (self.spin.1 - self.spin.0)).clamp(0.0, 1.0)
+    }
+}
+
+/// What the autopilot knew during a flight. A command between two microseconds of a pulse is the nearer one.
+fn records(flight: &Flight) -> Vec<Record> {
+    let first_s = flight.commands.t_s()[0];
+    let mut battery = flight
+        .signal("battery_remaining_pct")
+        .map(|signal| signal.hold());
+    let rows = flight.commands.rows().map(|(t_s, row)| Record {
+        t_us: ((t_s - first_s) * 1e6).round() as u64,
+        flying: flight.is_in_air(t_s) == Some(true),
+        pwm: row.iter().map(|pwm| pwm.round()).collect(),
+        battery_pct: battery
+            .as_mut()
+            .and_then(|hold| hold.at(t_s))
+            .map_or(f64::NAN, f64::round),
+    });
+    rows.collect()
+}
+
+/// What was said at a record: risk and elevated risk in %, and level.
+type Said = (usize, f64, f64, Level);
+
+/// What the script said.
+#[derive(Default)]
+struct Run {
+    logged: Vec<Said>,
+    texts: String,
+    values: usize,
+    /// Of the first call, the set-up, the most of others, and their mean.
+    instructions: [f64; 4],
+    /// The bytes of a pointer; the bytes in use without the script, with it after a collection, and ever.
+    heap: [u64; 4],
+}
+
+fn run(script: &str, vehicle: &Vehicle, records: &[Record], parameters: &[&str]) -> Run {
+    let mut child = autopilot()
+        .arg(script)
+        .arg(vehicle.factors.len().to_string())
+        .arg(FIRST_US.to_string())
+        .args(vehicle.parameters())
+        .args(parameters)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let numbers = records.iter().flat_map(|record| {
+        [record.t_us as f64, f64::from(u8::from(record.flying))]
+            .into_iter()
+            .chain(record.pwm.iter().copied())
+            .chain([record.battery_pct])
+    });
+    let bytes: Vec<u8> = numbers.flat_map(f64::to_ne_bytes).collect();
+    let mut stdin = child.stdin.take().unwrap();
+    let writer = std::thread::spawn(move || stdin.write_all(&bytes));
+    let output = child.wait_with_output().unwrap();
+    let written = writer.join().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{text}");
+    let mut run = Run::default();
+    for line in text.lines() {
+        let words: Vec<&str> = line.split(' ').collect();
+        let number = |i: usize| words[i].parse::<f64>().unwrap();
+        match words[0] {
+            "log" => {
+                let level = match words[4] {
+                    "0" => Level::Good,
+                    "2" => Level::Warn,
+                    "3" => Level::Fail,
+                    level => panic!("level {level}"),
+                };
+                run.logged
+                    .push((words[1].parse().unwrap(), number(2), number(3), level));
+            }
+            "float" => run.values += 1,
+            "text" => {
+                let t_s = match words[1] {
+                    "-1" => "start".to_owned(),
+                    record => format!(
+                        "{:.1} s",
+                        records[record.parse::<usize>().unwrap()].t_us as f64 / 1e6
+                    ),
+                };
+                let _ = writeln!(run.texts, "{t_s}, {}: {}", words[2], words[3..].join(" "));
+            }
+            "calls" => assert_eq!(number(1) as usize, records.len(), "{text}"),
+            "instructions" => run.instructions = [1, 2, 3, 4].map(number),
+            "heap" => run.heap = [1, 2, 3, 4].map(|i| number(i) as u64),
+            _ => panic!("{line}"),
+        }
+    }
+    written.unwrap();
+    run
+}
+
+/// What the monitor says of the first sample with a known risk in each tenth of a second, which is what the script logs.
+fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) -> Vec<Said> {
+    let signals = estimator.profile().signals();
+    let craft = Craft::new(vehicle.factors.len())
+        .with_signals(&signals)
+        .with_geometry(&vehicle.factors);
+    let mut monitor = Monitor::new(estimator, craft).unwrap();
+    let (mut said, mut bin) = (Vec::new(), None);
+    for (i, record) in records.iter().enumerate() {
+        let motors: Vec<f64> = record
+            .pwm
+            .iter()
+            .map(|pwm| vehicle.effective(*pwm))
+            .collect();
+        let battery = vec![record.battery_pct; signals.len()];
+        let t_us = record.t_us - records[0].t_us;
+        let update = monitor.push(&Sample {
+            t_s: t_us as f64 / 1e6,
+            motors: &motors,
+            in_air: record.flying,
+            signals: &battery,
+        });
+        if let (Ok(estimate), Some(elevated_pct)) = (update.risk, update.elevated_risk_pct)
+            && bin != Some(t_us / 100_000)
+        {
+            bin = Some(t_us / 100_000);
+            // Information is no warning, and the script tells none.
+            let level = update.level.filter(|level| *level > Level::Info);
+            said.push((
+                i,
+                estimate.risk_pct,
+                elevated_pct,
+                level.unwrap_or(Level::Good),
+            ));
+        }
+    }
+    said
+}
+
+/// The largest difference of risk and elevated risk; the levels are the same.
+fn differ(expected: &[Said], found: &[Said], what: &str) -> (f64, f64) {
+    let at = |said: &[Said]| said.iter().map(|said| said.0).collect::<Vec<usize>>();
+    assert_eq!(at(expected), at(found), "{what}: known at other times");
+    let (mut risk, mut elevated) = (0.0_f64, 0.0_f64);
+    for (expected, found) in expected.iter().zip(found) {
+        assert_eq!(
+            expected.3, found.3,
+            "{what}: level at record {}, {expected:?} {found:?}",
+            expected.0
+        );
+        risk = risk.max((expected.1 - found.1).abs());
+        elevated = elevated.max((expected.2 - found.2).abs());
+    }
+    (risk, elevated)
+}
+
+/// The script of a profile.
+fn script(profile: &str, folder: &Folder) -> String {
+    let file = folder.at("script.lua");
+    let status = flagred()
+        .args(["export", "--lua", profile, "--output", &file])
+        .status();
+    assert!(status.unwrap().success(), "{profile}");
+    file
+}
+
+#[test]
+fn the_script_says_what_the_monitor_says_of_every_flight() {
+    let folder = Folder::new();
+    for profile in PROFILES {
+        let estimator = estimator(profile);
+        let script = script(profile, &folder);
+        for log in logs() {
+            let flight = flightlog::open(&log, &Options::default()).unwrap();
+            let (vehicle, records) = (Vehicle::of(&flight), records(&flight));
+            let what = format!("{profile}, {}", log.display());
+            let expected = by_the_monitor(&estimator, &vehicle, &records);
+            assert!(expected.len() > 500, "{what}: {}", expected.len());
+            let run = run(&script, &vehicle, &records, &[]);
+            let (risk, elevated) = differ(&expected, &run.logged, &what);
+            eprintln!(
+                "{what}: {} risks, {risk:.4} %, elevated {elevated:.4} %, instructions {:?}, heap {:?}",
+                expected.len(),
+                run.instructions,
+                run.heap
+            );
+            assert!(
+                risk <= TOLERANCE_PCT && elevated <= TOLERANCE_PCT,
+                "{what}: {risk} {elevated}"
+            );
+            run.assert_within_budget(&what);
+            assert!(run.values > 100, "{what}: {}", run.values);
+        }
+    }
+}
+
+impl Run {
+    fn assert_within_budget(&self, what: &str) {
+        let instructions = self.instructions;
+        assert!(
+            instructions.iter().all(|count| *count < BUDGET as f64),
+            "{what}: {instructions:?}"
+        );
+        let [pointer, before, kept, _] = self.heap;
+        assert!(
+            (kept - before) * 4 / pointer < HEAP_BYTES,
+            "{what}: {:?}",
+            self.heap
+        );
+    }
+}
+
+/// Three flights in which everything happens, 25 times a second: a turn, gusts, a motor that weakens and another that makes up
+/// for it; a heavy load; two motors that change their parts.
+fn eventful(vehicle: &Vehicle) -> Vec<Record> {
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut records = Vec::new();
+    for i in 0..10_000_u64 {
+        let t_s = i as f64 * 0.04;
+        let between = |from: f64, to: f64| (from..to).contains(&t_s);
+        let flying = between(2.0, 250.0) || between(260.0, 320.0) || t_s > 330.0;
+        let gust = match () {
+            () if between(60.0, 90.0) => 0.08 * (2.0 * t_s).sin(),
+            () if between(90.0, 100.0) => 0.4 * (1.3 * t_s).sin(),
+            () => 0.0,
+        };
+        let hover = if between(290.0, 310.0) { 0.93 } else { 0.45 };
+        let turn = if between(40.0, 50.0) { 0.1 } else { 0.0 };
+        let weak = match () {
+            () if between(140.0, 165.0) => 0.02 * (t_s - 140.0),
+            () if between(360.0, 390.0) => 0.25,
+            () => 0.0,
+        };
+        let factors = vehicle.factors.iter().zip(0..);
+        let pwm = factors.map(|([roll, pitch, yaw], motor)| {
+            let noise = 0.01 * (random.f64() - 0.5);
+            let weak = match motor {
+                2 => weak,
+                3 => -weak,
+                _ => 0.0,
+            };
+            let e = hover + gust * (0.7 * roll + 0.5 * pitch) + turn * yaw + noise + weak;
+            let e = if flying { e.clamp(0.0, 1.0) } else { 0.0 };
+            let command = vehicle.spin.0 + e * (vehicle.spin.1 - vehicle.spin.0);
+            (vehicle.pwm.0 + command * (vehicle.pwm.1 - vehicle.pwm.0)).round()
+        });
+        records.push(Record {
+            pwm: pwm.collect(),
+            // Calls are late by up to a millisecond.
+            t_us: i * 40_000 + random.u64(0..1000),
+            flying,
+            battery_pct: (100.0 - t_s / 4.0).round(),
+        });
+    }
+    records
+}
+
+/// What is told in a flight by the assessor's findings: when, the level, and the cause.
+fn told_by_the_assessor(
+    estimator: &Estimator,
+    vehicle: &Vehicle,
+    records: &[Record],
+) -> Vec<String> {
+    let craft = Craft::new(vehicle.factors.len()).with_geometry(&vehicle.factors);
+    let mut assessor = Assessor::new(estimator, craft, None).unwrap();
+    let mut told = Vec::new();
+    for record in records {
+        let pwm = record.pwm.iter();
+        let motors: Vec<f64> = pwm.map(|pwm| vehicle.effective(*pwm)).collect();
+        let update = assessor.push(&Sample {
+            t_s: (record.t_us - records[0].t_us) as f64 / 1e6,
+            motors: &motors,
+            in_air: record.flying,
+            signals: &[],
+        });
+        let Some(level) = update.change.filter(|_| update.risk.is_ok()) else {
+            continue;
+        };
+        let finding = assessor.open_finding().filter(|_| level > Level::Good);
+        let motor = finding.as_ref().and_then(|finding| finding.motor);
+        let cause = finding.as_ref().and_then(|finding| finding.cause.as_ref());
+        let about = match (motor, cause) {
+            (Some(motor), _) => format!(", motor {}", motor.motor + 1),
+            (None, Some(cause)) => format!(", {} {}", cause.input, cause.term),
+            (None, None) => String::new(),
+        };
+        told.push(format!("{:.1} s {level}{about}", record.t_us as f64 / 1e6));
+    }
+    told
+}
+
+/// `3.4 s WARN, motor 3` of the text `3.4 s, 4: FLAGRED: WARN risk 78 %, motor 3 upper limit`.
+fn in_short(line: &str) -> String {
+    let (when, text) = line.split_once(" s, ").unwrap();
+    let (_, text) = text.split_once("FLAGRED: ").unwrap();
+    let (level, _) = text.split_once(' ').unwrap();
+    let about = text
+        .split_once(" %, ")
+        .map(|(_, about)| format!(", {about}"));
+    let about = about.unwrap_or_default();
+    let about = about
+        .trim_end_matches(" upper limit")
+        .trim_end_matches(" lower limit");
+    format!("{when} s {level}{about}")
+}
+
+#[test]
+fn the_script_tells_levels_and_causes_of_any_frame() {
+    let folder = Folder::new();
+    let estimator = estimator("flagred");
+    let script = script("flagred", &folder);
+    for name in ["QUAD/X", "OCTAQUAD/X", "DODECAHEXA/X"] {
+        let vehicle = Vehicle::named(name);
+        let records = eventful(&vehicle);
+        let expected = by_the_monitor(&estimator, &vehicle, &records);
+        let run = run(&script, &vehicle, &records, &[]);
+        eprintln!(
+            "{name}: instructions {:?}, heap {:?}\n{}",
+            run.instructions, run.heap, run.texts
+        );
+        let (risk, elevated) = differ(&expected, &run.logged, name);
+        assert!(
+            risk <= TOLERANCE_PCT && elevated <= TOLERANCE_PCT,
+            "{name}: {risk} {elevated}"
+        );
+        run.assert_within_budget(name);
+        for level in [Level::Good, Level::Warn, Level::Fail] {
+            assert!(
+                expected.iter().any(|said| said.3 == level),
+                "{name}: never {level}"
+            );
+        }
+        let found: Vec<String> = run.texts.lines().skip(1).map(in_short).collect();
+        assert_eq!(
+            told_by_the_assessor(&estimator, &vehicle, &records),
+            found,
+            "{name}"
+        );
+        assert!(found.len() > 5, "{found:?}");
+        if name == "QUAD/X" {
+            insta::assert_snapshot!(run.texts);
+        }
+    }
+}
+
+#[test]
+fn the_script_obeys_its_parameters_and_survives_an_error() {
+    let folder = Folder::new();
+    let script = script("flagred", &folder);
+    let vehicle = Vehicle::named("QUAD/X");
+    let records = &eventful(&vehicle)[..2000];
+    let silent = run(&script, &vehicle, records, &["FRISK_ENABLE=0"]);
+    assert_eq!((silent.logged.len(), silent.values), (0, 0));
+    let warned = |run: &Run| {
+        run.logged
+            .iter()
+            .filter(|said| said.3 > Level::Good)
+            .count()
+    };
+    let usual = run(&script, &vehicle, records, &[]);
+    let early = run(&script, &vehicle, records, &["FRISK_WARN=5"]);
+    assert!(
+        warned(&early) > warned(&usual) + 200,
+        "{} {}",
+        warned(&early),
+        warned(&usual)
+    );
+    // Called to the end, so it does not block arming.
+    let broken = run(&script, &vehicle, records, &["BROKEN=1"]);
+    assert_eq!(broken.logged.len(), 0);
+    let told: Vec<&str> = broken.texts.lines().skip(1).collect();
+    let [told] = told[..] else { panic!("{told:?}") };
+    assert!(told.contains("FLAGRED failed: "), "{told}");
+    let other = Vehicle {
+        frame: (99, 0),
+        ..Vehicle::named("QUAD/X")
+    };
+    let unknown = run(&script, &other, records, &[]).texts;
+    assert!(unknown.contains("frame unknown"), "{unknown}");
+    let none = Vehicle {
+        pwm: (0.0, 10.0),
+        ..Vehicle::named("QUAD/X")
+    };
+    let none = run(&script, &none, records, &[]);
+    assert!(
+        none.texts.contains("no motors or no limits"),
+        "{}",
+        none.texts
+    );
+    assert_eq!(none.logged.len(), 0);
+}
+
+#[test]
+fn every_signal_and_statistic_is_the_same_in_the_script() {
+    let folder = Folder::new();
+    let (estimator, file) = super::profile_of_every_signal(&folder);
+    let script = script(&file, &folder);
+    let vehicle = Vehicle::named("HEXA/X");
+    let records = &eventful(&vehicle)[..4000];
+    let expected = by_the_monitor(&estimator, &vehicle, records);
+    assert!(expected.len() > 1000, "{}", expected.len());
+    let run = run(&script, &vehicle, records, &[]);
+    eprintln!("every signal: instructions {:?}", run.instructions);
+    let (risk, elevated) = differ(&expected, &run.logged, "every signal");
+    assert!(
+        risk <= TOLERANCE_PCT && elevated <= TOLERANCE_PCT,
+        "{risk} {elevated}"
+    );
+}
+
+/// 36 minutes are more microseconds than an integer of 32 bits holds; a float of 32 bits has 24 bits.
+#[test]
+#[ignore = "takes half a minute"]
+fn the_script_does_not_drift_in_a_long_flight() {
+    let folder = Folder::new();
+    let estimator = estimator("flagred");
+    let vehicle = Vehicle::named("QUAD/X");
+    let one = eventful(&vehicle);
+    let calm = &one[3000..3400];
+    let mut records = one[..3000].to_vec();
+    for round in 0..270_u64 {
+        records.extend(calm.iter().cloned().map(|record| Record {
+            t_us: record.t_us + round * 400 * 40_000,
+            ..record
+        }));
+    }
+    let last_us = 270 * 400 * 40_000;
+    records.extend(one[3000..].iter().cloned().map(|record| Record {
+        t_us: record.t_us + last_us,
+        ..record
+    }));
+    let expected = by_the_monitor(&estimator, &vehicle, &records);
+    let run = run(&script("flagred", &folder), &vehicle, &records, &[]);
+    let (risk, elevated) = differ(&expected, &run.logged, "78 minutes");
+    eprintln!("78 minutes: risk {risk:.4} %, elevated {elevated:.4} %");
+    assert!(
+        risk <= TOLERANCE_PCT && elevated <= TOLERANCE_PCT,
+        "{risk} {elevated}"
+    );
+}
+
+#[test]
+fn what_a_script_cannot_do_is_refused_with_what_it_can() {
+    let folder = Folder::new();
+    let rules = include_str!("../../../rules/flagred-paper.yaml");
+    let profile = include_str!("../../../rules/profiles/flagred-paper.yaml");
+    let profile = profile.replace("rules: flagred-paper ", "rules: odd-rules.yaml ");
+    let curved = rules.replace(
+        "partition: {low: 0, medium: 0.1, high: 0.2}",
+        "terms: {low: {gaussian: {mean: 0, sd: 0.1}}, medium: {triangle: [0, 0.1, 0.2]}, high: {right_shoulder: [0.1, 0.2]}}",
+    );
+    let operator = rules.replace("and: minimum", "and: einstein");
+    let signal = profile.replace("{std: motor_command}", "{std: wind_m_s}");
+    for (rules, profile, told) in [
+        (
+            curved.as_str(),
+            &profile,
+            "term `low` of input `spread` is curved",
+        ),
+        (&operator, &profile, "operator for AND"),
+        (rules, &signal, "cannot read the signal `wind_m_s`"),
+    ] {
+        folder.file("odd-rules.yaml", rules);
+        let output = flagred()
+            .args(["export", "--lua", &folder.file("odd.yaml", profile)])
+            .output()
+            .unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(3), "{text}");
+        assert!(text.contains(told) && text.contains("help: "), "{text}");
+    }
+}
