@@ -59,7 +59,7 @@ struct Profile<'a> {
 #[derive(Serialize)]
 pub(crate) struct FindingDocument<'a> {
     #[serde(flatten)]
-    finding: &'a Finding,
+    finding: Finding,
     output: Option<&'a str>,
     text: String,
 }
@@ -69,9 +69,20 @@ impl<'a> FindingDocument<'a> {
         FindingDocument {
             output: teller.motor(finding).map(|motor| motor.output.as_str()),
             text: teller.finding(finding),
-            finding,
+            finding: numbered(finding, teller.motors),
         }
     }
+}
+
+/// The finding with the autopilot's number of its motor, where it is not its place in the samples.
+pub(crate) fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
+    let mut finding = finding.clone();
+    if let Some(named) = &mut finding.found.motor
+        && let Some(motor) = motors.get(named.motor)
+    {
+        named.motor = usize::from(motor.number).saturating_sub(1);
+    }
+    finding
 }
 
 /// The document of one flight.

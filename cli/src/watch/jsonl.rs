@@ -2,7 +2,12 @@
 
 use std::io;
 
-use flagred::{estimator::Estimator, flight::Verdict, monitor::Update, verdict::Level};
+use flagred::{
+    estimator::Estimator,
+    flight::{Cause, Verdict},
+    monitor::Update,
+    verdict::{Level, MotorFinding},
+};
 use flightlog::{Motor, Range, Vehicle};
 use serde::Serialize;
 
@@ -10,7 +15,7 @@ use super::{
     lines::teller,
     session::{Doubt, Doubts, End, Event, Flown, Left, Lost, Session, Silent, Source},
 };
-use crate::assessment::document::FindingDocument;
+use crate::assessment::document::{FindingDocument, numbered};
 
 /// What an event adds to its kind and time; names are those of docs/json.md.
 #[derive(Serialize)]
@@ -74,6 +79,9 @@ pub(crate) enum EventLine<'a> {
         t_s: f64,
         level: Level,
         text: &'a str,
+        /// Those of the finding that the level rests on.
+        cause: Option<&'a Cause>,
+        motor: Option<MotorFinding>,
     },
     Finding(FindingDocument<'a>),
     Landed(FlownLine<'a, ()>),
@@ -219,10 +227,20 @@ pub(crate) fn json(
                 unknown: why.map(|unknown| unknown.explain(estimator.profile())),
             })
         }
-        Event::Level { t_s, level, text } => EventLine::Level {
+        Event::Level {
+            t_s,
+            level,
+            text,
+            finding,
+        } => EventLine::Level {
             t_s: *t_s,
             level: *level,
             text,
+            cause: finding.as_ref().and_then(|finding| finding.cause.as_ref()),
+            motor: finding.as_ref().and_then(|finding| {
+                let motors = view.as_ref()?.setup?.motors.as_slice();
+                numbered(finding, motors).motor
+            }),
         },
         Event::Ended { finding } => {
             let teller = teller(view.as_ref(), estimator);

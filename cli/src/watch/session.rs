@@ -323,7 +323,12 @@ impl<'e> Session<'e> {
             let finding = watch.assessor.open_finding();
             let text = voice::say(level, &update, finding.as_ref(), &watch.setup);
             self.speech.say(to, &voice::status(level, &text), out);
-            out.events.push(Event::Level { t_s, level, text });
+            out.events.push(Event::Level {
+                t_s,
+                level,
+                text,
+                finding,
+            });
         }
         let due = watch
             .risk_sent_s

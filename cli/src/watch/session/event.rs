@@ -60,6 +60,8 @@ pub(crate) enum Event {
         t_s: f64,
         level: Level,
         text: String,
+        /// What the level rests on; `None` where it is good.
+        finding: Option<Finding>,
     },
     /// A finding ended.
     Ended { finding: Finding },
