@@ -7,7 +7,7 @@ use flagred::{
     flight::{Assessment, Finding, Step, Steps, Summary, Verdict},
     verdict::VerdictSettings,
 };
-use flightlog::{Flight, Motor, Range, Report};
+use flightlog::{Flight, Motor, Parameter, Range, Report};
 use serde::Serialize;
 
 use super::finding::Teller;
@@ -45,6 +45,7 @@ struct Vehicle<'a> {
     motors: &'a [Motor],
     range: Option<&'a Range>,
     effective_range: &'a Range,
+    parameters: &'a [Parameter],
 }
 
 /// What the verdict rests on beside the flight.
@@ -111,6 +112,7 @@ pub(crate) fn document<'a>(
             motors: &flight.motors,
             range: flight.range.as_ref(),
             effective_range: &flight.effective,
+            parameters: &flight.parameters,
         },
         read: &flight.report,
         profile: Profile {

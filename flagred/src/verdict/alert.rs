@@ -394,6 +394,33 @@ mod tests {
         assert!(flown.end(2.0, false).ended.is_some());
     }
 
+    /// Motor 2 at its upper limit raises the level; then motor 1 is at its lower one for long.
+    #[test]
+    fn the_motor_is_judged_where_the_level_is_raised_and_not_over_the_wreck() {
+        let mut flown = Flown::new([0.4, 0.95]);
+        for i in 0..300 {
+            if i == 60 {
+                flown.motors = [0.0, 0.5].map(Motor::at);
+            }
+            flown.push(f64::from(i) / 10.0, 0.0, if i < 50 { 0.0 } else { 90.0 });
+        }
+        let motor = flown.end(30.0, false).ended.unwrap().motor.unwrap();
+        assert_eq!((motor.motor, motor.side), (1, Side::High));
+        approx::assert_abs_diff_eq!(motor.least_margin, 0.05, epsilon = 1e-12);
+    }
+
+    #[test]
+    fn a_motor_far_from_its_limits_is_not_named() {
+        for (command, is_named) in [(0.85, false), (0.95, true), (0.05, true), (0.17, false)] {
+            let mut flown = Flown::new([0.5, command]);
+            for i in 0..20 {
+                flown.push(f64::from(i) / 10.0, 99.0, 0.0);
+            }
+            let finding = flown.end(2.0, false).ended.unwrap();
+            assert_eq!(finding.motor.is_some(), is_named, "{command}");
+        }
+    }
+
     #[test]
     fn a_fail_that_becomes_a_warn_stays_one_finding() {
         let (changes, findings, mut flown) = run(&[(2.0, 0.0, 90.0), (4.0, 0.0, 60.0)]);

@@ -188,6 +188,7 @@ impl Tracked {
                 let verdict = self.end_flight(End::Left(Left::SetUpAnew), out);
                 out.events.push(Event::Ready {
                     setup: setup.clone(),
+                    parameters: self.telemetry.parameters(),
                 });
                 self.watch = Some(Watch {
                     motors: vec![f64::NAN; setup.motors.len()],
