@@ -231,6 +231,12 @@ impl Assessor {
         Some(Finding::new(found, self.monitor.estimator()))
     }
 
+    /// The worst open finding beside the risk, as it stands so far: see [`Monitor::open_notice`].
+    pub fn open_notice(&self) -> Option<Finding> {
+        let found = self.monitor.open_notice()?;
+        Some(Finding::new(found, self.monitor.estimator()))
+    }
+
     /// The findings that ended with the latest sample, or with [`Assessor::end_findings`].
     pub fn ended(&self) -> &[Finding] {
         self.flight.findings.get(self.ended_before..).unwrap_or(&[])

@@ -196,6 +196,12 @@ impl Follower {
         self.alert.open().or_else(|| self.notices.open())
     }
 
+    /// The worst open finding beside the risk, as it stands so far: little reserve or an imbalance.
+    #[cfg(feature = "std")]
+    pub(crate) fn open_notice(&self) -> Option<Finding> {
+        self.notices.open()
+    }
+
     /// Sets the cause of the open finding where the latest sample raised its level; `cause` is asked only then.
     pub(crate) fn explain(
         &mut self,

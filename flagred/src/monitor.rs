@@ -185,6 +185,12 @@ impl Monitor {
         self.follower.open_finding()
     }
 
+    /// The worst open finding beside the risk, as it stands so far: little reserve or an imbalance. The level may rest on a
+    /// risk at the same time.
+    pub fn open_notice(&self) -> Option<Finding> {
+        self.follower.open_notice()
+    }
+
     /// Ends the flight and gives the findings that were still open, once.
     pub fn finish(&mut self) -> Ended {
         self.follower.finish(&mut self.room.lend())

@@ -320,8 +320,14 @@ impl<'e> Session<'e> {
             add(&mut self.worst, verdict);
         }
         out.events.push(Event::Risk { update });
-        if let Some(level) = update.change.filter(|_| in_air) {
-            let finding = watch.assessor.open_finding();
+        // Where the level stands already, but not for a notice that was raised, that is told, too.
+        let raised = watch.raised_notice();
+        let level = (update.change).or_else(|| raised.as_ref().and(update.level));
+        if let Some(level) = level.filter(|_| in_air) {
+            let finding = match update.change {
+                Some(_) => watch.assessor.open_finding(),
+                None => raised,
+            };
             let text = voice::say(level, &update, finding.as_ref(), &watch.setup);
             self.speech.say(to, &voice::status(level, &text), out);
             let finding = finding.map(|finding| numbered(&finding, &watch.setup.motors));

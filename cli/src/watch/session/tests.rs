@@ -331,7 +331,7 @@ fn a_lasting_imbalance_is_told_with_its_motor_until_landing() {
         Some(Level::Warn)
     );
     let told = bench.events.iter().rev().find_map(|event| match event {
-        Event::Level { text, motor, .. } => Some((text.clone(), motor.unwrap().motor)),
+        Event::Level { text, motor, .. } => Some((text.clone(), motor.as_ref()?.motor)),
         _ => None,
     });
     let (text, motor) = told.unwrap();
