@@ -13,6 +13,10 @@ use super::{Doubt, Source};
 /// Something to tell. Serialised it is a line of `--jsonl`, with the names of docs/json.md.
 #[derive(Debug, Clone, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "the large ones are the risks of samples, which are most of them"
+)]
 pub(crate) enum Event {
     /// A vehicle was found.
     Found {
