@@ -1,6 +1,6 @@
 //! `Flight`, the common type of all logs.
 
-use crate::{Geometry, Intervals, Report, Series, Signal};
+use crate::{Geometry, Intervals, Parameter, Report, Series, Signal};
 
 /// The kind of log a flight was read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -248,6 +248,8 @@ pub struct Flight {
     /// Why the used part counts as the whole range although the log tells limits.
     #[cfg_attr(feature = "serde", serde(rename = "effective_range_doubt"))]
     pub effective_doubt: Option<String>,
+    /// Parameters of the autopilot that motors and ranges rest on, and gains, as far as the log has them.
+    pub parameters: Vec<Parameter>,
     /// The motor commands.
     pub commands: Commands,
     /// All other signals.
@@ -281,6 +283,7 @@ impl Flight {
             range: None,
             effective: whole_range("the log names no tighter limits"),
             effective_doubt: None,
+            parameters: Vec::new(),
             commands: Commands::default(),
             series: Vec::new(),
             modes: Vec::new(),

@@ -58,6 +58,7 @@ pub use gap::Gap;
 pub use geometry::{Basis, Frame, Geometry, ardupilot_frames};
 pub use interval::{Interval, Intervals};
 pub use known::{KnownSignal, known_signals};
+pub use parameters::Parameter;
 pub use read::{Options, open, read};
 pub use report::{LeftOut, Report};
 pub use signal::{Hold, Label, Series, Signal};

@@ -235,6 +235,7 @@ impl Heard {
             let rule = "EXTENDED_SYS_STATE.landed_state, or HEARTBEAT.system_status, and armed";
             flight.in_air = intervals(&self.in_air, rule);
         }
+        flight.parameters = self.decoder.parameters.of_motors("PARAM_VALUE");
         let parameters = &self.decoder.parameters;
         (flight.effective, flight.effective_doubt) = match is_px4 {
             true => (known.effective, None),
