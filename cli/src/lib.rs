@@ -15,6 +15,8 @@ mod explain;
 mod export;
 mod failure;
 mod flights;
+#[doc(hidden)] // For fuzz targets and tests of other packages.
+pub mod fuzzing;
 mod help;
 mod inspect;
 mod learn;
@@ -116,7 +118,8 @@ impl Command {
     }
 }
 
-fn main() -> ExitCode {
+/// Runs the command that the process was given.
+pub fn main() -> ExitCode {
     let ran = match Arguments::try_parse() {
         Ok(arguments) => arguments.command.run(),
         Err(error) => match failure::command_forgotten(&error) {

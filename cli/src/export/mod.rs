@@ -7,6 +7,7 @@ use flagred::{
         Plan,
         table::{self, Table},
     },
+    estimator::{Estimator, NoClosedForm},
     gap::FilledKnots,
 };
 
@@ -52,6 +53,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     output.write(&text)?;
     Ok(Exit::Clean)
+}
+
+/// A profile in every language.
+pub(crate) fn texts(estimator: &Estimator) -> Result<[String; 2], NoClosedForm> {
+    let plan = estimator.plan()?;
+    let rules = &estimator.profile().rules;
+    let signals = estimator.profile().signals();
+    Ok([
+        rust::text(&plan, rules, &signals),
+        c::text(&plan, rules, &signals),
+    ])
 }
 
 /// The comment above the data.

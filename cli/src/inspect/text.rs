@@ -8,7 +8,7 @@ use fuzzy::drawing::visible;
 /// Texts of the autopilot that are shown; the JSON document has them all.
 const MESSAGES: usize = 12;
 
-pub(super) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Result<()> {
+pub(crate) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Result<()> {
     writeln!(out, "{}: {}", visible(name), flight.format)?;
     line(out, "vehicle", &vehicle(flight))?;
     lines(out, "motors", motors(flight))?;

@@ -1,12 +1,12 @@
 //! `flagred watch`: the risk of a flight while it is flown.
 
 mod endpoint;
-mod jsonl;
-mod lines;
+pub(crate) mod jsonl;
+pub(crate) mod lines;
 mod port;
 mod printer;
-mod screen;
-mod session;
+pub(crate) mod screen;
+pub(crate) mod session;
 mod tlog;
 mod voice;
 
