@@ -1,7 +1,9 @@
 //! Damaged logs are read as far as they go. `mutations.rs` damages many more.
 
+use flagred::{flight::Verdict, log::assess, shipped};
 use flagred_tests::{
     fuzzing::{check, mutation, seeds},
+    log_writer::Value,
     reference_data,
 };
 use flightlog::Options;
@@ -72,5 +74,32 @@ fn a_hole_costs_what_it_hits() {
         // Cut in the middle, all rows before are there.
         let flight = flightlog::read(&log[..middle], &Options::default()).unwrap();
         assert!(flight.commands.len() >= rows / 3, "{}", flight.format);
+    }
+}
+
+/// They would be a flight of 292,000 years, on whose clock seconds are too small to be told apart.
+#[test]
+fn seconds_of_wild_time_stamps_are_left_out() {
+    let log = |wild_us: Option<f64>| {
+        let mut log = seeds::hovering();
+        for row in 0..1000 {
+            let time_us = 12e6 + 4e4 * f64::from(row);
+            let wild_us = wild_us.filter(|_| (300..400).contains(&row));
+            let time_us = wild_us.map_or(time_us, |wild_us| wild_us + time_us);
+            let pulse = Value::Number(f64::from(1450 + row % 100));
+            log.write("RCOU", [time_us.into(), pulse, pulse, pulse, pulse]);
+        }
+        flightlog::read(&log.bytes[..], &Options::default()).unwrap()
+    };
+    let whole = log(None);
+    let verdict = assess(&whole, &shipped::flagred(), None).verdict;
+    assert!(matches!(verdict, Verdict::Known(_)), "{verdict:?}");
+    for wild_us in [9_223_372_036_854_775_808.0, 1e12, 3e16] {
+        let flight = log(Some(wild_us));
+        assert!(flight.report.bad_messages >= 100, "{:?}", flight.report);
+        assert_eq!(flight.commands.len(), whole.commands.len() - 100);
+        assert!(flight.time_span_s() == whole.time_span_s() && flight.boots_s.is_empty());
+        let assessed = assess(&flight, &shipped::flagred(), None);
+        assert_eq!(assessed.verdict, verdict);
     }
 }

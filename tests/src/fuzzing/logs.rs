@@ -79,7 +79,17 @@ fn is_read_back(flight: &Flight) {
             known.map(|known| known.map(f64::to_bits)).collect()
         };
         assert_eq!(bits(&again, same), bits(flight, row), "at {t_s} s");
-        assert_eq!(again.is_in_air(t_s), flight.is_in_air(t_s), "at {t_s} s");
+        // Where the state changes within a second, the two may take it for chatter at different rows.
+        let in_air = again.is_in_air(t_s);
+        let mut near = flight
+            .commands
+            .t_s()
+            .iter()
+            .filter(|t| (**t - t_s).abs() <= 1.0);
+        assert!(
+            near.any(|t_s| flight.is_in_air(*t_s) == in_air),
+            "{in_air:?} at {t_s} s"
+        );
     }
     let twice = converted(&again).unwrap();
     let twice = String::from_utf8_lossy(&twice);

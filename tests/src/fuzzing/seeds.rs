@@ -142,8 +142,8 @@ pub fn rules() -> Vec<Vec<u8>> {
     texts.map(|text| text.as_bytes().to_vec()).to_vec()
 }
 
-/// A quad that hovers from second 3 to second 8 of 10, as an ArduPilot log.
-pub fn data_flash() -> DataFlash {
+/// The definitions and parameters of a quad.
+fn copter() -> DataFlash {
     let mut log = DataFlash::new();
     log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
     log.define(130, "RCOU", "QHHHH", "TimeUS,C1,C2,C3,C4");
@@ -168,6 +168,12 @@ pub fn data_flash() -> DataFlash {
     }
     log.parameter(1e6, "MOT_PWM_MIN", 1000.0);
     log.parameter(1e6, "MOT_PWM_MAX", 2000.0);
+    log
+}
+
+/// A quad that hovers from second 3 to second 8 of 10, as an ArduPilot log.
+pub fn data_flash() -> DataFlash {
+    let mut log = copter();
     for row in 0..100 {
         let time = Value::Number(1e6 + 1e5 * f64::from(row));
         match row {
@@ -180,6 +186,14 @@ pub fn data_flash() -> DataFlash {
         log.write("RCOU", [time, pulse, pulse, pulse, pulse]);
         log.write("IMU", std::iter::once(time).chain([Value::Number(0.5); 6]));
     }
+    log
+}
+
+/// A quad in the air from second 11 on, whose motor commands are still to be written.
+pub fn hovering() -> DataFlash {
+    let mut log = copter();
+    log.write("EV", [10e6.into(), 10.0.into()]);
+    log.write("EV", [11e6.into(), 28.0.into()]);
     log
 }
 
