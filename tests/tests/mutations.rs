@@ -2,11 +2,15 @@
 //!
 //! `cargo test --release -p flagred-tests --test mutations -- --ignored --nocapture` takes a million of them.
 
-use std::time::{Duration, Instant};
+use std::{
+    io::Write,
+    time::{Duration, Instant},
+};
 
 use allocation_counter::measure;
 use fastrand::Rng;
 use flagred_tests::fuzzing::{TARGETS, Target, mutation::damaged};
+use flate2::{Compression, write::GzEncoder};
 use rayon::prelude::*;
 
 /// The most memory that an input may take, and all of the process.
@@ -86,4 +90,20 @@ fn some_damaged_inputs_are_survived() {
 #[ignore = "takes many minutes: run it with --release"]
 fn a_million_damaged_inputs_are_survived() {
     survive(1_000_000, Duration::from_secs(1));
+}
+
+/// Zeros are compressed to a thousandth; the log of them is as large as anybody wants.
+#[test]
+fn a_log_of_zeros_takes_no_memory() {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+    for _ in 0..200 {
+        packed.write_all(&[0; 1 << 20]).unwrap();
+    }
+    let packed = packed.finish().unwrap();
+    assert!(packed.len() < 2 << 20);
+    let used = measure(|| {
+        let read = flightlog::read(&packed[..], &flightlog::Options::default());
+        assert!(read.is_err());
+    });
+    assert!(used.bytes_max < 8 << 20, "{used:?}");
 }
