@@ -54,7 +54,7 @@ impl Range {
         high: 1.0,
     };
 
-    /// A range from `low` to `high`; `None` unless both are finite and `low < high`.
+    /// A range from `low` to `high`; `None` unless both and their difference are finite and `low < high`.
     ///
     /// # Example
     /// ```
@@ -64,7 +64,8 @@ impl Range {
     /// assert!(Range::new(1940.0, 1100.0).is_none() && Range::new(1100.0, f64::NAN).is_none());
     /// ```
     pub fn new(low: f64, high: f64) -> Option<Range> {
-        (low.is_finite() && high.is_finite() && low < high).then_some(Range { low, high })
+        let span = high - low;
+        (span > 0.0 && span.is_finite()).then_some(Range { low, high })
     }
 
     /// The lower limit.

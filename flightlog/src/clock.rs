@@ -8,6 +8,10 @@ const FORWARD_S: f64 = 2.0;
 const SLOWEST_S: f64 = 60.0;
 /// A clock that goes back by more than this, in seconds, was started again.
 const BOOT_STEP_S: f64 = -10.0;
+/// No log pauses for longer, in seconds: a time that is further ahead is damage, however many messages have it.
+const LONGEST_PAUSE_S: f64 = 7.0 * 86_400.0;
+/// No clock shows more, in seconds: thrice the time since 1970.
+const LATEST_S: f64 = 5e9;
 
 /// Boots that are kept of a log.
 const MOST_BOOTS: usize = 1000;
@@ -101,7 +105,7 @@ impl Clock {
         }
         match self.waiting_s.replace(t_s) {
             None => Checked::Wait,
-            Some(first_s) if self.follows(first_s, t_s) => {
+            Some(first_s) if is_possible(last_s, t_s) && self.follows(first_s, t_s) => {
                 self.waiting_s = None;
                 self.first_s.get_or_insert(first_s);
                 if let Some(last_s) = last_s.filter(|last_s| first_s - last_s < BOOT_STEP_S) {
@@ -190,6 +194,11 @@ impl Latest {
         self.latest_s = Some(latest_s.max(t_s));
         true
     }
+}
+
+/// Whether a log can go on at this time after a pause.
+fn is_possible(last_s: Option<f64>, t_s: f64) -> bool {
+    t_s < LATEST_S && last_s.is_none_or(|last_s| t_s - last_s < LONGEST_PAUSE_S)
 }
 
 #[cfg(test)]

@@ -1,5 +1,8 @@
-/* Damages each word of a plan in turn. A monitor refuses the plan, or assesses samples without a panic: the library
- * stops at a panic, and the alarm ends the program. Arguments: the size of an item of each array of the table. */
+/* Damages a plan: each word and each length of it in turn, then several at random. A monitor refuses the plan, or assesses
+ * samples in the memory that the library asks for: the library stops at a panic, and the alarm ends the program.
+ * Arguments: how many plans are damaged at random, and a seed. */
+#define _POSIX_C_SOURCE 200809L
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,88 +10,195 @@
 
 #include PROFILE
 
-static _Alignas(16) unsigned char memory[FLAGRED_MEMORY(1) + (1 << 20)];
+#define CHECK(holds)                                                     \
+    do {                                                                 \
+        if (!(holds)) {                                                  \
+            printf("line %d: %s, plan %ld\n", __LINE__, #holds, tried); \
+            exit(1);                                                     \
+        }                                                                \
+    } while (0)
+
+/* A plan that asks for more is as good as refused here. */
+#define MOST_MEMORY ((size_t)1 << 20)
+#define MOST_MOTORS 4
+/* What one call may take, in seconds. */
+#define LONGEST 60
+
 static flagred_plan plan;
 static long tried, accepted;
-/* The samples of each monitor. */
-static int samples = 1;
 
-static void try_plan(void) {
-    flagred_monitor *monitor;
-    tried++;
-    if (flagred_start(&plan, 1, NULL, memory, sizeof memory, &monitor) != FLAGRED_OK) {
-        return;
-    }
-    accepted++;
-    double inputs[16];
-    flagred_update result;
+/* The arrays of a plan: where it points to them, and the size of an item. Copies of the items can be damaged. */
+#define ARRAY(name) {offsetof(flagred_plan, name), sizeof *((flagred_plan *)0)->name}
+static const struct { size_t field, size; } arrays[] = {
+    ARRAY(inputs), ARRAY(cuts), ARRAY(starts), ARRAY(lines), ARRAY(curves), ARRAY(points), ARRAY(hedges), ARRAY(axes),
+    ARRAY(dimensions), ARRAY(cells), ARRAY(nodes), ARRAY(edges), ARRAY(actions), ARRAY(programs), ARRAY(steps),
+    ARRAY(outputs), ARRAY(pairs), ARRAY(moments), ARRAY(consequents), ARRAY(coefficients), ARRAY(order), ARRAY(channels),
+    ARRAY(sources), ARRAY(coordinates), ARRAY(first_coordinates), ARRAY(values), ARRAY(distances),
+};
+#define ARRAYS (sizeof arrays / sizeof *arrays)
+
+typedef struct { void *items; size_t count; } array;
+
+static array get(size_t index) {
+    array found;
+    memcpy(&found, (unsigned char *)&plan + arrays[index].field, sizeof found);
+    return found;
+}
+
+static void set(size_t index, array changed) {
+    memcpy((unsigned char *)&plan + arrays[index].field, &changed, sizeof changed);
+}
+
+static void use(flagred_monitor *monitor, size_t motors, int samples) {
+    double inputs[16], commands[MOST_MOTORS], signals[16];
+    flagred_update said;
+    flagred_finding ended[FLAGRED_ENDED];
+    flagred_factors geometry[MOST_MOTORS] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
     for (int i = 0; i < 9; i++) {
         for (size_t k = 0; k < 16; k++) {
             inputs[k] = plan.inputs[k < plan.inputs_count ? k : 0].low + (double)((i + k) % 9) * 0.125;
         }
-        flagred_evaluate(monitor, inputs, plan.sources_count, &result);
+        CHECK(flagred_evaluate(monitor, inputs, plan.sources_count < 16 ? plan.sources_count : 16, &said) == FLAGRED_OK);
     }
-    double command = 0.5;
-    flagred_sample sample = {.t_s = 1.0, .commands = &command, .motors = 1, .in_air = 1};
+    flagred_set_geometry(monitor, geometry, motors);
+    flagred_sample sample = {.t_s = 1, .commands = commands, .motors = motors, .signals = signals, .signal_count = 16};
     for (int i = 0; i < samples; i++) {
-        flagred_push(monitor, &sample, &result);
-        sample.t_s += 0.03 * (i % 3);
-        command = 0.25 * (i % 5);
+        for (size_t k = 0; k < 16; k++) {
+            signals[k] = i % 40 == 39 ? NAN : i * 0.5 + (double)k;
+            commands[k % MOST_MOTORS] = 0.25 * (double)((i + k) % 5);
+        }
+        sample.in_air = i % 200 > 2;
+        CHECK(flagred_push(monitor, &sample, &said) == FLAGRED_OK);
+        CHECK(flagred_open_finding(monitor, ended) == FLAGRED_OK);
+        sample.t_s += 0.03 * (i % 3) + (i == 150 ? 1e6 : 0);
     }
+    CHECK(flagred_finish(monitor, ended) == FLAGRED_OK);
 }
 
-static void damage(unsigned char *word) {
-    uint32_t kept, values[5] = {0, 1, 7, UINT32_MAX, 0};
+static void try_plan(size_t motors, int samples) {
+    static _Alignas(16) unsigned char most[MOST_MEMORY];
+    flagred_monitor *monitor;
+    void *memory;
+    tried++;
+    alarm(LONGEST);
+    size_t size = flagred_memory_size(&plan, motors);
+    if (size == 0 || size > MOST_MEMORY) {
+        CHECK(flagred_start(&plan, motors, NULL, most, sizeof most, &monitor) != FLAGRED_OK && monitor == NULL);
+        return;
+    }
+    /* As much as it says: what is written beyond is found by a sanitizer. */
+    if (posix_memalign(&memory, 16, size) != 0) {
+        exit(2);
+    }
+    CHECK(flagred_start(&plan, motors, NULL, memory, size - 1, &monitor) != FLAGRED_OK && monitor == NULL);
+    if (flagred_start(&plan, motors, NULL, memory, size, &monitor) == FLAGRED_OK) {
+        accepted++;
+        use(monitor, motors, samples);
+    }
+    free(memory);
+}
+
+static uint64_t state;
+
+/* xorshift64* (Vigna 2016). */
+static uint32_t below(size_t limit) {
+    state ^= state >> 12;
+    state ^= state << 25;
+    state ^= state >> 27;
+    return (uint32_t)((state * 0x2545f4914f6cdd1d >> 32) % limit);
+}
+
+/* What a word becomes: numbers that are out of bounds, next to it, or the upper half of a double that is no number. */
+#define VALUES 9
+static uint32_t value(uint32_t kept, int index) {
+    const uint32_t values[VALUES] = {0, 1, 7, UINT32_MAX, kept + 1, kept - 1, kept ^ 0x80000000, 0x7ff80000, 0x7ff00000};
+    return values[index];
+}
+
+static void damage(unsigned char *word, int samples) {
+    uint32_t kept;
     memcpy(&kept, word, sizeof kept);
-    values[4] = kept + 1;
-    for (int i = 0; i < 5; i++) {
-        memcpy(word, &values[i], sizeof kept);
-        try_plan();
+    for (int i = 0; i < VALUES; i++) {
+        uint32_t damaged = value(kept, i);
+        memcpy(word, &damaged, sizeof damaged);
+        try_plan(1, samples);
     }
     memcpy(word, &kept, sizeof kept);
 }
 
-/* An array of a plan. */
-typedef struct { void *items; size_t count; } array;
-
-/* Shortens an array of the plan, then damages each word of its items. */
-static void damage_array(unsigned char *field, size_t size) {
-    array found;
-    memcpy(&found, field, sizeof found);
-    size_t items = found.count, bytes = items * size;
-    unsigned char *copy = malloc(bytes + 1);
-    if (bytes > 0) {
-        memcpy(copy, found.items, bytes);
-        found.items = copy;
+/* Each word of what is no array, each length, each word of each item. */
+static void damage_in_turn(void) {
+    unsigned char *first = (unsigned char *)&plan.and_operator;
+    for (unsigned char *word = first; word < (unsigned char *)&plan.inputs; word += sizeof(uint32_t)) {
+        damage(word, 200);
     }
-    for (found.count = 0; found.count < items; found.count++) {
-        memcpy(field, &found, sizeof found);
-        try_plan();
-    }
-    memcpy(field, &found, sizeof found);
-    for (size_t word = 0; word < bytes; word += 4) {
-        damage(copy + word);
+    for (size_t i = 0; i < ARRAYS; i++) {
+        array found = get(i);
+        size_t items = found.count, bytes = items * arrays[i].size;
+        for (found.count = 0; found.count < items; found.count++) {
+            set(i, found);
+            try_plan(1, 3);
+        }
+        set(i, found);
+        /* What moves a knot is the same for each: a few of many. */
+        size_t step = sizeof(uint32_t) * (1 + bytes / 40000);
+        for (size_t word = 0; word < bytes; word += step) {
+            damage((unsigned char *)found.items + word, 3);
+        }
     }
 }
 
-int main(int count, char **sizes) {
-    alarm(120);
+/* Up to six words and lengths at once. */
+static void damage_at_random(void) {
+    struct { unsigned char *word; uint32_t kept; } words[6];
+    flagred_plan kept = plan;
+    int count = 0;
+    for (uint32_t left = 1 + below(6); left > 0; left--) {
+        size_t i = below(ARRAYS + 6);
+        array found = i < ARRAYS ? get(i) : (array){&plan.and_operator, 1};
+        size_t bytes = i < ARRAYS ? found.count * arrays[i].size
+                                  : offsetof(flagred_plan, inputs) - offsetof(flagred_plan, and_operator);
+        if (bytes < sizeof(uint32_t)) {
+            continue;
+        }
+        if (i < ARRAYS && below(8) == 0) {
+            found.count = below(found.count);
+            set(i, found);
+            continue;
+        }
+        unsigned char *word = (unsigned char *)found.items + below(bytes / sizeof(uint32_t)) * sizeof(uint32_t);
+        memcpy(&words[count].kept, word, sizeof(uint32_t));
+        words[count].word = word;
+        uint32_t damaged = below(3) == 0 ? below(UINT32_MAX) : value(words[count].kept, (int)below(VALUES));
+        memcpy(word, &damaged, sizeof damaged);
+        count++;
+    }
+    try_plan(1 + below(MOST_MOTORS), 300);
+    while (count-- > 0) {
+        memcpy(words[count].word, &words[count].kept, sizeof(uint32_t));
+    }
+    plan = kept;
+}
+
+int main(int count, char **arguments) {
+    long plans = count > 1 ? atol(arguments[1]) : 0;
+    state = count > 2 ? strtoull(arguments[2], NULL, 10) | 1 : 1;
     plan = PLAN;
-    for (unsigned char *word = (unsigned char *)&plan.and_operator; word <= (unsigned char *)&plan.signals; word += 4) {
-        damage(word);
+    for (size_t i = 0; i < ARRAYS; i++) {
+        array found = get(i);
+        void *copy = malloc(found.count * arrays[i].size + 1);
+        if (found.count > 0) {
+            memcpy(copy, found.items, found.count * arrays[i].size);
+            found.items = copy;
+            set(i, found);
+        }
     }
-    unsigned char *field = (unsigned char *)&plan.inputs;
-    for (int i = 1; i < count; i++, field += sizeof(array)) {
-        damage_array(field, (size_t)atol(sizes[i]));
+    try_plan(MOST_MOTORS, 300);
+    CHECK(accepted == 1);
+    damage_in_turn();
+    while (plans-- > 0) {
+        damage_at_random();
     }
-    samples = 200;
-    unsigned char *settings = (unsigned char *)&plan.settings;
-    for (size_t word = 0; word < sizeof plan.settings; word += 4) {
-        damage(settings + word);
-    }
-    damage_array((unsigned char *)&plan.order, sizeof *plan.order);
-    damage_array((unsigned char *)&plan.channels, sizeof *plan.channels);
-    damage_array((unsigned char *)&plan.sources, sizeof *plan.sources);
     printf("%ld of %ld\n", accepted, tried);
     return 0;
 }

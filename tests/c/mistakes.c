@@ -43,7 +43,19 @@ int main(void) {
     for (size_t size = 0; size < sizeof memory - 4096; size += 977) {
         CHECK(flagred_start(plan, MOTORS, NULL, memory, size, &monitor) == FLAGRED_MEMORY_SIZE && monitor == NULL);
     }
+    size_t needed = flagred_memory_size(plan, MOTORS);
+    CHECK(flagred_start(plan, MOTORS, NULL, memory, needed - 1, &monitor) == FLAGRED_MEMORY_SIZE);
+    CHECK(flagred_start(plan, MOTORS, NULL, memory, needed, &monitor) == FLAGRED_OK);
+    for (int shift = 20; shift < (int)sizeof(size_t) * 8; shift++) {
+        size_t motors = ((size_t)1 << shift) + 3;
+        needed = flagred_memory_size(plan, motors);
+        CHECK(needed == 0 || needed > motors);
+        CHECK(flagred_start(plan, motors, NULL, memory, sizeof memory, &monitor) == FLAGRED_MEMORY_SIZE);
+    }
     flagred_limits limits[MOTORS] = {{1000, 2000}, {1000, 2000}, {2000, 1000}, {1000, 2000}};
+    CHECK(flagred_start(plan, MOTORS, limits, memory, sizeof memory, &monitor) == FLAGRED_BAD_LIMITS);
+    limits[2].low = -1e308;
+    limits[2].high = 1e308;
     CHECK(flagred_start(plan, MOTORS, limits, memory, sizeof memory, &monitor) == FLAGRED_BAD_LIMITS);
     limits[2].low = NAN;
     CHECK(flagred_start(plan, MOTORS, limits, memory, sizeof memory, &monitor) == FLAGRED_BAD_LIMITS);

@@ -2,6 +2,7 @@
 
 pub mod board;
 mod folder;
+pub mod fuzzing;
 pub mod log_writer;
 pub mod reference;
 pub mod schema;

@@ -202,37 +202,57 @@ impl Tlog {
         &mut self,
         stamp_us: u64,
         version: u8,
-        (system, component): (u8, u8),
-        (id, extra, length): Message,
+        from: (u8, u8),
+        message: Message,
         payload: &[u8],
     ) {
         self.bytes.extend(stamp_us.to_be_bytes());
-        let mut payload = payload.to_vec();
-        payload.resize(payload.len().max(length), 0);
-        let mut packet = match version {
-            1 => vec![payload.len() as u8, 0, system, component, id as u8],
-            _ => {
-                while payload.len() > 1 && payload.last() == Some(&0) {
-                    payload.pop();
-                }
-                let [a, b, c, _] = id.to_le_bytes();
-                vec![payload.len() as u8, 0, 0, 0, system, component, a, b, c]
-            }
-        };
-        packet.extend(&payload);
-        // The checksum bit by bit, as its definition has it.
-        let mut sum = 0xffff_u16;
-        for byte in packet.iter().chain([&extra]) {
-            sum ^= u16::from(*byte);
-            for _ in 0..8 {
-                sum = match sum & 1 {
-                    1 => (sum >> 1) ^ 0x8408,
-                    _ => sum >> 1,
-                };
-            }
-        }
-        self.bytes.push(if version == 1 { 0xfe } else { 0xfd });
-        self.bytes.extend(packet);
-        self.bytes.extend(sum.to_le_bytes());
+        self.bytes.extend(packet(version, from, message, payload));
     }
+}
+
+/// A packet of MAVLink 1 or 2, from a system and a component.
+pub fn packet(
+    version: u8,
+    (system, component): (u8, u8),
+    (id, extra, length): Message,
+    payload: &[u8],
+) -> Vec<u8> {
+    let mut payload = payload.to_vec();
+    payload.resize(payload.len().max(length), 0);
+    let mut packet = match version {
+        1 => vec![0xfe, payload.len() as u8, 0, system, component, id as u8],
+        _ => {
+            while payload.len() > 1 && payload.last() == Some(&0) {
+                payload.pop();
+            }
+            let [a, b, c, _] = id.to_le_bytes();
+            vec![
+                0xfd,
+                payload.len() as u8,
+                0,
+                0,
+                0,
+                system,
+                component,
+                a,
+                b,
+                c,
+            ]
+        }
+    };
+    packet.extend(&payload);
+    // The checksum bit by bit, as its definition has it.
+    let mut sum = 0xffff_u16;
+    for byte in packet[1..].iter().chain([&extra]) {
+        sum ^= u16::from(*byte);
+        for _ in 0..8 {
+            sum = match sum & 1 {
+                1 => (sum >> 1) ^ 0x8408,
+                _ => sum >> 1,
+            };
+        }
+    }
+    packet.extend(sum.to_le_bytes());
+    packet
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flagred_tests::{Folder, STEADY, flagred, reference_data};
+use flagred_tests::{Folder, STEADY, flagred, log_writer::ULog, reference_data};
 use flightlog::{Flight, Options};
 
 fn open(path: &Path) -> Flight {
@@ -90,4 +90,26 @@ fn standard_output_and_failures() {
         String::from_utf8_lossy(&output.stderr)
             .contains("`/no/such/folder/x.csv` cannot be written")
     );
+}
+
+#[test]
+fn whether_in_the_air_stays_unknown() {
+    let mut log = ULog::new(1_000_000);
+    log.define("actuator_motors:uint64_t timestamp;float[12] control;");
+    log.parameter("CA_ROTOR_COUNT", 4.0);
+    log.announce(0, 1, "actuator_motors");
+    for row in 0..50 {
+        log.floats(1, 1_000_000 + 100_000 * row, &[0.4; 12]);
+    }
+    let flight = flightlog::read(&log.bytes[..], &Options::default()).unwrap();
+    assert_eq!(flight.in_air, None);
+    let mut csv = Vec::new();
+    flight.write_csv(&mut csv).unwrap();
+    let again = flightlog::read(&csv[..], &Options::default()).unwrap();
+    assert_eq!((again.in_air, again.commands.len()), (None, 50));
+    // A cell that says nothing changes nothing.
+    let csv = "t_s,motor1,in_air\n0,0.5,1\n1,0.5,\n2,0.5,0\n3,0.5,\n";
+    let flight = flightlog::read(csv.as_bytes(), &Options::default()).unwrap();
+    let in_air = [0.5, 1.5, 2.5, 3.0].map(|t_s| flight.is_in_air(t_s));
+    assert_eq!(in_air, [Some(true), Some(true), Some(false), Some(false)]);
 }

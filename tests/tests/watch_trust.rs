@@ -5,7 +5,7 @@ use std::{net::TcpStream, path::Path, time::Duration};
 use flagred_tests::{
     Folder, STEADY, schema,
     vehicle::{StandIn, flight, servo},
-    watch::{Said, Watch, refused},
+    watch::{Said, Watch, assess, compare, refused},
     wire::{Link, Speed, Wire},
 };
 use flightlog::{
@@ -57,7 +57,9 @@ fn maximum(value_us: f32) -> MavMessage {
 #[test]
 fn a_second_sender_is_told_and_neither_believed_nor_answered() {
     let (flight, start_s) = steady();
-    let watch = Watch::udp(&[]);
+    let folder = Folder::new();
+    let file = folder.at("flight.tlog");
+    let watch = Watch::udp(&["--record", &file]);
     let mut vehicle = watch.vehicle(&flight, Link::default());
     let mut liar = watch.vehicle(&flight, Link::default());
     vehicle.say_as(154, &maximum(1200.0));
@@ -84,6 +86,11 @@ fn a_second_sender_is_told_and_neither_believed_nor_answered() {
     assert!(!vehicle.heard.values("FR_RISK").is_empty());
     assert!(liar.heard.messages.is_empty(), "{:?}", liar.heard);
     valid(&said);
+    // Nor is it believed when the recording is assessed.
+    let assessed = assess(Path::new(&file));
+    assert_eq!(assessed["verdict"], "GOOD");
+    let (share, difference) = compare(&said, &assessed);
+    assert!(share > 0.99 && difference < 0.1, "{share}, {difference}");
 }
 
 #[test]

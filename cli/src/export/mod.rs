@@ -7,7 +7,7 @@ use flagred::{
         Plan,
         table::{self, Table},
     },
-    estimator::Estimator,
+    estimator::{Estimator, NoPlan},
     gap::FilledKnots,
 };
 use fuzzy::drawing::visible;
@@ -68,6 +68,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 fn causes(estimator: &Estimator) -> impl Iterator<Item = String> {
     let propositions = estimator.propositions();
     propositions.map(|(input, term)| format!("{:?}", visible(&format!("{input} {term}"))))
+}
+
+/// A profile in every language.
+pub(crate) fn texts(estimator: &Estimator) -> Result<[String; 2], NoPlan> {
+    let plan = estimator.plan()?;
+    let rules = &estimator.profile().rules;
+    let signals = estimator.profile().signals();
+    let causes: Vec<String> = causes(estimator).collect();
+    Ok([
+        rust::text(&plan, rules, &signals, &causes),
+        c::text(&plan, rules, &signals, &causes),
+    ])
 }
 
 /// The comment above the data.

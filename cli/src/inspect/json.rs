@@ -9,7 +9,7 @@ use serde::Serialize;
 const SCHEMA: &str = "flagred.inspect/1";
 
 #[derive(Serialize)]
-pub(super) struct Document<'a> {
+pub(crate) struct Document<'a> {
     schema: &'static str,
     log: &'a str,
     format: Format,
@@ -56,7 +56,7 @@ struct Signal<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn new(log: &'a str, flight: &'a Flight) -> Self {
+    pub(crate) fn new(log: &'a str, flight: &'a Flight) -> Self {
         let span_s = flight.time_span_s();
         Self {
             schema: SCHEMA,

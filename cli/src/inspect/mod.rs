@@ -1,7 +1,7 @@
 //! `flagred inspect`: what is in a flight log, and where each value came from.
 
-mod json;
-mod text;
+pub(crate) mod json;
+pub(crate) mod text;
 
 use std::{io::Write, path::PathBuf};
 

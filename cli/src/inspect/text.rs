@@ -12,7 +12,7 @@ const MESSAGES: usize = 12;
 /// Flight modes that are shown.
 const MODES: usize = 200;
 
-pub(super) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Result<()> {
+pub(crate) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Result<()> {
     writeln!(out, "{}: {}", visible(name), flight.format)?;
     line(out, "vehicle", &vehicle(flight))?;
     lines(out, "motors", motors(flight))?;

@@ -1,12 +1,12 @@
 //! `flagred watch`: the risk of a flight while it is flown.
 
 mod endpoint;
-mod jsonl;
-mod lines;
+pub(crate) mod jsonl;
+pub(crate) mod lines;
 mod port;
 mod printer;
-mod screen;
-mod session;
+pub(crate) mod screen;
+pub(crate) mod session;
 mod tlog;
 mod voice;
 
@@ -153,11 +153,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             }
         }
         while let Some(packet) = stream.packet() {
-            let recorded = recording.as_mut().map_or(Ok(()), |r| r.add(packet.bytes));
-            let failed = recorded.err().map(|text| Event::Note { text });
-            out.events.extend(failed);
-            if session.receive(now_s, port.source(), &packet, &mut out) {
+            let is_vehicles = session.receive(now_s, port.source(), &packet, &mut out);
+            if is_vehicles {
                 port.answer();
+            }
+            // A telemetry log has no addresses: whoever reads it would believe a second sender.
+            if is_vehicles || !session.is_named_by(&packet) {
+                let recorded = recording.as_mut().map_or(Ok(()), |r| r.add(packet.bytes));
+                let failed = recorded.err().map(|text| Event::Note { text });
+                out.events.extend(failed);
             }
             // At once: what is sent must not wait for what is shown.
             out.packets.drain(..).for_each(|packet| port.send(&packet));

@@ -44,7 +44,7 @@ enum Kind {
     Serial {
         path: String,
         baud: u32,
-        port: Option<Box<dyn serialport::SerialPort>>,
+        port: Option<serial2::SerialPort>,
         tried: Instant,
     },
 }
@@ -352,8 +352,14 @@ fn prepare(stream: TcpStream) -> io::Result<TcpStream> {
     Ok(stream)
 }
 
-fn open_serial(path: &str, baud: u32) -> io::Result<Box<dyn serialport::SerialPort>> {
-    Ok(serialport::new(path, baud).timeout(WAIT).open()?)
+/// Opens it for nobody else: a second program would take some of the bytes.
+fn open_serial(path: &str, baud: u32) -> io::Result<serial2::SerialPort> {
+    let mut port = serial2::SerialPort::open(path, baud)?;
+    port.set_read_timeout(WAIT)?;
+    port.set_write_timeout(WAIT)?;
+    #[cfg(unix)]
+    rustix::termios::ioctl_tiocexcl(&port)?;
+    Ok(port)
 }
 
 fn refusal(endpoint: &Endpoint, error: &io::Error) -> Failure {
@@ -372,5 +378,39 @@ fn refusal(endpoint: &Endpoint, error: &io::Error) -> Failure {
             failure.help("nobody listens there: start the vehicle or the simulator first")
         }
         _ => failure,
+    }
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+
+    use super::*;
+
+    #[test]
+    fn a_serial_port_is_read_and_written_and_found_again() {
+        let other = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        grantpt(&other).unwrap();
+        unlockpt(&other).unwrap();
+        let path = ptsname(&other, Vec::new()).unwrap().into_string().unwrap();
+        let endpoint = format!("{path}:57600").parse().unwrap();
+        let mut port = Port::open(&endpoint).unwrap_or_else(|_| panic!("{path} does not open"));
+        let mut buffer = [0; 16];
+        assert!(matches!(port.receive(&mut buffer), Received::Nothing));
+        // Bytes are bytes: no line ends are waited for or made, and nothing is echoed.
+        rustix::io::write(&other, b"\xfd\n\r\x03\x04").unwrap();
+        assert!(matches!(port.receive(&mut buffer), Received::Bytes(5)));
+        assert_eq!(&buffer[..5], b"\xfd\n\r\x03\x04");
+        port.send(b"\xfe\n\x11");
+        assert_eq!(rustix::io::read(&other, &mut buffer).unwrap(), 3);
+        assert_eq!((&buffer[..3], port.unsent()), (&b"\xfe\n\x11"[..], 0));
+        // The other end is pulled out.
+        drop(other);
+        let closed = (0..10).find_map(|_| match port.receive(&mut buffer) {
+            Received::Closed(why) => Some(why),
+            _ => None,
+        });
+        assert!(closed.is_some());
+        assert!(matches!(port.receive(&mut buffer), Received::Nothing));
     }
 }

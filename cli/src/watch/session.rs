@@ -127,6 +127,13 @@ impl<'e> Session<'e> {
         }
     }
 
+    /// Whether a packet is in the name of the vehicle's autopilot, whoever sent it.
+    pub(crate) fn is_named_by(&self, packet: &Packet<'_>) -> bool {
+        let tracked = self.tracked.as_ref();
+        packet.component == 1
+            && tracked.is_some_and(|tracked| tracked.telemetry.system() == packet.system)
+    }
+
     /// How much was not believed.
     pub(crate) fn doubts(&self) -> Doubts {
         self.doubts

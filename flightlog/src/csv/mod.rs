@@ -98,7 +98,7 @@ pub(crate) fn read(input: &mut Input<'_>, options: &Options) -> Result<Flight, R
     flight.report.truncated |= rows.last_was_short;
     flight.motors = layout.motors();
     flight.armed = None;
-    flight.in_air = Some(rows.in_air());
+    flight.in_air = rows.in_air();
     flight.commands = rows.commands;
     flight.series = preferred(vec![rows.series]);
     let declared = apply_header(&mut flight, header, &layout)?;
@@ -332,8 +332,10 @@ impl Rows {
             signals.extend(keep.then_some(value));
         }
         if let Some(column) = layout.in_air {
-            let in_air = read(&column)? > 0.5;
-            report.state(&mut self.air_changes, t_s, Some(in_air));
+            let state = read(&column)?;
+            if !state.is_nan() {
+                report.state(&mut self.air_changes, t_s, Some(state > 0.5));
+            }
         }
         report.row(commands.len() + signals.len(), false);
         self.first_s = self.first_s.min(t_s);
@@ -347,13 +349,24 @@ impl Rows {
         Ok(())
     }
 
-    fn in_air(&self) -> Intervals {
+    /// `None` where the column is there and empty.
+    fn in_air(&self) -> Option<Intervals> {
+        if self.has_air && self.air_changes.is_empty() {
+            return None;
+        }
         let rule = match self.has_air {
             true => "column `in_air`",
             false => "there is no column `in_air`: every row counts as in the air",
         };
         let before = !self.has_air;
-        Intervals::from_changes(&self.air_changes, before, self.first_s, self.last_s, rule)
+        let (first_s, last_s) = (self.first_s, self.last_s);
+        Some(Intervals::from_changes(
+            &self.air_changes,
+            before,
+            first_s,
+            last_s,
+            rule,
+        ))
     }
 }
 

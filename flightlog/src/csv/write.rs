@@ -42,9 +42,8 @@ impl Flight {
         for number in 1..=motors {
             write!(out, ",{stem}{number}")?;
         }
-        if self.in_air.is_some() {
-            write!(out, ",in_air")?;
-        }
+        // Empty where it is not known: without the column every row counts as in the air.
+        write!(out, ",in_air")?;
         for signal in self.signals() {
             write!(out, ",{}", quoted(&signal.label.name))?;
         }
@@ -57,9 +56,10 @@ impl Flight {
                 let known = if in_us { Some(raw) } else { self.command(raw) };
                 cell(out, known.filter(|value| value.is_finite()))?;
             }
-            if let Some(in_air) = self.is_in_air(t_s) {
-                write!(out, ",{}", u8::from(in_air))?;
-            }
+            cell(
+                out,
+                self.is_in_air(t_s).map(|in_air| u8::from(in_air).into()),
+            )?;
             for hold in &mut holds {
                 cell(out, hold.at(t_s))?;
             }

@@ -153,17 +153,26 @@ impl Lanes {
 
     /// Evaluates the rows of `range` and calls `put` with each one's outcome, in their order.
     pub(super) fn rows(&self, columns: &[&[f64]], range: Range<usize>, put: impl FnMut(Outcome)) {
-        let blocks = Blocks {
-            lanes: self,
-            columns,
-            range,
-            put,
-        };
         // Compiled for the widest vectors of the processor; the operations, and so the bits, stay the same.
         #[cfg(feature = "simd")]
-        pulp::Arch::new().dispatch(blocks);
+        fearless_simd::dispatch!(fearless_simd::Level::new(), _ => self.blocks(columns, range, put));
         #[cfg(not(feature = "simd"))]
-        blocks.evaluate();
+        self.blocks(columns, range, put);
+    }
+
+    #[inline(always)]
+    fn blocks(&self, columns: &[&[f64]], range: Range<usize>, mut put: impl FnMut(Outcome)) {
+        let mut block = Block {
+            // The bits of a NaN.
+            known: [[u64::MAX; LANES]; MOST_INPUTS],
+            degrees: [[0.0; LANES]; MOST_TERMS],
+            by_rule: [[0.0; LANES]; MOST_RULES],
+            strengths: [[0.0; LANES]; MOST_STRENGTHS],
+        };
+        for start in range.clone().step_by(LANES) {
+            let end = range.end.min(start + LANES);
+            self.block(columns, start..end, &mut block, &mut put);
+        }
     }
 
     /// Evaluates the rows of `range`, at most [`LANES`].
@@ -272,42 +281,6 @@ impl Lanes {
                 clamped: clamped[lane] != 0,
             });
         }
-    }
-}
-
-/// The arguments of [`Lanes::rows`], for a function compiled for wider vectors.
-struct Blocks<'a, Put> {
-    lanes: &'a Lanes,
-    columns: &'a [&'a [f64]],
-    range: Range<usize>,
-    put: Put,
-}
-
-impl<Put: FnMut(Outcome)> Blocks<'_, Put> {
-    #[inline(always)]
-    fn evaluate(mut self) {
-        let mut block = Block {
-            // The bits of a NaN.
-            known: [[u64::MAX; LANES]; MOST_INPUTS],
-            degrees: [[0.0; LANES]; MOST_TERMS],
-            by_rule: [[0.0; LANES]; MOST_RULES],
-            strengths: [[0.0; LANES]; MOST_STRENGTHS],
-        };
-        for start in self.range.clone().step_by(LANES) {
-            let end = self.range.end.min(start + LANES);
-            self.lanes
-                .block(self.columns, start..end, &mut block, &mut self.put);
-        }
-    }
-}
-
-#[cfg(feature = "simd")]
-impl<Put: FnMut(Outcome)> pulp::WithSimd for Blocks<'_, Put> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.evaluate();
     }
 }
 

@@ -1,11 +1,4 @@
-//! Any text as a rule: it is a rule that prints and reads back as itself, or a mistake inside the text.
+//! The body of `flagred_tests::fuzzing::rule`.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-
-fuzz_target!(|text: &str| {
-    match fuzzy::rule::parse(text) {
-        Ok(rule) => assert_eq!(fuzzy::rule::parse(&rule.to_string()), Ok(rule)),
-        Err(mistake) => assert!(text.get(mistake.span).is_some()),
-    }
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| flagred_tests::fuzzing::rule(bytes));

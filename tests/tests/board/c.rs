@@ -220,12 +220,6 @@ fn a_log_flown_again_in_c_has_the_risk_of_assess() {
 
 #[test]
 fn a_damaged_table_is_refused_or_evaluates_in_c() {
-    macro_rules! list {
-        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
-            [$(item_size(|table| table.$array)),*]
-        };
-    }
-    let sizes: [usize; _] = table::arrays!(list!);
     let folder = Folder::new();
     let of_every_kind = profiles_of_every_kind(&folder);
     let of_every_kind = of_every_kind
@@ -235,19 +229,14 @@ fn a_damaged_table_is_refused_or_evaluates_in_c() {
     let shipped = shipped.map(|((name, _), profile)| (name, profile));
     for (name, profile) in of_every_kind.chain(shipped) {
         let (mut command, _folder) = program("tests/c/damage.c", name, (profile, name));
-        let output = command.args(sizes.map(|size| size.to_string())).output();
-        let output = output.unwrap();
+        // `scripts/check-c` tries many more, with sanitizers.
+        let output = command.args(["1000", "16"]).output().unwrap();
         assert!(output.status.success(), "{name}: {output:?}");
         let text = String::from_utf8(output.stdout).unwrap();
         let (accepted, tried) = text.trim().split_once(" of ").unwrap();
         let [accepted, tried] = [accepted, tried].map(|count| count.parse::<u32>().unwrap());
         assert!(accepted > 100 && tried > accepted + 100, "{name}: {text}");
     }
-}
-
-/// The size of an item of an array of a table.
-fn item_size<T>(_: for<'a> fn(&table::Table<'a>) -> &'a [T]) -> usize {
-    size_of::<T>()
 }
 
 /// The program of examples/09-on-board.md.

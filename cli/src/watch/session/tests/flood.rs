@@ -173,7 +173,7 @@ fn a_million_packets_of_others_do_not_cost_the_vehicle() {
     flood(1_000_000);
 }
 
-/// A day's worth, 130 s here: `cargo test -p flagred-cli --bin flagred flood -- --ignored --nocapture`.
+/// A day's worth, 130 s here: `cargo test -p flagred-cli --lib flood -- --ignored --nocapture`.
 #[test]
 #[ignore = "a day's flood takes two minutes"]
 fn a_hundred_million_packets_of_others_do_not_cost_the_vehicle() {

@@ -1,0 +1,149 @@
+//! The `flagred` command: assess flights; author, check and explain fuzzy rule sets.
+//!
+//! Each command has a file; this one reads the command line and dispatches.
+
+mod assess;
+mod assessment;
+mod check;
+mod completions;
+mod convert;
+mod dataset;
+mod diagnostics;
+mod eval;
+mod evaluate;
+mod explain;
+mod export;
+mod failure;
+mod flights;
+mod fmt;
+#[doc(hidden)] // For fuzz targets and tests of other packages.
+pub mod fuzzing;
+mod help;
+mod inspect;
+mod learn;
+mod lsp;
+mod man;
+mod map;
+mod new;
+mod output;
+mod parallel;
+mod profile;
+mod report;
+mod rule_set;
+mod schema;
+mod table;
+mod watch;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use failure::{Exit, Failure};
+
+/// Estimates from its motor commands the risk that a multirotor loses control; checks, explains and learns fuzzy rule sets.
+///
+/// Exit codes: 0 no findings, 1 findings, 2 wrong usage or an output that cannot be written, 3 no answer: the input cannot
+/// be read or is not of a multirotor.
+#[derive(Parser)]
+#[command(name = "flagred", version, max_term_width = 100, after_help = help::FLAGRED)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Assess the risk of a flight: verdict, findings, risk over time
+    #[command(after_help = help::ASSESS)]
+    Assess(assess::Arguments),
+    /// Assess a flight live over MAVLink and send warnings to the ground station
+    #[command(after_help = help::WATCH)]
+    Watch(watch::Arguments),
+    /// Show the contents of a flight log and the source of each value
+    #[command(after_help = help::INSPECT)]
+    Inspect(inspect::Arguments),
+    /// Convert a flight log to flight CSV
+    #[command(after_help = help::CONVERT)]
+    Convert(convert::Arguments),
+    /// Write a commented rule set or profile to start from
+    #[command(after_help = help::NEW)]
+    New(new::Arguments),
+    /// Find errors, gaps and conflicts in a rule set, and whether a profile fits its rule set
+    #[command(after_help = help::CHECK)]
+    Check(check::Arguments),
+    /// Explain the outputs of a rule set at one point: degrees, rules, result
+    #[command(after_help = help::EXPLAIN)]
+    Explain(explain::Arguments),
+    /// Evaluate a rule set at the points of a CSV file
+    #[command(after_help = help::EVAL)]
+    Eval(eval::Arguments),
+    /// Give rule sets and profiles one layout; comments stay
+    #[command(after_help = help::FMT)]
+    Fmt(fmt::Arguments),
+    /// Serve an editor: findings, completion, renaming and more for rule sets and profiles (language server protocol)
+    #[command(after_help = help::LSP)]
+    Lsp(lsp::Arguments),
+    /// Draw the output of a rule set over its inputs
+    #[command(after_help = help::MAP)]
+    Map(map::Arguments),
+    /// Make a table of flights for `learn`: inputs, attitude error and risk of each
+    #[command(after_help = help::DATASET)]
+    Dataset(dataset::Arguments),
+    /// Learn rules from a table of inputs and outputs
+    #[command(after_help = help::LEARN)]
+    Learn(learn::Arguments),
+    /// Measure how well profiles predict attitude errors, compared with simple baselines
+    #[command(after_help = help::EVALUATE)]
+    Evaluate(evaluate::Arguments),
+    /// Export a profile and its rule set as Rust or C constants for firmware
+    #[command(after_help = help::EXPORT)]
+    Export(export::Arguments),
+    /// Print the JSON Schema of a format: rule set, profile, or what a command prints
+    #[command(after_help = help::SCHEMA)]
+    Schema(schema::Arguments),
+    /// Print completions for a shell
+    #[command(after_help = help::COMPLETIONS)]
+    Completions(completions::Arguments),
+    /// Print a manual page
+    #[command(after_help = help::MAN)]
+    Man(man::Arguments),
+}
+
+impl Command {
+    fn run(self) -> Result<Exit, Failure> {
+        match self {
+            Command::Assess(arguments) => assess::run(&arguments),
+            Command::Watch(arguments) => watch::run(&arguments),
+            Command::Inspect(arguments) => inspect::run(&arguments),
+            Command::Convert(arguments) => convert::run(&arguments),
+            Command::New(arguments) => new::run(&arguments),
+            Command::Check(arguments) => check::run(&arguments),
+            Command::Explain(arguments) => explain::run(&arguments),
+            Command::Eval(arguments) => eval::run(&arguments),
+            Command::Fmt(arguments) => fmt::run(&arguments),
+            Command::Lsp(arguments) => lsp::run(&arguments),
+            Command::Map(arguments) => map::run(&arguments),
+            Command::Dataset(arguments) => dataset::run(&arguments),
+            Command::Learn(arguments) => learn::run(&arguments),
+            Command::Evaluate(arguments) => evaluate::run(&arguments),
+            Command::Export(arguments) => export::run(&arguments),
+            Command::Schema(arguments) => schema::run(&arguments),
+            Command::Completions(arguments) => completions::run(&arguments),
+            Command::Man(arguments) => man::run(&arguments),
+        }
+    }
+}
+
+/// Runs the command that the process was given.
+pub fn main() -> ExitCode {
+    let ran = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command.run(),
+        Err(error) => match failure::command_forgotten(&error) {
+            Some(failure) => Err(failure),
+            None => return failure::refuse(&error),
+        },
+    };
+    match ran {
+        Ok(exit) => exit.into(),
+        Err(failure) => failure.report(),
+    }
+}

@@ -1,0 +1,120 @@
+//! Flight logs: what is read, and what is written of it.
+
+use flagred_cli::fuzzing::{converted, documents};
+use flightlog::{Flight, Options, ReadError};
+
+use super::{SHIPPED, assert_harmless, without};
+
+fn read(bytes: &[u8]) -> Option<Flight> {
+    match flightlog::read(bytes, &Options::default()) {
+        Ok(flight) => Some(flight),
+        Err(ReadError::Io { source, .. }) => panic!("{source}"),
+        Err(_) => None,
+    }
+}
+
+/// Any bytes are a flight or an error. The content tells the format.
+pub fn flight_log(bytes: &[u8]) {
+    if let Some(flight) = read(bytes) {
+        check(&flight, bytes);
+    }
+}
+
+/// What must be true of every flight, however damaged its log.
+pub fn check(flight: &Flight, log: &[u8]) {
+    let report = &flight.report;
+    assert!(report.skipped_bytes <= report.bytes);
+    assert!(report.is_clean() || report.reason.is_some(), "{report:?}");
+    assert!(flight.commands.t_s().is_sorted());
+    assert!(flight.commands.t_s().iter().all(|t_s| t_s.is_finite()));
+    // Every value takes a byte of the log at least: nothing is made up of nothing.
+    let values: usize = flight.series.iter().map(|series| series.t_s().len()).sum();
+    let bytes = log.len().max(report.bytes as usize);
+    assert!(flight.commands.len() + values <= 40 * bytes);
+    for signal in flight.signals() {
+        assert!(signal.t_s.is_sorted(), "{}", signal.label.name);
+        assert_eq!(signal.t_s.len(), signal.values.len());
+    }
+    for range in flight.range.iter().chain([&flight.effective]) {
+        assert!(range.high > range.low, "{range:?}");
+    }
+    for intervals in flight.in_air.iter().chain(&flight.armed) {
+        let ends = |span: &flightlog::Interval| span.end_s >= span.start_s;
+        assert!(intervals.spans.iter().all(ends), "{intervals:?}");
+    }
+    if let Ok(statistics) = flight.statistics() {
+        for value in [
+            statistics.margin_mean,
+            statistics.margin_min,
+            statistics.margin_std,
+        ] {
+            assert!((0.0..=0.5).contains(&value), "{statistics:?}");
+        }
+        for value in [statistics.command_mean, statistics.command_std] {
+            assert!((0.0..=1.0).contains(&value), "{statistics:?}");
+        }
+    }
+    is_read_back(flight);
+}
+
+/// What is written of any flight as CSV is read back to the same samples, and written as the same lines.
+pub fn csv(bytes: &[u8]) {
+    if let Some(flight) = read(bytes) {
+        is_read_back(&flight);
+    }
+}
+
+fn is_read_back(flight: &Flight) {
+    let written = converted(flight).unwrap();
+    if flight.commands.is_empty() {
+        return;
+    }
+    let text = String::from_utf8_lossy(&written);
+    let again = flightlog::read(&written[..], &Options::default());
+    let again = again.unwrap_or_else(|error| panic!("{error}\n{text}"));
+    assert_eq!(again.commands.t_s(), flight.commands.t_s());
+    for ((t_s, row), (_, same)) in flight.commands.rows().zip(again.commands.rows()) {
+        let bits = |flight: &Flight, row: &[f64]| -> Vec<Option<u64>> {
+            let known = row.iter().map(|raw| flight.command(*raw));
+            known.map(|known| known.map(f64::to_bits)).collect()
+        };
+        assert_eq!(bits(&again, same), bits(flight, row), "at {t_s} s");
+        // Where the state changes within a second, the two may take it for chatter at different rows.
+        let in_air = again.is_in_air(t_s);
+        let mut near = flight
+            .commands
+            .t_s()
+            .iter()
+            .filter(|t| (**t - t_s).abs() <= 1.0);
+        assert!(
+            near.any(|t_s| flight.is_in_air(*t_s) == in_air),
+            "{in_air:?} at {t_s} s"
+        );
+    }
+    let twice = converted(&again).unwrap();
+    let twice = String::from_utf8_lossy(&twice);
+    // A motor of a CSV is from its column.
+    let lines = |text| str::lines(text).filter(|line| !line.starts_with("# motor"));
+    for (line, same) in lines(&text).zip(lines(&twice)) {
+        assert_eq!(same, line);
+    }
+    assert_eq!(lines(&twice).count(), lines(&text).count());
+}
+
+/// What is said of any flight: words that act on no terminal, documents that are JSON, pages that are markup.
+pub fn report(bytes: &[u8]) {
+    let Some(flight) = read(bytes) else {
+        return;
+    };
+    let said = documents("a\u{1b}[2Jflight<b>.bin", flight, &SHIPPED).unwrap();
+    let words = without("m", std::str::from_utf8(&said.words).unwrap());
+    assert_harmless(&words);
+    for json in &said.json {
+        serde_json::from_str::<serde_json::Value>(json).unwrap();
+    }
+    assert_harmless(std::str::from_utf8(&said.csv).unwrap());
+    for page in &said.pages {
+        assert!(!page.contains("<b>.bin"));
+        assert_harmless(page);
+    }
+}

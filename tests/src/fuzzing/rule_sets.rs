@@ -1,0 +1,114 @@
+//! Rules, rule sets and profiles: foreign texts.
+
+use flagred::monitor::{Craft, Monitor, Sample};
+use flagred_cli::fuzzing::{Profile, checked};
+use fuzzy::Engine;
+
+use super::assert_harmless;
+use crate::board::{findings, told};
+
+/// What parts a profile from its rule set.
+pub(super) const PARTED: &str = "\n---\n";
+
+/// Any text as a rule: it is a rule that prints and reads back as itself, or a mistake inside the text.
+pub fn rule(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    match fuzzy::rule::parse(text) {
+        Ok(rule) => assert_eq!(fuzzy::rule::parse(&rule.to_string()), Ok(rule)),
+        Err(mistake) => assert!(text.get(mistake.span).is_some()),
+    }
+}
+
+/// Any text as a rule set: it is a model that saves, loads as itself, compiles and can be analysed, or findings inside the
+/// text. Findings can be drawn.
+pub fn rule_set(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    match fuzzy::yaml::parse(text) {
+        Ok(document) => {
+            let saved = fuzzy::yaml::to_string(&document.model);
+            let again = fuzzy::yaml::parse(&saved).map(|d| d.model);
+            assert_eq!(again.as_ref(), Ok(&document.model), "{saved}");
+            let engine = Engine::new(&document.model).unwrap_or_else(|e| panic!("{e}\n{text}"));
+            let inputs = document.model.inputs.iter();
+            let middle: Vec<f64> = inputs.map(|v| 0.5 * v.low + 0.5 * v.high).collect();
+            let explanation = engine.explain(&middle).unwrap();
+            for output in &explanation.outputs {
+                assert!(output.value.is_none_or(f64::is_finite), "{text}");
+            }
+        }
+        Err(findings) => assert!(findings.has_errors()),
+    }
+    let (findings, drawn, report) = checked(text);
+    for finding in &findings.0 {
+        assert!(text.get(finding.span.clone()).is_some(), "{finding:?}");
+    }
+    assert_harmless(&drawn);
+    let Some(report) = report else {
+        return;
+    };
+    for reach in &report.reach {
+        assert!(reach.low.is_finite() && reach.low <= reach.high && reach.high.is_finite());
+    }
+    for one in &report.uncovered {
+        assert!(one.share >= 0.0 && one.share <= 1.0);
+    }
+}
+
+/// Any two texts as a profile and its rule set: findings inside the text, or an estimator whose risks are in their range
+/// and whose plan gives the same on board.
+pub fn profile(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    let (profile, rules) = text.split_once(PARTED).unwrap_or((text, ""));
+    if let Err(findings) = profile.parse::<flagred::profile::Profile>() {
+        assert!(findings.has_errors());
+        for finding in findings.0 {
+            assert!(profile.get(finding.span).is_some());
+        }
+        return;
+    }
+    let Some(profile) = Profile::new(profile, rules) else {
+        return;
+    };
+    let estimator = profile.estimator();
+    let signals = estimator.profile().signals();
+    let craft = Craft::new(4).with_signals(&signals);
+    let mut monitor = Monitor::new(estimator, craft).unwrap();
+    let plan = estimator.plan().ok();
+    assert_eq!(profile.exported().is_some(), plan.is_some());
+    let mut memory = plan
+        .as_ref()
+        .map(|plan| flagred::board::OwnedMemory::new(plan, 4));
+    let mut on_board = plan.as_ref().zip(memory.as_mut()).map(|(plan, memory)| {
+        assert_eq!(plan.check(), Ok(()));
+        memory.monitor(plan).unwrap()
+    });
+    for i in 0..100 {
+        let motor = |n: u32| f64::from((i * n) % 11) / 10.0;
+        let sample = Sample {
+            t_s: 0.1 * f64::from(i),
+            motors: &[motor(1), motor(3), motor(5), motor(7)],
+            in_air: i > 5,
+            signals: &vec![f64::from(i); signals.len()],
+        };
+        let update = monitor.push(&sample);
+        if let Ok(risk) = update.risk {
+            assert!(risk.risk_pct.is_finite(), "{text}");
+        }
+        if let Some(on_board) = &mut on_board {
+            assert_eq!(told(&on_board.push(&sample)), told(&update), "{text}");
+        }
+    }
+    let ended = findings(&monitor.finish());
+    if let Some(on_board) = &mut on_board {
+        assert_eq!(findings(&on_board.finish()), ended, "{text}");
+    }
+    for exported in profile.exported().into_iter().flatten() {
+        assert_harmless(&exported);
+    }
+}

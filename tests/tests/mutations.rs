@@ -1,0 +1,109 @@
+//! Damaged inputs of every reader, every writer and the live session: none makes a panic, is slow or takes much memory.
+//!
+//! `cargo test --release -p flagred-tests --test mutations -- --ignored --nocapture` takes a million of them.
+
+use std::{
+    io::Write,
+    time::{Duration, Instant},
+};
+
+use allocation_counter::measure;
+use fastrand::Rng;
+use flagred_tests::fuzzing::{TARGETS, Target, mutation::damaged};
+use flate2::{Compression, write::GzEncoder};
+use rayon::prelude::*;
+
+/// The most memory that an input may take, and all of the process.
+const MEMORY: u64 = 256 << 20;
+
+/// Tells which input it was.
+struct Telling<'t>(&'t Target, u64);
+
+impl Drop for Telling<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            eprintln!("{}, seed {}", self.0.name, self.1);
+        }
+    }
+}
+
+/// Time and memory that an input takes.
+fn cost(target: &Target, seeds: &[Vec<u8>], seed: u64) -> (Duration, u64) {
+    let _telling = Telling(target, seed);
+    let mut random = Rng::with_seed(seed);
+    let bytes = damaged(random.choice(seeds).unwrap(), &mut random);
+    let run = || {
+        let start = Instant::now();
+        let used = measure(|| (target.body)(&bytes));
+        (start.elapsed(), used.bytes_max)
+    };
+    let (time, memory) = run();
+    // A busy machine is slow once, a slow input twice.
+    let again = time > Duration::from_millis(500);
+    (if again { time.min(run().0) } else { time }, memory)
+}
+
+/// So many inputs, none of which takes longer.
+fn survive(count: u64, longest: Duration) {
+    assert_eq!(TARGETS.iter().map(|target| target.share).sum::<u64>(), 100);
+    for target in &TARGETS {
+        let seeds = (target.seeds)();
+        for seed in &seeds {
+            (target.body)(seed);
+        }
+        let start = Instant::now();
+        let count = count * target.share / 100;
+        let costs = (0..count).into_par_iter();
+        let (slowest, largest) = costs
+            .map(|seed| cost(target, &seeds, seed))
+            .reduce(Default::default, |a, b| (a.0.max(b.0), a.1.max(b.1)));
+        println!(
+            "{}: {count} inputs in {:.1?}, the slowest in {slowest:.1?}, the largest with {} kB",
+            target.name,
+            start.elapsed(),
+            largest / 1024
+        );
+        assert!(slowest < longest, "{}: {slowest:?}", target.name);
+        assert!(largest < MEMORY, "{}: {largest} bytes", target.name);
+    }
+    // With everything that other threads and the libraries hold.
+    if let Ok(status) = std::fs::read_to_string("/proc/self/status") {
+        let line = status.lines().find(|line| line.starts_with("VmHWM:"));
+        let kb: u64 = line
+            .unwrap()
+            .split_whitespace()
+            .nth(1)
+            .unwrap()
+            .parse()
+            .unwrap();
+        println!("{kb} kB at most");
+        assert!(kb < MEMORY / 1024, "{kb} kB");
+    }
+}
+
+#[test]
+fn some_damaged_inputs_are_survived() {
+    survive(5000, Duration::from_secs(5));
+}
+
+#[test]
+#[ignore = "takes many minutes: run it with --release"]
+fn a_million_damaged_inputs_are_survived() {
+    survive(1_000_000, Duration::from_secs(1));
+}
+
+/// Zeros are compressed to a thousandth; the log of them is as large as anybody wants.
+#[test]
+fn a_log_of_zeros_takes_no_memory() {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+    for _ in 0..200 {
+        packed.write_all(&[0; 1 << 20]).unwrap();
+    }
+    let packed = packed.finish().unwrap();
+    assert!(packed.len() < 2 << 20);
+    let used = measure(|| {
+        let read = flightlog::read(&packed[..], &flightlog::Options::default());
+        assert!(read.is_err());
+    });
+    assert!(used.bytes_max < 8 << 20, "{used:?}");
+}
