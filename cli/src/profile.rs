@@ -9,7 +9,7 @@ use flagred::{estimator::Estimator, profile::Profile, shipped};
 use fuzzy::Model;
 
 use crate::{
-    diagnostics::{read_text, refuse},
+    diagnostics::{is_meant_as_rules, read_text, refuse},
     failure::Failure,
 };
 
@@ -37,7 +37,7 @@ pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
     let beside = |folder: &PathBuf| [PathBuf::from(name), folder.join(&profile.rules)];
     let files = folder.iter().flat_map(beside).collect();
     let model = fuzzy::yaml::parse(&rules_text)
-        .map_err(|findings| match names_a_key(&rules_text) {
+        .map_err(|findings| match is_meant_as_rules(&rules_text) {
             true => refuse(&findings, &rules_file, &rules_text),
             false => Failure::unreadable(format!(
                 "profile `{}` names `{rules_file}`, which is not a rule set",
@@ -134,15 +134,4 @@ fn is_allowed(path: &Path, folder: Option<&Path>) -> bool {
         .flatten()
         .filter_map(|folder| folder.canonicalize().ok())
         .any(|folder| path.starts_with(folder))
-}
-
-/// Whether a line of a text begins with a key that only a rule set has.
-fn names_a_key(text: &str) -> bool {
-    text.lines().any(|line| {
-        let line = line.trim_start_matches([' ', '{', '"', '\'']);
-        ["inputs", "outputs", "rules"].iter().any(|key| {
-            let rest = line.strip_prefix(key);
-            rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
-        })
-    })
 }
