@@ -9,7 +9,7 @@ use std::{
     path::Path,
 };
 
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use fuzzy::{
     diagnostic::{Diagnostic, Findings, Severity},
     drawing::{visible, visible_lines},
@@ -88,10 +88,18 @@ fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Grou
         .path(file)
         .annotation(AnnotationKind::Primary.span(inside(&finding.span)))
         .annotations(related);
-    let mut group = level
+    let title = level
         .primary_title(finding.message.as_str())
-        .id(finding.code)
-        .element(snippet);
+        .id(finding.code);
+    let mut group = match is_meant_as_rules(text) {
+        true => title.element(snippet),
+        false => {
+            let before = text.get(..finding.span.start).unwrap_or(text);
+            let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+            let origin = Origin::path(file).line(before.matches('\n').count() + 1);
+            title.element(origin.char_column(column))
+        }
+    };
     if let Some(help) = &finding.help {
         group = group.element(Level::HELP.message(help.as_str()));
     }
@@ -99,6 +107,20 @@ fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Grou
         group = group.element(Level::HELP.message(command));
     }
     vec![group]
+}
+
+/// Whether a line of a text begins with a key that only rule sets and profiles have. No other file is quoted: it may hold
+/// secrets, and be named by somebody else.
+pub(crate) fn is_meant_as_rules(text: &str) -> bool {
+    text.lines().any(|line| {
+        let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);
+        ["fuzzy", "flagred", "inputs", "outputs", "rules"]
+            .iter()
+            .any(|key| {
+                let rest = line.strip_prefix(key);
+                rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
+            })
+    })
 }
 
 /// The command that helps with a finding: the engine knows no commands.

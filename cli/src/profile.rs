@@ -9,7 +9,7 @@ use flagred::{estimator::Estimator, profile::Profile, shipped};
 use fuzzy::{Findings, Model, tree::Value};
 
 use crate::{
-    diagnostics::{read_text, refuse, show},
+    diagnostics::{is_meant_as_rules, read_text, refuse, show},
     failure::Failure,
     rule_set,
 };
@@ -78,14 +78,15 @@ pub(crate) fn examine(profile_text: &str, model: &Model) -> (Findings, Option<Es
 /// The rule set that a profile names, and its text.
 pub(crate) fn model(profile: &Profile, folder: Option<&Path>) -> Result<(Model, String), Failure> {
     let (file, text) = rules(profile, folder)?;
-    let document = fuzzy::yaml::parse(&text).map_err(|findings| match names_a_key(&text) {
-        true => refuse(&findings, &file, &text),
-        false => Failure::unreadable(format!(
-            "profile `{}` names `{file}`, which is not a rule set",
-            profile.name
-        ))
-        .help("a rule set has the keys `inputs`, `outputs` and `rules`"),
-    })?;
+    let document =
+        fuzzy::yaml::parse(&text).map_err(|findings| match is_meant_as_rules(&text) {
+            true => refuse(&findings, &file, &text),
+            false => Failure::unreadable(format!(
+                "profile `{}` names `{file}`, which is not a rule set",
+                profile.name
+            ))
+            .help("a rule set has the keys `inputs`, `outputs` and `rules`"),
+        })?;
     rule_set::compile(&document, &file, &text)?;
     Ok((document.model, text))
 }
@@ -176,15 +177,4 @@ fn is_allowed(path: &Path, folder: Option<&Path>) -> bool {
         .flatten()
         .filter_map(|folder| folder.canonicalize().ok())
         .any(|folder| path.starts_with(folder))
-}
-
-/// Whether a line of a text begins with a key that only a rule set has.
-fn names_a_key(text: &str) -> bool {
-    text.lines().any(|line| {
-        let line = line.trim_start_matches([' ', '{', '"', '\'']);
-        ["inputs", "outputs", "rules"].iter().any(|key| {
-            let rest = line.strip_prefix(key);
-            rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
-        })
-    })
 }

@@ -240,6 +240,33 @@ fn a_file_that_is_no_rule_set_is_not_quoted() {
         !told.contains("root:") && !told.contains("hunter2"),
         "{told}"
     );
+    // Nor where it is named itself, as a rule set or as a profile.
+    let texts = [
+        "root:x:0:0:root:/root:/bin/sh\npassword: {hunter2\n",
+        "root:x:0:0:root:/root:/bin/sh\nhunter2",
+        "- root: hunter2\n",
+        "user: root:x\npassword: hunter2\nlogin: [hunter2\n",
+        "'root:x'\n",
+        "# password: hunter2\n",
+    ];
+    for text in texts {
+        let file = folder.file("other.txt", text);
+        for arguments in [
+            &["check", &file][..],
+            &["check", "--json", &file],
+            &["explain", &file],
+            &["export", "--c", &file],
+        ] {
+            let output = run(arguments);
+            assert_ne!(output.status.code(), Some(0), "{arguments:?}");
+            let told = [output.stdout, output.stderr].concat();
+            let told = String::from_utf8(told).unwrap();
+            assert!(
+                !told.contains("root:") && !told.contains("hunter2"),
+                "{arguments:?}: {told}"
+            );
+        }
+    }
     // What is meant as a rule set is quoted, so that its author finds the mistake.
     folder.file("secret.txt", RULE_SET.replace("IS calm", "IS clam"));
     refused(&["export", "--c", &named], "did you mean `calm`?");

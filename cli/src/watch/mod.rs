@@ -157,8 +157,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             if is_vehicles {
                 port.answer();
             }
-            // A telemetry log has no addresses: whoever reads it would believe a second sender.
-            if is_vehicles || !session.is_named_by(&packet) {
+            // A telemetry log has no addresses: whoever reads it would believe others.
+            if is_vehicles || !session.is_doubtful(&packet) {
                 let recorded = recording.as_mut().map_or(Ok(()), |r| r.add(packet.bytes));
                 let failed = recorded.err().map(|text| Event::Note { text });
                 out.events.extend(failed);

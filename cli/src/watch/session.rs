@@ -127,11 +127,14 @@ impl<'e> Session<'e> {
         }
     }
 
-    /// Whether a packet is in the name of the vehicle's autopilot, whoever sent it.
-    pub(crate) fn is_named_by(&self, packet: &Packet<'_>) -> bool {
+    /// Whether a packet that is not the vehicle's would be taken for it where addresses are not known.
+    pub(crate) fn is_doubtful(&self, packet: &Packet<'_>) -> bool {
         let tracked = self.tracked.as_ref();
-        packet.component == 1
-            && tracked.is_some_and(|tracked| tracked.telemetry.system() == packet.system)
+        match doubt_of(packet) {
+            Some(Doubt::OtherComponent) => true,
+            Some(_) => tracked.is_some_and(|it| it.telemetry.system() == packet.system),
+            None => false,
+        }
     }
 
     /// How much was not believed.

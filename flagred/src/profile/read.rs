@@ -61,6 +61,10 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         "elevated_risk",
         "verdict",
     ];
+    if !matches!(tree.value, Value::Mapping(_)) {
+        found.push(tree.unexpected_document("the profile"));
+        return None;
+    }
     let fields = tree.fields("the profile", &keys, found)?;
     if let Some(version) = fields.require("flagred", "write `flagred: 1` as its first line", found)
         && version.whole("the version", 1, found) != Some(VERSION)

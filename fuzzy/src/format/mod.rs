@@ -95,7 +95,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         "rules",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
-        let finding = tree.unexpected("a mapping for the rule set");
+        let finding = tree.unexpected_document("the rule set");
         findings.push(finding.help("a rule set begins with `fuzzy: 1`"));
         return None;
     }

@@ -255,6 +255,17 @@ impl Node {
         Diagnostic::error("wrong-type", self.span.clone(), message)
     }
 
+    /// A finding: the document is no mapping. It may be any file, and is not quoted.
+    #[must_use]
+    pub fn unexpected_document(&self, what: &str) -> Diagnostic {
+        let found = match &self.value {
+            Value::Scalar(scalar) if !scalar.is_null() => "a text".into(),
+            _ => self.shown(),
+        };
+        let message = format!("expected a mapping for {what}, found {found}");
+        Diagnostic::error("wrong-type", self.span.clone(), message)
+    }
+
     /// What stands here, for messages.
     fn shown(&self) -> String {
         match &self.value {
