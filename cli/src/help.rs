@@ -50,7 +50,11 @@ The table goes to standard output: flagred dataset *.bin > rows.csv";
 pub(crate) const EVAL: &str = "\
 Examples:
   flagred eval my-rules.yaml points.csv
-  flagred eval my-rules.yaml";
+  flagred eval my-rules.yaml points.csv --output results.csv --with coverage,rule,clamped,error
+  flagred eval my-rules.yaml points.csv --delimiter tab --column temperature=t_c --skip-bad-rows
+  flagred eval my-rules.yaml                     points from standard input
+
+Exit code 1: a row has no value. Empty cells, NA and NaN are unknown values.";
 
 pub(crate) const EVALUATE: &str = "\
 Examples:

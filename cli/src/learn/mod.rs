@@ -20,6 +20,7 @@ use crate::{
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
     rule_set,
+    table::Format,
 };
 
 #[derive(clap::Args)]
@@ -68,10 +69,6 @@ pub(crate) struct Arguments {
     #[arg(long)]
     keep_rules: bool,
 
-    /// Read a variable from a column of another name: `margin=margin_mean`
-    #[arg(long, value_name = "NAME=COLUMN", value_parser = super::dataset::pair)]
-    column: Vec<(String, String)>,
-
     /// The column with the weights of the rows
     #[arg(long, value_name = "COLUMN")]
     weight: Option<String>,
@@ -84,9 +81,8 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "group_by")]
     no_validation: bool,
 
-    /// Skip rows that cannot be used, instead of stopping at them
-    #[arg(long)]
-    skip_bad_rows: bool,
+    #[command(flatten)]
+    format: Format,
 
     /// Compare the methods of interpolation on rows whose rule is left out
     #[arg(long)]
@@ -142,7 +138,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             Err(refusal) => refused.push(format!("{place}: {refusal}")),
         }
     }
-    if !refused.is_empty() && (!arguments.skip_bad_rows || rows.is_empty()) {
+    if !refused.is_empty() && (!arguments.format.skip_bad_rows || rows.is_empty()) {
         return Err(bad_rows(&refused));
     }
     let learned = learner.finish();
