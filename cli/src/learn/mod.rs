@@ -12,6 +12,7 @@ use flagred::{
 };
 use fuzzy::{
     Engine, Model,
+    check::{self, Counterexample},
     learn::{Direction, Learned, Learner, Resolution, Settings},
     map::{DecisionMap, Grid},
 };
@@ -57,11 +58,11 @@ pub(crate) struct Arguments {
     #[arg(long)]
     complete: bool,
 
-    /// The output must not fall when this input rises
+    /// The output must not fall when this input rises; where it does all the same, the exit code is 1
     #[arg(long, value_name = "INPUT")]
     rising: Vec<String>,
 
-    /// The output must not rise when this input rises
+    /// The output must not rise when this input rises; where it does all the same, the exit code is 1
     #[arg(long, value_name = "INPUT")]
     falling: Vec<String>,
 
@@ -113,6 +114,8 @@ struct Outcome {
     after_filling: f64,
     errors: Option<Errors>,
     gaps: Option<GapComparison>,
+    /// Where the output does not go the way that was asked for.
+    counterexamples: Vec<Counterexample>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -145,6 +148,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let gap = GapSettings::default();
     let examined = |error: flagred::learning::ExamineError| Failure::unreadable(error.to_string());
     let (coverage, after_filling) = coverage(&learned.model, &gap)?;
+    let counterexamples = counterexamples(arguments, &learned.model)?;
     let outcome = Outcome {
         kept: model.rules.len(),
         refused_count: refused.len(),
@@ -163,6 +167,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             false => None,
         },
         learned,
+        counterexamples,
     };
     output.write(&report::rule_set(arguments, &outcome, &text))?;
     let mut out = Stdout::beside(&[&output]);
@@ -174,7 +179,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         report::words(&mut out, arguments, &outcome)?;
     }
     out.finish()?;
-    Ok(Exit::Clean)
+    Ok(match outcome.counterexamples.as_slice() {
+        [] => Exit::Clean,
+        _ => Exit::Findings,
+    })
 }
 
 fn settings(arguments: &Arguments) -> Settings {
@@ -197,6 +205,29 @@ fn settings(arguments: &Arguments) -> Settings {
     }
 }
 
+/// Where the learned rules contradict `--rising` and `--falling`, as `flagred check --monotone` finds it.
+fn counterexamples(arguments: &Arguments, model: &Model) -> Result<Vec<Counterexample>, Failure> {
+    let claims: Vec<check::Monotone> = claims(arguments).collect();
+    let engine = Engine::new(model).map_err(unusable)?;
+    check::counterexamples(&engine, &claims).map_err(unusable)
+}
+
+fn claims(arguments: &Arguments) -> impl Iterator<Item = check::Monotone> {
+    let claim = |input: &String, direction| check::Monotone {
+        input: input.clone(),
+        direction,
+        output: None,
+    };
+    let rising = arguments.rising.iter();
+    let rising = rising.map(move |input| claim(input, check::Direction::Increasing));
+    let falling = arguments.falling.iter();
+    rising.chain(falling.map(move |input| claim(input, check::Direction::Decreasing)))
+}
+
+fn unusable(error: impl std::fmt::Display) -> Failure {
+    Failure::unreadable(format!("the learned rules cannot be used: {error}"))
+}
+
 fn bad_rows(refused: &[String]) -> Failure {
     const SHOWN: usize = 20;
     let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();
@@ -213,14 +244,11 @@ fn bad_rows(refused: &[String]) -> Failure {
 
 /// The shares of the map that rules cover, and that have a value after filling.
 fn coverage(model: &Model, gap: &GapSettings) -> Result<(f64, f64), Failure> {
-    let unusable = |error: &dyn std::fmt::Display| {
-        Failure::unreadable(format!("the learned rules cannot be used: {error}"))
-    };
-    let engine = Engine::new(model).map_err(|error| unusable(&error))?;
+    let engine = Engine::new(model).map_err(unusable)?;
     let points = crate::map::points_along(model.inputs.len());
-    let grid = Grid::new(&engine, points).map_err(|error| unusable(&error))?;
-    let map = DecisionMap::new(&engine, grid, 0).map_err(|error| unusable(&error))?;
-    let filling = Filling::new(&engine, model, 0, gap).map_err(|error| unusable(&error))?;
+    let grid = Grid::new(&engine, points).map_err(unusable)?;
+    let map = DecisionMap::new(&engine, grid, 0).map_err(unusable)?;
+    let filling = Filling::new(&engine, model, 0, gap).map_err(unusable)?;
     let filled = FilledMap::new(map, filling);
     let cells = filled.map().grid().cells();
     let known = (0..cells).filter(|cell| filled.value(*cell).is_some());
