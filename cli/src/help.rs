@@ -31,7 +31,9 @@ Examples:
   flagred check my-rules.yaml
   flagred check my-rules.yaml --monotone temperature:increasing
   flagred check --deny warnings rules/*.yaml
-  flagred check --json my-rules.yaml";
+  flagred check --format json my-rules.yaml
+  flagred check --format sarif rules/*.yaml      for code scanning
+  flagred check --format github rules/*.yaml     annotations on GitHub";
 
 pub(crate) const CONVERT: &str = "\
 Examples:

@@ -74,6 +74,8 @@ fn a_closed_pipe_changes_no_exit_code() {
         (vec!["check", RULES, "--deny", "notes"], 1),
         (vec!["check", faulty], 1),
         (vec!["check", faulty, "--json"], 1),
+        (vec!["check", RULES, faulty, "--format", "sarif"], 1),
+        (vec!["check", RULES, "--format", "github"], 0),
         (vec!["map", RULES], 0),
         (vec!["map", RULES, "--csv"], 0),
         (vec!["explain", RULES, "margin=0.1", "spread=0.1"], 0),

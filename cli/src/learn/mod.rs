@@ -15,6 +15,7 @@ use fuzzy::{
     check::{self, Counterexample},
     learn::{Direction, Learned, Learner, Resolution, Settings},
     map::{DecisionMap, Grid},
+    model::{Aggregation, Conjunction, Implication},
 };
 
 use crate::{
@@ -222,6 +223,25 @@ fn claims(arguments: &Arguments) -> impl Iterator<Item = check::Monotone> {
     let rising = rising.map(move |input| claim(input, check::Direction::Increasing));
     let falling = arguments.falling.iter();
     rising.chain(falling.map(move |input| claim(input, check::Direction::Decreasing)))
+}
+
+/// What would make the output monotone, where that is known: inference by product and sum does not bend monotone rules where
+/// every combination of terms has one.
+fn monotone_help(arguments: &Arguments, outcome: &Outcome) -> Option<&'static str> {
+    let mut model = outcome.learned.model.clone();
+    model.operators.and = Conjunction::Product;
+    model.operators.implication = Implication::Product;
+    model.operators.aggregation = Aggregation::Sum;
+    let holds = counterexamples(arguments, &model).is_ok_and(|found| found.is_empty());
+    match (holds, outcome.learned.missing) {
+        (true, _) => Some(
+            "the same rules hold it with `operators: {and: product, implication: product, aggregation: sum}`",
+        ),
+        (false, 0) => None,
+        (false, _) => Some(
+            "combinations of terms without a rule may be the cause: `--complete` adds rules for them",
+        ),
+    }
 }
 
 fn unusable(error: impl std::fmt::Display) -> Failure {

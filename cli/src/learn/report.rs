@@ -94,6 +94,10 @@ pub(super) fn words(
         for found in found {
             writeln!(out, "           {}", visible(&found.to_string()))?;
         }
+        let help = (!found.is_empty()).then(|| super::monotone_help(arguments, outcome));
+        if let Some(help) = help.flatten() {
+            writeln!(out, "           help: {help}")?;
+        }
     }
     writeln!(
         out,
