@@ -1,5 +1,7 @@
 //! `flagred check`: errors, gaps and conflicts in a rule set; whether a profile fits its rule set.
 
+mod format;
+
 use std::{
     io::Write,
     path::{Path, PathBuf},
@@ -14,6 +16,7 @@ use fuzzy::{
 };
 use serde::Serialize;
 
+use self::format::{Format, Sarif, write_github};
 use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
@@ -26,8 +29,11 @@ pub(crate) struct Arguments {
     /// Rule sets or profiles in YAML; `-` is standard input
     #[arg(required = true, value_name = "MODEL")]
     models: Vec<PathBuf>,
-    /// Print one JSON document per rule set instead of text
-    #[arg(long)]
+    /// How to print the findings
+    #[arg(long, value_enum, default_value = "text", value_name = "FORMAT")]
+    format: Format,
+    /// The same as `--format json`
+    #[arg(long, conflicts_with = "format")]
     json: bool,
     /// Check that the output never falls (INPUT:increasing) or never rises (INPUT:decreasing) when an input rises;
     /// with several outputs, INPUT:increasing:OUTPUT
@@ -56,7 +62,7 @@ fn degree(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The document of `--json`.
+/// The document of `--format json`.
 #[derive(Serialize)]
 struct Json<'a> {
     schema: &'static str,
@@ -81,6 +87,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 
 fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<Exit, Failure> {
     Files::reading(&arguments.models)?;
+    let format = if arguments.json {
+        Format::Json
+    } else {
+        arguments.format
+    };
+    let mut sarif = Sarif::default();
     let mut exit = Exit::Clean;
     for path in &arguments.models {
         let text = read_text(path)?;
@@ -93,29 +105,43 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         } else {
             examine(&text, arguments)?
         };
-        let mut out = Stdout::text();
-        if arguments.json {
-            let json = Json {
-                schema: "flagred.check/1",
-                file: &file,
-                model: analysed
-                    .as_ref()
-                    .map(|(document, _)| document.model.name.as_str()),
-                profile,
-                findings: &findings.0,
-                report: analysed.as_ref().map(|(_, report)| report),
-            };
-            serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
-            writeln!(out)?;
-        } else {
-            write!(out, "{}", draw(&findings.0, &file, &text, true))?;
-            writeln!(out, "{}: {}", visible(&file), summary(&findings))?;
+        // Only what people read has colours.
+        let mut out = match format {
+            Format::Text => Stdout::text(),
+            _ => Stdout::data(),
+        };
+        match format {
+            Format::Text => {
+                write!(out, "{}", draw(&findings.0, &file, &text, true))?;
+                writeln!(out, "{}: {}", visible(&file), summary(&findings))?;
+            }
+            Format::Json => {
+                let json = Json {
+                    schema: "flagred.check/1",
+                    file: &file,
+                    model: analysed
+                        .as_ref()
+                        .map(|(document, _)| document.model.name.as_str()),
+                    profile,
+                    findings: &findings.0,
+                    report: analysed.as_ref().map(|(_, report)| report),
+                };
+                serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
+                writeln!(out)?;
+            }
+            Format::Sarif => sarif.add(&findings.0, &file, &text),
+            Format::Github => write_github(&mut out, &findings.0, &file, &text)?,
         }
         out.finish()?;
         let worst = findings.0.iter().map(|finding| finding.severity).max();
         if worst > worst_allowed {
             exit = Exit::Findings;
         }
+    }
+    if format == Format::Sarif {
+        let mut out = Stdout::data();
+        sarif.write(&mut out)?;
+        out.finish()?;
     }
     Ok(exit)
 }

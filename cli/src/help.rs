@@ -32,7 +32,9 @@ Examples:
   flagred check my-rules.yaml --monotone temperature:increasing
   flagred check --deny warnings rules/*.yaml
   flagred check my-profile.yaml                  a profile with its rule set
-  flagred check --json my-rules.yaml";
+  flagred check --format json my-rules.yaml
+  flagred check --format sarif rules/*.yaml      for code scanning
+  flagred check --format github rules/*.yaml     annotations on GitHub";
 
 pub(crate) const CONVERT: &str = "\
 Examples:
@@ -51,7 +53,11 @@ The table goes to standard output: flagred dataset *.bin > rows.csv";
 pub(crate) const EVAL: &str = "\
 Examples:
   flagred eval my-rules.yaml points.csv
-  flagred eval my-rules.yaml";
+  flagred eval my-rules.yaml points.csv --output results.csv --with coverage,rule,clamped,error
+  flagred eval my-rules.yaml points.csv --delimiter tab --column temperature=t_c --skip-bad-rows
+  flagred eval my-rules.yaml                     points from standard input
+
+Exit code 1: a row has no value. Empty cells, NA and NaN are unknown values.";
 
 pub(crate) const EVALUATE: &str = "\
 Examples:

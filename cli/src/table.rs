@@ -1,11 +1,13 @@
-//! A table of numbers from a CSV file, every bad cell with its place.
+//! Tables of numbers from CSV files: one reader for all commands, every bad cell with its place.
 
 use std::{
-    cell::Cell,
     fs::File,
     io::{self, Read},
     path::Path,
-    rc::Rc,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use crate::failure::Failure;
@@ -16,50 +18,249 @@ const LONGEST_ROW: usize = 1_000_000;
 const MOST_CELLS: usize = 20_000_000;
 
 /// A source of rows of which each is bounded: a single one could fill the memory.
-pub(crate) struct Bounded<R> {
-    source: R,
-    left: Left,
+struct Bounded {
+    source: Box<dyn Read + Send>,
+    /// The bytes that are left for a row.
+    left: Arc<AtomicUsize>,
 }
 
-/// The bytes that are left for a row.
-#[derive(Clone)]
-pub(crate) struct Left(Rc<Cell<usize>>);
-
-impl Left {
-    /// A row begins.
-    pub(crate) fn begin(&self) {
-        self.0.set(LONGEST_ROW);
-    }
-}
-
-impl<R: Read> Bounded<R> {
-    pub(crate) fn new(source: R) -> (Bounded<R>, Left) {
-        let left = Left(Rc::new(Cell::new(LONGEST_ROW)));
-        let bounded = Bounded {
-            source,
-            left: left.clone(),
-        };
-        (bounded, left)
-    }
-}
-
-impl<R: Read> Read for Bounded<R> {
+impl Read for Bounded {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
-        let Left(left) = &self.left;
-        if left.get() == 0 {
+        let left = self.left.load(Ordering::Relaxed);
+        if left == 0 {
             let message = format!("a row is longer than {LONGEST_ROW} bytes");
             return Err(io::Error::new(io::ErrorKind::InvalidData, message));
         }
         let count = self.source.read(to)?;
-        left.set(left.get().saturating_sub(count));
+        self.left
+            .store(left.saturating_sub(count), Ordering::Relaxed);
         Ok(count)
     }
 }
 
-/// A CSV file with a header.
-pub(crate) struct Table {
+/// Reads the rows of a table.
+pub(crate) struct Reader {
+    csv: csv::Reader<Bounded>,
+    left: Arc<AtomicUsize>,
+}
+
+impl Reader {
+    /// Reads a row, and says whether there was one.
+    pub(crate) fn read_byte_record(&mut self, record: &mut csv::ByteRecord) -> csv::Result<bool> {
+        self.left.store(LONGEST_ROW, Ordering::Relaxed);
+        self.csv.read_byte_record(record)
+    }
+
+    /// As [`Reader::read_byte_record`], of text.
+    fn read_record(&mut self, record: &mut csv::StringRecord) -> csv::Result<bool> {
+        self.left.store(LONGEST_ROW, Ordering::Relaxed);
+        self.csv.read_record(record)
+    }
+}
+
+/// How a table is read.
+#[derive(clap::Args)]
+pub(crate) struct Format {
+    /// Read a variable from a column of another name: `margin=margin_mean`
+    #[arg(long, value_name = "NAME=COLUMN", value_parser = pair)]
+    column: Vec<(String, String)>,
+
+    /// The character between cells: `;`, or `tab`
+    #[arg(long, value_name = "CHARACTER", default_value = ",", value_parser = delimiter)]
+    pub(crate) delimiter: u8,
+
+    /// Leave out rows that cannot be read
+    #[arg(long)]
+    pub(crate) skip_bad_rows: bool,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    let (name, column) = text.split_once('=').ok_or("write `NAME=COLUMN`")?;
+    Ok((name.trim().to_owned(), column.trim().to_owned()))
+}
+
+fn delimiter(text: &str) -> Result<u8, String> {
+    match text.as_bytes() {
+        _ if text == "tab" || text == "\\t" => Ok(b'\t'),
+        [byte]
+            if byte.is_ascii()
+                && !byte.is_ascii_alphanumeric()
+                && !b"\"#\r\n.-+".contains(byte) =>
+        {
+            Ok(*byte)
+        }
+        _ => Err("write one character, such as `;`, or `tab`".into()),
+    }
+}
+
+impl Format {
+    /// The place of the column of each variable.
+    pub(crate) fn columns(&self, names: &[&str], header: &Header) -> Result<Vec<usize>, Failure> {
+        if let Some((stray, _)) = self
+            .column
+            .iter()
+            .find(|(name, _)| !names.contains(&name.as_str()))
+        {
+            let failure = Failure::usage(format!("the rule set has no variable `{stray}`"));
+            let meant = fuzzy::diagnostic::suggest(stray, names.iter().copied());
+            return Err(failure.help_if(meant));
+        }
+        let column = |name: &&str| {
+            let named = self.column.iter().find(|(n, _)| n == name);
+            let column = named.map_or(*name, |(_, column)| column.as_str());
+            let help = format!("or say which one it is with `--column {name}=COLUMN`");
+            header.require(column, &help)
+        };
+        names.iter().map(column).collect()
+    }
+}
+
+/// The first row of a table.
+pub(crate) struct Header {
+    /// The table, as the user knows it.
     pub(crate) file: String,
-    pub(crate) header: Vec<String>,
+    /// The names of the columns, without spaces around them.
+    pub(crate) names: Vec<String>,
+    delimiter: u8,
+}
+
+/// Opens a table and reads its header; `-` is standard input. Rows may have more or fewer cells than the header, and cells
+/// spaces around them.
+pub(crate) fn open(path: &Path, delimiter: u8) -> Result<(Header, Reader), Failure> {
+    const BUFFER: usize = 1 << 18;
+    let file = path.display().to_string();
+    let source: Box<dyn Read + Send> = if path == Path::new("-") {
+        Box::new(std::io::stdin())
+    } else {
+        Box::new(File::open(path).map_err(|error| {
+            Failure::unreadable(format!("`{file}` cannot be read: {error}")).help("check the path")
+        })?)
+    };
+    let left = Arc::new(AtomicUsize::new(LONGEST_ROW));
+    let source = Bounded {
+        source,
+        left: Arc::clone(&left),
+    };
+    let mut csv = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .delimiter(delimiter)
+        .trim(csv::Trim::Headers)
+        .flexible(true)
+        .buffer_capacity(BUFFER)
+        .from_reader(source);
+    let names = csv.headers().map_err(|error| broken(&file, &error))?;
+    let names: Vec<String> = names.iter().map(str::to_owned).collect();
+    if names.iter().all(String::is_empty) {
+        return Err(Failure::unreadable(format!("`{file}` is empty"))
+            .help("the first line names the columns, the others hold the rows"));
+    }
+    let header = Header {
+        file,
+        names,
+        delimiter,
+    };
+    Ok((header, Reader { csv, left }))
+}
+
+impl Header {
+    /// The place of a column.
+    pub(crate) fn column(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|column| column == name)
+    }
+
+    /// The place of a column that must be there; `help` says what else could be done.
+    pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
+        if self.names.iter().filter(|column| *column == name).count() > 1 {
+            let message = format!("`{}` has the column `{name}` more than once", self.file);
+            return Err(Failure::unreadable(message).help("rename all but the one that is meant"));
+        }
+        self.column(name).ok_or_else(|| {
+            let failure = Failure::unreadable(format!("`{}` has no column `{name}`", self.file));
+            if let Some(other) = self.other_delimiter() {
+                return failure.help(format!(
+                    "its cells seem to be separated by another character: `--delimiter {other}`"
+                ));
+            }
+            let columns = self.names.iter().map(String::as_str);
+            let meant = fuzzy::diagnostic::suggest(name, columns).unwrap_or_default();
+            failure.help(format!("{meant}; {help}"))
+        })
+    }
+
+    /// What seems to separate the cells, where it is not what was said.
+    fn other_delimiter(&self) -> Option<&'static str> {
+        let [only] = self.names.as_slice() else {
+            return None;
+        };
+        let all = [(b';', "';'"), (b'\t', "tab"), (b',', "','"), (b'|', "'|'")];
+        let mut found = all
+            .into_iter()
+            .filter(|(byte, _)| *byte != self.delimiter && only.as_bytes().contains(byte));
+        found.next().map(|(_, word)| word)
+    }
+
+    /// What is wrong with a row of so many cells.
+    pub(crate) fn misfit(&self, cells: usize) -> Option<String> {
+        let expected = self.names.len();
+        (cells != expected).then(|| {
+            format!(
+                "{cells} cell{}, but the header has {expected}",
+                if cells == 1 { "" } else { "s" }
+            )
+        })
+    }
+
+    /// What to call a column.
+    pub(crate) fn name(&self, column: usize) -> &str {
+        self.names.get(column).map_or("", String::as_str)
+    }
+}
+
+/// What a cell says of a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Cell {
+    /// A finite number.
+    Number(f64),
+    /// Empty, `NA` or `NaN`.
+    Unknown,
+    /// Anything else.
+    Bad,
+}
+
+impl Cell {
+    pub(crate) fn of(text: &[u8]) -> Cell {
+        let text = text.trim_ascii();
+        // A number is ASCII.
+        let number = str::from_utf8(text)
+            .ok()
+            .and_then(|text| text.parse::<f64>().ok());
+        match number {
+            Some(number) if number.is_finite() => Cell::Number(number),
+            Some(number) if number.is_nan() => Cell::Unknown,
+            None if text.is_empty() || text == b"NA" => Cell::Unknown,
+            _ => Cell::Bad,
+        }
+    }
+
+    /// Why a cell is [`Cell::Bad`].
+    pub(crate) fn problem(text: &[u8]) -> String {
+        let text = String::from_utf8_lossy(text.trim_ascii());
+        match text.parse::<f64>() {
+            Ok(_) => format!("`{text}` is not a finite number"),
+            Err(_) if text.is_empty() => "the cell is empty".to_owned(),
+            Err(_) => match text.replacen(',', ".", 1).parse::<f64>() {
+                Ok(_) if text.contains(',') => {
+                    format!("`{text}` is not a number: the decimal mark is a point")
+                }
+                _ => format!("`{text}` is not a number"),
+            },
+        }
+    }
+}
+
+/// A whole table.
+pub(crate) struct Table {
+    pub(crate) header: Header,
     records: Vec<(u64, csv::StringRecord)>,
 }
 
@@ -72,43 +273,29 @@ pub(crate) struct BadCell {
 
 impl Table {
     /// Reads a whole file; `-` is standard input.
-    pub(crate) fn read(path: &Path) -> Result<Table, Failure> {
-        let file = path.display().to_string();
-        let unreadable = |error: &dyn std::fmt::Display| {
-            Failure::unreadable(format!("`{file}` cannot be read: {error}"))
-        };
-        let source: Box<dyn Read> = if path == Path::new("-") {
-            Box::new(std::io::stdin())
-        } else {
-            Box::new(File::open(path).map_err(|e| unreadable(&e).help("check the path"))?)
-        };
-        let (source, left) = Bounded::new(source);
-        let mut reader = csv::ReaderBuilder::new()
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .from_reader(source);
-        let header: Vec<String> = reader
-            .headers()
-            .map_err(|error| broken(&file, &error))?
-            .iter()
-            .map(str::to_owned)
-            .collect();
-        if header.iter().all(String::is_empty) {
-            return Err(Failure::unreadable(format!("`{file}` is empty"))
-                .help("the first line names the columns, the others hold the rows"));
-        }
+    pub(crate) fn read(path: &Path, delimiter: u8) -> Result<Table, Failure> {
+        let (header, mut reader) = open(path, delimiter)?;
+        let file = &header.file;
         let mut records = Vec::new();
+        let mut record = csv::StringRecord::new();
         let mut cells = 0;
-        for record in reader.records() {
-            left.begin();
-            let record = record.map_err(|error| broken(&file, &error))?;
+        while reader
+            .read_record(&mut record)
+            .map_err(|error| broken(file, &error))?
+        {
             cells += record.len();
             if cells > MOST_CELLS {
                 let message = format!("`{file}` has more than {MOST_CELLS} cells");
                 return Err(Failure::unreadable(message).help("use fewer rows or columns"));
             }
             let line = record.position().map_or(0, csv::Position::line);
-            records.push((line, record));
+            if let Some(misfit) = header.misfit(record.len()) {
+                return Err(
+                    Failure::unreadable(format!("`{file}`, line {line}: {misfit}"))
+                        .help("every row has as many cells as the header"),
+                );
+            }
+            records.push((line, record.clone()));
         }
         if records.is_empty() {
             return Err(
@@ -116,11 +303,7 @@ impl Table {
                     .help("`flagred dataset` makes rows from flight logs"),
             );
         }
-        Ok(Table {
-            file,
-            header,
-            records,
-        })
+        Ok(Table { header, records })
     }
 
     /// The number of rows.
@@ -133,67 +316,91 @@ impl Table {
         self.records.get(row).map_or(0, |(line, _)| *line)
     }
 
-    /// The place of a column.
-    pub(crate) fn column(&self, name: &str) -> Option<usize> {
-        self.header.iter().position(|column| column == name)
-    }
-
-    /// The place of a column that must be there; `help` says what else could be done.
-    pub(crate) fn require(&self, name: &str, help: &str) -> Result<usize, Failure> {
-        if self.header.iter().filter(|column| *column == name).count() > 1 {
-            let message = format!("`{}` has the column `{name}` more than once", self.file);
-            return Err(Failure::unreadable(message).help("rename all but the one that is meant"));
-        }
-        self.column(name).ok_or_else(|| {
-            let columns = self.header.iter().map(String::as_str);
-            let meant = fuzzy::diagnostic::suggest(name, columns).unwrap_or_default();
-            Failure::unreadable(format!("`{}` has no column `{name}`", self.file))
-                .help(format!("{meant}; {help}"))
-        })
-    }
-
     /// The text of a cell.
     pub(crate) fn text(&self, row: usize, column: usize) -> &str {
         let record = self.records.get(row).map(|(_, record)| record);
-        record.and_then(|record| record.get(column)).unwrap_or("")
+        record
+            .and_then(|record| record.get(column))
+            .unwrap_or("")
+            .trim()
     }
 
     /// The finite number in a cell.
     pub(crate) fn number(&self, row: usize, column: usize) -> Result<f64, BadCell> {
-        let text = self.text(row, column);
-        let problem = match text.parse::<f64>() {
-            Ok(number) if number.is_finite() => return Ok(number),
-            Ok(_) => format!("`{text}` is not a finite number"),
-            Err(_) if text.is_empty() => "the cell is empty".to_owned(),
-            Err(_) => format!("`{text}` is not a number"),
-        };
-        Err(self.bad(row, column, problem))
+        let text = self.text(row, column).as_bytes();
+        match Cell::of(text) {
+            Cell::Number(number) => Ok(number),
+            Cell::Unknown if text == b"NA" => {
+                Err(self.bad(row, column, "the value is unknown (`NA`)".to_owned()))
+            }
+            Cell::Unknown | Cell::Bad => Err(self.bad(row, column, Cell::problem(text))),
+        }
     }
 
     /// A finding about a cell.
     pub(crate) fn bad(&self, row: usize, column: usize, problem: String) -> BadCell {
         BadCell {
             line: self.line(row),
-            column: self.header.get(column).cloned().unwrap_or_default(),
+            column: self.header.name(column).to_owned(),
             problem,
         }
     }
 }
 
 /// What is wrong with the text of a table, and where.
-fn broken(file: &str, error: &csv::Error) -> Failure {
+pub(crate) fn broken(file: &str, error: &csv::Error) -> Failure {
     let line = error.position().map_or(1, csv::Position::line);
     match error.kind() {
-        csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => Failure::unreadable(format!(
-            "`{file}`, line {line}: {len} cells, but the header has {expected_len}"
-        ))
-        .help("every row has as many cells as the header"),
         csv::ErrorKind::Utf8 { .. } => {
             Failure::unreadable(format!("`{file}`, line {line}: invalid UTF-8"))
                 .help("the file must be CSV text, a header first")
         }
         _ => Failure::unreadable(format!("`{file}` cannot be read: {error}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_is_a_number_or_says_why_not() {
+        for (text, cell) in [
+            ("1.5", Cell::Number(1.5)),
+            (" -2e-3\t", Cell::Number(-0.002)),
+            ("", Cell::Unknown),
+            ("  ", Cell::Unknown),
+            ("NA", Cell::Unknown),
+            ("nan", Cell::Unknown),
+            ("NaN", Cell::Unknown),
+            ("na", Cell::Bad),
+            ("inf", Cell::Bad),
+            ("1e999", Cell::Bad),
+            ("20,5", Cell::Bad),
+            ("much", Cell::Bad),
+        ] {
+            assert_eq!(Cell::of(text.as_bytes()), cell, "{text}");
+        }
+        for (text, problem) in [
+            ("1e999", "`1e999` is not a finite number"),
+            (
+                "20,5",
+                "`20,5` is not a number: the decimal mark is a point",
+            ),
+            ("a,b", "`a,b` is not a number"),
+            (" much ", "`much` is not a number"),
+        ] {
+            assert_eq!(Cell::problem(text.as_bytes()), problem);
+        }
+    }
+
+    #[test]
+    fn a_delimiter_is_one_character() {
+        assert_eq!(delimiter(";"), Ok(b';'));
+        assert_eq!(delimiter("tab"), Ok(b'\t'));
+        assert_eq!(delimiter("\t"), Ok(b'\t'));
+        for wrong in ["", ";;", "x", "\"", "#", ".", "§", "1"] {
+            assert!(delimiter(wrong).is_err(), "{wrong}");
+        }
     }
 }

@@ -184,9 +184,10 @@ fn explain_asks_for_what_is_missing() {
 
 #[test]
 fn eval_adds_the_outputs_with_all_digits() {
-    let points = "id,spread,margin\na,0.12,0.13\nb,0,0\nc,,0.1\nd,9,0.05\n";
+    let points = "id,spread,margin\na,0.12,0.13\nb,0.12,0.05\n";
     let (output, text) = flagred(&["eval", "flagred-paper.yaml"], points);
     assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    assert_eq!(errors(&output), "");
     let text_model = fs::read_to_string(
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../rules/flagred-paper.yaml"),
     );
@@ -196,13 +197,100 @@ fn eval_adds_the_outputs_with_all_digits() {
     assert_eq!(rows[0], ["id", "spread", "margin", "risk"]);
     let value = |margin: f64, spread: f64| engine.evaluate(&[margin, spread]).unwrap()[0].value();
     assert_eq!(rows[1][3].parse().ok(), value(0.13, 0.12));
-    assert_eq!((rows[2][3], rows[3][3]), ("", ""));
-    assert_eq!(rows[4][3].parse().ok(), value(0.05, 0.5));
+    assert_eq!(rows[2][3].parse().ok(), value(0.05, 0.12));
+}
+
+/// A row comes out for every row, whatever is wrong with it.
+#[test]
+fn eval_says_of_each_row_how_its_value_comes_about() {
+    let points = "id,spread,margin\na,0.12,0.13\nb,0,0\nc,NA,0.1\nd,9,-0.05\ne,wide,inf\nf,0.1\ng,,nan\n\
+        \"#h\",0.1,\"0,1\"\ni,0,0,0\n";
+    let with = [
+        "eval",
+        "flagred-paper.yaml",
+        "--with",
+        "coverage,rule,clamped,error",
+    ];
+    let (output, text) = flagred(&with, points);
+    assert_eq!(output.status.code(), Some(1));
+    insta::assert_snapshot!(text + "\n" + &errors(&output));
+
+    let (output, text) = flagred(&["eval", "flagred-paper.yaml", "--skip-bad-rows"], points);
+    // Rows are left out as asked; others still have no value.
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(text.lines().count(), 6, "{text}");
     assert!(
-        errors(&output).contains(
-            "undefined where no rule fires (1 of 4 rows) and where an input is unknown (1)"
-        )
+        errors(&output).contains("left out 4 of 9 rows"),
+        "{}",
+        errors(&output)
     );
+    let (output, text) = flagred(
+        &["eval", "flagred-paper.yaml", "--skip-bad-rows"],
+        "margin,spread\nx,1\n0.1,0.1\n",
+    );
+    assert_eq!((output.status.code(), text.lines().count()), (Some(0), 2));
+}
+
+#[test]
+fn eval_names_columns_by_output_and_goes_on_where_no_rule_fires() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("eval");
+    fs::create_dir_all(&folder).unwrap();
+    let model = folder.join("two.yaml");
+    fs::write(
+        &model,
+        "fuzzy: 1\nname: two\ninputs: {heat: {range: [0, 40], terms: {high: {right_shoulder: [20, 30]}}}}\n\
+         outputs:\n  fan: {range: [0, 9], partition: [slow, fast], when_no_rule_fires: error}\n  \
+         alarm: {range: [0, 1], partition: [no, yes], when_no_rule_fires: {value: 0.5}}\n\
+         rules: [IF heat IS high THEN fan IS fast, IF heat IS high THEN alarm IS yes]\n",
+    )
+    .unwrap();
+    let model = model.to_str().unwrap();
+    let with = [
+        "eval",
+        model,
+        "--with",
+        "rule,error",
+        "--delimiter",
+        "tab",
+        "--column",
+        "heat=t",
+    ];
+    let (output, text) = flagred(&with, "t\tname\n25\ta\n10\tb\n");
+    assert_eq!(output.status.code(), Some(1), "{}", errors(&output));
+    assert_eq!(
+        text,
+        "t\tname\tfan\talarm\tfan_rule\talarm_rule\terror\n\
+         25\ta\t5.5\t0.6111111111111112\t1\t2\t\n\
+         10\tb\t\t0.5\t\t\tno rule fires for `fan`\n"
+    );
+    assert_eq!(
+        errors(&output),
+        "`fan` has no value in 1 of 2 rows: no rule fires (first in line 3)\n"
+    );
+    let (output, _) = flagred(&["eval", model, "--with", "error"], "heat,error\n25,x\n");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(errors(&output).contains("a column `error` already"));
+}
+
+#[test]
+fn eval_writes_a_file_whole_or_not_at_all() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("eval-file");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("out.csv");
+    let out = file.to_str().unwrap();
+    let eval = ["eval", "flagred-paper.yaml", "-", "-o", out];
+    let (output, text) = flagred(&eval, "margin,spread\n0.1,0.1\n");
+    assert_eq!((output.status.code(), text.as_str()), (Some(0), ""));
+    assert_eq!(
+        fs::read_to_string(&file).unwrap(),
+        "margin,spread,risk\n0.1,0.1,50\n"
+    );
+    // A folder opens, and cannot be read.
+    let (output, _) = flagred(&["eval", "flagred-paper.yaml", ".", "-o", out], "");
+    assert_eq!(output.status.code(), Some(3), "{}", errors(&output));
+    assert!(fs::read_to_string(&file).unwrap().starts_with("margin"));
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
 }
 
 #[test]
@@ -225,16 +313,16 @@ fn eval_keeps_order_over_blocks_and_threads() {
 #[test]
 fn eval_says_what_is_wrong_with_points() {
     for (points, code, said) in [
-        ("margin\n0.1\n", 2, "the points have no column `spread`"),
-        ("margin,spraed\n0.1,0.1\n", 2, "did you mean `spraed`?"),
-        ("margin,spread,spread\n1,1,1\n", 2, "two columns `spread`"),
-        ("margin,spread,risk\n1,1,1\n", 2, "a column `risk` already"),
+        ("", 3, "is empty"),
+        ("margin\n0.1\n", 3, "has no column `spread`"),
+        ("margin,spraed\n0.1,0.1\n", 3, "did you mean `spraed`?"),
+        ("margin;spread\n1;1\n", 3, "`--delimiter ';'`"),
         (
-            "margin,spread\n0.1,0.1\n0.1,wide\n",
+            "margin,spread,spread\n1,1,1\n",
             3,
-            "line 3: `wide` of `spread` is not a number",
+            "the column `spread` more than once",
         ),
-        ("margin,spread\n0.1\n", 3, "as many fields as the header"),
+        ("margin,spread,risk\n1,1,1\n", 2, "a column `risk` already"),
     ] {
         let (output, _) = flagred(&["eval", "flagred-paper.yaml"], points);
         assert_eq!(output.status.code(), Some(code), "{points}");

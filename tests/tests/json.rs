@@ -114,6 +114,128 @@ fn explain_and_check() {
     assert_eq!(document["model"], Value::Null);
 }
 
+/// The parts of the SARIF 2.1.0 schema that a reader of findings needs.
+#[test]
+fn check_as_sarif() {
+    let folder = Folder::new();
+    let broken = folder.file(
+        "br oken.yaml",
+        "fuzzy: 1\nname: x\nname: y\nrules: [nonsense]\n",
+    );
+    let output = flagred()
+        .args(["check", "--format", "sarif", PAPER, &broken])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let text = serde_json::json!({"type": "object", "properties": {"text": {"type": "string"}}, "required": ["text"]});
+    let number = serde_json::json!({"type": "integer", "minimum": 1});
+    let place = serde_json::json!({
+        "type": "object",
+        "properties": {
+            "artifactLocation": {"type": "object", "properties": {"uri": {"type": "string"}}, "required": ["uri"], "additionalProperties": false},
+            "region": {
+                "type": "object",
+                "properties": {"startLine": number, "startColumn": number, "endLine": number, "endColumn": number},
+                "required": ["startLine"],
+                "additionalProperties": false,
+            },
+        },
+        "required": ["artifactLocation", "region"],
+        "additionalProperties": false,
+    });
+    let location = serde_json::json!({
+        "type": "object",
+        "properties": {"physicalLocation": place, "message": text},
+        "required": ["physicalLocation"],
+        "additionalProperties": false,
+    });
+    let result = serde_json::json!({
+        "type": "object",
+        "properties": {
+            "ruleId": {"type": "string"},
+            "level": {"enum": ["none", "note", "warning", "error"]},
+            "message": text,
+            "locations": {"type": "array", "items": location},
+            "relatedLocations": {"type": "array", "items": location},
+        },
+        "required": ["message"],
+        "additionalProperties": false,
+    });
+    let schema = serde_json::json!({
+        "type": "object",
+        "properties": {
+            "$schema": {"type": "string"},
+            "version": {"const": "2.1.0"},
+            "runs": {"type": "array", "items": {
+                "type": "object",
+                "properties": {
+                    "tool": {"type": "object", "properties": {"driver": {
+                        "type": "object",
+                        "properties": {
+                            "name": {"type": "string"},
+                            "version": {"type": "string"},
+                            "rules": {"type": "array", "items": {"type": "object", "properties": {"id": {"type": "string"}}, "required": ["id"]}},
+                        },
+                        "required": ["name"],
+                        "additionalProperties": false,
+                    }}, "required": ["driver"], "additionalProperties": false},
+                    "columnKind": {"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
+                    "results": {"type": "array", "items": result},
+                },
+                "required": ["tool"],
+                "additionalProperties": false,
+            }},
+        },
+        "required": ["version", "runs"],
+        "additionalProperties": false,
+    });
+    let errors = schema::errors(&schema, &document);
+    assert!(errors.is_empty(), "{}", errors.join("\n"));
+
+    let run = &document["runs"][0];
+    let results = run["results"].as_array().unwrap();
+    let rules: Vec<&Value> = run["tool"]["driver"]["rules"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|r| &r["id"])
+        .collect();
+    assert!(
+        results
+            .iter()
+            .all(|result| rules.contains(&&result["ruleId"]))
+    );
+    let has = |level: &str| results.iter().filter(|r| r["level"] == level).count();
+    assert!(has("error") > 0 && has("warning") > 0);
+    let twice = results
+        .iter()
+        .find(|r| r["ruleId"] == "duplicate-key")
+        .unwrap();
+    let place = &twice["locations"][0]["physicalLocation"];
+    assert!(
+        place["artifactLocation"]["uri"]
+            .as_str()
+            .unwrap()
+            .ends_with("br%20oken.yaml")
+    );
+    assert_eq!(place["region"]["startLine"], 3);
+    assert_eq!(
+        twice["relatedLocations"][0]["physicalLocation"]["region"]["startLine"],
+        2
+    );
+
+    // As many lines on GitHub.
+    let output = flagred()
+        .args(["check", "--format", "github", PAPER, &broken])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(text.lines().count(), results.len());
+    assert!(text.lines().all(|line| line.starts_with("::")), "{text}");
+}
+
 #[test]
 fn watch() {
     let folder = Folder::new();

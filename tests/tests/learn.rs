@@ -251,6 +251,69 @@ fn the_shipped_rules_are_what_the_documented_command_learns() {
     );
 }
 
+/// What `learn` says of the directions is what `check --monotone` finds.
+#[test]
+fn directions_hold_or_are_refuted_with_the_place() {
+    let folder = Folder::new();
+    let rows = "margin,spread,risk\n0,0.2,90\n0,0,20\n0.1,0.1,75\n0.1,0.2,25\n0.2,0,60\n0.3,0,0\n0.3,0.2,30\n";
+    let data = folder.file("data.csv", rows);
+    let operators = "operators: {and: product, implication: product, aggregation: sum}\nrules";
+    for (variables, name, code) in [
+        (VARIABLES.to_owned(), "bent", 1),
+        (VARIABLES.replace("rules", operators), "straight", 0),
+    ] {
+        let model = folder.file(&format!("{name}.yaml"), variables);
+        let out = folder.at(&format!("{name}-learned.yaml"));
+        let arguments = [
+            &model,
+            &data,
+            "-o",
+            &out,
+            "--complete",
+            "--falling",
+            "margin",
+            "--rising",
+            "spread",
+            "--no-validation",
+        ];
+        let output = learn(&arguments);
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(code), "{name}: {said}");
+        let check = flagred()
+            .args([
+                "check",
+                &out,
+                "--monotone",
+                "margin:decreasing",
+                "spread:increasing",
+            ])
+            .output()
+            .unwrap();
+        let found = String::from_utf8_lossy(&check.stdout);
+        assert_eq!(found.contains("not-monotone"), code == 1, "{name}: {found}");
+        if code == 1 {
+            assert!(said.contains("monotone   no"), "{said}");
+            assert!(
+                said.contains("help: the same rules hold it with `operators:"),
+                "{said}"
+            );
+            let place = said
+                .lines()
+                .find(|line| line.contains("rises from"))
+                .unwrap()
+                .trim();
+            assert!(found.contains(place), "{place}: {found}");
+        } else {
+            assert!(said.contains("monotone   yes"), "{said}");
+            let text = fs::read_to_string(&out).unwrap();
+            assert!(text.contains("so that the output is monotone"), "{text}");
+        }
+        let output = learn(&[&arguments[..], &["--json", "--force"]].concat());
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["monotone"]["holds"], code == 0);
+    }
+}
+
 #[test]
 fn an_error_on_no_rows_is_unknown_and_not_nought() {
     let folder = Folder::new();

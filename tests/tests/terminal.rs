@@ -66,6 +66,7 @@ fn nothing_from_outside_acts_on_a_terminal() {
         (vec!["evaluate", "--rows", table], true),
         (vec!["check", rules], false),
         (vec!["check", faulty], true),
+        (vec!["check", faulty, "--format", "github"], true),
         (vec!["check", missing], true),
         (vec!["explain", rules, values[0], values[1]], true),
         (vec!["explain", rules, HOSTILE], true),

@@ -51,11 +51,6 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text.split_once('=').ok_or("write `KEY=VALUE`")?;
-    Ok((key.trim().to_owned(), value.trim().to_owned()))
-}
-
 /// What rows are made of.
 struct Plan {
     profile: Profile,

@@ -32,15 +32,18 @@ pub(super) fn open(path: &Path) -> Option<Result<Table, Failure>> {
     let first = text.lines().find(|line| !line.starts_with('#'))?;
     let mut columns = first.split(',').map(str::trim);
     let is_summary = columns.clone().any(|c| c == ERROR) && columns.all(|c| c != "t_s");
-    is_summary.then(|| Table::read(path))
+    is_summary.then(|| Table::read(path, b','))
 }
 
 pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
     let help = "a table of flights needs it for this profile";
-    let error = table.require(ERROR, help)?;
-    let crashed = table.column("crashed");
-    let vehicle = table.column("vehicle").or_else(|| table.column("frame"));
-    let kind = table.column("kind");
+    let error = table.header.require(ERROR, help)?;
+    let crashed = table.header.column("crashed");
+    let vehicle = table
+        .header
+        .column("vehicle")
+        .or_else(|| table.header.column("frame"));
+    let kind = table.header.column("kind");
     let mut recipes = Vec::new();
     for input in &plan.profile.inputs {
         let recipe = recipe(&input.source).ok_or_else(|| {
@@ -51,7 +54,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
             .help("make its rows from flight logs")
         })?;
         for column in recipe.columns {
-            table.require(column, help)?;
+            table.header.require(column, help)?;
         }
         recipes.push(recipe);
     }
@@ -91,7 +94,7 @@ pub(super) fn rows(table: &Table, plan: &Plan) -> Result<Rows, Failure> {
 pub(crate) fn refuse(table: &Table, bad: &BadCell) -> Failure {
     Failure::unreadable(format!(
         "`{}`, line {}, column `{}`: {}",
-        table.file, bad.line, bad.column, bad.problem
+        table.header.file, bad.line, bad.column, bad.problem
     ))
     .help("correct the cell or remove the row")
 }
@@ -107,7 +110,7 @@ type Make = fn(&[f64], f64, f64) -> f64;
 impl Recipe {
     /// The value in a row of a table that has the columns; without limits the effective range is the full one.
     pub(crate) fn value(&self, table: &Table, row: usize) -> Result<f64, BadCell> {
-        let cell = |name: &str| match table.column(name) {
+        let cell = |name: &str| match table.header.column(name) {
             Some(column) => table.number(row, column).map(Some),
             None => Ok(None),
         };

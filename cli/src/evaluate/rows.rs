@@ -22,7 +22,7 @@ enum Column {
 impl Column {
     /// Under one of the names, or from columns that a table of flights has.
     fn of(table: &Table, names: &[&str], source: &Source) -> Option<Column> {
-        let mut own = names.iter().filter_map(|name| table.column(name));
+        let mut own = names.iter().filter_map(|name| table.header.column(name));
         if let Some(column) = own.next() {
             return Some(Column::Own(column));
         }
@@ -30,7 +30,7 @@ impl Column {
         let has_all = recipe
             .columns
             .iter()
-            .all(|name| table.column(name).is_some());
+            .all(|name| table.header.column(name).is_some());
         has_all.then_some(Column::Of(recipe))
     }
 
@@ -50,14 +50,17 @@ pub(super) fn cases(
     path: &Path,
     estimators: &Estimators,
 ) -> Result<(Vec<Case>, Vec<String>), Failure> {
-    let table = Table::read(path)?;
-    let error = table.require(
+    let table = Table::read(path, b',')?;
+    let error = table.header.require(
         "att_rmse_deg",
         "without an attitude error nobody knows what was critical",
     )?;
-    let crashed = table.column("crashed");
-    let vehicle = table.column("vehicle").or_else(|| table.column("frame"));
-    let (kind, file) = (table.column("kind"), table.column("file"));
+    let crashed = table.header.column("crashed");
+    let vehicle = table
+        .header
+        .column("vehicle")
+        .or_else(|| table.header.column("frame"));
+    let (kind, file) = (table.header.column("kind"), table.header.column("file"));
     let mut notes = Vec::new();
     let profiles: Vec<Option<Vec<Column>>> = estimators
         .profiles

@@ -18,34 +18,17 @@ pub(super) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
     let inputs = model.inputs.iter();
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
-    if let Some((stray, _)) = arguments
-        .column
-        .iter()
-        .find(|(name, _)| !names.contains(&name.as_str()))
-    {
-        let failure = Failure::usage(format!("the rule set has no variable `{stray}`"));
-        let meant = fuzzy::diagnostic::suggest(stray, names.iter().copied());
-        return Err(failure.help_if(meant));
-    }
     let mut data = Data {
         rows: Vec::new(),
         refused: Vec::new(),
     };
     let mut groups: BTreeMap<String, u32> = BTreeMap::new();
     for path in &arguments.data {
-        let table = Table::read(path)?;
-        let columns = names
-            .iter()
-            .map(|name| {
-                let named = arguments.column.iter().find(|(n, _)| n == name);
-                let column = named.map_or(*name, |(_, column)| column.as_str());
-                let help = format!("or say which one it is with `--column {name}=COLUMN`");
-                table.require(column, &help)
-            })
-            .collect::<Result<Vec<usize>, Failure>>()?;
+        let table = Table::read(path, arguments.format.delimiter)?;
+        let columns = arguments.format.columns(&names, &table.header)?;
         let optional = |name: &Option<String>| {
             name.as_ref()
-                .map(|name| table.require(name, "or leave that option out"))
+                .map(|name| table.header.require(name, "or leave that option out"))
                 .transpose()
         };
         let weight = optional(&arguments.weight)?;
@@ -56,7 +39,7 @@ pub(super) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
                 table.number(row, column).unwrap_or_else(|cell| {
                     bad.push(format!(
                         "`{}`, line {}, column `{}`: {}",
-                        table.file, cell.line, cell.column, cell.problem
+                        table.header.file, cell.line, cell.column, cell.problem
                     ));
                     f64::NAN
                 })
@@ -72,7 +55,7 @@ pub(super) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
                 let name = table.text(row, column).to_owned();
                 *groups.entry(name).or_insert(next)
             });
-            let place = format!("`{}`, line {}", table.file, table.line(row));
+            let place = format!("`{}`, line {}", table.header.file, table.line(row));
             let row = Row {
                 values,
                 weight,

@@ -12,14 +12,17 @@ use flagred::{
 };
 use fuzzy::{
     Engine, Model,
+    check::{self, Counterexample},
     learn::{Direction, LearnError, Learned, Learner, Resolution, Settings},
     map::{DecisionMap, Grid},
+    model::{Aggregation, Conjunction, Implication},
 };
 
 use crate::{
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
     rule_set,
+    table::Format,
 };
 
 #[derive(clap::Args)]
@@ -56,21 +59,17 @@ pub(crate) struct Arguments {
     #[arg(long)]
     complete: bool,
 
-    /// The output must not fall when this input rises
+    /// The output must not fall when this input rises; where it does all the same, the exit code is 1
     #[arg(long, value_name = "INPUT")]
     rising: Vec<String>,
 
-    /// The output must not rise when this input rises
+    /// The output must not rise when this input rises; where it does all the same, the exit code is 1
     #[arg(long, value_name = "INPUT")]
     falling: Vec<String>,
 
     /// Add the learned rules to those of MODEL
     #[arg(long)]
     keep_rules: bool,
-
-    /// Read a variable from a column of another name: `margin=margin_mean`
-    #[arg(long, value_name = "NAME=COLUMN", value_parser = super::dataset::pair)]
-    column: Vec<(String, String)>,
 
     /// The column with the weights of the rows
     #[arg(long, value_name = "COLUMN")]
@@ -84,9 +83,8 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with = "group_by")]
     no_validation: bool,
 
-    /// Skip rows that cannot be used, instead of stopping at them
-    #[arg(long)]
-    skip_bad_rows: bool,
+    #[command(flatten)]
+    format: Format,
 
     /// Compare the methods of interpolation on rows whose rule is left out
     #[arg(long)]
@@ -117,6 +115,8 @@ struct Outcome {
     after_filling: f64,
     errors: Option<Errors>,
     gaps: Option<GapComparison>,
+    /// Where the output does not go the way that was asked for.
+    counterexamples: Vec<Counterexample>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -147,13 +147,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             Err(refusal) => refused.push(format!("{place}: {refusal}")),
         }
     }
-    if !refused.is_empty() && (!arguments.skip_bad_rows || rows.is_empty()) {
+    if !refused.is_empty() && (!arguments.format.skip_bad_rows || rows.is_empty()) {
         return Err(bad_rows(&refused));
     }
     let learned = learner.finish();
     let gap = GapSettings::default();
     let examined = |error: flagred::learning::ExamineError| Failure::unreadable(error.to_string());
     let (coverage, after_filling) = coverage(&learned.model, &gap)?;
+    let counterexamples = counterexamples(arguments, &learned.model)?;
     let outcome = Outcome {
         kept: model.rules.len(),
         refused_count: refused.len(),
@@ -172,6 +173,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             false => None,
         },
         learned,
+        counterexamples,
     };
     output.write(&report::rule_set(arguments, &outcome, &text))?;
     let mut out = Stdout::beside(&[&output]);
@@ -183,7 +185,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         report::words(&mut out, arguments, &outcome)?;
     }
     out.finish()?;
-    Ok(Exit::Clean)
+    Ok(match outcome.counterexamples.as_slice() {
+        [] => Exit::Clean,
+        _ => Exit::Findings,
+    })
 }
 
 fn settings(arguments: &Arguments) -> Settings {
@@ -206,6 +211,48 @@ fn settings(arguments: &Arguments) -> Settings {
     }
 }
 
+/// Where the learned rules contradict `--rising` and `--falling`, as `flagred check --monotone` finds it.
+fn counterexamples(arguments: &Arguments, model: &Model) -> Result<Vec<Counterexample>, Failure> {
+    let claims: Vec<check::Monotone> = claims(arguments).collect();
+    let engine = Engine::new(model).map_err(unusable)?;
+    check::counterexamples(&engine, &claims).map_err(unusable)
+}
+
+fn claims(arguments: &Arguments) -> impl Iterator<Item = check::Monotone> {
+    let claim = |input: &String, direction| check::Monotone {
+        input: input.clone(),
+        direction,
+        output: None,
+    };
+    let rising = arguments.rising.iter();
+    let rising = rising.map(move |input| claim(input, check::Direction::Increasing));
+    let falling = arguments.falling.iter();
+    rising.chain(falling.map(move |input| claim(input, check::Direction::Decreasing)))
+}
+
+/// What would make the output monotone, where that is known: inference by product and sum does not bend monotone rules where
+/// every combination of terms has one.
+fn monotone_help(arguments: &Arguments, outcome: &Outcome) -> Option<&'static str> {
+    let mut model = outcome.learned.model.clone();
+    model.operators.and = Conjunction::Product;
+    model.operators.implication = Implication::Product;
+    model.operators.aggregation = Aggregation::Sum;
+    let holds = counterexamples(arguments, &model).is_ok_and(|found| found.is_empty());
+    match (holds, outcome.learned.missing) {
+        (true, _) => Some(
+            "the same rules hold it with `operators: {and: product, implication: product, aggregation: sum}`",
+        ),
+        (false, 0) => None,
+        (false, _) => Some(
+            "combinations of terms without a rule may be the cause: `--complete` adds rules for them",
+        ),
+    }
+}
+
+fn unusable(error: impl std::fmt::Display) -> Failure {
+    Failure::unreadable(format!("the learned rules cannot be used: {error}"))
+}
+
 fn bad_rows(refused: &[String]) -> Failure {
     const SHOWN: usize = 20;
     let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();
@@ -222,14 +269,11 @@ fn bad_rows(refused: &[String]) -> Failure {
 
 /// The shares of the map that rules cover, and that have a value after filling.
 fn coverage(model: &Model, gap: &GapSettings) -> Result<(f64, f64), Failure> {
-    let unusable = |error: &dyn std::fmt::Display| {
-        Failure::unreadable(format!("the learned rules cannot be used: {error}"))
-    };
-    let engine = Engine::new(model).map_err(|error| unusable(&error))?;
+    let engine = Engine::new(model).map_err(unusable)?;
     let points = crate::map::points_along(model.inputs.len());
-    let grid = Grid::new(&engine, points).map_err(|error| unusable(&error))?;
-    let map = DecisionMap::new(&engine, grid, 0).map_err(|error| unusable(&error))?;
-    let filling = Filling::new(&engine, model, 0, gap).map_err(|error| unusable(&error))?;
+    let grid = Grid::new(&engine, points).map_err(unusable)?;
+    let map = DecisionMap::new(&engine, grid, 0).map_err(unusable)?;
+    let filling = Filling::new(&engine, model, 0, gap).map_err(unusable)?;
     let filled = FilledMap::new(map, filling);
     let cells = filled.map().grid().cells();
     let known = (0..cells).filter(|cell| filled.value(*cell).is_some());

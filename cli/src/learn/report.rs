@@ -6,7 +6,7 @@ use flagred::{
     gap::GapMethod,
     learning::{Errors, MethodErrors},
 };
-use fuzzy::drawing::visible;
+use fuzzy::{check::Counterexample, drawing::visible};
 use serde::Serialize;
 
 use super::{Arguments, Outcome, Resolve};
@@ -82,6 +82,23 @@ pub(super) fn words(
     for antecedent in learned.missing_antecedents.iter().take(SHOWN) {
         writeln!(out, "           {}", visible(&antecedent.to_string()))?;
     }
+    let asked = super::claims(arguments).count();
+    if asked > 0 {
+        let found = &outcome.counterexamples;
+        let holds = if found.is_empty() { "yes" } else { "no" };
+        writeln!(
+            out,
+            "monotone   {holds}; {} rules have another consequent for it",
+            learned.moved
+        )?;
+        for found in found {
+            writeln!(out, "           {}", visible(&found.to_string()))?;
+        }
+        let help = (!found.is_empty()).then(|| super::monotone_help(arguments, outcome));
+        if let Some(help) = help.flatten() {
+            writeln!(out, "           help: {help}")?;
+        }
+    }
     writeln!(
         out,
         "coverage   {:.1} % of the map by rules, {:.1} % after filling ({})",
@@ -153,6 +170,8 @@ pub(super) struct Document<'a> {
     conflicts: u64,
     left_out: u64,
     missing: Missing,
+    /// `None` where no direction was asked for.
+    monotone: Option<Monotone<'a>>,
     coverage: Coverage,
     /// `None` where rows were too few, or validation was not wanted.
     cross_validation: Option<&'a Errors>,
@@ -177,6 +196,13 @@ struct Rules {
 struct Missing {
     count: u64,
     antecedents: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Monotone<'a> {
+    holds: bool,
+    moved: u64,
+    counterexamples: &'a [Counterexample],
 }
 
 #[derive(Serialize)]
@@ -223,6 +249,11 @@ impl<'a> Document<'a> {
                 count: learned.missing,
                 antecedents: missing.map(ToString::to_string).collect(),
             },
+            monotone: (super::claims(arguments).count() > 0).then(|| Monotone {
+                holds: outcome.counterexamples.is_empty(),
+                moved: learned.moved,
+                counterexamples: &outcome.counterexamples,
+            }),
             coverage: Coverage {
                 by_rules: outcome.coverage,
                 after_filling: outcome.after_filling,

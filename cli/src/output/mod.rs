@@ -33,6 +33,11 @@ pub(crate) fn csv_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the table is CSV", &["csv", "txt"])
 }
 
+/// A file for a table with whatever between its cells. A log that stands here by mistake is not replaced.
+pub(crate) fn table_path(text: &str) -> Result<PathBuf, String> {
+    path_of(text, "the table is CSV", &["csv", "tsv", "txt"])
+}
+
 fn path_of(text: &str, what: &str, extensions: &[&str]) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let fits = |other: &std::ffi::OsStr| extensions.iter().any(|e| other.eq_ignore_ascii_case(e));

@@ -334,34 +334,8 @@ impl At<'_> {
     fn counterexample(&self, one: &Counterexample) -> Diagnostic {
         let claim = &one.claim;
         let output = claim.output.as_deref().unwrap_or("");
-        let does = match claim.direction {
-            Direction::Increasing => "falls",
-            Direction::Decreasing => "rises",
-        };
-        let from = one
-            .at
-            .iter()
-            .find(|c| c.input == claim.input)
-            .map_or(0.0, |c| c.value);
-        let others: Vec<Coordinate> = one
-            .at
-            .iter()
-            .filter(|c| c.input != claim.input)
-            .cloned()
-            .collect();
-        let held = match others.as_slice() {
-            [] => String::new(),
-            others => format!(" at {}", coordinates(others)),
-        };
-        let message = format!(
-            "`{output}` {does} from {} to {} as `{}` rises from {} to {}{held}",
-            shown(one.from_value),
-            shown(one.to_value),
-            claim.input,
-            shown(from),
-            shown(one.to)
-        );
-        Diagnostic::warning("not-monotone", self.name(output), message).help(format!(
+        let does = claim.direction.contradicted();
+        Diagnostic::warning("not-monotone", self.name(output), one.to_string()).help(format!(
             "it is claimed that it never {does}; look at the rules that fire there"
         ))
     }
@@ -381,7 +355,7 @@ impl At<'_> {
     }
 }
 
-fn coordinates(at: &[Coordinate]) -> String {
+pub(super) fn coordinates(at: &[Coordinate]) -> String {
     /// With very many inputs only the first ones are listed.
     const MOST: usize = 6;
     let all = at

@@ -140,9 +140,7 @@ pub struct Report {
 /// ```
 pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed::Box<Diagnostic>> {
     let model = engine.model();
-    for claim in &options.monotone {
-        known(model, claim)?;
-    }
+    let counterexamples = counterexamples(engine, &options.monotone)?;
     let (first, later) = stages(model);
     let stages: Vec<Stage<'_>> = core::iter::once(first).chain(later).collect();
     let never_firing = never_firing(&stages);
@@ -154,10 +152,6 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
     });
     let holes = model.inputs.iter().chain(read).flat_map(terms::holes);
     let mut probe = probe::Probe::new(model, engine);
-    let claims = options.monotone.iter();
-    let counterexamples = claims
-        .flat_map(|claim| probe.counterexamples(claim))
-        .collect();
     // With another aggregation a rule adds to the result even where a wider one fires.
     let merging = model.operators.aggregation == Aggregation::Maximum;
     Ok(Report {
@@ -178,6 +172,38 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
         counterexamples,
         jumps: probe.jumps(),
     })
+}
+
+/// The worst counterexample to each claim about an output, from evaluations at many points; none where the claims hold there.
+///
+/// # Errors
+/// A claim about an input or output that the model does not have.
+///
+/// # Example: a slower fan in the greatest heat
+/// ```
+/// use fuzzy::{Engine, Model, check};
+///
+/// let model: Model = "
+/// fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 40], partition: [low, medium, high]}}
+/// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+/// rules: [IF heat IS medium THEN speed IS fast, IF heat IS high THEN speed IS slow]
+/// ".parse()?;
+/// let found = check::counterexamples(&Engine::new(&model)?, &["heat:increasing".parse()?])?;
+/// assert_eq!((found[0].at[0].value, found[0].to), (20.0, 40.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn counterexamples(
+    engine: &Engine,
+    claims: &[Monotone],
+) -> Result<Vec<Counterexample>, alloc::boxed::Box<Diagnostic>> {
+    for claim in claims {
+        known(engine.model(), claim)?;
+    }
+    let mut probe = probe::Probe::new(engine.model(), engine);
+    let found = claims.iter().flat_map(|claim| probe.counterexamples(claim));
+    Ok(found.collect())
 }
 
 /// Checks a rule set that was read: its errors, or else the analysis, as located findings.

@@ -1,9 +1,13 @@
 //! Whether outputs are monotone as claimed.
 
 use alloc::{string::String, vec::Vec};
-use core::str::FromStr;
+use core::{fmt, str::FromStr};
 
-use super::probe::{Coordinate, Line, NOTABLE, Probe};
+use super::{
+    findings::coordinates,
+    probe::{Coordinate, Line, NOTABLE, Probe},
+    shown,
+};
 
 /// A claim about an output: it never falls, or never rises, when an input rises.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,6 +30,16 @@ pub enum Direction {
     Increasing,
     /// It never rises.
     Decreasing,
+}
+
+impl Direction {
+    /// What an output does that contradicts it.
+    pub(super) fn contradicted(self) -> &'static str {
+        match self {
+            Direction::Increasing => "falls",
+            Direction::Decreasing => "rises",
+        }
+    }
 }
 
 impl FromStr for Monotone {
@@ -67,6 +81,33 @@ pub struct Counterexample {
     pub from_value: f64,
     /// The output at the larger value.
     pub to_value: f64,
+}
+
+/// `` `speed` falls from 6 to 3 as `heat` rises from 20 to 40 at humidity = 50 ``
+impl fmt::Display for Counterexample {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let claim = &self.claim;
+        let (along, others): (Vec<Coordinate>, Vec<Coordinate>) = self
+            .at
+            .iter()
+            .cloned()
+            .partition(|c| c.input == claim.input);
+        write!(
+            f,
+            "`{}` {} from {} to {} as `{}` rises from {} to {}",
+            claim.output.as_deref().unwrap_or(""),
+            claim.direction.contradicted(),
+            shown(self.from_value),
+            shown(self.to_value),
+            claim.input,
+            shown(along.first().map_or(0.0, |c| c.value)),
+            shown(self.to)
+        )?;
+        match others.as_slice() {
+            [] => Ok(()),
+            others => write!(f, " at {}", coordinates(others)),
+        }
+    }
 }
 
 impl Probe<'_> {

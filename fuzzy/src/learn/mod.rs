@@ -15,6 +15,7 @@ use crate::{
     rule::{Condition, Name},
 };
 
+mod monotone;
 mod resolve;
 mod settings;
 #[cfg(test)]
@@ -77,6 +78,8 @@ pub struct Learned {
     pub left_out: u64,
     /// The number of rules completed from their neighbours.
     pub completed: u64,
+    /// The number of rules whose consequent was moved for [`Settings::monotone`].
+    pub moved: u64,
 }
 
 impl Learned {

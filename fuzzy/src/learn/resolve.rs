@@ -2,7 +2,7 @@
 
 use alloc::{boxed::Box, collections::BTreeMap, format, string::String, vec, vec::Vec};
 
-use super::{Cell, Direction, Learned, Learner, Resolution, Votes, antecedent, highest};
+use super::{Cell, Learned, Learner, Resolution, Votes, antecedent, highest, monotone};
 use crate::{
     model::{Beaten, Rule, Variable},
     rule::{Consequent, Name},
@@ -11,17 +11,14 @@ use crate::{
 /// The most antecedents that are completed or made monotone.
 const MOST_COMPLETED: u64 = 1_000_000;
 
-/// The most rounds of averaging neighbours. Averages settle long before.
-const MOST_ROUNDS: usize = 1000;
-
 /// The consequent of an antecedent.
-struct Decision {
+pub(super) struct Decision {
     /// The value of the output.
-    value: f64,
+    pub(super) value: f64,
     /// The index of the output's term; `None` where the value decides.
-    term: Option<u16>,
-    confidence: Option<f64>,
-    note: Option<String>,
+    pub(super) term: Option<u16>,
+    pub(super) confidence: Option<f64>,
+    pub(super) note: Option<String>,
 }
 
 pub(super) fn resolve(learner: &Learner) -> Learned {
@@ -34,6 +31,7 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
         missing_antecedents: Vec::new(),
         left_out: 0,
         completed: 0,
+        moved: 0,
     };
     let Some(output) = model.outputs.first().map(|o| &o.variable) else {
         return learned;
@@ -64,7 +62,7 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
             learned.completed = complete(&shape, &mut decisions);
         }
         if !learner.settings.monotone.is_empty() {
-            make_monotone(learner, &shape, &mut decisions);
+            learned.moved = monotone::enforce(learner, output, &mut decisions);
         }
     }
     learned.missing = antecedents - decisions.len() as u64;
@@ -122,7 +120,7 @@ fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> D
 }
 
 /// The confidence of a consequent, in [0, 1].
-fn degree(learner: &Learner, cell: &Cell, votes: Option<&Votes>) -> f64 {
+pub(super) fn degree(learner: &Learner, cell: &Cell, votes: Option<&Votes>) -> f64 {
     let Some(votes) = votes else {
         return 0.0;
     };
@@ -143,7 +141,7 @@ fn degree(learner: &Learner, cell: &Cell, votes: Option<&Votes>) -> f64 {
 }
 
 /// The index of the term with the highest membership, or with the nearest peak where every membership is 0.
-fn nearest_term(output: &Variable, peaks: &[f64], value: f64) -> u16 {
+pub(super) fn nearest_term(output: &Variable, peaks: &[f64], value: f64) -> u16 {
     if let Some((term, _)) = highest(output, value) {
         return term;
     }
@@ -252,74 +250,4 @@ fn complete(shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) -> u6
         }
     }
     completed
-}
-
-/// Averages neighbours that contradict the direction until none does.
-fn make_monotone(learner: &Learner, shape: &[u16], decisions: &mut BTreeMap<Box<[u16]>, Decision>) {
-    let directions: Vec<Option<Direction>> = learner
-        .model
-        .inputs
-        .iter()
-        .map(|input| {
-            let mut monotone = learner.settings.monotone.iter();
-            let found = monotone.find(|(name, _)| *name == input.name);
-            found.map(|(_, direction)| *direction)
-        })
-        .collect();
-    let keys: Vec<Vec<u16>> = every_antecedent(shape).collect();
-    let index = |terms: &[u16]| {
-        terms.iter().zip(shape).fold(0usize, |index, (term, n)| {
-            index * usize::from(*n) + usize::from(*term)
-        })
-    };
-    let mut values: Vec<Option<f64>> = keys
-        .iter()
-        .map(|terms| decisions.get(terms.as_slice()).map(|d| d.value))
-        .collect();
-    let before = values.clone();
-    for _ in 0..MOST_ROUNDS {
-        let mut largest = 0.0_f64;
-        for (axis, direction) in directions.iter().enumerate() {
-            let Some(direction) = direction else {
-                continue;
-            };
-            for terms in &keys {
-                let mut next = terms.clone();
-                if let Some(term) = next.get_mut(axis) {
-                    *term += 1;
-                }
-                if next.get(axis) >= shape.get(axis) {
-                    continue;
-                }
-                let (here, there) = (index(terms), index(&next));
-                let (Some(Some(a)), Some(Some(b))) = (values.get(here), values.get(there)) else {
-                    continue;
-                };
-                let against = match direction {
-                    Direction::Rising => a - b,
-                    Direction::Falling => b - a,
-                };
-                if against > 0.0 {
-                    let mean = Some((a + b) / 2.0);
-                    values[here] = mean;
-                    values[there] = mean;
-                    largest = largest.max(against);
-                }
-            }
-        }
-        if largest < 1e-9 {
-            break;
-        }
-    }
-    for ((terms, old), new) in keys.iter().zip(before).zip(values) {
-        let Some(decision) = decisions.get_mut(terms.as_slice()) else {
-            continue;
-        };
-        if let (Some(old), Some(new)) = (old, new)
-            && old != new
-        {
-            decision.value = new;
-            decision.term = None;
-        }
-    }
 }

@@ -80,7 +80,9 @@ pub struct Settings {
     /// Whether an antecedent without a rule gets that of the nearest one: by the number of steps between terms, and the
     /// highest output of equally near ones. The note of the rule says so.
     pub complete: bool,
-    /// Inputs in which the output is made monotone, by averaging neighbouring antecedents that contradict it.
+    /// Inputs in which the consequents are made monotone, by pooling neighbouring antecedents that contradict it. The rules of
+    /// the model itself stay, and inference may bend monotone rules: `check::counterexamples`
+    /// tells whether the output is monotone.
     pub monotone: Vec<(String, Direction)>,
 }
 

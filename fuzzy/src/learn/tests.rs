@@ -214,6 +214,54 @@ fn rules_can_be_completed_and_made_monotone() {
     }
 }
 
+/// Terms in any order, and antecedents without a rule between others.
+#[test]
+fn rules_are_monotone_over_gaps_and_in_the_order_of_the_terms() {
+    let model = crate::yaml::parse(
+        "
+fuzzy: 1
+name: fan
+inputs:
+  heat: {range: [0, 40], terms: {high: {right_shoulder: [30, 40]}, low: {left_shoulder: [0, 10]}, mild: {triangle: [0, 10, 20]}, warm: {triangle: [20, 30, 40]}, medium: {triangle: [10, 20, 30]}}}
+outputs:
+  speed: {range: [0, 100], terms: {fast: {triangle: [50, 100, 150]}, slow: {triangle: [-50, 0, 50]}, medium: {triangle: [0, 50, 100]}}}
+rules: []
+",
+    )
+    .unwrap()
+    .model;
+    let settings = Settings {
+        monotone: vec![("heat".into(), Direction::Rising)],
+        ..Settings::default()
+    };
+    let mut learner = Learner::new(&model, settings).unwrap();
+    // Nothing at mild and warm; the single fast sample in the cold stands against many slow ones.
+    learner.add(&[0.0, 100.0], 1.0).unwrap();
+    for _ in 0..9 {
+        learner.add(&[20.0, 0.0], 1.0).unwrap();
+    }
+    learner.add(&[40.0, 50.0], 1.0).unwrap();
+    let learned = learner.finish();
+    assert_eq!(learned.moved, 1);
+    assert_eq!(
+        words(&learned),
+        [
+            "IF heat IS high THEN speed IS medium",
+            "IF heat IS low THEN speed IS slow",
+            "IF heat IS medium THEN speed IS slow",
+        ]
+    );
+    let moved = &learned.model.rules[1];
+    assert_eq!(
+        (moved.confidence, moved.against[0].term.as_str()),
+        (Some(0.0), "fast")
+    );
+    assert_eq!(
+        moved.note.as_deref(),
+        Some("moved from fast, so that the output is monotone")
+    );
+}
+
 #[test]
 fn rules_that_the_model_has_are_kept() {
     let mut model = variables();

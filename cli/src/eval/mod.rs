@@ -1,0 +1,183 @@
+//! `flagred eval`: a rule set at many points, from CSV to CSV.
+
+mod pipeline;
+mod rows;
+mod tally;
+
+use std::{
+    borrow::Cow,
+    io::{self, Write as _},
+    path::{Path, PathBuf},
+};
+
+use fuzzy::Engine;
+
+use self::tally::Tally;
+
+use crate::{
+    failure::{Exit, Failure},
+    output::{self, Files, Replace, Stdout, number_or_cell},
+    rule_set,
+    table::{self, Format, Header},
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The rule set in YAML
+    #[arg(value_name = "MODEL")]
+    model: PathBuf,
+
+    /// A table with a column for each input; other columns are copied. `-` is standard input
+    #[arg(value_name = "POINTS.csv", default_value = "-")]
+    points: PathBuf,
+
+    /// The file for the table with the outputs; `-` is standard output
+    #[arg(short, long, value_name = "OUT.csv", default_value = "-", value_parser = output::table_path)]
+    output: PathBuf,
+
+    /// Add columns about how the outputs come about
+    #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
+    with: Vec<With>,
+
+    #[command(flatten)]
+    format: Format,
+}
+
+/// A column about how the outputs of a row come about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum With {
+    /// The largest firing strength of a rule, from 0 to 1
+    Coverage,
+    /// The number of the rule with that strength, from 1
+    Rule,
+    /// The inputs that are outside their range and clamped to it
+    Clamped,
+    /// Why the row has no value
+    Error,
+}
+
+impl With {
+    fn name(self) -> &'static str {
+        match self {
+            With::Coverage => "coverage",
+            With::Rule => "rule",
+            With::Clamped => "clamped",
+            With::Error => "error",
+        }
+    }
+}
+
+/// What is done with each row.
+struct Plan {
+    engine: Engine,
+    header: Header,
+    /// The column of each input.
+    inputs: Vec<usize>,
+    /// The input that each column holds.
+    input_of: Vec<Option<usize>>,
+    with: Vec<With>,
+    delimiter: u8,
+    skip_bad_rows: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut files = Files::reading([&arguments.model, &arguments.points])?;
+    let output = files.output(&arguments.output, Replace::Yes)?;
+    let (_, engine) = rule_set::load(&arguments.model)?;
+    let format = &arguments.format;
+    let (header, reader) = table::open(&arguments.points, format.delimiter)?;
+    let names: Vec<&str> = engine.input_names().collect();
+    let inputs = format.columns(&names, &header)?;
+    let mut with = Vec::new();
+    for column in &arguments.with {
+        if !with.contains(column) {
+            with.push(*column);
+        }
+    }
+    let plan = Plan {
+        input_of: (0..header.names.len())
+            .map(|column| inputs.iter().position(|input| *input == column))
+            .collect(),
+        inputs,
+        engine,
+        header,
+        with,
+        delimiter: format.delimiter,
+        skip_bad_rows: format.skip_bad_rows,
+    };
+    let head = plan.head()?;
+    let tally = if output.is_stdout() {
+        let mut out = Stdout::data();
+        out.write_all(&head)?;
+        // A stream may have no end; of a file the rest is evaluated, for what is to be said of it.
+        let is_stream = arguments.points == Path::new("-");
+        let is_read = |out: &Stdout| !(is_stream && out.is_closed());
+        let evaluated = pipeline::run(&plan, reader, &mut out, is_read)?;
+        out.finish()?;
+        evaluated?
+    } else {
+        let (mut tally, mut failed) = (Tally::new(&plan), None);
+        let written = output.write_with(|out| {
+            out.write_all(&head)?;
+            match pipeline::run(&plan, reader, out, |_| true)? {
+                Ok(of_rows) => tally = of_rows,
+                Err(failure) => failed = Some(failure),
+            }
+            // A part of a table is not kept.
+            failed
+                .as_ref()
+                .map_or(Ok(()), |_| Err(io::ErrorKind::InvalidData.into()))
+        });
+        failed.map_or(written, Err)?;
+        tally
+    };
+    tally.say(&plan);
+    Ok(if tally.is_complete(&plan) {
+        Exit::Clean
+    } else {
+        Exit::Findings
+    })
+}
+
+impl Plan {
+    fn writer<'b>(&self, buffer: &'b mut Vec<u8>) -> csv::Writer<&'b mut Vec<u8>> {
+        csv::WriterBuilder::new()
+            .delimiter(self.delimiter)
+            // A row that begins like a comment is put in quotes.
+            .comment(Some(b'#'))
+            .from_writer(buffer)
+    }
+
+    /// The first row of what is written.
+    fn head(&self) -> Result<Vec<u8>, Failure> {
+        let outputs: Vec<&str> = self.engine.output_names().collect();
+        let of_outputs = |word: &str| match outputs.as_slice() {
+            [_] => vec![word.to_owned()],
+            several => several
+                .iter()
+                .map(|output| format!("{output}_{word}"))
+                .collect(),
+        };
+        let mut added: Vec<String> = outputs.iter().map(|output| (*output).to_owned()).collect();
+        for with in &self.with {
+            added.extend(match with {
+                With::Coverage | With::Rule => of_outputs(with.name()),
+                With::Clamped | With::Error => vec![with.name().to_owned()],
+            });
+        }
+        if let Some(name) = added.iter().find(|name| self.header.column(name).is_some()) {
+            return Err(
+                Failure::usage(format!("the points have a column `{name}` already"))
+                    .help("the results go into a column of that name; rename yours"),
+            );
+        }
+        let copied = self.header.names.iter().map(|name| number_or_cell(name));
+        let added = added.iter().map(|name| output::cell(name));
+        let mut head = Vec::new();
+        let mut writer = self.writer(&mut head);
+        writer.write_record(copied.chain(added).map(Cow::into_owned))?;
+        writer.flush()?;
+        drop(writer);
+        Ok(head)
+    }
+}

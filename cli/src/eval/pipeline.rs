@@ -1,0 +1,114 @@
+//! One thread reads blocks of rows, some evaluate them, and the caller's writes them, in their order. Memory does not grow
+//! with the table.
+
+use std::{
+    io::{self, Write},
+    sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel},
+    thread,
+};
+
+use super::{
+    Plan,
+    rows::{Block, Evaluator},
+    tally::Tally,
+};
+use crate::{
+    failure::Failure,
+    table::{self, Reader},
+};
+
+/// Blocks that wait for a thread.
+const WAITING: usize = 2;
+
+/// A block that was evaluated.
+type Done = Result<(Block, Tally), Failure>;
+
+/// Evaluates and writes rows to the end of the table, or while `is_read`.
+///
+/// # Errors
+/// The output cannot be written. That the table cannot be read to its end is told inside, after all rows before.
+pub(super) fn run<W: Write + ?Sized>(
+    plan: &Plan,
+    reader: Reader,
+    out: &mut W,
+    is_read: impl Fn(&W) -> bool,
+) -> io::Result<Result<Tally, Failure>> {
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        let (spare, spares) = channel();
+        // Each thread has every n-th block, so their order is known.
+        let (to_threads, from_threads): (Vec<_>, Vec<_>) = (0..threads)
+            .map(|_| {
+                let (to_thread, blocks) = sync_channel(WAITING);
+                let (done, from_thread) = sync_channel(WAITING);
+                scope.spawn(move || evaluate(plan, blocks, done));
+                (to_thread, from_thread)
+            })
+            .unzip();
+        let reading = scope.spawn(move || read(plan, reader, &to_threads, &spares));
+        let written = write(plan, from_threads, &spare, out, is_read);
+        let read = reading.join().unwrap_or_else(|_| {
+            Err(Failure::unreadable(
+                "the thread that reads the points ended early",
+            ))
+        });
+        let tally = written?;
+        Ok(tally.and_then(|tally| read.map(|()| tally)))
+    })
+}
+
+fn read(
+    plan: &Plan,
+    mut reader: Reader,
+    threads: &[SyncSender<Block>],
+    spares: &Receiver<Block>,
+) -> Result<(), Failure> {
+    for thread in threads.iter().cycle() {
+        let mut block = spares.try_recv().unwrap_or_default();
+        let read = block.read(&mut reader);
+        let is_last = !matches!(read, Ok(true));
+        let is_gone = thread.send(block).is_err();
+        read.map_err(|error| table::broken(&plan.header.file, &error))?;
+        if is_last || is_gone {
+            break;
+        }
+    }
+    Ok(())
+}
+
+fn evaluate(plan: &Plan, blocks: Receiver<Block>, done: SyncSender<Done>) {
+    let mut evaluator = Evaluator::new(plan);
+    for mut block in blocks {
+        let evaluated = evaluator.evaluate(&mut block);
+        if done.send(evaluated.map(|tally| (block, tally))).is_err() {
+            break;
+        }
+    }
+}
+
+fn write<W: Write + ?Sized>(
+    plan: &Plan,
+    threads: Vec<Receiver<Done>>,
+    spare: &Sender<Block>,
+    out: &mut W,
+    is_read: impl Fn(&W) -> bool,
+) -> io::Result<Result<Tally, Failure>> {
+    let mut tally = Tally::new(plan);
+    for thread in threads.iter().cycle() {
+        // The first thread without a block has come to the end of the table.
+        match thread.recv() {
+            Err(_) => break,
+            Ok(Err(failure)) => return Ok(Err(failure)),
+            Ok(Ok((block, of_block))) => {
+                out.write_all(&block.written)?;
+                tally.merge(of_block);
+                // Where the table is read to its end, nothing is left to read into it.
+                let _ = spare.send(block);
+            }
+        }
+        if !is_read(out) {
+            break;
+        }
+    }
+    Ok(Ok(tally))
+}

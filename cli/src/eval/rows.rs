@@ -1,0 +1,272 @@
+//! Rows of a table, evaluated and written as CSV.
+
+use csv::ByteRecord;
+use fuzzy::engine::{Outcome, State};
+
+use super::{Plan, With, tally::Tally};
+use crate::{
+    failure::Failure,
+    output::{cell, number_or_cell},
+    table::{Cell, Reader},
+};
+
+/// The most rows of a block.
+const ROWS: usize = 4096;
+/// Bytes of text that are enough for a block: rows may be long.
+const BLOCK_BYTES: usize = 16_000_000;
+
+/// Rows that are read, evaluated and written together.
+#[derive(Default)]
+pub(super) struct Block {
+    /// The rows, and behind them records to read into.
+    records: Vec<ByteRecord>,
+    rows: usize,
+    /// The rows as they are written.
+    pub(super) written: Vec<u8>,
+}
+
+impl Block {
+    /// Reads rows, and says whether there may be more.
+    pub(super) fn read(&mut self, reader: &mut Reader) -> csv::Result<bool> {
+        self.records.resize_with(ROWS, ByteRecord::new);
+        self.rows = 0;
+        let mut bytes = 0;
+        for record in &mut self.records {
+            if !reader.read_byte_record(record)? {
+                return Ok(false);
+            }
+            self.rows += 1;
+            bytes += record.as_slice().len();
+            if bytes > BLOCK_BYTES {
+                break;
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// Evaluates blocks in memory of its own.
+pub(super) struct Evaluator<'p> {
+    plan: &'p Plan,
+    /// The values of each input.
+    columns: Vec<Vec<f64>>,
+    /// Those of the first row, then of the second.
+    outcomes: Vec<Outcome>,
+    /// For each row what is wrong with it.
+    problems: Vec<Option<String>>,
+}
+
+impl<'p> Evaluator<'p> {
+    pub(super) fn new(plan: &'p Plan) -> Evaluator<'p> {
+        Evaluator {
+            plan,
+            columns: vec![Vec::new(); plan.inputs.len()],
+            outcomes: Vec::new(),
+            problems: Vec::new(),
+        }
+    }
+
+    /// Evaluates the rows of a block, and counts what is to be said of them.
+    pub(super) fn evaluate(&mut self, block: &mut Block) -> Result<Tally, Failure> {
+        let plan = self.plan;
+        let records = block.records.get(..block.rows).unwrap_or_default();
+        self.columns.iter_mut().for_each(Vec::clear);
+        self.problems.clear();
+        for record in records {
+            let problem = self.read(record);
+            self.problems.push(problem);
+        }
+        let columns: Vec<&[f64]> = self.columns.iter().map(Vec::as_slice).collect();
+        let outputs = plan.engine.output_names().len();
+        self.outcomes
+            .resize(block.rows * outputs, Outcome::default());
+        plan.engine
+            .evaluate_batch_into(&columns, &mut self.outcomes)
+            .map_err(Failure::unreadable)?;
+
+        let mut tally = Tally::new(plan);
+        tally.rows = block.rows as u64;
+        block.written.clear();
+        let mut writer = plan.writer(&mut block.written);
+        let outcomes = self.outcomes.chunks_exact(outputs);
+        for (row, (record, outcomes)) in records.iter().zip(outcomes).enumerate() {
+            let line = record.position().map_or(0, csv::Position::line);
+            let problem = self.problems.get(row).and_then(Option::as_deref);
+            match problem {
+                Some(problem) => {
+                    tally.add_bad(line, problem);
+                    if plan.skip_bad_rows {
+                        continue;
+                    }
+                }
+                None => self.count(&mut tally, row, outcomes, line),
+            }
+            self.write(&mut writer, row, record, outcomes)?;
+        }
+        writer.flush()?;
+        drop(writer);
+        Ok(tally)
+    }
+
+    /// Reads the inputs of a row; what is wrong with it, if anything. Unknown inputs, and those of a bad row, are NaN.
+    fn read(&mut self, record: &ByteRecord) -> Option<String> {
+        let header = &self.plan.header;
+        let mut problems: Vec<String> = header.misfit(record.len()).into_iter().collect();
+        for (values, column) in self.columns.iter_mut().zip(&self.plan.inputs) {
+            let text = record.get(*column).unwrap_or_default();
+            let value = match Cell::of(text) {
+                Cell::Number(number) => number,
+                Cell::Unknown => f64::NAN,
+                Cell::Bad => {
+                    problems.push(format!(
+                        "column `{}`: {}",
+                        header.name(*column),
+                        Cell::problem(text)
+                    ));
+                    f64::NAN
+                }
+            };
+            values.push(value);
+        }
+        if !record.as_slice().is_ascii() {
+            let mut cells = record.iter().enumerate();
+            if let Some((column, _)) = cells.find(|(_, text)| str::from_utf8(text).is_err()) {
+                problems.push(format!("column `{}`: invalid UTF-8", header.name(column)));
+            }
+        }
+        if problems.is_empty() {
+            return None;
+        }
+        for values in &mut self.columns {
+            if let Some(value) = values.last_mut() {
+                *value = f64::NAN;
+            }
+        }
+        Some(problems.join("; "))
+    }
+
+    fn count(&self, tally: &mut Tally, row: usize, outcomes: &[Outcome], line: u64) {
+        if outcomes
+            .first()
+            .is_some_and(|outcome| outcome.state == State::InputNotFinite)
+        {
+            tally.unknown.add(line);
+            return;
+        }
+        for (outcome, silent) in outcomes.iter().zip(&mut tally.silent) {
+            if outcome.state == State::NoRuleFired {
+                silent.add(line);
+            }
+        }
+        if outcomes.first().is_some_and(|outcome| outcome.clamped) {
+            for input in self.clamped(row) {
+                if let Some(rows) = tally.clamped.get_mut(input) {
+                    rows.add(line);
+                }
+            }
+        }
+    }
+
+    /// The inputs of a row that are outside their range.
+    fn clamped(&self, row: usize) -> impl Iterator<Item = usize> {
+        let inputs = self.plan.engine.model().inputs.iter().zip(&self.columns);
+        let outside = inputs.enumerate().filter(move |(_, (input, values))| {
+            values
+                .get(row)
+                .is_some_and(|value| *value < input.low || *value > input.high)
+        });
+        outside.map(|(index, _)| index)
+    }
+
+    /// Writes a row: its own cells, the values of the outputs, and the columns that were asked for.
+    fn write(
+        &self,
+        writer: &mut csv::Writer<&mut Vec<u8>>,
+        row: usize,
+        record: &ByteRecord,
+        outcomes: &[Outcome],
+    ) -> csv::Result<()> {
+        let mut number = zmij::Buffer::new();
+        for (column, input) in self.plan.input_of.iter().enumerate() {
+            let text = record.get(column).unwrap_or_default();
+            let values = input.and_then(|input| self.columns.get(input));
+            let is_number = values
+                .and_then(|values| values.get(row))
+                .is_some_and(|value| value.is_finite());
+            if is_number || is_plain(text) {
+                writer.write_field(text)?;
+            } else {
+                writer.write_field(number_or_cell(&String::from_utf8_lossy(text)).as_bytes())?;
+            }
+        }
+        for outcome in outcomes {
+            let value = outcome
+                .value()
+                .map_or("", |value| digits(&mut number, value));
+            writer.write_field(value)?;
+        }
+        for with in &self.plan.with {
+            match with {
+                With::Coverage => {
+                    for outcome in outcomes {
+                        let is_known = outcome.state != State::InputNotFinite;
+                        let coverage = if is_known {
+                            digits(&mut number, outcome.coverage)
+                        } else {
+                            ""
+                        };
+                        writer.write_field(coverage)?;
+                    }
+                }
+                With::Rule => {
+                    for outcome in outcomes {
+                        let rule = outcome
+                            .dominant
+                            .map_or(String::new(), |rule| (rule + 1).to_string());
+                        writer.write_field(rule)?;
+                    }
+                }
+                With::Clamped => {
+                    let is_clamped = outcomes.first().is_some_and(|outcome| outcome.clamped);
+                    let inputs = self.clamped(row).filter(|_| is_clamped);
+                    let names =
+                        inputs.filter_map(|input| self.plan.engine.input_names().nth(input));
+                    writer.write_field(cell(&names.collect::<Vec<_>>().join("|")).as_bytes())?;
+                }
+                With::Error => writer.write_field(cell(&self.error(row, outcomes)).as_bytes())?,
+            }
+        }
+        writer.write_record(None::<&[u8]>)
+    }
+
+    /// Why a row, or one of its outputs, has no value.
+    fn error(&self, row: usize, outcomes: &[Outcome]) -> String {
+        if let Some(Some(problem)) = self.problems.get(row) {
+            return problem.clone();
+        }
+        let engine = &self.plan.engine;
+        let unknown = engine.input_names().zip(&self.columns);
+        let unknown =
+            unknown.filter(|(_, values)| values.get(row).is_some_and(|value| value.is_nan()));
+        let unknown = unknown.map(|(name, _)| format!("`{name}` is unknown"));
+        let silent = engine.output_names().zip(outcomes);
+        let silent = silent.filter(|(_, outcome)| outcome.state == State::NoRuleFired);
+        let silent = silent.map(|(name, _)| match outcomes.len() {
+            1 => "no rule fires".to_owned(),
+            _ => format!("no rule fires for `{name}`"),
+        });
+        unknown.chain(silent).collect::<Vec<_>>().join("; ")
+    }
+}
+
+/// Whether nothing hidden is in a cell, and no spreadsheet takes it for a formula.
+fn is_plain(text: &[u8]) -> bool {
+    let is_visible = text.iter().all(|byte| (b' '..=b'~').contains(byte));
+    is_visible && !matches!(text.first(), Some(b'=' | b'+' | b'-' | b'@'))
+}
+
+/// The fewest digits that give the same number when they are read.
+fn digits(buffer: &mut zmij::Buffer, value: f64) -> &str {
+    let digits = buffer.format_finite(value);
+    digits.strip_suffix(".0").unwrap_or(digits)
+}

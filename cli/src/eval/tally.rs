@@ -1,0 +1,134 @@
+//! What is to be said of the rows, counted.
+
+use super::Plan;
+use crate::output::say;
+
+/// Bad rows that are told one by one.
+const SHOWN: usize = 20;
+
+/// Rows in which something happened.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Rows {
+    count: u64,
+    first_line: u64,
+}
+
+impl Rows {
+    pub(super) fn add(&mut self, line: u64) {
+        self.merge(Rows {
+            count: 1,
+            first_line: line,
+        });
+    }
+
+    /// Adds rows that come later.
+    fn merge(&mut self, later: Rows) {
+        if self.count == 0 {
+            self.first_line = later.first_line;
+        }
+        self.count += later.count;
+    }
+}
+
+/// Counts of rows.
+pub(super) struct Tally {
+    pub(super) rows: u64,
+    bad: Rows,
+    /// The first bad rows.
+    shown: Vec<String>,
+    /// An input is unknown.
+    pub(super) unknown: Rows,
+    /// For each output: no rule fires for it.
+    pub(super) silent: Vec<Rows>,
+    /// For each input: it is outside its range.
+    pub(super) clamped: Vec<Rows>,
+}
+
+impl Tally {
+    pub(super) fn new(plan: &Plan) -> Tally {
+        Tally {
+            rows: 0,
+            bad: Rows::default(),
+            shown: Vec::new(),
+            unknown: Rows::default(),
+            silent: vec![Rows::default(); plan.engine.output_names().len()],
+            clamped: vec![Rows::default(); plan.engine.input_names().len()],
+        }
+    }
+
+    pub(super) fn add_bad(&mut self, line: u64, problem: &str) {
+        self.bad.add(line);
+        if self.shown.len() < SHOWN {
+            self.shown.push(format!("line {line}: {problem}"));
+        }
+    }
+
+    /// Adds the counts of later rows.
+    pub(super) fn merge(&mut self, later: Tally) {
+        self.rows += later.rows;
+        self.bad.merge(later.bad);
+        let free = SHOWN - self.shown.len();
+        self.shown.extend(later.shown.into_iter().take(free));
+        self.unknown.merge(later.unknown);
+        for (rows, later) in self.silent.iter_mut().zip(later.silent) {
+            rows.merge(later);
+        }
+        for (rows, later) in self.clamped.iter_mut().zip(later.clamped) {
+            rows.merge(later);
+        }
+    }
+
+    /// Whether every row that is written has all values.
+    pub(super) fn is_complete(&self, plan: &Plan) -> bool {
+        let all_read = self.bad.count == 0 || plan.skip_bad_rows;
+        all_read && self.unknown.count == 0 && self.silent.iter().all(|rows| rows.count == 0)
+    }
+
+    /// Says on standard error what happened.
+    pub(super) fn say(&self, plan: &Plan) {
+        let of = |rows: Rows| format!("{} of {} rows", rows.count, self.rows);
+        let first = |rows: Rows| format!("first in line {}", rows.first_line);
+        for bad in &self.shown {
+            say(bad);
+        }
+        if self.bad.count > 0 {
+            let more = self.bad.count - self.shown.len() as u64;
+            if more > 0 {
+                say(&format!("and {more} more"));
+            }
+            let what = match plan.skip_bad_rows {
+                true => "left out",
+                false => "no value in",
+            };
+            say(&format!("{what} {}: they cannot be read", of(self.bad)));
+        }
+        if self.unknown.count > 0 {
+            say(&format!(
+                "no value in {}: an input is unknown ({})",
+                of(self.unknown),
+                first(self.unknown)
+            ));
+        }
+        for (output, rows) in plan.engine.output_names().zip(&self.silent) {
+            if rows.count > 0 {
+                say(&format!(
+                    "`{output}` has no value in {}: no rule fires ({})",
+                    of(*rows),
+                    first(*rows)
+                ));
+            }
+        }
+        for (input, rows) in plan.engine.model().inputs.iter().zip(&self.clamped) {
+            if rows.count > 0 {
+                say(&format!(
+                    "`{}` is outside its range from {} to {} in {} and clamped to it ({})",
+                    input.name,
+                    input.low,
+                    input.high,
+                    of(*rows),
+                    first(*rows)
+                ));
+            }
+        }
+    }
+}
