@@ -5,12 +5,13 @@ use alloc::{string::String, sync::Arc, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     diagnostic::Findings,
-    engine::{EvaluateError, Explanation, Outcome, Scratch},
+    engine::{EvaluateError, Outcome, Scratch},
     table::ClosedForm,
 };
 
 use crate::{
     board::Plan,
+    cause::{Cause, Proposition, cause},
     channel::{Channel, Input},
     gap::Filling,
     lookup::Lookup,
@@ -44,6 +45,9 @@ struct Compiled {
     /// What is observed, where samples carry the signals of the profile in its order.
     channels: Vec<Channel>,
     inputs: Vec<Input>,
+    propositions: Vec<Proposition>,
+    /// The term of each, with its hedges.
+    terms: Vec<String>,
 }
 
 /// Why a profile and a rule set make no estimator.
@@ -149,7 +153,15 @@ impl Estimator {
         let sources = profile.inputs.iter().map(|input| &input.source);
         let (channels, inputs) = channels(sources, &profile.signals())
             .map_err(|input| EstimatorError::NoSource { input })?;
+        let said = engine.propositions();
+        let propositions = said.iter().map(|said| Proposition {
+            rule: said.rule as u32,
+            input: order.get(said.input).copied().unwrap_or_default(),
+            literal: said.literal as u32,
+        });
         Ok(Estimator(Arc::new(Compiled {
+            propositions: propositions.collect(),
+            terms: said.into_iter().map(|said| said.term).collect(),
             profile: profile.clone(),
             filling: Filling::new(&engine, model, output, &profile.gap)?,
             engine,
@@ -170,11 +182,27 @@ impl Estimator {
         self.0.engine.model()
     }
 
-    /// Which rules fire at values of the inputs, in the order of the profile; `None` where a value is not finite.
-    pub(crate) fn explain(&self, inputs: &[f64]) -> Option<Explanation> {
-        let order = self.0.order.iter();
-        let point: Option<Vec<f64>> = order.map(|i| inputs.get(*i as usize).copied()).collect();
-        self.0.engine.explain(&point?).ok()
+    /// What raises the risk at values of the inputs, in the order of the profile, to `risk_pct`.
+    pub(crate) fn cause(
+        &self,
+        inputs: &[f64],
+        risk_pct: f64,
+        memory: &mut Memory,
+    ) -> Option<Cause> {
+        let Memory { scratch, point, .. } = memory;
+        self.lookup().reorder(inputs, point)?;
+        let rule = (self.0.engine).raised_by(scratch, point, self.0.output, risk_pct)?;
+        cause(&self.0.propositions, scratch.degrees(), rule, inputs)
+    }
+
+    /// The input and the term, with its hedges, of each proposition of the rules, in the order of
+    /// [`Plan::propositions`]: what a [`Cause`] is called.
+    pub fn propositions(&self) -> impl ExactSizeIterator<Item = (&str, &str)> {
+        let all = self.0.propositions.iter().zip(&self.0.terms);
+        all.map(|(said, term)| {
+            let input = self.0.profile.inputs.get(said.input as usize);
+            (input.map_or("", |input| input.name.as_str()), term.as_str())
+        })
     }
 
     /// The risk at the values of the inputs, in the order of the profile: as a monitor computes it.
@@ -223,6 +251,7 @@ impl Estimator {
             settings: self.0.profile.settings(),
             coverage_below: self.0.filling.coverage_below(),
             filled: self.0.filling.lend(),
+            propositions: &self.0.propositions,
         })
     }
 

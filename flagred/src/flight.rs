@@ -11,9 +11,8 @@ use crate::{
     verdict::{Ended, Level, VerdictSettings},
 };
 
-mod cause;
-pub use cause::{Cause, Finding};
-use cause::{Open, is_of_risk};
+mod finding;
+pub use finding::{Cause, Finding};
 
 mod verdict;
 pub use verdict::{Reason, Verdict};
@@ -143,7 +142,6 @@ pub struct Assessor {
     step_s: Option<f64>,
     known_in_air_s: Option<f64>,
     flight: Flight,
-    open: Open,
     /// How many of the findings ended before the latest sample.
     ended_before: usize,
 }
@@ -198,7 +196,6 @@ impl Assessor {
             step_s,
             known_in_air_s: None,
             flight: Flight::new(),
-            open: Open::default(),
             ended_before: 0,
         })
     }
@@ -212,7 +209,6 @@ impl Assessor {
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
         let update = self.monitor.push(sample);
         self.keep_findings(update.ended);
-        self.keep_cause(&update);
         if update.risk != Err(Unknown::OutOfOrder) {
             let profile = self.monitor.estimator().profile();
             self.flight.add(&update, sample, profile);
@@ -232,7 +228,13 @@ impl Assessor {
     /// The finding behind the current level, as it stands so far; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
         let found = self.monitor.open_finding()?;
-        Some(self.open.explain(found, self.monitor.estimator()))
+        Some(Finding::new(found, self.monitor.estimator()))
+    }
+
+    /// The worst open finding beside the risk, as it stands so far: see [`Monitor::open_notice`].
+    pub fn open_notice(&self) -> Option<Finding> {
+        let found = self.monitor.open_notice()?;
+        Some(Finding::new(found, self.monitor.estimator()))
     }
 
     /// The findings that ended with the latest sample, or with [`Assessor::end_findings`].
@@ -247,24 +249,10 @@ impl Assessor {
         self.ended()
     }
 
-    /// Keeps the cause of the worst level of the risk that is open.
-    fn keep_cause(&mut self, update: &Update) {
-        let monitor = &self.monitor;
-        let is_raised = update.level > Some(Level::Good);
-        let found = is_raised.then(|| monitor.open_finding()).flatten();
-        match (found.filter(is_of_risk), &update.risk) {
-            (Some(found), Ok(estimate)) => self.open.raise(found.level, || {
-                Cause::of(monitor.estimator(), monitor.inputs(), estimate)
-            }),
-            (Some(_), Err(_)) => {}
-            (None, _) => self.open.end(),
-        }
-    }
-
     fn keep_findings(&mut self, ended: Ended) {
         self.ended_before = self.flight.findings.len();
         for found in ended.into_iter().flatten() {
-            let finding = self.open.explain(found, self.monitor.estimator());
+            let finding = Finding::new(found, self.monitor.estimator());
             self.flight.findings.push(finding);
         }
     }
@@ -275,7 +263,6 @@ impl Assessor {
         let mut flight = core::mem::replace(&mut self.flight, Flight::new());
         flight.settle(f64::INFINITY);
         let known_in_air_s = self.known_in_air_s.take();
-        self.open.end();
         self.ended_before = 0;
         flight.assessment(known_in_air_s, self.monitor.estimator().profile())
     }

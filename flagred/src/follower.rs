@@ -2,6 +2,7 @@
 
 use crate::{
     accumulator::{AccumulatorSettings, RunningSum},
+    cause::{Cause, is_of_limits},
     channel::{self, Channel, Input, Seen, push, value},
     motor::{self, Bin, Motor},
     sample::{Estimate, Sample, Sampling, Unknown, Update},
@@ -191,8 +192,30 @@ impl Follower {
     }
 
     /// The finding that the level rests on, as it stands so far; `None` while the level is good.
-    pub(crate) fn open_finding(&self, motors: &[Motor]) -> Option<Finding> {
-        self.alert.open(motors).or_else(|| self.notices.open())
+    pub(crate) fn open_finding(&self) -> Option<Finding> {
+        self.alert.open().or_else(|| self.notices.open())
+    }
+
+    /// The worst open finding beside the risk, as it stands so far: little reserve or an imbalance.
+    #[cfg(feature = "std")]
+    pub(crate) fn open_notice(&self) -> Option<Finding> {
+        self.notices.open()
+    }
+
+    /// Sets the cause of the open finding where the latest sample raised its level; `cause` is asked only then.
+    pub(crate) fn explain(
+        &mut self,
+        plan: (&[Channel], &[Input]),
+        update: &Update,
+        cause: impl FnOnce(f64) -> Option<Cause>,
+    ) {
+        if !self.alert.asks_why() {
+            return;
+        }
+        let by_rules = update.risk.ok().filter(|said| said.filled_from.is_none());
+        let cause = by_rules.and_then(|said| cause(said.risk_pct));
+        let is_of_limits = cause.is_some_and(|cause| is_of_limits(plan, cause.input));
+        self.alert.explain(cause, is_of_limits);
     }
 
     /// Ends the flight: the findings that were still open.
@@ -304,7 +327,7 @@ impl Follower {
     fn stop_judging(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Ended {
         self.sum.clear(room.risks);
         self.last_known_s = None;
-        let step = self.alert.end(t_s, landed, room.motors);
+        let step = self.alert.end(t_s, landed);
         [step.ended, None, None, None]
     }
 }

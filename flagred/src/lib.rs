@@ -32,6 +32,7 @@ pub mod accumulator;
 pub mod attitude;
 mod average;
 pub mod board;
+mod cause;
 #[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.
 pub mod channel;
 #[cfg(feature = "std")]

@@ -27,9 +27,7 @@ impl Lookup<'_> {
         point: &mut [f64],
         rules: impl FnOnce(&[f64]) -> Option<Outcome>,
     ) -> Option<Estimate> {
-        for (value, from) in point.iter_mut().zip(self.order) {
-            *value = *inputs.get(*from as usize)?;
-        }
+        self.reorder(inputs, point)?;
         let outcome = rules(point)?;
         let reading = self
             .filled
@@ -46,5 +44,13 @@ impl Lookup<'_> {
             dominant_rule: outcome.dominant,
             clamped: outcome.clamped,
         })
+    }
+
+    /// The inputs of the profile in the order of the rule set.
+    pub(crate) fn reorder(&self, inputs: &[f64], point: &mut [f64]) -> Option<()> {
+        for (value, from) in point.iter_mut().zip(self.order) {
+            *value = *inputs.get(*from as usize)?;
+        }
+        Some(())
     }
 }

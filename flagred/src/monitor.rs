@@ -165,9 +165,14 @@ impl Monitor {
             room,
             follower,
         } = self;
-        follower.push((channels, inputs), &mut room.lend(), sample, |inputs| {
+        let plan = (&channels[..], &inputs[..]);
+        let update = follower.push(plan, &mut room.lend(), sample, |inputs| {
             estimator.estimate(inputs, memory)
-        })
+        });
+        follower.explain(plan, &update, |risk_pct| {
+            estimator.cause(&room.inputs, risk_pct, memory)
+        });
+        update
     }
 
     /// The values of the inputs after the latest sample, in the order of the profile; NaN is unknown.
@@ -177,7 +182,13 @@ impl Monitor {
 
     /// The finding behind the current level, as it stands so far; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
-        self.follower.open_finding(&self.room.motors)
+        self.follower.open_finding()
+    }
+
+    /// The worst open finding beside the risk, as it stands so far: little reserve or an imbalance. The level may rest on a
+    /// risk at the same time.
+    pub fn open_notice(&self) -> Option<Finding> {
+        self.follower.open_notice()
     }
 
     /// Ends the flight and gives the findings that were still open, once.

@@ -16,6 +16,9 @@ pub(crate) fn bin_of(t_s: f64) -> f64 {
     libm::floor(t_s / BIN_S + ROUNDING)
 }
 
+/// No motor.
+const NONE: u32 = u32::MAX;
+
 /// What is kept of one motor.
 #[derive(Debug, Clone, Copy)]
 pub struct Motor {
@@ -26,6 +29,8 @@ pub struct Motor {
     /// Its yaw factor, and how much of each effort a unit of its command is; zeros where the geometry is unknown.
     yaw: f64,
     share: Efforts,
+    /// The motor opposite, and `u32::MAX` where there is none or the geometry is unknown.
+    pub(crate) opposite: u32,
     /// The sum of its commands in this bin, and their mean in the bin before; NaN is unknown.
     bin_sum: f64,
     bin_before: f64,
@@ -67,6 +72,7 @@ impl Motor {
         less_yaw: 0.0,
         yaw: 0.0,
         share: [0.0; 4],
+        opposite: 0,
         bin_sum: 0.0,
         bin_before: 0.0,
         difference: Average::NONE,
@@ -84,6 +90,7 @@ impl Motor {
         command: f64::NAN,
         less_yaw: f64::NAN,
         bin_before: f64::NAN,
+        opposite: NONE,
         record: MotorRecord::NONE,
         ..Motor::IDLE
     };
@@ -132,16 +139,40 @@ pub(crate) fn set_geometry(motors: &mut [Motor], factors: &[Factors]) -> bool {
             (motor.yaw, motor.share) = (factors[2], share);
         }
     }
+    for (i, motor) in motors.iter_mut().enumerate().filter(|_| is_known) {
+        motor.opposite = opposite(factors, i).map_or(NONE, |opposite| opposite as u32);
+    }
     is_known
+}
+
+/// The motor on the other side of the middle; of two on one arm the one that turns the same way.
+fn opposite(factors: &[Factors], motor: usize) -> Option<usize> {
+    const SAME_PLACE: f64 = 0.1;
+    let [roll, pitch, yaw] = *factors.get(motor)?;
+    let is_in_the_middle = roll.abs() < SAME_PLACE && pitch.abs() < SAME_PLACE;
+    let faces = |factors: &Factors| {
+        (factors[0] + roll).abs() < SAME_PLACE && (factors[1] + pitch).abs() < SAME_PLACE
+    };
+    let all = factors.iter().enumerate();
+    let facing = all.filter(|(_, factors)| !is_in_the_middle && faces(factors));
+    let turns = |other: f64| (other - yaw).abs();
+    let nearest = facing.min_by(|(_, a), (_, b)| turns(a[2]).total_cmp(&turns(b[2])));
+    nearest.map(|(opposite, _)| opposite)
 }
 
 /// Forgets the commands, and keeps the geometry.
 pub(crate) fn clear(motors: &mut [Motor]) {
     for motor in motors {
-        let Motor { yaw, share, .. } = *motor;
+        let Motor {
+            yaw,
+            share,
+            opposite,
+            ..
+        } = *motor;
         *motor = Motor {
             yaw,
             share,
+            opposite,
             record: motor.record,
             ..Motor::UNKNOWN
         };

@@ -8,7 +8,7 @@ use crate::margin::Side;
 mod alert;
 mod notices;
 
-pub use crate::motor::Motor;
+pub use crate::{cause::Cause, motor::Motor};
 pub(crate) use alert::{Alert, Now};
 pub(crate) use notices::Notices;
 
@@ -61,6 +61,8 @@ pub enum Measure {
     Reserve,
     /// How far a motor is from its own part of the thrust earlier in the flight, in % of the range.
     Imbalance,
+    /// How far a motor is from the one opposite, in % of the range.
+    PairImbalance,
 }
 
 impl core::fmt::Display for Measure {
@@ -71,6 +73,7 @@ impl core::fmt::Display for Measure {
             Measure::CommandNoise => "command noise",
             Measure::Reserve => "reserve",
             Measure::Imbalance => "imbalance",
+            Measure::PairImbalance => "pair imbalance",
         })
     }
 }
@@ -167,7 +170,8 @@ pub struct NoticeSettings {
     pub noise: Option<Limit>,
     /// A mean command that leaves less than this below the upper limit.
     pub reserve: Option<Limit>,
-    /// A motor that moved farther than this from its own part of the thrust earlier in the flight.
+    /// A motor that moved farther than this from its own part of the thrust earlier in the flight, or is farther than twice
+    /// this from the motor opposite.
     pub imbalance: Option<Limit>,
 }
 
@@ -232,8 +236,12 @@ pub struct Finding {
     /// The worst value of the measure in that time, in %.
     #[cfg_attr(feature = "serde", serde(rename = "value_pct"))]
     pub peak_pct: f64,
-    /// The motor with the least margin on average over that time; `None` where no motor is known.
+    /// The motor that is the cause. Of a risk: where the cause is that motors are near a limit, the one with the least margin
+    /// while the level was being raised. Of an imbalance: the one out of balance.
     pub motor: Option<MotorFinding>,
+    /// What raised the risk to the level; `None` where no rule did, as for a notice or an interpolated risk.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub cause: Option<Cause>,
 }
 
 /// The motor behind a finding.
@@ -276,6 +284,7 @@ impl Finding {
         threshold_pct: 0.0,
         peak_pct: f64::NEG_INFINITY,
         motor: None,
+        cause: None,
     };
 }
 

@@ -1,6 +1,6 @@
 //! `Flight`, the common type of all logs.
 
-use crate::{Geometry, Intervals, Report, Series, Signal};
+use crate::{Geometry, Intervals, Parameter, Report, Series, Signal};
 
 /// The kind of log a flight was read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -245,6 +245,8 @@ pub struct Flight {
     /// upper end is saturated although the range goes further.
     #[cfg_attr(feature = "serde", serde(rename = "effective_range"))]
     pub effective: Range,
+    /// Parameters of the autopilot that motors and ranges rest on, and gains, as far as the log has them.
+    pub parameters: Vec<Parameter>,
     /// The motor commands.
     pub commands: Commands,
     /// All other signals.
@@ -277,6 +279,7 @@ impl Flight {
             geometry: None,
             range: None,
             effective: whole_range("the log names no tighter limits"),
+            parameters: Vec::new(),
             commands: Commands::default(),
             series: Vec::new(),
             modes: Vec::new(),

@@ -56,6 +56,7 @@ pub use flight::{Commands, Event, Flight, Format, Motor, Range, Vehicle, Vehicle
 pub use gap::Gap;
 pub use geometry::{Basis, Frame, Geometry, ardupilot_frames};
 pub use interval::{Interval, Intervals};
+pub use parameters::Parameter;
 pub use read::{Options, open, read};
 pub use report::Report;
 pub use signal::{Hold, Label, Series, Signal};

@@ -18,6 +18,22 @@ impl Parameters {
         self.0.get(name).copied()
     }
 
+    /// The parameters that an assessment rests on, where a log or a vehicle told them: range and limits of the motors,
+    /// frame, and the gains of the control loops. `source` is what told them.
+    pub(crate) fn of_motors(&self, source: &str) -> Vec<Parameter> {
+        let throttle = format!("RC{}", self.get("RCMAP_THROTTLE").unwrap_or(3.0));
+        let kept = self
+            .0
+            .iter()
+            .filter(|(name, _)| is_of_motors(name, &throttle));
+        let kept = kept.map(|(name, value)| Parameter {
+            name: name.clone(),
+            value: *value,
+            source: source.to_owned(),
+        });
+        kept.collect()
+    }
+
     pub(crate) fn pair(&self, low: &str, high: &str) -> Option<(f64, f64)> {
         Some((self.get(low)?, self.get(high)?)).filter(|(low, high)| high > low)
     }
@@ -33,6 +49,42 @@ impl<'a> FromIterator<(&'a str, f64)> for Parameters {
     }
 }
 
+/// A parameter of the autopilot.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Its first value: failure tests and learning change parameters in flight.
+    pub value: f64,
+    /// What told it, such as `PARM` or `PARAM_VALUE`.
+    pub source: String,
+}
+
+/// Whether a parameter is of the motors or of the loops that command them. What drives which motor is told by the motors.
+fn is_of_motors(name: &str, throttle: &str) -> bool {
+    const BEGINNINGS: [&str; 14] = [
+        "MOT_PWM_",
+        "MOT_SPIN_",
+        "MOT_THST_",
+        "MOT_TCRV_",
+        "FRAME",
+        "THR_M",
+        "RCMAP_THROTTLE",
+        "ATC_RAT_",
+        "ATC_ANG_",
+        "PWM_M",
+        "MC_ROLL",
+        "MC_PITCH",
+        "MC_YAW",
+        "CA_ROTOR_COUNT",
+    ];
+    let begins = |beginning: &&str| name.starts_with(beginning);
+    let is_throttle = matches!(name.strip_prefix(throttle), Some("_MIN" | "_MAX"));
+    is_throttle || BEGINNINGS.iter().any(begins) && !name.contains("_FUNC")
+}
+
 /// The name of a number in a table with gaps; `what` and the number where the table has none.
 pub(crate) fn name_of(names: &[&str], number: i64, what: &str) -> String {
     let name = usize::try_from(number)
@@ -41,5 +93,35 @@ pub(crate) fn name_of(names: &[&str], number: i64, what: &str) -> String {
     match name {
         Some(name) if !name.is_empty() => (*name).into(),
         _ => format!("{what} {number}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_of_motors_and_gains_are_kept_in_order_of_their_names() {
+        let all = [
+            ("SERVO3_FUNCTION", 35.0),
+            ("RC3_MIN", 1100.0),
+            ("RC2_MIN", 1100.0),
+            ("MOT_SPIN_MAX", 0.95),
+            ("ATC_RAT_RLL_P", 0.135),
+            ("PWM_MAIN_FUNC1", 101.0),
+            ("BATT_CAPACITY", 5000.0),
+            ("MOT_SPIN_MAX", 0.9),
+        ];
+        let kept = all.into_iter().collect::<Parameters>().of_motors("PARM");
+        let kept: Vec<_> = kept
+            .iter()
+            .map(|kept| (kept.name.as_str(), kept.value))
+            .collect();
+        let expected = [
+            ("ATC_RAT_RLL_P", 0.135),
+            ("MOT_SPIN_MAX", 0.95),
+            ("RC3_MIN", 1100.0),
+        ];
+        assert_eq!(kept, expected);
     }
 }

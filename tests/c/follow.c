@@ -48,6 +48,8 @@ static void findings(const flagred_finding ended[FLAGRED_ENDED]) {
         bits(f->mean_margin);
         printf(" ");
         bits(f->least_margin);
+        printf(" %d %d %d ", (int)f->cause, (int)f->cause_rule, (int)f->cause_input);
+        bits(f->cause_value);
         printf("]");
     }
 }

@@ -1,10 +1,39 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 3720 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122432 bytes of memory.
+// 4012 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122640 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<37, 52, 1, 6, MOTORS>;
+
+/// What the cause of a finding is called.
+#[allow(dead_code)]
+#[rustfmt::skip]
+pub static CAUSES: [&str; 23] = [
+    "at_limit much",
+    "unsteady_now calm",
+    "at_limit none",
+    "unsteady_now violent",
+    "at_limit none",
+    "unsteady_lately calm",
+    "at_limit none",
+    "unsteady_lately gusty",
+    "at_limit none",
+    "unsteady_lately stormy",
+    "at_limit none",
+    "throttle_activity steady",
+    "at_limit none",
+    "throttle_activity moving",
+    "at_limit none",
+    "throttle_activity surging",
+    "at_limit none",
+    "load heavy",
+    "at_limit none",
+    "spread even",
+    "at_limit none",
+    "spread uneven",
+    "at_limit none",
+];
 
 /// The profile.
 #[rustfmt::skip]
@@ -16,7 +45,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
     #[allow(unused_imports)]
     use ::flagred::{
         accumulator::AccumulatorSettings,
-        board::{Plan, table::{*, Hedge::*}},
+        board::{Plan, Proposition, table::{*, Hedge::*}},
         channel,
         follower::Settings,
         gap::FilledKnots,
@@ -159,5 +188,19 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         settings: Settings { sampling: Sampling { min_samples: 5, warm_up_s: 1.0, longest_gap_s: 2.0, take_off_s: 3.0 }, elevated_risk: AccumulatorSettings { window_s: 3.0, high_pct: 52.0, low_pct: 35.0, rise_pct_per_s: 0.7, fall_pct_per_s: 1.4 }, verdict: VerdictSettings { warn: LevelSettings { raise: Threshold { risk_pct: Some(66.0), elevated_risk_pct: Some(2.0) }, after_s: 0.2, until: Threshold { risk_pct: Some(45.0), elevated_risk_pct: Some(1.0) } }, fail: LevelSettings { raise: Threshold { risk_pct: Some(80.0), elevated_risk_pct: None }, after_s: 0.3, until: Threshold { risk_pct: Some(65.0), elevated_risk_pct: None } }, clear_after_s: 10.0, quiet_after_take_off_s: 3.0, quiet_before_landing_s: 2.0, idle_below: 0.1, notices: NoticeSettings { noise: Some(Limit { value: 0.04, after_s: 5.0 }), reserve: Some(Limit { value: 0.1, after_s: 3.0 }), imbalance: Some(Limit { value: 0.15, after_s: 3.0 }) } } },
         coverage_below: 0.015625,
         filled: None,
+        propositions: &[
+            Proposition { rule: 0, input: 5, literal: 12 }, Proposition { rule: 1, input: 0, literal: 0 },
+            Proposition { rule: 1, input: 5, literal: 11 }, Proposition { rule: 2, input: 0, literal: 1 },
+            Proposition { rule: 2, input: 5, literal: 11 }, Proposition { rule: 3, input: 1, literal: 2 },
+            Proposition { rule: 3, input: 5, literal: 11 }, Proposition { rule: 4, input: 1, literal: 3 },
+            Proposition { rule: 4, input: 5, literal: 11 }, Proposition { rule: 5, input: 1, literal: 4 },
+            Proposition { rule: 5, input: 5, literal: 11 }, Proposition { rule: 6, input: 2, literal: 5 },
+            Proposition { rule: 6, input: 5, literal: 11 }, Proposition { rule: 7, input: 2, literal: 6 },
+            Proposition { rule: 7, input: 5, literal: 11 }, Proposition { rule: 8, input: 2, literal: 7 },
+            Proposition { rule: 8, input: 5, literal: 11 }, Proposition { rule: 9, input: 3, literal: 8 },
+            Proposition { rule: 9, input: 5, literal: 11 }, Proposition { rule: 10, input: 4, literal: 9 },
+            Proposition { rule: 10, input: 5, literal: 11 }, Proposition { rule: 11, input: 4, literal: 10 },
+            Proposition { rule: 11, input: 5, literal: 11 },
+        ],
     }
 };

@@ -1,11 +1,50 @@
 // The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 8672 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 71800 bytes of memory.
+// 9084 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72008 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<17, 61, 1, 3, MOTORS>;
+
+/// What the cause of a finding is called.
+#[allow(dead_code)]
+#[rustfmt::skip]
+pub static CAUSES: [&str; 33] = [
+    "margin high",
+    "spread high",
+    "battery NOT empty",
+    "spread low",
+    "margin high",
+    "battery NOT empty",
+    "margin high",
+    "spread medium",
+    "battery NOT empty",
+    "battery enough",
+    "margin medium",
+    "spread high",
+    "spread low",
+    "battery enough",
+    "margin medium",
+    "battery enough",
+    "margin medium",
+    "spread medium",
+    "margin low",
+    "spread high",
+    "battery NOT empty",
+    "margin low",
+    "spread medium",
+    "battery NOT empty",
+    "margin very_low",
+    "spread high",
+    "battery NOT empty",
+    "margin very_low",
+    "spread medium",
+    "battery NOT empty",
+    "battery low",
+    "margin medium",
+    "battery empty",
+];
 
 /// The profile.
 #[rustfmt::skip]
@@ -17,7 +56,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
     #[allow(unused_imports)]
     use ::flagred::{
         accumulator::AccumulatorSettings,
-        board::{Plan, table::{*, Hedge::*}},
+        board::{Plan, Proposition, table::{*, Hedge::*}},
         channel,
         follower::Settings,
         gap::FilledKnots,
@@ -207,5 +246,24 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 0.0, 0.0, 0.0, 0.0, 0.0,
             ],
         }),
+        propositions: &[
+            Proposition { rule: 0, input: 0, literal: 3 }, Proposition { rule: 0, input: 1, literal: 6 },
+            Proposition { rule: 0, input: 2, literal: 8 }, Proposition { rule: 1, input: 1, literal: 4 },
+            Proposition { rule: 1, input: 0, literal: 3 }, Proposition { rule: 1, input: 2, literal: 8 },
+            Proposition { rule: 2, input: 0, literal: 3 }, Proposition { rule: 2, input: 1, literal: 5 },
+            Proposition { rule: 2, input: 2, literal: 8 }, Proposition { rule: 3, input: 2, literal: 10 },
+            Proposition { rule: 3, input: 0, literal: 2 }, Proposition { rule: 3, input: 1, literal: 6 },
+            Proposition { rule: 4, input: 1, literal: 4 }, Proposition { rule: 4, input: 2, literal: 10 },
+            Proposition { rule: 4, input: 0, literal: 2 }, Proposition { rule: 5, input: 2, literal: 10 },
+            Proposition { rule: 5, input: 0, literal: 2 }, Proposition { rule: 5, input: 1, literal: 5 },
+            Proposition { rule: 6, input: 0, literal: 1 }, Proposition { rule: 6, input: 1, literal: 6 },
+            Proposition { rule: 6, input: 2, literal: 8 }, Proposition { rule: 7, input: 0, literal: 1 },
+            Proposition { rule: 7, input: 1, literal: 5 }, Proposition { rule: 7, input: 2, literal: 8 },
+            Proposition { rule: 8, input: 0, literal: 0 }, Proposition { rule: 8, input: 1, literal: 6 },
+            Proposition { rule: 8, input: 2, literal: 8 }, Proposition { rule: 9, input: 0, literal: 0 },
+            Proposition { rule: 9, input: 1, literal: 5 }, Proposition { rule: 9, input: 2, literal: 8 },
+            Proposition { rule: 10, input: 2, literal: 9 }, Proposition { rule: 10, input: 0, literal: 2 },
+            Proposition { rule: 11, input: 2, literal: 7 },
+        ],
     }
 };

@@ -1,10 +1,36 @@
 // The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 3292 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54120 bytes of memory.
+// 3548 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54328 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<14, 12, 1, 2, MOTORS>;
+
+/// What the cause of a finding is called.
+#[allow(dead_code)]
+#[rustfmt::skip]
+pub static CAUSES: [&str; 20] = [
+    "margin high",
+    "spread high",
+    "spread low",
+    "margin high",
+    "margin high",
+    "spread medium",
+    "margin medium",
+    "spread high",
+    "spread low",
+    "margin medium",
+    "margin medium",
+    "spread medium",
+    "margin low",
+    "spread high",
+    "margin low",
+    "spread medium",
+    "margin very_low",
+    "spread high",
+    "margin very_low",
+    "spread medium",
+];
 
 /// The profile.
 #[rustfmt::skip]
@@ -16,7 +42,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
     #[allow(unused_imports)]
     use ::flagred::{
         accumulator::AccumulatorSettings,
-        board::{Plan, table::{*, Hedge::*}},
+        board::{Plan, Proposition, table::{*, Hedge::*}},
         channel,
         follower::Settings,
         gap::FilledKnots,
@@ -127,5 +153,17 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
             ],
         }),
+        propositions: &[
+            Proposition { rule: 0, input: 0, literal: 3 }, Proposition { rule: 0, input: 1, literal: 6 },
+            Proposition { rule: 1, input: 1, literal: 4 }, Proposition { rule: 1, input: 0, literal: 3 },
+            Proposition { rule: 2, input: 0, literal: 3 }, Proposition { rule: 2, input: 1, literal: 5 },
+            Proposition { rule: 3, input: 0, literal: 2 }, Proposition { rule: 3, input: 1, literal: 6 },
+            Proposition { rule: 4, input: 1, literal: 4 }, Proposition { rule: 4, input: 0, literal: 2 },
+            Proposition { rule: 5, input: 0, literal: 2 }, Proposition { rule: 5, input: 1, literal: 5 },
+            Proposition { rule: 6, input: 0, literal: 1 }, Proposition { rule: 6, input: 1, literal: 6 },
+            Proposition { rule: 7, input: 0, literal: 1 }, Proposition { rule: 7, input: 1, literal: 5 },
+            Proposition { rule: 8, input: 0, literal: 0 }, Proposition { rule: 8, input: 1, literal: 6 },
+            Proposition { rule: 9, input: 0, literal: 0 }, Proposition { rule: 9, input: 1, literal: 5 },
+        ],
     }
 };

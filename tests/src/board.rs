@@ -7,7 +7,7 @@ use flagred::{
     estimator::Estimator,
     profile::Profile,
     sample::{Estimate, Sample, Update},
-    verdict::{Ended, Finding},
+    verdict::{Cause, Ended, Finding},
 };
 use flightlog::{Flight, Options};
 
@@ -264,13 +264,16 @@ pub fn findings(ended: &Ended) -> String {
                 threshold_pct,
                 peak_pct,
                 motor,
+                cause,
             } = finding;
             let margin = |value: fn(&flagred::verdict::MotorFinding) -> f64| {
                 bits(motor.as_ref().map_or(f64::NAN, value))
             };
             let high = motor.is_some_and(|motor| motor.side == flagred::margin::Side::High);
+            let of_cause =
+                |value: fn(&Cause) -> usize| cause.as_ref().map_or(-1, |cause| value(cause) as i64);
             format!(
-                " [{} {} {} {} {} {} {} {} {} {} {} {}]",
+                " [{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}]",
                 *level as i32,
                 bits(*from_s),
                 bits(*raised_s),
@@ -282,7 +285,11 @@ pub fn findings(ended: &Ended) -> String {
                 motor.map_or(-1, |motor| motor.motor as i64),
                 i32::from(high),
                 margin(|motor| motor.mean_margin),
-                margin(|motor| motor.least_margin)
+                margin(|motor| motor.least_margin),
+                of_cause(|cause| cause.proposition),
+                of_cause(|cause| cause.rule),
+                of_cause(|cause| cause.input),
+                bits(cause.map_or(f64::NAN, |cause| cause.value))
             )
         })
         .collect()

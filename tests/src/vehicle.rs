@@ -1,12 +1,17 @@
 //! A stand-in vehicle: flies a log again, as MAVLink.
 
+mod answers;
+mod heard;
+mod messages;
+
+pub use heard::{Heard, Progress};
+use messages::{OUTPUTS_A_PORT, attitude, landed_state, servo_of_port};
+pub use messages::{heartbeat, heartbeat_of, servo};
+
 use std::{
     collections::VecDeque,
     path::Path,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, AtomicU64, Ordering},
-    },
+    sync::{Arc, atomic::Ordering},
     time::{Duration, Instant},
 };
 
@@ -14,63 +19,11 @@ use flightlog::{
     Flight,
     mavlink::{
         Key, Sender, Skipped, Stream, Version,
-        dialect::{
-            ATTITUDE_DATA, COMMAND_ACK_DATA, EXTENDED_SYS_STATE_DATA, HEARTBEAT_DATA, MavAutopilot,
-            MavCmd, MavLandedState, MavMessage, MavModeFlag, MavParamType, MavResult, MavState,
-            MavType, PARAM_VALUE_DATA, SERVO_OUTPUT_RAW_DATA,
-        },
+        dialect::{MavMessage, MavType},
     },
 };
 
 use crate::wire::{Link, Speed, Wire};
-
-/// What the other side said.
-#[derive(Debug, Default)]
-pub struct Heard {
-    /// Its messages, each with when it came, the system and the component that sent it.
-    pub messages: Vec<(Instant, u8, u8, MavMessage)>,
-}
-
-impl Heard {
-    /// The texts, with their severity.
-    pub fn texts(&self) -> Vec<(u8, String)> {
-        let texts = self
-            .messages
-            .iter()
-            .filter_map(|(_, _, _, message)| match message {
-                MavMessage::STATUSTEXT(text) => {
-                    Some((text.severity as u8, text.text.to_str().unwrap().to_owned()))
-                }
-                _ => None,
-            });
-        texts.collect()
-    }
-
-    /// The values of this name, each with when it came and the vehicle's time it is for, in ms.
-    pub fn values(&self, name: &str) -> Vec<(Instant, u32, f32)> {
-        let values = self
-            .messages
-            .iter()
-            .filter_map(|(at, _, _, message)| match message {
-                MavMessage::NAMED_VALUE_FLOAT(value) if value.name.to_str() == Ok(name) => {
-                    Some((*at, value.time_boot_ms, value.value))
-                }
-                _ => None,
-            });
-        values.collect()
-    }
-}
-
-/// How far the other side is; kept by whoever reads what it says.
-#[derive(Debug, Default)]
-pub struct Progress {
-    /// The vehicle's time, in ms, of the latest risk that it told.
-    pub followed_ms: AtomicU64,
-    /// Whether it told that it knows the motors.
-    pub is_ready: AtomicBool,
-    /// The last other system that it told of: after a flight a heartbeat of another one marks its end.
-    pub other_system: AtomicU64,
-}
 
 /// A vehicle that flies a log again.
 pub struct StandIn {
@@ -105,11 +58,20 @@ pub struct StandIn {
     /// How often it looks for what came while it waits for its next command.
     pub look_every: Duration,
     asked: bool,
+    /// It sends motor commands no more often than this.
+    pub every: Duration,
+    /// Whether it sends motor commands as often as it is asked to.
+    pub obeys: bool,
+    /// How far its motors are from the outputs of the log.
+    shift: usize,
 }
 
 /// The two kinds of packets in [`StandIn::random`].
 const FLIGHT: usize = 0;
 const TALK: usize = 1;
+
+/// Half the time between two commands of a log.
+const HALF_A_SAMPLE_S: f64 = 0.02;
 
 /// The other side gets so much time for anything: machines that run many tests are slow.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -122,7 +84,7 @@ impl StandIn {
             link,
             version,
             system: 1,
-            parameters: parameters(flight),
+            parameters: answers::parameters(flight),
             kind: match flight.motors.len() {
                 4 => MavType::MAV_TYPE_QUADROTOR,
                 6 => MavType::MAV_TYPE_HEXAROTOR,
@@ -142,6 +104,9 @@ impl StandIn {
             answers: true,
             look_every: Duration::from_millis(2),
             asked: false,
+            every: Duration::ZERO,
+            obeys: false,
+            shift: 0,
         }
     }
 
@@ -171,6 +136,7 @@ impl StandIn {
         let mut state = None;
         let mut next_beat_s = f64::NEG_INFINITY;
         let mut next_state_s = f64::NEG_INFINITY;
+        let mut next_command_s = f64::NEG_INFINITY;
         let (start, mut first_s, mut count) = (Instant::now(), None, 0);
         for (t_s, row) in flight.commands.rows() {
             if t_s < from_s || t_s > to_s {
@@ -192,22 +158,32 @@ impl StandIn {
             let changed = state.replace(now) != Some(now);
             if changed || t_s >= next_beat_s {
                 next_beat_s = t_s + 1.0;
-                let beat = self.heartbeat(now.0, now.1);
+                let beat = heartbeat(self.kind, now.0, now.1);
                 self.send(&beat);
             }
             if changed || t_s >= next_state_s {
                 next_state_s = t_s + 0.25;
-                self.tell_state(t_s + self.clock_s, now.1);
+                self.send(&attitude(t_s + self.clock_s));
+                self.send(&landed_state(now.1));
             }
             let clock_s = t_s + self.clock_s;
-            let mut pulses = [0; 16];
+            if t_s < next_command_s {
+                continue;
+            }
+            next_command_s = t_s + self.every.as_secs_f64() - HALF_A_SAMPLE_S;
+            let mut pulses = [[0; OUTPUTS_A_PORT]; 2];
             for (&output, &raw) in outputs.iter().zip(row) {
-                pulses[output] = raw as u16;
+                let output = output + self.shift;
+                pulses[output / OUTPUTS_A_PORT][output % OUTPUTS_A_PORT] = raw as u16;
             }
             self.sent
                 .push(((clock_s * 1e3).round() as u32, Instant::now()));
             // The microseconds start over after 71 minutes.
-            self.send(&servo((clock_s * 1e6).round() as u64 as u32, &pulses));
+            let time_usec = (clock_s * 1e6).round() as u64 as u32;
+            let ports = if self.shift == 0 { 1 } else { 2 };
+            for (port, pulses) in (0..ports).zip(&pulses) {
+                self.send(&servo_of_port(time_usec, port, pulses));
+            }
             count += 1;
             if speed != Speed::Fastest {
                 self.wire.flush();
@@ -230,7 +206,7 @@ impl StandIn {
         };
         let system = 250 - self.marks;
         self.marks += 1;
-        let mark = self.heartbeat(false, false);
+        let mark = heartbeat(self.kind, false, false);
         let packet = Sender::new(1).packet(self.version, system, &mark);
         self.wire.send(&packet);
         let start = Instant::now();
@@ -269,25 +245,8 @@ impl StandIn {
 
     /// Sends a heartbeat.
     pub fn beat(&mut self, armed: bool, in_air: bool) {
-        let beat = self.heartbeat(armed, in_air);
+        let beat = heartbeat(self.kind, armed, in_air);
         self.say(&beat);
-    }
-
-    fn heartbeat(&self, armed: bool, in_air: bool) -> MavMessage {
-        let mut mode = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
-        mode.set(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED, armed);
-        MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-            custom_mode: 0,
-            mavtype: self.kind,
-            autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-            base_mode: mode,
-            system_status: if in_air {
-                MavState::MAV_STATE_ACTIVE
-            } else {
-                MavState::MAV_STATE_STANDBY
-            },
-            mavlink_version: 3,
-        })
     }
 
     /// Signs what it sends, and takes only what is signed.
@@ -327,21 +286,6 @@ impl StandIn {
     /// Sends bytes as they are, past the link.
     pub fn raw(&mut self, bytes: &[u8]) {
         self.wire.send(bytes);
-    }
-
-    fn tell_state(&mut self, t_s: f64, in_air: bool) {
-        self.send(&MavMessage::ATTITUDE(ATTITUDE_DATA {
-            time_boot_ms: (t_s * 1e3) as u32,
-            ..ATTITUDE_DATA::default()
-        }));
-        self.send(&MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
-            landed_state: if in_air {
-                MavLandedState::MAV_LANDED_STATE_IN_AIR
-            } else {
-                MavLandedState::MAV_LANDED_STATE_ON_GROUND
-            },
-            ..EXTENDED_SYS_STATE_DATA::default()
-        }));
     }
 
     /// Sends a message that is none of the flight: it is lost or it is not.
@@ -424,63 +368,6 @@ impl StandIn {
             self.heard_elsewhere.messages.push(message);
         }
     }
-
-    fn answer(&mut self, message: &MavMessage) {
-        if !self.answers {
-            self.asked = true;
-            return;
-        }
-        match message {
-            MavMessage::PARAM_REQUEST_READ(request) => {
-                self.asked = true;
-                let name = request.param_id.to_str().unwrap();
-                let known = self.parameters.iter().find(|(known, _)| known == name);
-                if let Some((name, value)) = known {
-                    let reply = MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
-                        param_value: *value as f32,
-                        param_count: 900,
-                        param_index: u16::MAX,
-                        param_id: name.as_str().into(),
-                        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-                    });
-                    self.say(&reply);
-                }
-            }
-            MavMessage::COMMAND_LONG(_) => {
-                self.say(&MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
-                    command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
-                    result: MavResult::MAV_RESULT_ACCEPTED,
-                    ..COMMAND_ACK_DATA::default()
-                }));
-            }
-            _ => {}
-        }
-    }
-}
-
-/// SERVO_OUTPUT_RAW of 16 outputs.
-pub fn servo(time_usec: u32, pulses: &[u16; 16]) -> MavMessage {
-    let p = pulses;
-    MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
-        time_usec,
-        servo1_raw: p[0],
-        servo2_raw: p[1],
-        servo3_raw: p[2],
-        servo4_raw: p[3],
-        servo5_raw: p[4],
-        servo6_raw: p[5],
-        servo7_raw: p[6],
-        servo8_raw: p[7],
-        port: 0,
-        servo9_raw: p[8],
-        servo10_raw: p[9],
-        servo11_raw: p[10],
-        servo12_raw: p[11],
-        servo13_raw: p[12],
-        servo14_raw: p[13],
-        servo15_raw: p[14],
-        servo16_raw: p[15],
-    })
 }
 
 /// The flight of a log, with what a stand-in needs of it.
@@ -496,30 +383,4 @@ pub fn flight(log: &Path) -> Flight {
 fn output(name: &str) -> usize {
     let digits = name.trim_start_matches(|c: char| !c.is_ascii_digit());
     digits.parse::<usize>().unwrap() - 1
-}
-
-fn parameters(flight: &Flight) -> Vec<(String, f64)> {
-    let range = flight.range.as_ref().unwrap();
-    let own = range.source.starts_with("MOT_PWM");
-    let or_zero = |value: f64| if own { value } else { 0.0 };
-    let mut parameters = vec![
-        ("MOT_PWM_MIN".to_owned(), or_zero(range.low)),
-        ("MOT_PWM_MAX".to_owned(), or_zero(range.high)),
-        ("MOT_SPIN_MIN".to_owned(), flight.effective.low),
-        ("MOT_SPIN_MAX".to_owned(), flight.effective.high),
-        ("RCMAP_THROTTLE".to_owned(), 3.0),
-        ("RC3_MIN".to_owned(), range.low),
-        ("RC3_MAX".to_owned(), range.high),
-        ("FRAME_CLASS".to_owned(), 1.0),
-        ("FRAME_TYPE".to_owned(), 1.0),
-    ];
-    for number in 0..16 {
-        let motor = flight
-            .motors
-            .iter()
-            .find(|motor| output(&motor.output) == number);
-        let function = motor.map_or(0.0, |motor| f64::from(motor.number) + 32.0);
-        parameters.push((format!("SERVO{}_FUNCTION", number + 1), function));
-    }
-    parameters
 }

@@ -12,14 +12,11 @@ use std::{
 
 use flagred_tests::{
     Folder, STEADY, flagred,
-    vehicle::{StandIn, flight},
+    vehicle::{StandIn, flight, heartbeat},
     wire::{Link, Speed, Wire},
     writing::{RULES, wild_flight},
 };
-use flightlog::mavlink::{
-    Sender, Version,
-    dialect::{HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType},
-};
+use flightlog::mavlink::{Sender, Version, dialect::MavType};
 
 /// How a command ends whose reader takes so many bytes of its output, or all.
 fn ended(arguments: &[&str], read: Option<usize>) -> (Option<i32>, String) {
@@ -245,7 +242,11 @@ fn a_watch_that_serves_nobody_ends() {
     let socket = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     // It has something to say of each, and notices there that nobody hears it.
     for system in (1..=250).cycle().take(1000) {
-        let beat = Sender::new(1).packet(Version::V2, system, &plane());
+        let beat = Sender::new(1).packet(
+            Version::V2,
+            system,
+            &heartbeat(MavType::MAV_TYPE_FIXED_WING, true, true),
+        );
         socket.send_to(&beat, &address).unwrap();
         thread::sleep(Duration::from_millis(10));
         if child.try_wait().unwrap().is_some() {
@@ -254,17 +255,6 @@ fn a_watch_that_serves_nobody_ends() {
     }
     child.kill().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(3), "it goes on");
-}
-
-fn plane() -> MavMessage {
-    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-        custom_mode: 0,
-        mavtype: MavType::MAV_TYPE_FIXED_WING,
-        autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
-        base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-        system_status: MavState::MAV_STATE_ACTIVE,
-        mavlink_version: 3,
-    })
 }
 
 fn wait_for(mut happened: impl FnMut() -> bool) {

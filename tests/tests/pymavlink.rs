@@ -1,18 +1,85 @@
 //! `flagred watch` with pymavlink, an independent implementation of MAVLink, as the vehicle.
 
-use std::process::Command;
+use std::{
+    fs::File,
+    io::{BufRead, BufReader},
+    process::{Child, Command, Stdio},
+};
 
-use flagred_tests::flagred;
+use flagred_tests::{Folder, flagred};
 
 const PEER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peer/pymavlink_peer.py");
 
 /// `FLAGRED_PYTHON` names a Python that has pymavlink; without it that is `python3`.
+fn python() -> Command {
+    Command::new(std::env::var("FLAGRED_PYTHON").unwrap_or_else(|_| "python3".to_owned()))
+}
+
+/// A process that goes with the test, also where that fails.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended already; nobody is left to be told.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Every line of scripts/try-against-sitl runs, and every check holds with a simulator that does as it is told.
+#[test]
+#[ignore = "needs Python with pymavlink, and takes two minutes: tests/peer/run.sh"]
+fn what_is_tried_against_the_simulator_holds_with_a_stand_in() {
+    const SPEED: &str = "3";
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    let stand_in = python()
+        .args([&format!("{root}/tests/peer/sitl_stand_in.py"), SPEED])
+        .stdout(Stdio::piped())
+        .spawn();
+    let mut stand_in = Running(stand_in.unwrap());
+    let mut ports = String::new();
+    let told = stand_in.0.stdout.take().unwrap();
+    BufReader::new(told).read_line(&mut ports).unwrap();
+    let ports: Vec<String> = ports
+        .split_whitespace()
+        .map(|port| format!("tcp:127.0.0.1:{port}"))
+        .collect();
+    let folder = Folder::new();
+    let said = folder.path().join("said.jsonl");
+    let watch = flagred()
+        .args(["watch", &ports[1], "--jsonl"])
+        .stdout(File::create(&said).unwrap())
+        .spawn();
+    let watch = Running(watch.unwrap());
+    let output = python()
+        .args([
+            &format!("{root}/scripts/try-against-sitl"),
+            &ports[0],
+            "--speed",
+            SPEED,
+            "--said",
+        ])
+        .arg(&said)
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        output.status.success(),
+        "{told}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        told.ends_with("all checks hold\n") && told.lines().count() > 25,
+        "{told}"
+    );
+    drop((watch, stand_in));
+}
+
 #[test]
 #[ignore = "needs Python with pymavlink: tests/peer/run.sh"]
 fn pymavlink_and_watch_understand_each_other() {
-    let python = std::env::var("FLAGRED_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     for version in ["1", "2", "signed"] {
-        let output = Command::new(&python)
+        let output = python()
             .arg(PEER)
             .arg(flagred().get_program())
             .arg(version)

@@ -9,7 +9,7 @@ use std::{
 use flagred_tests::{
     STEADY, flagred,
     log_writer::Tlog,
-    vehicle::{StandIn, flight, servo},
+    vehicle::{StandIn, flight, heartbeat_of, servo},
     watch::{Watch, check_texts, refused},
     wire::{Link, Speed, Wire},
 };
@@ -80,17 +80,11 @@ fn a_silent_link_and_a_reboot_are_told_and_the_old_risk_is_not_carried_on() {
 fn other_vehicles_and_ground_stations_are_not_followed() {
     use flightlog::mavlink::{
         Sender,
-        dialect::{HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType},
+        dialect::{MavAutopilot, MavModeFlag, MavState, MavType},
     };
     let beat = |component, system, mavtype, autopilot| {
-        let heartbeat = MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-            custom_mode: 0,
-            mavtype,
-            autopilot,
-            base_mode: MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED,
-            system_status: MavState::MAV_STATE_ACTIVE,
-            mavlink_version: 3,
-        });
+        let armed = MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED;
+        let heartbeat = heartbeat_of(mavtype, autopilot, armed, MavState::MAV_STATE_ACTIVE);
         Sender::new(component).packet(Version::V2, system, &heartbeat)
     };
     let flight = flight(Path::new(STEADY));

@@ -27,7 +27,7 @@ static const char *word(int32_t level) {
     return words[level];
 }
 
-static const char *const measures[] = {"risk", "elevated risk", "command noise", "reserve", "imbalance"};
+static const char *const measures[] = {"risk", "elevated risk", "command noise", "reserve", "imbalance", "pair imbalance"};
 
 int main(void) {
     /* MOT_PWM_MIN 1000, MOT_PWM_MAX 2000, MOT_SPIN_MIN 0.15, MOT_SPIN_MAX 0.95 */
@@ -66,6 +66,9 @@ int main(void) {
         }
         printf("%s from %.2f s to %.2f s: %s", word(ended[i].level), ended[i].from_s, ended[i].to_s,
                measures[ended[i].measure]);
+        if (ended[i].cause >= 0) {
+            printf(", %s", flagred_flagred_causes[ended[i].cause]);
+        }
         if (ended[i].motor >= 0) {
             printf(", motor %d", (int)ended[i].motor + 1);
         }

@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_PLAN_FORMAT 3
+#define FLAGRED_PLAN_FORMAT 4
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -53,7 +53,8 @@ typedef enum flagred_measure {
     FLAGRED_ELEVATED_RISK = 1,
     FLAGRED_COMMAND_NOISE = 2,  /* the noise of the motor commands, in % of their range */
     FLAGRED_RESERVE = 3,        /* what the mean command leaves below the upper limit, in % of the range */
-    FLAGRED_IMBALANCE = 4       /* how far a motor is from its own part of the thrust earlier in the flight, in % */
+    FLAGRED_IMBALANCE = 4,      /* how far a motor is from its own part of the thrust earlier in the flight, in % */
+    FLAGRED_PAIR_IMBALANCE = 5  /* how far a motor is from the one opposite, in % */
 } flagred_measure;
 
 /* Why a risk is unknown. */
@@ -105,10 +106,15 @@ typedef struct flagred_finding {
     double peak_pct;            /* the worst value of the measure: of the reserve the least, else the largest */
     double mean_margin;         /* of the motor; NAN where no motor is known */
     double least_margin;
+    double cause_value;         /* of the input that raised the risk, when the level was raised; NAN where unknown */
     int32_t level;              /* flagred_level; FLAGRED_LEVEL_NONE where there is no finding */
     int32_t measure;            /* flagred_measure: what reached the threshold */
-    int32_t motor;              /* the index of the motor with the least margin, or out of balance; -1 where none is known */
+    int32_t motor;              /* the index of the motor that is the cause: near a limit, or out of balance; else -1 */
     int32_t at_high_limit;      /* 0: nearer to the lower limit; 1: to the upper limit. Out of balance: below, above */
+    int32_t cause;              /* what raised the risk, as an index of flagred_NAME_causes ("unsteady_now violent") in the
+                                   exported profile; -1 where no rule did */
+    int32_t cause_rule;         /* the index of the rule; -1 */
+    int32_t cause_input;        /* the index of the input of the profile; -1 */
 } flagred_finding;
 
 /* What is known after a sample. */
@@ -245,6 +251,11 @@ typedef struct flagred_channel {
     uint32_t observed, signal, motors, threshold, in_bins;
 } flagred_channel;
 
+/* Which input a rule is about. */
+typedef struct flagred_proposition {
+    uint32_t rule, input, literal;
+} flagred_proposition;
+
 typedef struct flagred_source {
     uint32_t channel, statistic;
 } flagred_source;
@@ -313,6 +324,7 @@ struct flagred_plan {
     FLAGRED_ARRAY(uint32_t, first_coordinates); /* the index of each input's first coordinate, and the end of the last's */
     FLAGRED_ARRAY(double, values);
     FLAGRED_ARRAY(double, distances);
+    FLAGRED_ARRAY(flagred_proposition, propositions);
 };
 
 #undef FLAGRED_ARRAY

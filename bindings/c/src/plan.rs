@@ -3,7 +3,7 @@
 use flagred::{
     accumulator::AccumulatorSettings,
     board::{
-        self,
+        self, Proposition,
         table::{
             self, Action, Axis, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
             Dimension, Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point,
@@ -23,7 +23,7 @@ use crate::{memory::Block, status::Status};
 mod tests;
 
 /// The version of the data that this library reads.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// An array of C and its length.
 #[derive(Debug, Clone, Copy)]
@@ -146,6 +146,7 @@ macro_rules! define {
             first_coordinates: Array<u32>,
             values: Array<f64>,
             distances: Array<f64>,
+            propositions: Array<Proposition>,
         }
 
         impl Plan {
@@ -241,6 +242,7 @@ impl Plan {
                 settings: self.settings.read(),
                 coverage_below: self.coverage_below,
                 filled: (!knots.values.is_empty()).then_some(knots),
+                propositions: self.propositions.read()?,
             })
         }
     }

@@ -3,7 +3,7 @@
 use flagred::{
     margin::Side,
     sample::{self, Estimate, Unknown},
-    verdict::{self, Ended, Level},
+    verdict::{self, Cause, Ended, Level},
 };
 
 /// `FLAGRED_ENDED`: the number of findings that can end at one time.
@@ -21,10 +21,14 @@ pub struct Finding {
     peak_pct: f64,
     mean_margin: f64,
     least_margin: f64,
+    cause_value: f64,
     level: i32,
     measure: i32,
     motor: i32,
     at_high_limit: i32,
+    cause: i32,
+    cause_rule: i32,
+    cause_input: i32,
 }
 
 /// `struct flagred_update`.
@@ -59,13 +63,18 @@ impl Finding {
         measure: 0,
         motor: -1,
         at_high_limit: 0,
+        cause_value: f64::NAN,
+        cause: -1,
+        cause_rule: -1,
+        cause_input: -1,
     };
 
     pub(crate) fn of(finding: Option<verdict::Finding>) -> Finding {
         let Some(finding) = finding else {
             return Finding::NONE;
         };
-        let motor = finding.motor;
+        let verdict::Finding { motor, cause, .. } = finding;
+        let of_cause = |value: fn(&Cause) -> usize| cause.as_ref().map_or(-1, |c| index(value(c)));
         Finding {
             from_s: finding.from_s,
             raised_s: finding.raised_s,
@@ -79,6 +88,10 @@ impl Finding {
             measure: finding.measure as i32,
             motor: motor.map_or(-1, |motor| index(motor.motor)),
             at_high_limit: i32::from(motor.is_some_and(|motor| motor.side == Side::High)),
+            cause_value: cause.map_or(f64::NAN, |cause| cause.value),
+            cause: of_cause(|cause| cause.proposition),
+            cause_rule: of_cause(|cause| cause.rule),
+            cause_input: of_cause(|cause| cause.input),
         }
     }
 }

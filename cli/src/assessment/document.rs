@@ -7,7 +7,7 @@ use flagred::{
     flight::{Assessment, Finding, Step, Steps, Summary, Verdict},
     verdict::VerdictSettings,
 };
-use flightlog::{Flight, Motor, Range, Report};
+use flightlog::{Flight, Motor, Parameter, Range, Report};
 use serde::Serialize;
 
 use super::finding::Teller;
@@ -45,6 +45,7 @@ struct Vehicle<'a> {
     motors: &'a [Motor],
     range: Option<&'a Range>,
     effective_range: &'a Range,
+    parameters: &'a [Parameter],
 }
 
 /// What the verdict rests on beside the flight.
@@ -59,7 +60,7 @@ struct Profile<'a> {
 #[derive(Serialize)]
 pub(crate) struct FindingDocument<'a> {
     #[serde(flatten)]
-    finding: &'a Finding,
+    finding: Finding,
     output: Option<&'a str>,
     text: String,
 }
@@ -69,9 +70,20 @@ impl<'a> FindingDocument<'a> {
         FindingDocument {
             output: teller.motor(finding).map(|motor| motor.output.as_str()),
             text: teller.finding(finding),
-            finding,
+            finding: numbered(finding, teller.motors),
         }
     }
+}
+
+/// The finding with the autopilot's number of its motor, where it is not its place in the samples.
+pub(crate) fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
+    let mut finding = finding.clone();
+    if let Some(named) = &mut finding.found.motor
+        && let Some(motor) = motors.get(named.motor)
+    {
+        named.motor = usize::from(motor.number).saturating_sub(1);
+    }
+    finding
 }
 
 /// The document of one flight.
@@ -100,6 +112,7 @@ pub(crate) fn document<'a>(
             motors: &flight.motors,
             range: flight.range.as_ref(),
             effective_range: &flight.effective,
+            parameters: &flight.parameters,
         },
         read: &flight.report,
         profile: Profile {

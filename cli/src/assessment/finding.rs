@@ -118,58 +118,54 @@ impl<'a> Teller<'a> {
         finding.motor.and_then(|motor| self.motors.get(motor.motor))
     }
 
+    /// What is wrong, its cause in the words of [`cause`], and what stands behind it.
     fn what(&self, finding: &Finding) -> String {
-        let peak = finding.peak_pct;
-        let motor = self.motor(finding);
-        let name = |motor: &Motor| format!("motor {} (output {})", motor.number, motor.output);
-        let side = finding.motor.map(|motor| motor.side);
-        match finding.measure {
-            Measure::Risk | Measure::ElevatedRisk => {
-                let mut text = format!("{} up to {peak:.0} %", finding.measure);
-                // Its numbers are small: without the threshold 3 % reads like nothing.
-                if finding.measure == Measure::ElevatedRisk {
-                    text += &format!(" (threshold {} %)", number(finding.threshold_pct, 2));
-                }
-                text += &match &finding.cause {
-                    Some(cause) => format!(", {}", self.cause(cause)),
-                    None => ", interpolated where no rule applies".to_owned(),
-                };
-                if let (Some(motor), Some(side)) = (motor, side) {
-                    text += &format!("; {} near its {} limit", name(motor), limit(side));
-                }
-                text
-            }
-            Measure::CommandNoise => {
-                format!("command noise {peak:.1} %: vibration, or gains too high?")
-            }
-            Measure::Reserve => format!(
-                "little reserve: the mean command leaves {peak:.0} % below the limit (wanted {:.0} %)",
+        let mut text = format!("{} {:.0} %", quantity(finding), finding.peak_pct);
+        // Its numbers are small: without the threshold 3 % reads like nothing.
+        if finding.measure == Measure::ElevatedRisk {
+            text += &format!(" (threshold {} %)", number(finding.threshold_pct, 2));
+        }
+        for word in cause(finding, self.motors) {
+            text += &word;
+        }
+        let output = self.motor(finding).map(|motor| motor.output.as_str());
+        let side = finding.motor.map_or("above", |motor| match motor.side {
+            Side::Low => "below",
+            Side::High => "above",
+        });
+        let behind = match finding.measure {
+            Measure::Risk | Measure::ElevatedRisk => finding
+                .cause
+                .as_ref()
+                .map(|cause| self.behind(finding, cause)),
+            Measure::CommandNoise => Some("vibration, or gains too high?".to_owned()),
+            Measure::Reserve => Some(format!(
+                "what the mean command leaves below the limit; wanted {:.0} %",
                 finding.threshold_pct
-            ),
-            Measure::Imbalance => {
-                let motor = motor.map_or("a motor".to_owned(), name);
-                let side = match side {
-                    Some(Side::Low) => "below",
-                    _ => "above",
-                };
-                format!("imbalance: {motor} is {peak:.0} % {side} its part earlier in the flight")
-            }
+            )),
+            Measure::Imbalance => Some(format!("{side} its part earlier in the flight")),
+            Measure::PairImbalance => Some(format!("{side} the motor opposite")),
+        };
+        let parts = [output.map(str::to_owned), behind];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        match parts.is_empty() {
+            true => text,
+            false => format!("{text} ({})", parts.join("; ")),
         }
     }
 
-    /// `unsteady_now is violent (how much the motors differ: 0.041; rule 3)`.
-    fn cause(&self, cause: &Cause) -> String {
+    /// `how much the motors differ: 0.041, rule 3`; where the words are about a motor, also the input and the term.
+    fn behind(&self, finding: &Finding, cause: &Cause) -> String {
         let value = number(cause.value, 3);
-        let behind = match self.description(cause) {
-            Some(description) => format!("{}: {value}", first_phrase(description)),
-            None => value,
+        let told = match finding.motor {
+            Some(_) => format!("{cause}: "),
+            None => String::new(),
         };
-        format!(
-            "{} is {} ({behind}; rule {})",
-            cause.input,
-            cause.term,
-            cause.rule + 1
-        )
+        let value = match self.description(cause) {
+            Some(description) => format!("{told}{} {value}", first_phrase(description)),
+            None => format!("{told}{value}"),
+        };
+        format!("{value}, rule {}", cause.rule + 1)
     }
 
     fn description(&self, cause: &Cause) -> Option<&'a str> {
@@ -179,12 +175,35 @@ impl<'a> Teller<'a> {
     }
 }
 
+/// The cause of a finding in a few words, after a comma: `, unsteady_now violent`, `, lower limit, motor 2`, `, motor 2`.
+/// Texts to ground stations, lines and reports all have these words. Where there is no room for the last part, the first one
+/// is true alone.
+pub(crate) fn cause(finding: &Finding, motors: &[Motor]) -> [String; 2] {
+    let motor = finding.motor.and_then(|named| motors.get(named.motor));
+    let motor = motor.map(|motor| format!(", motor {}", motor.number));
+    let motor = motor.unwrap_or_default();
+    match (&finding.cause, finding.motor) {
+        _ if !is_of_risk(finding) => [motor, String::new()],
+        (None, _) => [", interpolated".to_owned(), String::new()],
+        (Some(_), Some(named)) => [format!(", {} limit", limit(named.side)), motor],
+        (Some(Cause { input, term, .. }), None) => [format!(", {input}"), format!(" {term}")],
+    }
+}
+
+/// What a finding is about, before its value.
+fn quantity(finding: &Finding) -> String {
+    match is_of_risk(finding) {
+        true => format!("{} up to", finding.measure),
+        false => finding.measure.to_string(),
+    }
+}
+
 fn span(finding: &Finding) -> String {
     format!("{:.1} to {:.1} s", finding.from_s, finding.to_s)
 }
 
 /// The limit that a motor was nearest to.
-pub(crate) fn limit(side: Side) -> &'static str {
+fn limit(side: Side) -> &'static str {
     match side {
         Side::Low => "lower",
         Side::High => "upper",

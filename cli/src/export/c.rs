@@ -15,7 +15,7 @@ use flagred::{
 };
 
 /// The file.
-pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str]) -> String {
+pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[String]) -> String {
     let name = identifier(plan.name);
     let mut out = String::new();
     let heading = super::heading(plan, rules, signals, "--c").join("\n * ");
@@ -47,6 +47,7 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str]) -> String {
         arrays.add_array(array.field, &array);
     }
     arrays.profile(plan);
+    arrays.add_causes(causes);
     let Arrays {
         mut out, fields, ..
     } = arrays;
@@ -150,6 +151,15 @@ impl Arrays {
             };
             self.add_array(field, &array);
         }
+        let propositions = Array::new("propositions", "Proposition", plan.propositions);
+        self.add_array("propositions", &propositions);
+    }
+
+    /// What the cause of a finding is called. The plan does not hold it.
+    fn add_causes(&mut self, causes: &[String]) {
+        line(&mut self.out, "/* What flagred_finding.cause is called. */");
+        self.add("char *const", "causes", causes.to_vec());
+        self.fields.pop();
     }
 }
 

@@ -7,8 +7,10 @@ use flagred::{
         Plan,
         table::{self, Table},
     },
+    estimator::Estimator,
     gap::FilledKnots,
 };
+use fuzzy::drawing::visible;
 
 use crate::{
     failure::{Exit, Failure},
@@ -49,16 +51,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     })?;
     let rules = &loaded.estimator.profile().rules;
     let signals = loaded.estimator.profile().signals();
+    let causes: Vec<String> = causes(&loaded.estimator).collect();
     let text = if arguments.rust {
-        rust::text(&plan, rules, &signals)
+        rust::text(&plan, rules, &signals, &causes)
     } else if arguments.c {
-        c::text(&plan, rules, &signals)
+        c::text(&plan, rules, &signals, &causes)
     } else {
         lua::text(&loaded.estimator, &plan)
             .map_err(|refused| Failure::unreadable(refused.message).help(refused.help))?
     };
     output.write(&text)?;
     Ok(Exit::Clean)
+}
+
+/// What the cause of a finding is called, as string literals: `"unsteady_now violent"`.
+fn causes(estimator: &Estimator) -> impl Iterator<Item = String> {
+    let propositions = estimator.propositions();
+    propositions.map(|(input, term)| format!("{:?}", visible(&format!("{input} {term}"))))
 }
 
 /// The comment above the data.
@@ -79,7 +88,7 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
         ));
     }
     // A name from outside must not end the comment.
-    let harmless = |line: String| fuzzy::drawing::visible(&line).replace("*/", "* /");
+    let harmless = |line: String| visible(&line).replace("*/", "* /");
     lines.into_iter().map(harmless).collect()
 }
 
@@ -142,7 +151,10 @@ fn bytes_of_filling(plan: &Plan<'_>) -> usize {
 /// The size of all constants.
 fn bytes(plan: &Plan<'_>) -> usize {
     let table: usize = arrays(&plan.table).iter().map(|array| array.bytes).sum();
-    let profile = size_of_val(plan.order) + size_of_val(plan.channels) + size_of_val(plan.inputs);
+    let profile = size_of_val(plan.order)
+        + size_of_val(plan.channels)
+        + size_of_val(plan.inputs)
+        + size_of_val(plan.propositions);
     size_of_val(plan) + table + profile + bytes_of_filling(plan)
 }
 

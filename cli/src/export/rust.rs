@@ -11,7 +11,7 @@ use flagred::{
 };
 
 /// The file.
-pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str]) -> String {
+pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[String]) -> String {
     let mut out = String::new();
     for line in super::heading(plan, rules, signals, "--rust") {
         line_of(&mut out, format_args!("// {line}"));
@@ -26,6 +26,13 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str]) -> String {
 pub type Storage<const MOTORS: usize> =
     ::flagred::board::Storage<{}, {}, {}, {}, MOTORS>;
 
+/// What the cause of a finding is called.
+#[allow(dead_code)]
+#[rustfmt::skip]
+pub static CAUSES: [&str; {}] = [
+    {},
+];
+
 /// The profile.
 #[rustfmt::skip]
 pub static PLAN: ::flagred::board::Plan<'static> = {{
@@ -36,7 +43,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
     #[allow(unused_imports)]
     use ::flagred::{{
         accumulator::AccumulatorSettings,
-        board::{{Plan, table::{{*, Hedge::*}}}},
+        board::{{Plan, Proposition, table::{{*, Hedge::*}}}},
         channel,
         follower::Settings,
         gap::FilledKnots,
@@ -54,6 +61,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
             sizes.partials,
             sizes.outputs,
             sizes.channels,
+            causes.len(),
+            causes.join(",\n    "),
             plan.name,
             plan.table.and,
             plan.table.or,
@@ -91,6 +100,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
             line_of(out, format_args!("        }}),"));
         }
     }
+    let propositions: Vec<String> = plan.propositions.iter().map(|p| format!("{p:?}")).collect();
+    items(out, 2, "propositions", &propositions);
     line_of(out, format_args!("    }}\n}};"));
     std::mem::take(out)
 }

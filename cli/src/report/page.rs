@@ -374,6 +374,10 @@ fn sources(subject: &Subject, loaded: &Loaded) -> Markup {
     };
     add("range", flight.range.as_ref().map(range));
     add("effective range", Some(range(&flight.effective)));
+    for parameter in &flight.parameters {
+        let value = format!("{} ({})", number(parameter.value, 6), parameter.source);
+        add(&parameter.name, Some(value));
+    }
     for (name, spans) in [("armed", &flight.armed), ("in the air", &flight.in_air)] {
         let value = spans.as_ref();
         let value = value.map(|spans| format!("{:.1} s ({})", spans.duration_s(), spans.rule));

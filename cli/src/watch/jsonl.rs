@@ -3,16 +3,15 @@
 use std::io;
 
 use flagred::{estimator::Estimator, flight::Verdict, monitor::Update, verdict::Level};
-use flightlog::{Motor, Range, Vehicle};
 use serde::Serialize;
 
 use super::{
     lines::teller,
-    session::{Doubt, Doubts, End, Event, Flown, Left, Lost, Session, Silent, Source},
+    session::{Doubts, End, Event, Flown, Left, Lost, Session},
 };
 use crate::assessment::document::FindingDocument;
 
-/// What an event adds to its kind and time; names are those of docs/json.md.
+/// A line; names are those of docs/json.md.
 #[derive(Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub(crate) enum EventLine<'a> {
@@ -21,60 +20,7 @@ pub(crate) enum EventLine<'a> {
         endpoint: &'a str,
         profile: &'a str,
     },
-    Found(About<'a>),
-    Locked {
-        system: u8,
-        address: Source,
-    },
-    GivenUp {
-        system: u8,
-    },
-    SenderChanged {
-        system: u8,
-        from: Source,
-        to: Source,
-    },
-    Doubt {
-        what: Doubt,
-        system: u8,
-        component: u8,
-        address: Source,
-    },
-    AnotherWatch {
-        system: u8,
-        component: Option<u8>,
-        speaks: bool,
-    },
-    AnotherVehicle {
-        system: u8,
-    },
-    NotAMultirotor(About<'a>),
-    Ready {
-        motors: &'a [Motor],
-        range: &'a Range,
-        effective_range: &'a Range,
-        assumed: &'a [String],
-    },
-    Note {
-        text: &'a str,
-    },
-    Lost {
-        what: Silent,
-    },
-    Back {
-        what: Silent,
-        after_s: f64,
-    },
-    Rebooted,
-    TookOff {
-        t_s: f64,
-    },
     Risk(Risk<'a>),
-    Level {
-        t_s: f64,
-        level: Level,
-        text: &'a str,
-    },
     Finding(FindingDocument<'a>),
     Landed(FlownLine<'a, ()>),
     LostInAir(FlownLine<'a, Lost>),
@@ -93,14 +39,9 @@ pub(crate) enum EventLine<'a> {
         unsent: u64,
         dropped_lines: u64,
     },
-}
-
-#[derive(Serialize)]
-pub(crate) struct About<'a> {
-    system: u8,
-    kind: String,
-    frame: Option<&'a str>,
-    firmware: Option<&'a str>,
+    /// Any other event says all by itself.
+    #[serde(untagged)]
+    Plain(&'a Event),
 }
 
 #[derive(Serialize)]
@@ -157,55 +98,6 @@ pub(crate) fn json(
 ) -> io::Result<Option<String>> {
     let view = session.view();
     let line = match event {
-        Event::Found { system, vehicle } => EventLine::Found(About::new(*system, vehicle)),
-        Event::Locked { system, source } => EventLine::Locked {
-            system: *system,
-            address: *source,
-        },
-        Event::GivenUp { system } => EventLine::GivenUp { system: *system },
-        Event::SenderChanged { system, from, to } => EventLine::SenderChanged {
-            system: *system,
-            from: *from,
-            to: *to,
-        },
-        Event::Doubt {
-            what,
-            system,
-            component,
-            source,
-        } => EventLine::Doubt {
-            what: *what,
-            system: *system,
-            component: *component,
-            address: *source,
-        },
-        Event::AnotherWatch {
-            system,
-            component,
-            speaks,
-        } => EventLine::AnotherWatch {
-            system: *system,
-            component: *component,
-            speaks: *speaks,
-        },
-        Event::Another { system } => EventLine::AnotherVehicle { system: *system },
-        Event::NotAMultirotor { system, vehicle } => {
-            EventLine::NotAMultirotor(About::new(*system, vehicle))
-        }
-        Event::Ready { setup } => EventLine::Ready {
-            motors: &setup.motors,
-            range: &setup.range,
-            effective_range: &setup.effective,
-            assumed: &setup.assumed,
-        },
-        Event::Note { text } => EventLine::Note { text },
-        Event::Lost { what } => EventLine::Lost { what: *what },
-        Event::Back { what, after_s } => EventLine::Back {
-            what: *what,
-            after_s: *after_s,
-        },
-        Event::Rebooted => EventLine::Rebooted,
-        Event::TookOff { t_s } => EventLine::TookOff { t_s: *t_s },
         Event::Risk { update } => {
             let Some(view) = view.filter(|view| view.is_in_air) else {
                 return Ok(None);
@@ -219,11 +111,6 @@ pub(crate) fn json(
                 unknown: why.map(|unknown| unknown.explain(estimator.profile())),
             })
         }
-        Event::Level { t_s, level, text } => EventLine::Level {
-            t_s: *t_s,
-            level: *level,
-            text,
-        },
         Event::Ended { finding } => {
             let teller = teller(view.as_ref(), estimator);
             EventLine::Finding(FindingDocument::new(finding, teller))
@@ -233,6 +120,7 @@ pub(crate) fn json(
             End::Lost(lost) => EventLine::LostInAir(FlownLine::new(flown, Some(*lost))),
             End::Left(left) => EventLine::LeftInAir(FlownLine::new(flown, Some(*left))),
         },
+        event => EventLine::Plain(event),
     };
     json_line(at_s, line).map(Some)
 }
@@ -244,15 +132,4 @@ pub(crate) fn json_line(at_s: f64, line: EventLine<'_>) -> io::Result<String> {
         line,
     })?;
     Ok(text + "\n")
-}
-
-impl<'a> About<'a> {
-    fn new(system: u8, vehicle: &'a Vehicle) -> Self {
-        About {
-            system,
-            kind: vehicle.kind.to_string(),
-            frame: vehicle.frame.as_deref(),
-            firmware: vehicle.firmware.as_deref(),
-        }
-    }
 }

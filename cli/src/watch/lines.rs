@@ -86,7 +86,7 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
         Event::AnotherWatch {
             component, speaks, ..
         } => another_watch(*component, *speaks),
-        Event::Another { system } => {
+        Event::AnotherVehicle { system } => {
             format!("another vehicle is on the link, {system}: it is not followed")
         }
         Event::NotAMultirotor { system, vehicle } => {
@@ -95,7 +95,7 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
                 vehicle.kind
             )
         }
-        Event::Ready { setup } => ready(setup),
+        Event::Ready { setup, .. } => ready(setup),
         Event::Note { text } => text.clone(),
         Event::Lost { what: Silent::Link } => {
             "LINK LOST: nothing comes from the vehicle, the risk is unknown".to_owned()

@@ -16,6 +16,7 @@ mod tracked;
 mod trust;
 
 use super::voice;
+use crate::assessment::document::numbered;
 pub(crate) use event::{End, Event, Flown, Left, Lost, Silent};
 use speech::Speech;
 pub(crate) use tracked::View;
@@ -194,7 +195,7 @@ impl<'e> Session<'e> {
         let system = packet.system;
         let followed = self.tracked.as_ref().map(|t| t.telemetry.system());
         if followed.is_some_and(|followed| followed != system) && self.is_new(system) {
-            out.events.push(Event::Another { system });
+            out.events.push(Event::AnotherVehicle { system });
         }
         if !may_be_multirotor(&vehicle) {
             if self.is_new(system) {
@@ -319,11 +320,24 @@ impl<'e> Session<'e> {
             add(&mut self.worst, verdict);
         }
         out.events.push(Event::Risk { update });
-        if let Some(level) = update.change.filter(|_| in_air) {
-            let finding = watch.assessor.open_finding();
+        // Where the level stands already, but not for a notice that was raised, that is told, too.
+        let raised = watch.raised_notice();
+        let level = (update.change).or_else(|| raised.as_ref().and(update.level));
+        if let Some(level) = level.filter(|_| in_air) {
+            let finding = match update.change {
+                Some(_) => watch.assessor.open_finding(),
+                None => raised,
+            };
             let text = voice::say(level, &update, finding.as_ref(), &watch.setup);
             self.speech.say(to, &voice::status(level, &text), out);
-            out.events.push(Event::Level { t_s, level, text });
+            let finding = finding.map(|finding| numbered(&finding, &watch.setup.motors));
+            out.events.push(Event::Level {
+                t_s,
+                level,
+                text,
+                motor: finding.as_ref().and_then(|finding| finding.motor),
+                cause: finding.and_then(|finding| finding.cause),
+            });
         }
         let due = watch
             .risk_sent_s

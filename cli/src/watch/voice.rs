@@ -1,7 +1,7 @@
 //! The messages to the vehicle and its ground station.
 
 use flagred::{
-    flight::{Cause, Finding},
+    flight::Finding,
     monitor::Update,
     verdict::{Level, Measure},
 };
@@ -15,7 +15,7 @@ use flightlog::mavlink::{
 
 use fuzzy::drawing::visible;
 
-use crate::assessment::finding::limit;
+use crate::assessment::finding::cause;
 
 /// The names of the values that are sent.
 pub(crate) const RISK: &str = "FR_RISK";
@@ -96,8 +96,9 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
     })
 }
 
-/// A change of level in at most 50 characters, with its cause: `FLAGRED: WARN risk 78 %, unsteady_now violent`, or where
-/// a motor is the cause `FLAGRED: WARN risk 78 %, motor 3 upper limit`. A level that ends because the risk became unknown is not reported as GOOD.
+/// A change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, unsteady_now violent`, or where
+/// a motor is the cause `FLAGRED: WARN risk 78 %, upper limit, motor 3`. A level that ends because the risk became unknown is
+/// not reported as GOOD.
 pub(crate) fn say(
     level: Level,
     update: &Update,
@@ -107,42 +108,28 @@ pub(crate) fn say(
     if level == Level::Good && update.risk.is_err() {
         return "FLAGRED: risk unknown".to_owned();
     }
-    let mut text = format!("FLAGRED: {level}");
     let measure = finding.map_or(Measure::Risk, |finding| finding.measure);
     let (name, value) = match measure {
         Measure::Risk => ("risk", update.risk.ok().map(|estimate| estimate.risk_pct)),
         Measure::ElevatedRisk => ("elevated", update.elevated_risk_pct),
-        Measure::Reserve => ("little reserve", finding.map(|finding| finding.peak_pct)),
-        Measure::Imbalance => ("imbalance", finding.map(|finding| finding.peak_pct)),
         Measure::CommandNoise => ("noise", finding.map(|finding| finding.peak_pct)),
+        Measure::Reserve => ("reserve", finding.map(|finding| finding.peak_pct)),
+        Measure::Imbalance => ("imbalance", finding.map(|finding| finding.peak_pct)),
+        Measure::PairImbalance => ("pair imbalance", finding.map(|finding| finding.peak_pct)),
     };
+    let mut text = format!("FLAGRED: {level}");
     if let Some(value) = value {
         text += &format!(" {name} {value:.0} %");
     }
-    let Some(finding) = finding.filter(|_| level > Level::Good) else {
-        return text;
-    };
-    let motor = finding.motor.and_then(|named| {
-        let motor = setup.motors.get(named.motor)?;
-        Some(match measure {
-            Measure::Imbalance => format!(", motor {}", motor.number),
-            _ => format!(", motor {} {} limit", motor.number, limit(named.side)),
-        })
-    });
-    text +=
-        &motor.unwrap_or_else(|| cause(finding.cause.as_ref(), TEXT.saturating_sub(text.len())));
+    let cause = finding.map(|finding| cause(finding, &setup.motors));
+    for word in cause.iter().flatten() {
+        let word = visible(word);
+        if text.len() + word.len() > TEXT {
+            break;
+        }
+        text += &word;
+    }
     text
-}
-
-/// A cause in so many bytes: input and term, else the input alone, else nothing.
-fn cause(cause: Option<&Cause>, room: usize) -> String {
-    let Some(Cause { input, term, .. }) = cause else {
-        return String::new();
-    };
-    let (input, term) = (visible(input), visible(term));
-    let told = [format!(", {input} {term}"), format!(", {input}")];
-    let mut fits = told.into_iter().filter(|text| text.len() <= room);
-    fits.next().unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -28,6 +28,7 @@
 use fuzzy::table::{Damaged, Outcome, Scratch, Table};
 
 use crate::{
+    cause::{Cause, cause},
     channel::{Channel, Input, Observed, Seen},
     effort::ROLL_PITCH_YAW_THRUST,
     follower::{Follower, Room, Settings},
@@ -39,7 +40,7 @@ use crate::{
     window::Window,
 };
 
-pub use crate::effort::Factors;
+pub use crate::{cause::Proposition, effort::Factors};
 pub use fuzzy::table;
 
 mod storage;
@@ -71,6 +72,8 @@ pub struct Plan<'a> {
     pub coverage_below: f64,
     /// The values that fill gaps of the rules; `None` where the rules cover nothing.
     pub filled: Option<FilledKnots<'a>>,
+    /// The propositions of the rules, those of each rule together, the most telling first.
+    pub propositions: &'a [Proposition],
 }
 
 /// Why a monitor cannot be made.
@@ -137,6 +140,12 @@ impl Plan<'_> {
         )?;
         require(is_length(self.settings.elevated_risk.window_s), "settings")?;
         require(
+            self.propositions
+                .iter()
+                .all(|said| (said.input as usize) < inputs),
+            "propositions",
+        )?;
+        require(
             self.filled
                 .is_none_or(|filled| filled.is_whole(self.table.inputs.len())),
             "filled",
@@ -149,15 +158,31 @@ impl Plan<'_> {
         point: &mut [f64],
         (scratch, outcomes): (&mut Scratch<'_>, &mut [Outcome]),
     ) -> Option<Estimate> {
-        let lookup = Lookup {
-            order: self.order,
-            coverage_below: self.coverage_below,
-            filled: self.filled,
-        };
-        lookup.estimate(inputs, point, |point| {
+        self.lookup().estimate(inputs, point, |point| {
             self.table.evaluate(scratch, point, outcomes);
             outcomes.get(self.output as usize).copied()
         })
+    }
+
+    fn cause(
+        &self,
+        inputs: &[f64],
+        risk_pct: f64,
+        point: &mut [f64],
+        scratch: &mut Scratch<'_>,
+    ) -> Option<Cause> {
+        self.lookup().reorder(inputs, point)?;
+        let output = self.output as usize;
+        let rule = self.table.raised_by(scratch, point, output, risk_pct)?;
+        cause(self.propositions, scratch.degrees, rule, inputs)
+    }
+
+    fn lookup(&self) -> Lookup<'_> {
+        Lookup {
+            order: self.order,
+            coverage_below: self.coverage_below,
+            filled: self.filled,
+        }
     }
 }
 
@@ -277,7 +302,11 @@ impl<'a> Monitor<'a> {
         let (point, rules) = (&mut *self.point, (&mut self.scratch, &mut *self.outcomes));
         let estimate = |inputs: &[f64]| plan.estimate(inputs, point, rules);
         let channels = (plan.channels, plan.inputs);
-        self.follower.push(channels, &mut room, sample, estimate)
+        let update = self.follower.push(channels, &mut room, sample, estimate);
+        self.follower.explain(channels, &update, |risk_pct| {
+            plan.cause(self.inputs, risk_pct, self.point, &mut self.scratch)
+        });
+        update
     }
 
     /// The risk at values of the inputs, in the order of the profile, independent of the flight. `None` where no rule fires
@@ -287,6 +316,14 @@ impl<'a> Monitor<'a> {
         self.plan.estimate(inputs, self.point, rules)
     }
 
+    /// What raises the risk at values of the inputs, in the order of the profile, independent of the flight. `None` where no
+    /// rule does.
+    pub fn cause_at(&mut self, inputs: &[f64]) -> Option<Cause> {
+        let said = self.at(inputs).filter(|said| said.filled_from.is_none())?;
+        let scratch = &mut self.scratch;
+        self.plan.cause(inputs, said.risk_pct, self.point, scratch)
+    }
+
     /// The values of the inputs after the last sample, in the order of the profile; NaN is unknown.
     pub fn inputs(&self) -> &[f64] {
         self.inputs
@@ -294,7 +331,7 @@ impl<'a> Monitor<'a> {
 
     /// The open finding of the current level; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
-        self.follower.open_finding(self.motors)
+        self.follower.open_finding()
     }
 
     /// Ends the flight, and returns the findings that were still open.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::shipped;
+use crate::{shipped, verdict::Measure};
 
 /// Flies at 50 Hz: for each phase its seconds, whether in the air, and the motors.
 fn fly(phases: &[(f64, bool, [f64; 4])]) -> Assessment {
@@ -162,6 +162,78 @@ fn a_motor_is_named_only_where_motors_near_a_limit_are_the_cause() {
         assert_eq!(findings.len(), 1);
         assert_eq!(findings[0].cause, open.cause);
     }
+}
+
+/// An octaquad in an X: motors 2 and 4 are opposite and turn the same way.
+const OCTAQUAD: [crate::monitor::Factors; 8] = [
+    [-1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0],
+    [1.0, -1.0, 1.0],
+    [-1.0, -1.0, -1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [1.0, -1.0, -1.0],
+];
+
+/// Flies an octaquad for two minutes, one motor of which is dead from a time on: motor 2 stands at 0.86, the one opposite at
+/// 0.39. The same on board. Gives the assessment, and the levels at which it stood from 30 s after the fault on.
+fn with_a_dead_motor(from_s: f64) -> (super::Assessment, Vec<Level>) {
+    let estimator = shipped::flagred();
+    let craft = Craft::new(8).with_geometry(&OCTAQUAD);
+    let mut assessor = Assessor::new(&estimator, craft, None).unwrap();
+    let plan = estimator.plan().unwrap();
+    let mut memory = crate::board::OwnedMemory::new(&plan, 8);
+    let mut on_board = memory.monitor(&plan).unwrap();
+    on_board.set_geometry(&OCTAQUAD).unwrap();
+    let (mut levels, mut ended) = (Vec::new(), Vec::new());
+    for i in 0..6100 {
+        let t_s = f64::from(i) * 0.02;
+        let mut motors = [0.6; 8];
+        if t_s >= from_s {
+            (motors[1], motors[3]) = (0.86, 0.39);
+        }
+        for (motor, n) in motors.iter_mut().zip(1..) {
+            *motor += 0.003 * (t_s * f64::from(n)).sin();
+        }
+        let sample = Sample {
+            t_s,
+            motors: &motors,
+            in_air: i < 6000,
+            signals: &[],
+        };
+        let update = assessor.push(&sample);
+        assert_eq!(on_board.push(&sample), update);
+        ended.extend(update.ended.into_iter().flatten());
+        if sample.in_air && t_s >= from_s + 30.0 {
+            levels.extend(update.level);
+        }
+    }
+    let flown = assessor.finish();
+    let of = |measure| flown.findings.iter().find(|f| f.measure == measure);
+    for measure in [Measure::Imbalance, Measure::PairImbalance] {
+        let found = ended.iter().find(|f| f.measure == measure);
+        assert_eq!(found, of(measure).map(|finding| &finding.found));
+    }
+    (flown, levels)
+}
+
+#[test]
+fn a_lasting_fault_stays_a_finding_until_landing() {
+    for (from_s, measure) in [(60.0, Measure::Imbalance), (8.0, Measure::PairImbalance)] {
+        let (flown, levels) = with_a_dead_motor(from_s);
+        assert!(levels.len() > 1000 && levels.iter().all(|level| *level >= Level::Warn));
+        let mut found = flown.findings.iter();
+        let found = found.find(|finding| finding.measure == measure).unwrap();
+        let motor = found.motor.unwrap();
+        assert_eq!((motor.motor, motor.side), (1, crate::margin::Side::High));
+        assert!(found.raised_s < from_s + 15.0, "{found:?}");
+        assert!(found.to_s > 119.0, "{found:?}");
+        assert_eq!(found.level, Level::Warn);
+    }
+    // As it was before: nothing is at odds.
+    let (flown, levels) = with_a_dead_motor(1e9);
+    assert_eq!((flown.findings, levels), (vec![], vec![]));
 }
 
 #[test]

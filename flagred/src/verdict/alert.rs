@@ -1,6 +1,6 @@
 //! The level over time: raised, held, lowered. One time of trouble is one finding.
 
-use super::{Finding, Level, Measure, MotorFinding, VerdictSettings};
+use super::{Cause, Finding, Level, Measure, MotorFinding, VerdictSettings};
 use crate::motor::{Motor, MotorRecord};
 
 /// Time stamps are sums of steps: a duration this much shorter, in seconds, is long enough.
@@ -16,7 +16,12 @@ pub(crate) struct Alert {
     /// Since when the thresholds of WARN and FAIL are reached.
     reached_since_s: [Option<f64>; 2],
     finding: Option<Finding>,
+    /// The finding is of a worse level than before, and nobody has told why.
+    asks_why: bool,
 }
+
+/// A motor that is a cause comes at least so near to a limit.
+const NEAR_LIMIT: f64 = 0.1;
 
 /// What a sample changed.
 #[derive(Debug, Clone, Copy, Default)]
@@ -43,6 +48,7 @@ impl Alert {
             last_held_s: 0.0,
             reached_since_s: [None; 2],
             finding: None,
+            asks_why: false,
         }
     }
 
@@ -51,9 +57,22 @@ impl Alert {
     }
 
     /// The open finding as it stands.
-    pub(crate) fn open(&self, motors: &[Motor]) -> Option<Finding> {
-        let motor = weakest(motors);
-        self.finding.map(|finding| Finding { motor, ..finding })
+    pub(crate) fn open(&self) -> Option<Finding> {
+        self.finding
+    }
+
+    /// Whether the latest sample raised the level of the finding: its cause is asked for, by [`Alert::explain`].
+    pub(crate) fn asks_why(&self) -> bool {
+        self.asks_why
+    }
+
+    /// Sets the cause of the finding; a motor is named only where motors near a limit are the cause.
+    pub(crate) fn explain(&mut self, cause: Option<Cause>, is_of_limits: bool) {
+        self.asks_why = false;
+        if let Some(finding) = &mut self.finding {
+            finding.cause = cause;
+            finding.motor = finding.motor.filter(|_| is_of_limits);
+        }
     }
 
     pub(crate) fn push(&mut self, now: Now, motors: &mut [Motor]) -> Step {
@@ -65,24 +84,23 @@ impl Alert {
         } = now;
         let mut step = Step::default();
         let mut held = Level::Good;
+        self.asks_why = false;
         let levels = [
             (Level::Warn, self.settings.warn),
             (Level::Fail, self.settings.fail),
         ];
-        if self.reached_since_s == [None; 2] && self.finding.is_none() {
-            for motor in motors.iter_mut() {
-                motor.record = MotorRecord::NONE;
-            }
-        }
-        for (i, (level, settings)) in levels.into_iter().enumerate() {
-            let reached = match takes_off && level == Level::Warn {
+        let reached = levels.map(
+            |(level, settings)| match takes_off && level == Level::Warn {
                 true => None,
                 false => settings.raise.reached(risk_pct, elevated_pct),
-            };
-            if reached.is_some() || settings.until.reached(risk_pct, elevated_pct).is_some() {
+            },
+        );
+        self.record(&reached.map(|reached| reached.is_some()), motors);
+        for (i, (level, settings)) in levels.into_iter().enumerate() {
+            if reached[i].is_some() || settings.until.reached(risk_pct, elevated_pct).is_some() {
                 held = level.min(self.level);
             }
-            let Some((measure, threshold_pct)) = reached else {
+            let Some((measure, threshold_pct)) = reached[i] else {
                 self.reached_since_s[i] = None;
                 continue;
             };
@@ -91,14 +109,9 @@ impl Alert {
             }
             let since_s = *self.reached_since_s[i].get_or_insert(t_s);
             if level > self.level && t_s - since_s >= settings.after_s - ROUNDING_S {
-                self.raise(t_s, since_s, level, (measure, threshold_pct));
+                self.raise(t_s, since_s, level, (measure, threshold_pct), motors);
                 step.change = Some(level);
                 held = level;
-            }
-        }
-        if self.reached_since_s != [None; 2] {
-            for motor in motors.iter_mut() {
-                motor.record.add(motor.command);
             }
         }
         if let Some(finding) = &mut self.finding {
@@ -115,14 +128,34 @@ impl Alert {
             self.last_held_s = t_s;
             step.change = Some(held);
             if held == Level::Good {
-                step.ended = self.end_finding(motors);
+                step.ended = self.end_finding();
             }
         }
         step
     }
 
+    /// Keeps what the motors do while a level is being reached, from its beginning. So a motor is judged where the level is
+    /// raised, not over what came before or after.
+    fn record(&self, reached: &[bool; 2], motors: &mut [Motor]) {
+        let begins = |i: usize| reached[i] && self.reached_since_s[i].is_none();
+        let (begins, any) = (begins(0) || begins(1), reached[0] || reached[1]);
+        for motor in motors.iter_mut().filter(|_| any) {
+            if begins {
+                motor.record = MotorRecord::NONE;
+            }
+            motor.record.add(motor.command);
+        }
+    }
+
     /// Opens the finding, or makes it a FAIL.
-    fn raise(&mut self, t_s: f64, since_s: f64, level: Level, by: (Measure, f64)) {
+    fn raise(
+        &mut self,
+        t_s: f64,
+        since_s: f64,
+        level: Level,
+        by: (Measure, f64),
+        motors: &[Motor],
+    ) {
         self.level = level;
         let (measure, threshold_pct) = by;
         let failed_s = (level == Level::Fail).then_some(t_s);
@@ -134,6 +167,8 @@ impl Alert {
         // The span of an earlier FAIL goes on.
         let failed_s = opened.failed_s.or(failed_s);
         let same = opened.level == level;
+        let is_worse = level > opened.level;
+        self.asks_why = is_worse;
         self.finding = Some(Finding {
             level: level.max(opened.level),
             failed_s,
@@ -149,17 +184,22 @@ impl Alert {
             } else {
                 f64::NEG_INFINITY
             },
+            motor: if is_worse {
+                weakest(motors)
+            } else {
+                opened.motor
+            },
             ..opened
         });
     }
 
     /// Ends the flight, or what was seen of it. A landing takes back what was raised just before it.
-    pub(crate) fn end(&mut self, t_s: f64, landed: bool, motors: &[Motor]) -> Step {
+    pub(crate) fn end(&mut self, t_s: f64, landed: bool) -> Step {
         let change = (self.level > Level::Good).then_some(Level::Good);
         self.level = Level::Good;
         self.reached_since_s = [None; 2];
         let quiet_s = self.settings.quiet_before_landing_s;
-        let finding = self.end_finding(motors);
+        let finding = self.end_finding();
         // A FAIL just before the ground may be the fall itself.
         let quiet_s = |finding: &Finding| match finding.level {
             Level::Fail => quiet_s / 2.0,
@@ -169,19 +209,19 @@ impl Alert {
         Step { change, ended }
     }
 
-    fn end_finding(&mut self, motors: &[Motor]) -> Option<Finding> {
-        let ended = self.open(motors);
-        self.finding = None;
-        ended
+    fn end_finding(&mut self) -> Option<Finding> {
+        self.asks_why = false;
+        self.finding.take()
     }
 }
 
-/// The motor with the least mean margin while the level was reached.
+/// The motor with the least mean margin while the level was being reached, where it is near a limit.
 fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
     let records = motors.iter().map(|motor| motor.record).enumerate();
     let known = records.filter(|(_, record)| record.samples > 0);
     let weakest = known.min_by(|(_, a), (_, b)| a.mean_margin.total_cmp(&b.mean_margin));
-    weakest.map(|(motor, record)| MotorFinding {
+    let near = weakest.filter(|(_, record)| record.least_margin < NEAR_LIMIT);
+    near.map(|(motor, record)| MotorFinding {
         motor,
         side: record.side,
         mean_margin: record.mean_margin,
@@ -247,7 +287,7 @@ mod tests {
         }
 
         fn end(&mut self, t_s: f64, landed: bool) -> Step {
-            self.alert.end(t_s, landed, &self.motors)
+            self.alert.end(t_s, landed)
         }
     }
 
@@ -352,6 +392,33 @@ mod tests {
         // A link that is lost is no landing.
         let (_, _, mut flown) = run(&[(2.0, 0.0, 90.0)]);
         assert!(flown.end(2.0, false).ended.is_some());
+    }
+
+    /// Motor 2 at its upper limit raises the level; then motor 1 is at its lower one for long.
+    #[test]
+    fn the_motor_is_judged_where_the_level_is_raised_and_not_over_the_wreck() {
+        let mut flown = Flown::new([0.4, 0.95]);
+        for i in 0..300 {
+            if i == 60 {
+                flown.motors = [0.0, 0.5].map(Motor::at);
+            }
+            flown.push(f64::from(i) / 10.0, 0.0, if i < 50 { 0.0 } else { 90.0 });
+        }
+        let motor = flown.end(30.0, false).ended.unwrap().motor.unwrap();
+        assert_eq!((motor.motor, motor.side), (1, Side::High));
+        approx::assert_abs_diff_eq!(motor.least_margin, 0.05, epsilon = 1e-12);
+    }
+
+    #[test]
+    fn a_motor_far_from_its_limits_is_not_named() {
+        for (command, is_named) in [(0.85, false), (0.95, true), (0.05, true), (0.17, false)] {
+            let mut flown = Flown::new([0.5, command]);
+            for i in 0..20 {
+                flown.push(f64::from(i) / 10.0, 99.0, 0.0);
+            }
+            let finding = flown.end(2.0, false).ended.unwrap();
+            assert_eq!(finding.motor.is_some(), is_named, "{command}");
+        }
     }
 
     #[test]

@@ -35,9 +35,12 @@ struct Watch {
     finding: Option<Finding>,
 }
 
-/// What is passed: the value in %, its limit, and the motor it is about.
+/// What is passed, and the motor it is about.
 struct Passed {
-    value_pct: f64,
+    measure: Measure,
+    /// The value and its limit, on the effective range.
+    value: f64,
+    limit: f64,
     motor: Option<MotorFinding>,
 }
 
@@ -68,33 +71,29 @@ impl Notices {
         self.reserve.add(1.0 - mean, held_s, RESERVE_S);
 
         let settings = self.settings;
-        let above = |value: f64, limit: Limit| value > limit.value;
+        let plain = |measure, value, limit: Limit| Passed {
+            measure,
+            value,
+            limit: limit.value,
+            motor: None,
+        };
         let noise = self.noise_squared.known_after(NOISE_S).map(libm::sqrt);
         let noise = noise.zip(settings.noise);
-        let passed = noise.filter(|(v, limit)| above(*v, *limit)).map(plain);
-        self.watches[0].push(
-            t_s,
-            (Level::Info, Measure::CommandNoise),
-            settings.noise,
-            passed,
-        );
+        let noise = noise.filter(|(value, limit)| *value > limit.value);
+        let noise = noise.map(|(value, limit)| plain(Measure::CommandNoise, value, limit));
+        self.watches[0].push(t_s, Level::Info, settings.noise, noise);
         let reserve = self.reserve.known_after(RESERVE_S).zip(settings.reserve);
-        let passed = reserve.filter(|(v, limit)| *v < limit.value).map(plain);
-        self.watches[1].push(
-            t_s,
-            (Level::Warn, Measure::Reserve),
-            settings.reserve,
-            passed,
-        );
-        let imbalance = imbalance(motors, mean, held_s, settings.imbalance);
-        let is_known = t_s - since_s >= TRIM_KNOWN_AFTER_S;
-        let passed = imbalance.filter(|_| is_known);
-        self.watches[2].push(
-            t_s,
-            (Level::Warn, Measure::Imbalance),
-            settings.imbalance,
-            passed,
-        );
+        let reserve = reserve.filter(|(value, limit)| *value < limit.value);
+        let reserve = reserve.map(|(value, limit)| plain(Measure::Reserve, value, limit));
+        self.watches[1].push(t_s, Level::Warn, settings.reserve, reserve);
+        let imbalance = settings.imbalance.and_then(|Limit { value, .. }| {
+            let from_trim = from_trim(motors, mean, held_s, value);
+            let is_known = t_s - since_s >= TRIM_KNOWN_AFTER_S;
+            from_trim
+                .filter(|_| is_known)
+                .or_else(|| at_odds(motors, 2.0 * value))
+        });
+        self.watches[2].push(t_s, Level::Warn, settings.imbalance, imbalance);
     }
 
     /// Ends the flight: the open findings.
@@ -111,76 +110,88 @@ impl Notices {
     }
 }
 
-fn plain((value, _): (f64, Limit)) -> Passed {
-    Passed {
-        value_pct: 100.0 * value,
-        motor: None,
-    }
-}
-
 /// The motor that is farthest from its own trim, where it is beyond the limit. The trim is the motor's mean difference from
 /// the mean of all; it stands still while a motor is half way to the limit.
-fn imbalance(motors: &mut [Motor], mean: f64, held_s: f64, limit: Option<Limit>) -> Option<Passed> {
-    let limit = limit?;
+fn from_trim(motors: &mut [Motor], mean: f64, held_s: f64, limit: f64) -> Option<Passed> {
     let mut farthest: Option<(usize, f64)> = None;
     for (i, motor) in motors.iter_mut().enumerate() {
         let difference = motor.less_yaw - mean;
         motor.difference.add(difference, held_s, IMBALANCE_S);
         let from_trim = motor.difference.value - motor.trim.value;
-        if motor.trim.known_s < TRIM_KNOWN_AFTER_S || from_trim.abs() < limit.value / 2.0 {
+        if motor.trim.known_s < TRIM_KNOWN_AFTER_S || from_trim.abs() < limit / 2.0 {
             motor.trim.add(difference, held_s, TRIM_S);
         }
         if farthest.is_none_or(|(_, most)| from_trim.abs() > most.abs()) {
             farthest = Some((i, from_trim));
         }
     }
-    let (motor, from_trim) = farthest.filter(|(_, most)| most.abs() > limit.value)?;
-    let margin = margin(motors.get(motor)?.command);
-    Some(Passed {
-        value_pct: 100.0 * from_trim.abs(),
-        motor: Some(MotorFinding {
-            motor,
-            side: if from_trim > 0.0 {
-                Side::High
-            } else {
-                Side::Low
-            },
-            mean_margin: margin,
-            least_margin: margin,
-        }),
-    })
+    let (motor, from_trim) = farthest?;
+    Passed::by(motors, Measure::Imbalance, motor, from_trim, limit)
+}
+
+/// The motor that is farthest above the one opposite, where it is beyond the limit. A fault that was there before the trim
+/// was learned shows only here.
+fn at_odds(motors: &[Motor], limit: f64) -> Option<Passed> {
+    let above = motors.iter().enumerate().filter_map(|(i, motor)| {
+        let opposite = motors.get(motor.opposite as usize)?;
+        let of = |motor: &Motor| motor.difference.known_after(IMBALANCE_S);
+        Some((i, of(motor)? - of(opposite)?))
+    });
+    let (motor, above) = above.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    Passed::by(motors, Measure::PairImbalance, motor, above, limit)
+}
+
+impl Passed {
+    /// A motor that is so much above or below where it should be, where that is beyond the limit.
+    fn by(
+        motors: &[Motor],
+        measure: Measure,
+        motor: usize,
+        above: f64,
+        limit: f64,
+    ) -> Option<Passed> {
+        let margin = margin(motors.get(motor)?.command);
+        (above.abs() > limit).then_some(Passed {
+            measure,
+            value: above.abs(),
+            limit,
+            motor: Some(MotorFinding {
+                motor,
+                side: if above > 0.0 { Side::High } else { Side::Low },
+                mean_margin: margin,
+                least_margin: margin,
+            }),
+        })
+    }
 }
 
 impl Watch {
-    /// A finding that is open stays so until the flight ends.
-    fn push(
-        &mut self,
-        t_s: f64,
-        (level, measure): (Level, Measure),
-        limit: Option<Limit>,
-        passed: Option<Passed>,
-    ) {
-        let (Some(limit), Some(Passed { value_pct, motor })) = (limit, passed) else {
+    /// A finding that is open stays so until the flight ends, with what was passed first.
+    fn push(&mut self, t_s: f64, level: Level, limit: Option<Limit>, passed: Option<Passed>) {
+        let (Some(Limit { after_s, .. }), Some(passed)) = (limit, passed) else {
             self.passed_since_s = None;
             return;
         };
         let from_s = *self.passed_since_s.get_or_insert(t_s);
+        let value_pct = 100.0 * passed.value;
         if let Some(finding) = &mut self.finding {
             finding.to_s = t_s;
-            finding.peak_pct = match measure {
-                Measure::Reserve => finding.peak_pct.min(value_pct),
-                _ => finding.peak_pct.max(value_pct),
-            };
-        } else if t_s - from_s >= limit.after_s - ROUNDING_S {
+            if finding.measure == passed.measure {
+                finding.peak_pct = match passed.measure {
+                    Measure::Reserve => finding.peak_pct.min(value_pct),
+                    _ => finding.peak_pct.max(value_pct),
+                };
+            }
+        } else if t_s - from_s >= after_s - ROUNDING_S {
             self.finding = Some(Finding {
                 level,
                 from_s,
                 raised_s: t_s,
                 to_s: t_s,
-                measure,
-                threshold_pct: 100.0 * limit.value,
+                measure: passed.measure,
+                threshold_pct: 100.0 * passed.limit,
                 peak_pct: value_pct,
-                motor,
+                motor: passed.motor,
                 ..Finding::NONE
             });
         }

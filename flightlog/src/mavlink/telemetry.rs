@@ -7,7 +7,7 @@ use super::{
     setup::missing,
 };
 use crate::{
-    Vehicle,
+    Parameter, Vehicle,
     clock::{Checked, Clock, seconds_of},
     field::Kind,
     outputs::LONGEST_PULSE_US,
@@ -289,6 +289,11 @@ impl Telemetry {
             &self.vehicle,
             self.decoder.is_px4(),
         )
+    }
+
+    /// The parameters that motors and ranges rest on, and gains, as far as they were told.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        self.decoder.parameters.of_motors("PARAM_VALUE")
     }
 
     /// The parameters that motors and their range depend on, and that are not known yet.

@@ -220,6 +220,7 @@ impl Heard {
             let rule = "EXTENDED_SYS_STATE.landed_state, or HEARTBEAT.system_status, and armed";
             flight.in_air = intervals(&self.in_air, rule);
         }
+        flight.parameters = self.decoder.parameters.of_motors("PARAM_VALUE");
         flight.effective = match is_px4 {
             true => known.effective,
             false => ardupilot::range_in_force(&self.decoder.parameters, flight),

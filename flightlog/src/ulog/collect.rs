@@ -253,6 +253,7 @@ impl<'o> Collector<'o> {
     pub(super) fn finish(mut self) -> Flight {
         let mut flight = Flight::empty(Format::ULog);
         let firmware = self.release.map(px4::firmware);
+        flight.parameters = self.parameters.of_motors("ULog parameter");
         flight.vehicle = px4::vehicle(&self.parameters, self.system_type, firmware);
         flight.vehicle.id = self.id.take();
         self.take_commands(&mut flight);

@@ -54,18 +54,18 @@ impl Engine {
 }
 
 /// Input, term and hedges in the order in which they apply.
-type LiteralKey = (usize, Option<usize>, Vec<Hedge>);
+pub(super) type LiteralKey = (usize, Option<usize>, Vec<Hedge>);
 
 /// Compiles a valid model, in which every name is known.
-struct Compiler<'m> {
-    model: &'m Model,
+pub(super) struct Compiler<'m> {
+    pub(super) model: &'m Model,
     /// Numbered by input, term and hedges, whatever the order of the rules.
-    literals: BTreeMap<LiteralKey, u32>,
+    pub(super) literals: BTreeMap<LiteralKey, u32>,
 }
 
 impl Compiler<'_> {
     /// Finds and numbers all literals of all rules.
-    fn literals(&mut self) {
+    pub(super) fn literals(&mut self) {
         let model = self.model;
         for rule in &model.rules {
             rule.rule.condition.visit(&mut |proposition| {
@@ -78,7 +78,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn key(&self, proposition: &Proposition) -> Option<LiteralKey> {
+    pub(super) fn key(&self, proposition: &Proposition) -> Option<LiteralKey> {
         let inputs = &self.model.inputs;
         let input = inputs
             .iter()
@@ -91,7 +91,7 @@ impl Compiler<'_> {
         Some((input, term, hedges))
     }
 
-    fn literal(&self, proposition: &Proposition) -> u32 {
+    pub(super) fn literal(&self, proposition: &Proposition) -> u32 {
         let key = self.key(proposition);
         key.and_then(|key| self.literals.get(&key).copied())
             .unwrap_or(0)

@@ -18,12 +18,14 @@ mod explain;
 mod lanes;
 mod literal;
 mod named;
+mod raising;
 mod rules;
 
 pub(crate) use crate::table::{FROM_TINY, TINY, operators};
 pub use crate::table::{Outcome, State};
 pub use error::EvaluateError;
 pub use explain::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share};
+pub use raising::Said;
 
 /// A compiled model: immutable, and shared by any number of threads.
 ///
@@ -237,15 +239,17 @@ impl Engine {
             buffers,
             inputs,
             outcomes,
-            |index, strengths| {
-                let output = self.outputs.get(index)?;
-                let strengths = Strengths {
-                    strengths,
-                    offsets: &output.offsets,
-                };
-                output.defuzzify.value(strengths, workspace)
-            },
+            |index, strengths| self.integrate(index, strengths, workspace),
         );
+    }
+
+    fn integrate(&self, index: usize, strengths: &[f64], workspace: &mut Workspace) -> Option<f64> {
+        let output = self.outputs.get(index)?;
+        let strengths = Strengths {
+            strengths,
+            offsets: &output.offsets,
+        };
+        output.defuzzify.value(strengths, workspace)
     }
 }
 

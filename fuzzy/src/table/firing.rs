@@ -78,18 +78,48 @@ impl Action {
     }
 }
 
+/// What is done with the rules that fire.
+pub(super) trait Act {
+    /// Takes rules with the degree of their antecedent.
+    fn act(&mut self, actions: &[Action], degree: f64);
+
+    /// Takes the rules of cells of a uniform table.
+    #[inline(always)]
+    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &[Partial]) {
+        for cell in reached {
+            self.act(cells.actions_of(cell), cell.degree);
+        }
+    }
+}
+
 /// The firing strengths and strongest rules that actions update.
 struct Firing<'m> {
     strengths: &'m mut [f64],
     strongest: &'m mut [Strongest],
 }
 
-impl Firing<'_> {
+impl Act for Firing<'_> {
     #[inline(always)]
     fn act(&mut self, actions: &[Action], degree: f64) {
         for action in actions {
             let strongest = &mut self.strongest[action.output as usize];
             *strongest = action.act::<true>(degree, self.strengths, *strongest);
+        }
+    }
+
+    #[inline(always)]
+    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &[Partial]) {
+        if let ([strongest], 1, false) = (&mut *self.strongest, cells.actions_a_cell, cells.sums) {
+            let mut top = *strongest;
+            for cell in reached {
+                let action = &cells.actions[cell.at as usize];
+                top = action.act::<false>(cell.degree, self.strengths, top);
+            }
+            *strongest = top;
+            return;
+        }
+        for cell in reached {
+            self.act(cells.actions_of(cell), cell.degree);
         }
     }
 }
@@ -103,50 +133,91 @@ where
     P: DerefMut<Target = [Partial]>,
     S: DerefMut<Target = [Strongest]>,
 {
-    scratch.strengths.fill(0.0);
     // Models with one output are the common case; this saves the call of `fill`.
     match &mut *scratch.strongest {
         [one] => *one = Strongest::NONE,
         all => all.fill(Strongest::NONE),
     }
-    if !scratch.degrees.is_empty() {
-        scratch.degrees.fill(0.0);
-        for (input, &value) in table.inputs().iter().zip(scratch.values.iter()) {
+    let (finding, strengths, strongest) = scratch.split();
+    strengths.fill(0.0);
+    let mut firing = Firing {
+        strengths,
+        strongest,
+    };
+    fire_into(table, finding, &mut firing);
+}
+
+/// The memory in which the rules that fire are found.
+pub(super) struct Finding<'m> {
+    values: &'m [f64],
+    degrees: &'m mut [f64],
+    alive: &'m mut [Partial],
+    partial: &'m mut [Partial],
+    next: &'m mut [Partial],
+    stack: &'m mut [f64],
+}
+
+impl<'m> Finding<'m> {
+    pub(super) fn values(&self) -> &'m [f64] {
+        self.values
+    }
+}
+
+impl<N, P, S> Buffers<N, P, S>
+where
+    N: DerefMut<Target = [f64]>,
+    P: DerefMut<Target = [Partial]>,
+    S: DerefMut<Target = [Strongest]>,
+{
+    /// The memory in which rules are found, and that of what they do.
+    #[inline(always)]
+    pub(super) fn split(&mut self) -> (Finding<'_>, &mut [f64], &mut [Strongest]) {
+        let finding = Finding {
+            values: &self.values,
+            degrees: &mut self.degrees,
+            alive: &mut self.alive,
+            partial: &mut self.partial,
+            next: &mut self.next,
+            stack: &mut self.stack,
+        };
+        (finding, &mut self.strengths, &mut self.strongest)
+    }
+}
+
+/// Finds the rules that fire on the values, and gives them to `firing`.
+#[inline(always)]
+pub(super) fn fire_into<A: Arrays>(table: &A, finding: Finding<'_>, firing: &mut impl Act) {
+    if !finding.degrees.is_empty() {
+        finding.degrees.fill(0.0);
+        for (input, &value) in table.inputs().iter().zip(finding.values) {
             degrees(table, input, value, |literal, degree| {
-                scratch.degrees[(input.first_literal + literal) as usize] = degree;
+                finding.degrees[(input.first_literal + literal) as usize] = degree;
             });
         }
     }
     // The common operators, so that the loops do not branch on the operator.
     match table.and() {
-        Conjunction::Minimum => fire_with(table, smaller, scratch),
-        Conjunction::Product => fire_with(table, |a, b| a * b, scratch),
-        and => fire_with(table, |a, b| and.of(a, b), scratch),
+        Conjunction::Minimum => fire_with(table, smaller, finding, firing),
+        Conjunction::Product => fire_with(table, |a, b| a * b, finding, firing),
+        and => fire_with(table, |a, b| and.of(a, b), finding, firing),
     }
 }
 
 #[inline(always)]
-fn fire_with<A, N, P, S>(table: &A, and: impl Fn(f64, f64) -> f64, scratch: &mut Buffers<N, P, S>)
-where
-    A: Arrays,
-    N: DerefMut<Target = [f64]>,
-    P: DerefMut<Target = [Partial]>,
-    S: DerefMut<Target = [Strongest]>,
-{
-    let Buffers {
+fn fire_with<A: Arrays>(
+    table: &A,
+    and: impl Fn(f64, f64) -> f64,
+    finding: Finding<'_>,
+    firing: &mut impl Act,
+) {
+    let Finding {
         values,
         degrees,
         alive,
         partial,
         next,
         stack,
-        strengths,
-        strongest,
-    } = scratch;
-    let mut firing = Firing {
-        strengths,
-        strongest,
-    };
+    } = finding;
     match table.conjunctions() {
         Conjunctions::Uniform {
             actions_a_cell,
@@ -158,12 +229,12 @@ where
                 actions_a_cell: actions_a_cell as usize,
                 sums,
             };
-            fire_uniform(table, &cells, values, partial, and, &mut firing);
+            fire_uniform(table, &cells, values, partial, and, firing);
         }
         Conjunctions::Dense => {
-            fire_dense(table, values, (alive, partial, next), and, &mut firing);
+            fire_dense(table, values, (alive, partial, next), and, firing);
         }
-        Conjunctions::Trie => fire_trie(table, degrees, partial, and, &mut firing),
+        Conjunctions::Trie => fire_trie(table, degrees, partial, and, firing),
     }
     for program in table.programs() {
         let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
@@ -174,7 +245,6 @@ where
         }
     }
 }
-
 #[inline(always)]
 fn fire_uniform<A: Arrays>(
     table: &A,
@@ -182,7 +252,7 @@ fn fire_uniform<A: Arrays>(
     values: &[f64],
     partial: &mut [Partial],
     and: impl Fn(f64, f64) -> f64,
-    firing: &mut Firing<'_>,
+    firing: &mut impl Act,
 ) {
     let both = |p: Partial, q: Partial| Partial {
         degree: and(p.degree, q.degree),
@@ -191,7 +261,7 @@ fn fire_uniform<A: Arrays>(
     if let [first, second] = table.axes() {
         let [a, b] = at(table, first, values);
         let [c, d] = at(table, second, values);
-        cells.act(&[both(a, c), both(b, c), both(a, d), both(b, d)], firing);
+        firing.act_in_cells(cells, &[both(a, c), both(b, c), both(a, d), both(b, d)]);
         return;
     }
     partial[0] = Partial { degree: 1.0, at: 0 };
@@ -205,7 +275,7 @@ fn fire_uniform<A: Arrays>(
         }
         count *= 2;
     }
-    cells.act(&partial[..count], firing);
+    firing.act_in_cells(cells, &partial[..count]);
 }
 
 /// The degrees and offsets of the two lines on the interval that holds the axis' input.
@@ -231,7 +301,7 @@ fn fire_dense<A: Arrays>(
     values: &[f64],
     (alive, mut partial, mut next): (&mut [Partial], &mut [Partial], &mut [Partial]),
     and: impl Fn(f64, f64) -> f64,
-    firing: &mut Firing<'_>,
+    firing: &mut impl Act,
 ) {
     let actions = |cell: usize| {
         let (start, end) = (table.cells()[cell], table.cells()[cell + 1]);
@@ -306,7 +376,7 @@ fn fire_trie<A: Arrays>(
     degrees: &[f64],
     path: &mut [Partial],
     and: impl Fn(f64, f64) -> f64,
-    firing: &mut Firing<'_>,
+    firing: &mut impl Act,
 ) {
     path[0] = Partial { degree: 1.0, at: 0 };
     let mut open = 1usize;
@@ -334,7 +404,7 @@ fn fire_trie<A: Arrays>(
 }
 
 /// The cells of a uniform table.
-struct Cells<'a> {
+pub(super) struct Cells<'a> {
     actions: &'a [Action],
     actions_a_cell: usize,
     sums: bool,
@@ -342,23 +412,9 @@ struct Cells<'a> {
 
 impl Cells<'_> {
     #[inline(always)]
-    fn act(&self, cells: &[Partial], firing: &mut Firing<'_>) {
-        if let ([strongest], 1, false) = (&mut *firing.strongest, self.actions_a_cell, self.sums) {
-            let mut top = *strongest;
-            for cell in cells {
-                let action = &self.actions[cell.at as usize];
-                top = action.act::<false>(cell.degree, firing.strengths, top);
-            }
-            *strongest = top;
-            return;
-        }
-        for cell in cells {
-            let first = cell.at as usize * self.actions_a_cell;
-            firing.act(
-                &self.actions[first..first + self.actions_a_cell],
-                cell.degree,
-            );
-        }
+    fn actions_of(&self, cell: &Partial) -> &[Action] {
+        let first = cell.at as usize * self.actions_a_cell;
+        &self.actions[first..first + self.actions_a_cell]
     }
 }
 

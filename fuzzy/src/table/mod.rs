@@ -15,6 +15,7 @@ mod firing;
 mod input;
 pub(crate) mod operators;
 mod outcome;
+mod raising;
 mod rules;
 
 pub(crate) use arrays::{Arrays, arrays_from_fields};
@@ -35,6 +36,7 @@ pub use crate::shape::Kind;
 use closed::closed;
 use firing::fire;
 use operators::{larger, smaller};
+pub(crate) use raising::raised_by;
 
 /// How the rules that are plain ANDs of terms of different inputs are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -182,22 +184,13 @@ pub(crate) fn evaluate<A, N, P, S>(
     P: DerefMut<Target = [Partial]>,
     S: DerefMut<Target = [Strongest]>,
 {
-    let mut clamped = false;
-    for ((&value, input), clamped_value) in inputs
-        .iter()
-        .zip(table.inputs())
-        .zip(scratch.values.iter_mut())
-    {
-        if !value.is_finite() {
-            outcomes.fill(Outcome {
-                state: State::InputNotFinite,
-                ..Outcome::default()
-            });
-            return;
-        }
-        *clamped_value = larger(input.low, smaller(input.high, value));
-        clamped |= *clamped_value != value;
-    }
+    let Some(clamped) = clamp(table, inputs, &mut scratch.values) else {
+        outcomes.fill(Outcome {
+            state: State::InputNotFinite,
+            ..Outcome::default()
+        });
+        return;
+    };
     fire(table, scratch);
     for (index, (output, outcome)) in table.outputs().iter().zip(outcomes).enumerate() {
         let (coverage, dominant) = scratch.strongest[index].rule();
@@ -208,6 +201,20 @@ pub(crate) fn evaluate<A, N, P, S>(
             clamped,
         };
     }
+}
+
+/// Clamps each value to the range of its input, and returns whether any was outside; `None` where one is not finite.
+#[inline(always)]
+fn clamp<A: Arrays>(table: &A, inputs: &[f64], clamped: &mut [f64]) -> Option<bool> {
+    let mut any = false;
+    for ((&value, input), clamped) in inputs.iter().zip(table.inputs()).zip(clamped) {
+        if !value.is_finite() {
+            return None;
+        }
+        *clamped = larger(input.low, smaller(input.high, value));
+        any |= *clamped != value;
+    }
+    Some(any)
 }
 
 #[inline(always)]

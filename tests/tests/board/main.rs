@@ -255,7 +255,13 @@ fn every_signal_statistic_and_notice_is_the_same_lent_and_in_c() {
         assert_same(&expected, &found, &format!("{what} in C"));
     }
     assert!(known > 1000, "{known}");
-    let expected = ["command noise", "imbalance", "reserve", "risk"];
+    let expected = [
+        "command noise",
+        "imbalance",
+        "pair imbalance",
+        "reserve",
+        "risk",
+    ];
     assert!(
         measures.iter().map(String::as_str).eq(expected),
         "{measures:?}"

@@ -149,6 +149,7 @@ macro_rules! copy {
                 first_coordinates: arrays.keep(filled.starts),
                 values: arrays.keep(filled.values),
                 distances: arrays.keep(filled.distances),
+                propositions: arrays.keep(plan.propositions),
             });
             let counts = vec![
                 $(&raw mut plan.$array.count,)*
@@ -159,6 +160,7 @@ macro_rules! copy {
                 &raw mut plan.first_coordinates.count,
                 &raw mut plan.values.count,
                 &raw mut plan.distances.count,
+                &raw mut plan.propositions.count,
             ];
             let Arrays { kept, mut pieces } = arrays;
             // Often enough: the numbers at the front.

@@ -1,21 +1,35 @@
 //! What a watch tells.
 
 use flagred::{
-    flight::{Finding, Verdict},
+    flight::{Cause, Finding, Verdict},
     monitor::Update,
-    verdict::Level,
+    verdict::{Level, MotorFinding},
 };
-use flightlog::{Vehicle, mavlink::Setup};
+use flightlog::{Parameter, Vehicle, mavlink::Setup};
+use serde::{Serialize, Serializer, ser::SerializeStruct};
 
 use super::{Doubt, Source};
 
-/// Something to tell.
-#[derive(Debug, Clone)]
+/// Something to tell. Serialised it is a line of `--jsonl`, with the names of docs/json.md.
+#[derive(Debug, Clone, Serialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "the large ones are the risks of samples, which are most of them"
+)]
 pub(crate) enum Event {
     /// A vehicle was found.
-    Found { system: u8, vehicle: Vehicle },
+    Found {
+        system: u8,
+        #[serde(flatten, serialize_with = "about")]
+        vehicle: Vehicle,
+    },
     /// The vehicle sends motor commands: it is believed, and nobody else in its name.
-    Locked { system: u8, source: Source },
+    Locked {
+        system: u8,
+        #[serde(rename = "address")]
+        source: Source,
+    },
     /// The vehicle that is followed is given up for another one.
     GivenUp { system: u8 },
     /// It is heard from another address after it had fallen silent.
@@ -29,6 +43,7 @@ pub(crate) enum Event {
         what: Doubt,
         system: u8,
         component: u8,
+        #[serde(rename = "address")]
         source: Source,
     },
     /// Another watch of the vehicle is heard, or none any more; and whether this one speaks.
@@ -38,11 +53,20 @@ pub(crate) enum Event {
         speaks: bool,
     },
     /// Another vehicle is on the link; it is not followed.
-    Another { system: u8 },
+    AnotherVehicle { system: u8 },
     /// The vehicle that was found is no multirotor; there is nothing to say about it.
-    NotAMultirotor { system: u8, vehicle: Vehicle },
+    NotAMultirotor {
+        system: u8,
+        #[serde(flatten, serialize_with = "about")]
+        vehicle: Vehicle,
+    },
     /// Motors and limits are known, or assumed; again where they became known better.
-    Ready { setup: Setup },
+    Ready {
+        #[serde(flatten)]
+        setup: Setup,
+        /// The parameters that they rest on, and gains, as far as they are known.
+        parameters: Vec<Parameter>,
+    },
     /// Something in words.
     Note { text: String },
     /// Nothing comes any more.
@@ -53,18 +77,32 @@ pub(crate) enum Event {
     Rebooted,
     /// A flight began.
     TookOff { t_s: f64 },
-    /// A sample was assessed.
-    Risk { update: Update },
-    /// The level changed in flight.
+    /// The level changed in flight, with the motor and the cause of the finding that it rests on.
     Level {
         t_s: f64,
         level: Level,
         text: String,
+        motor: Option<MotorFinding>,
+        cause: Option<Cause>,
     },
-    /// A finding ended.
+    /// A sample was assessed. Its line also has how things stand.
+    #[serde(skip)]
+    Risk { update: Update },
+    /// A finding ended. Its line has it in words, too.
+    #[serde(skip)]
     Ended { finding: Finding },
-    /// A flight is over, or what was seen of it.
+    /// A flight is over, or what was seen of it. Its line is called after its end.
+    #[serde(skip)]
     Over { end: End, flown: Flown },
+}
+
+/// What is told of a vehicle.
+fn about<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut fields = serializer.serialize_struct("Vehicle", 3)?;
+    fields.serialize_field("kind", &vehicle.kind.to_string())?;
+    fields.serialize_field("frame", &vehicle.frame)?;
+    fields.serialize_field("firmware", &vehicle.firmware)?;
+    fields.end()
 }
 
 /// How a flight, or what was seen of it, ended.

@@ -171,7 +171,7 @@ impl<'e> Bench<'e> {
 
     fn setups(&self) -> Vec<&Setup> {
         let setups = self.events.iter().filter_map(|event| match event {
-            Event::Ready { setup } => Some(setup),
+            Event::Ready { setup, .. } => Some(setup),
             _ => None,
         });
         setups.collect()
@@ -268,7 +268,7 @@ fn a_flight_at_the_limit_is_told_once_a_level() {
     assert_eq!(bench.count_sent(texts), levels);
     let text = bench.said();
     assert!(text.starts_with("FLAGRED: FAIL risk "), "{text}");
-    assert!(text.ends_with(" %, motor 1 lower limit"), "{text}");
+    assert!(text.ends_with(" %, lower limit, motor 1"), "{text}");
     // Sent for half a minute of the receiver's clock, twice a second.
     let values = bench.count_sent(|message| matches!(message, MavMessage::NAMED_VALUE_FLOAT(_)));
     assert!((80..=130).contains(&values), "{values}");
@@ -306,6 +306,44 @@ fn a_risk_that_no_motor_at_its_limit_raises_is_told_with_its_input_and_term() {
         text.ends_with(&format!(", {} {}", cause.input, cause.term)),
         "{text}"
     );
+}
+
+/// Motor 3 does more from a time in flight on: the level stays until the landing, and text and finding name it.
+#[test]
+fn a_lasting_imbalance_is_told_with_its_motor_until_landing() {
+    let estimator = shipped::flagred();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    bench.hover(10.0, 40.0, 1500);
+    bench.fly(50.0, 60.0, |i| {
+        let wiggle = (i % 5) as u16;
+        let more = i.min(400) as u16 / 2;
+        [
+            1500 + wiggle,
+            1500 - more / 4,
+            1500 + more - wiggle,
+            1500 - more / 4,
+        ]
+    });
+    assert_eq!(
+        bench.session.view().unwrap().latest.unwrap().level,
+        Some(Level::Warn)
+    );
+    let told = bench.events.iter().rev().find_map(|event| match event {
+        Event::Level { text, motor, .. } => Some((text.clone(), motor.as_ref()?.motor)),
+        _ => None,
+    });
+    let (text, motor) = told.unwrap();
+    assert!(
+        text.starts_with("FLAGRED: WARN ")
+            && text.contains("imbalance ")
+            && text.ends_with(" %, motor 3"),
+        "{text}"
+    );
+    assert_eq!(motor, 2);
+    let mut out = Out::default();
+    assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Warn));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use flagred::{
     estimator::Estimator,
     flight::{Assessor, Finding, Verdict},
     monitor::{Craft, Update},
+    verdict::Measure,
 };
 use flightlog::{
     Vehicle,
@@ -46,6 +47,8 @@ pub(super) struct Watch {
     pub(super) commands_lost: bool,
     pub(super) risk_sent_s: Option<f64>,
     pub(super) is_flying: bool,
+    /// The notice that was open after the sample before.
+    pub(super) noticed: Option<Measure>,
     pub(super) latest: Option<Update>,
 }
 
@@ -188,6 +191,7 @@ impl Tracked {
                 let verdict = self.end_flight(End::Left(Left::SetUpAnew), out);
                 out.events.push(Event::Ready {
                     setup: setup.clone(),
+                    parameters: self.telemetry.parameters(),
                 });
                 self.watch = Some(Watch {
                     motors: vec![f64::NAN; setup.motors.len()],
@@ -197,6 +201,7 @@ impl Tracked {
                     commands_lost: false,
                     risk_sent_s: None,
                     is_flying: false,
+                    noticed: None,
                     latest: None,
                 });
                 // A part of a flight too short for a verdict is no flight without one.
@@ -257,6 +262,13 @@ impl Tracked {
 }
 
 impl Watch {
+    /// The notice that the latest sample raised.
+    pub(super) fn raised_notice(&mut self) -> Option<Finding> {
+        let open = self.assessor.open_notice();
+        let before = std::mem::replace(&mut self.noticed, open.as_ref().map(|open| open.measure));
+        open.filter(|open| before != Some(open.measure))
+    }
+
     /// Ends the flight that is on, if any; gives its verdict.
     pub(super) fn end_flight(&mut self, end: End, out: &mut Out) -> Option<Verdict> {
         if !std::mem::take(&mut self.is_flying) {

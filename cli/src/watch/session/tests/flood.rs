@@ -109,7 +109,7 @@ impl Link<'_> {
 fn is_harmless(event: &Event) -> bool {
     match event {
         Event::Doubt { .. }
-        | Event::Another { .. }
+        | Event::AnotherVehicle { .. }
         | Event::NotAMultirotor { .. }
         | Event::AnotherWatch { .. }
         | Event::TookOff { .. } => true,

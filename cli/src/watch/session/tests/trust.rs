@@ -186,7 +186,7 @@ fn another_system_is_followed_only_long_after_the_vehicle_fell_silent() {
     };
     assert_eq!(bench.count(is_lost), 1);
     assert_eq!(
-        bench.count(|event| matches!(event, Event::Another { .. })),
+        bench.count(|event| matches!(event, Event::AnotherVehicle { .. })),
         1
     );
 }

@@ -1,0 +1,163 @@
+//! The findings of a flight, with the names of what raised the risk.
+
+use alloc::string::{String, ToString};
+use core::{fmt, ops::Deref};
+
+use crate::{estimator::Estimator, verdict};
+
+/// A finding of a flight, with its cause by name.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Finding {
+    /// When, what and how grave. Its motor is known only where a motor is the cause.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub found: verdict::Finding,
+    /// What raised the risk; `None` where no rule did, as for a notice or an interpolated risk.
+    pub cause: Option<Cause>,
+}
+
+impl Deref for Finding {
+    type Target = verdict::Finding;
+
+    fn deref(&self) -> &verdict::Finding {
+        &self.found
+    }
+}
+
+impl Finding {
+    /// A finding with the names of its cause.
+    pub(super) fn new(found: verdict::Finding, estimator: &Estimator) -> Finding {
+        let cause = found.cause.and_then(|cause| {
+            let (input, term) = estimator.propositions().nth(cause.proposition)?;
+            Some(Cause {
+                input: input.to_string(),
+                value: cause.value,
+                term: term.to_string(),
+                rule: cause.rule,
+            })
+        });
+        Finding { found, cause }
+    }
+}
+
+/// What raised the risk when a level was reached: [`verdict::Cause`] by name.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Cause {
+    /// The input of the rule that distinguishes it: of the propositions of its antecedent, that of the fewest rules.
+    pub input: String,
+    /// The value of that input.
+    pub value: f64,
+    /// The term, with its hedges.
+    pub term: String,
+    /// The rule's index in the model; serialised, rules count from 1.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::verdict::from_one"))]
+    pub rule: usize,
+}
+
+impl fmt::Display for Cause {
+    /// `unsteady_now violent`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.input, self.term)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        board::OwnedMemory, cause::is_of_limits, estimator::Memory, profile::Profile, shipped,
+    };
+    use alloc::{format, vec::Vec};
+
+    const RULES: &str = "
+fuzzy: 1
+name: shaken
+inputs:
+  shake: {range: [0, 1], partition: {calm: 0, violent: 1}}
+  at_limit: {range: [0, 1], partition: {none: 0, much: 1}}
+outputs: {risk: {range: [0, 100], partition: [low, medium, high]}}
+operators: {and: product, or: maximum, implication: product, aggregation: sum}
+rules:
+  - IF at_limit IS much THEN risk IS high
+  - IF shake IS calm AND at_limit IS none THEN risk IS low
+  - IF at_limit IS none AND shake IS violent THEN risk IS high
+  - IF shake IS very violent AND at_limit IS none THEN risk IS medium
+";
+
+    fn estimator() -> Estimator {
+        let profile = "
+flagred: 1
+name: shaken
+rules: shaken
+inputs:
+  at_limit: {share_below: 0.01, of: motor_margin}
+  shake: {std: {mean: motor_command}}
+"
+        .parse::<Profile>()
+        .unwrap();
+        let rules = fuzzy::yaml::parse(RULES).unwrap().model;
+        Estimator::new(&profile, &rules).unwrap()
+    }
+
+    /// The cause at values of the inputs, by the engine and by its plan on board.
+    fn cause(estimator: &Estimator, inputs: [f64; 2]) -> Option<String> {
+        let risk_pct = estimator.at(&inputs).unwrap().risk_pct;
+        let found = estimator.cause(&inputs, risk_pct, &mut Memory::of(estimator));
+        let plan = estimator.plan().unwrap();
+        let mut memory = OwnedMemory::new(&plan, 4);
+        assert_eq!(memory.monitor(&plan).unwrap().cause_at(&inputs), found);
+        let found = verdict::Finding {
+            cause: found,
+            ..verdict::Finding::NONE
+        };
+        let cause = Finding::new(found, estimator).cause?;
+        Some(format!("{cause} {}, rule {}", cause.value, cause.rule))
+    }
+
+    #[test]
+    fn the_cause_is_the_rule_that_raises_the_risk_most_without_its_guard() {
+        let estimator = estimator();
+        for (inputs, expected) in [
+            ([0.0, 0.6], "shake violent 0.6, rule 2"),
+            ([0.1, 0.9], "shake violent 0.9, rule 2"),
+            ([0.9, 0.5], "at_limit much 0.9, rule 0"),
+            ([0.0, 0.0], "shake calm 0, rule 1"),
+        ] {
+            assert_eq!(cause(&estimator, inputs).as_deref(), Some(expected));
+        }
+    }
+
+    /// A hedge, and an alternative that does not hold.
+    #[test]
+    fn a_term_is_told_with_its_hedges_and_only_where_it_holds() {
+        let rules = RULES.replace(
+            "shake IS violent THEN",
+            "(at_limit IS much OR shake IS very violent) THEN",
+        );
+        let rules = fuzzy::yaml::parse(&rules).unwrap().model;
+        let estimator = Estimator::new(estimator().profile(), &rules).unwrap();
+        assert_eq!(
+            cause(&estimator, [0.0, 0.9]).as_deref(),
+            Some("shake very violent 0.9, rule 2")
+        );
+        let all: Vec<String> = estimator
+            .propositions()
+            .map(|(input, term)| format!("{input} {term}"))
+            .collect();
+        assert_eq!(all[..2], ["at_limit much", "shake calm"]);
+    }
+
+    #[test]
+    fn only_limits_of_motors_are_about_a_motor() {
+        let estimator = shipped::flagred();
+        let plan = estimator.plan().unwrap();
+        let about = (0..6).map(|input| is_of_limits((plan.channels, plan.inputs), input));
+        assert_eq!(
+            about.collect::<Vec<_>>(),
+            [false, false, false, false, false, true]
+        );
+    }
+}

@@ -1,0 +1,96 @@
+//! Which rule raises an output most.
+
+use core::ops::DerefMut;
+
+use super::closed::closed;
+use super::firing::{Act, Partial, Strongest, fire_into};
+use super::{Action, Arrays, Buffers, ClosedForm, Output, Scratch, Table, clamp};
+
+impl Table<'_> {
+    /// The index of the rule that raises an output most where it has a value, without allocating: of the rules that fire, the
+    /// one with the largest `strength (alone - (low + value) / 2)`. `alone` is the value of the output if only this rule
+    /// fired, and `low` the lower end of its range. `None` where no rule fires. Of equal rules it is the first.
+    ///
+    /// Against the middle between `low` and the value, since of rules that conclude the same the strongest counts.
+    ///
+    /// After it, the scratch memory holds the degrees of the literals.
+    pub fn raised_by(
+        &self,
+        scratch: &mut Scratch<'_>,
+        inputs: &[f64],
+        output: usize,
+        value: f64,
+    ) -> Option<usize> {
+        raised_by(self, scratch, inputs, (output, value), |_, _| None)
+    }
+}
+
+/// [`Table::raised_by`], with `integrate` as in [`evaluate`](super::evaluate).
+pub(crate) fn raised_by<A, N, P, S>(
+    table: &A,
+    scratch: &mut Buffers<N, P, S>,
+    inputs: &[f64],
+    (output, value): (usize, f64),
+    mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
+) -> Option<usize>
+where
+    A: Arrays,
+    N: DerefMut<Target = [f64]>,
+    P: DerefMut<Target = [Partial]>,
+    S: DerefMut<Target = [Strongest]>,
+{
+    clamp(table, inputs, &mut scratch.values)?;
+    let of: &Output = table.outputs().get(output)?;
+    let (finding, strengths, _) = scratch.split();
+    let (values, first) = (finding.values(), of.first_strength);
+    let strengths = strengths.get_mut(first as usize..of.end_strength as usize)?;
+    strengths.fill(0.0);
+    let alone = |strength: u32| {
+        let strength = (strength - first) as usize;
+        strengths[strength] = 1.0;
+        let value = match of.form {
+            ClosedForm::NONE => integrate(output, strengths),
+            _ => closed(table, of, strengths, values),
+        };
+        strengths[strength] = 0.0;
+        value
+    };
+    let mut raising = Raising {
+        output: output as u32,
+        middle: 0.5 * (of.low + value),
+        alone,
+        most: None,
+    };
+    fire_into(table, finding, &mut raising);
+    raising.most.map(|(_, rule)| rule as usize)
+}
+
+/// Keeps the rule that raises an output most.
+struct Raising<F> {
+    output: u32,
+    middle: f64,
+    /// The value of the output where only one firing strength, of this index, is 1.
+    alone: F,
+    /// How much it is raised, and by which rule.
+    most: Option<(f64, u32)>,
+}
+
+impl<F: FnMut(u32) -> Option<f64>> Act for Raising<F> {
+    fn act(&mut self, actions: &[Action], degree: f64) {
+        for action in actions.iter().filter(|action| action.output == self.output) {
+            let strength = action.weight * degree;
+            if strength > 0.0
+                && let Some(alone) = (self.alone)(action.strength)
+            {
+                let raises = strength * (alone - self.middle);
+                // In whatever order they fire.
+                let is_more = |(most, rule): (f64, u32)| {
+                    raises > most || raises == most && action.rule < rule
+                };
+                if self.most.is_none_or(is_more) {
+                    self.most = Some((raises, action.rule));
+                }
+            }
+        }
+    }
+}
