@@ -745,7 +745,7 @@ local function find_cause(risk)
   local most, rule = -huge, nil
   for i = 1, #CAUSES do
     local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
-    if (fired[i] or 0.0) > 0 and raises >= most then
+    if (fired[i] or 0.0) > 0 and raises > most then
       most, rule = raises, i
     end
   end
