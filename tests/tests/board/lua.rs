@@ -462,12 +462,16 @@ fn the_script_tells_levels_and_causes_of_any_frame() {
                 "{name}: never {level}"
             );
         }
-        let found: Vec<String> = run.texts.lines().skip(1).map(in_short).collect();
-        assert_eq!(
-            told_by_the_assessor(&estimator, &vehicle, &records),
-            found,
-            "{name}"
-        );
+        // Without yaw and thrust, opposite motors of a quadrotor differ from their trims by the same: either may be named.
+        let either = |told: String| match name {
+            "QUAD/X" if !told.contains("limit") => told.replace("motor 3", "motor 4"),
+            _ => told,
+        };
+        let found = run.texts.lines().skip(1).map(in_short).map(either);
+        let found: Vec<String> = found.collect();
+        let told = told_by_the_assessor(&estimator, &vehicle, &records);
+        let told: Vec<String> = told.into_iter().map(either).collect();
+        assert_eq!(told, found, "{name}");
         assert!(found.len() > 5, "{found:?}");
         if name == "QUAD/X" {
             insta::assert_snapshot!(run.texts);
