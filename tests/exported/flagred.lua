@@ -74,6 +74,7 @@ local command, sum = {}, nil -- the sum is nil where the commands are unknown
 local less_yaw = {} -- the same without the part that turns the nose
 local margin = {} -- how far each motor is from its nearer limit
 local yaw_factor, has_geometry = {}, false
+local opposite = {} -- the motor on the other side; nil where there is none
 local yaw_share, yaw_effort -- of each motor, and of all together
 
 local function pair(low, high, least, most, width)
@@ -709,7 +710,8 @@ local risk_level = GOOD -- of the risk alone
 local reached_at = {} -- since when the thresholds of each level are reached
 local held_at = 0 -- when something last held the level
 local is_open, open_level, by_elevated, cause = false, GOOD, false, nil -- the time of trouble
-local seen, mean_margin, least_margin, is_upper = 0, {}, {}, {} -- the motors in it
+local seen, mean_margin, least_margin, is_upper = 0, {}, {}, {} -- the motors while a level is being reached
+local limit_motor = nil -- the motor that is nearest to a limit, where that is the cause
 
 -- The rule that raises the risk most: the largest share of it, above half of its value.
 local function find_cause(risk)
@@ -719,7 +721,7 @@ local function find_cause(risk)
   local most, rule = -huge, nil
   for i = 1, #CAUSES do
     local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
-    if (fired[i] or 0.0) > 0 and raises >= most then
+    if (fired[i] or 0.0) > 0 and raises > most then
       most, rule = raises, i
     end
   end
@@ -735,6 +737,17 @@ local function is_reached(risk, risk_limit, elevated_limit)
   return false, false
 end
 
+-- The motor with the least mean margin, where it is near a limit.
+local function weakest()
+  local found
+  for i = 1, motors do
+    if mean_margin[i] and (not found or mean_margin[i] < mean_margin[found]) then
+      found = i
+    end
+  end
+  return found and least_margin[found] < 0.1 and found or nil
+end
+
 local function raise(level, of_elevated, risk)
   risk_level = level
   if not is_open or open_level ~= level then
@@ -742,6 +755,7 @@ local function raise(level, of_elevated, risk)
   end
   if not is_open or level > open_level then
     cause, open_level = find_cause(risk), level
+    limit_motor = cause and CAUSES[cause][5] and weakest()
   end
   is_open = true
 end
@@ -765,30 +779,33 @@ local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, 
   return held
 end
 
-local function watch_motors()
-  if not reached_at[WARN] and not reached_at[FAIL] then
+-- Keeps what the motors do while a level is being reached, from its beginning.
+local function watch_motors(risk, takes_off)
+  local warns = not takes_off and is_reached(risk, WARN_RISK, WARN_ELEVATED)
+  local fails = is_reached(risk, FAIL_RISK, FAIL_ELEVATED)
+  if not warns and not fails then
     return
+  end
+  if warns and not reached_at[WARN] or fails and not reached_at[FAIL] then
+    seen, mean_margin, least_margin = 0, {}, {}
   end
   seen = seen + 1
   for i = 1, motors do
     local e = command[i]
-    local margin = e < 0.5 and e or 1 - e
+    local near = e < 0.5 and e or 1 - e
     local mean = mean_margin[i] or 0.0
-    mean_margin[i] = mean + (margin - mean) / seen
-    if margin < (least_margin[i] or huge) then
-      least_margin[i], is_upper[i] = margin, e >= 0.5
+    mean_margin[i] = mean + (near - mean) / seen
+    if near < (least_margin[i] or huge) then
+      least_margin[i], is_upper[i] = near, e >= 0.5
     end
   end
 end
 
 local function judge(risk, takes_off)
-  if not reached_at[WARN] and not reached_at[FAIL] and not is_open then
-    seen, mean_margin, least_margin = 0, {}, {}
-  end
+  watch_motors(risk, takes_off)
   local held = GOOD
   held = follow(WARN, held, risk, not takes_off, WARN_RISK, WARN_ELEVATED, WARN_AFTER_US, WARN_UNTIL_RISK, WARN_UNTIL_ELEVATED)
   held = follow(FAIL, held, risk, true, FAIL_RISK, FAIL_ELEVATED, FAIL_AFTER_US, FAIL_UNTIL_RISK, FAIL_UNTIL_ELEVATED)
-  watch_motors()
   if held >= risk_level then
     held_at = clock_us
   elseif clock_us - held_at >= CLEAR_AFTER_US then
@@ -805,6 +822,8 @@ end
 
 ---------------------------------------------------------------------------------------------------------------------------
 -- What is told beside the risk, as WARN until the flight ends.
+
+local raised = false -- whether something was raised in this call
 
 -- A moving average; until its time constant has passed, the plain mean.
 local function new_average()
@@ -828,13 +847,31 @@ local function watch_reserve(mean)
     return
   end
   reserve_us = reserve_us and later(reserve_us, held_us) or 0
-  if little_reserve or reserve_us >= RESERVE_AFTER_US then
+  if not little_reserve and reserve_us >= RESERVE_AFTER_US then
+    raised = true
+  end
+  if little_reserve or raised then
     little_reserve = min(little_reserve or huge, 100 * reserve.value)
   end
 end
 
 local difference, trim = {}, {} -- of each motor from the mean of all, lately and as a trim
-local settled_us, imbalance_us, imbalance, unbalanced = nil, nil, nil, nil
+local settled_us, imbalance_us, imbalance, unbalanced, of_pair = nil, nil, nil, nil, false
+
+-- How far a motor is above the one opposite at most, and that motor: a fault from before the trim was learned shows only here.
+local function at_odds()
+  local most, motor = 0.0, nil
+  for i = 1, motors do
+    local other = difference[opposite[i]]
+    if other and difference[i].known >= 5.0 then
+      local above = difference[i].value - other.value
+      if not motor or above >= most then
+        most, motor = above, i
+      end
+    end
+  end
+  return most, motor
+end
 
 local function watch_balance(mean)
   settled_us = settled_us and later(settled_us, held_us) or 0
@@ -855,19 +892,25 @@ local function watch_balance(mean)
       most, motor = math.abs(from_trim), i
     end
   end
-  if most <= IMBALANCE_ABOVE or settled_us < 10000000 then
+  local limit, is_pair = IMBALANCE_ABOVE, false
+  if most <= limit or settled_us < 10000000 then
+    most, motor = at_odds()
+    limit, is_pair = 2 * IMBALANCE_ABOVE, true
+  end
+  if most <= limit then
     imbalance_us = nil
-  else
-    imbalance_us = imbalance_us and later(imbalance_us, held_us) or 0
-    if imbalance then
-      imbalance = max(imbalance, 100 * most)
-    elseif imbalance_us >= IMBALANCE_AFTER_US then
-      imbalance, unbalanced = 100 * most, motor
-    end
+    return
+  end
+  imbalance_us = imbalance_us and later(imbalance_us, held_us) or 0
+  if imbalance then
+    imbalance = is_pair == of_pair and max(imbalance, 100 * most) or imbalance
+  elseif imbalance_us >= IMBALANCE_AFTER_US then
+    imbalance, unbalanced, of_pair, raised = 100 * most, motor, is_pair, true
   end
 end
 
 local function notice()
+  raised = false
   if not sum then
     return
   end
@@ -878,7 +921,7 @@ end
 local function forget_notices()
   reserve, reserve_us, little_reserve = new_average(), nil, nil
   difference, trim = {}, {}
-  settled_us, imbalance_us, imbalance, unbalanced = nil, nil, nil, nil
+  settled_us, imbalance_us, imbalance, unbalanced, of_pair = nil, nil, nil, nil, false
 end
 
 ---------------------------------------------------------------------------------------------------------------------------
@@ -891,40 +934,33 @@ local function level_now()
   return level
 end
 
-local function cause_in_words(room)
+-- A cause in two parts; where there is no room for the last one, the first one is true alone.
+local function cause_in_words()
   local about = cause and CAUSES[cause]
   if not about then
-    return ""
+    return ", interpolated", ""
   end
-  if about[5] then
-    local weakest
-    for i = 1, motors do
-      if mean_margin[i] and (not weakest or mean_margin[i] < mean_margin[weakest]) then
-        weakest = i
-      end
-    end
-    return weakest and string.format(", motor %d %s limit", numbers[weakest], is_upper[weakest] and "upper" or "lower") or ""
+  if limit_motor then
+    local side = is_upper[limit_motor] and "upper" or "lower"
+    return ", " .. side .. " limit", string.format(", motor %d", numbers[limit_motor])
   end
-  local text = ", " .. about[3] .. " " .. about[4]
-  if #text > room then
-    text = ", " .. about[3]
-  end
-  return #text <= room and text or ""
+  return ", " .. about[3], " " .. about[4]
 end
 
-local function say(level, risk)
+local function say(level, risk, of_notice)
   if level == GOOD and not risk then
     gcs:send_text(INFO, "FLAGRED: risk unknown")
     return
   end
   local severity = level == FAIL and CRITICAL or level == WARN and WARNING or INFO
   local text = "FLAGRED: " .. LEVELS[level]
-  if not is_open and imbalance then
-    gcs:send_text(severity, string.format("%s imbalance %.0f %%, motor %d", text, imbalance, numbers[unbalanced]))
+  if (of_notice or not is_open) and imbalance then
+    local kind = of_pair and "pair imbalance" or "imbalance"
+    gcs:send_text(severity, string.format("%s %s %.0f %%, motor %d", text, kind, imbalance, numbers[unbalanced]))
     return
   end
-  if not is_open and little_reserve then
-    gcs:send_text(severity, string.format("%s little reserve %.0f %%", text, little_reserve))
+  if (of_notice or not is_open) and little_reserve then
+    gcs:send_text(severity, string.format("%s reserve %.0f %%", text, little_reserve))
     return
   end
   if is_open and by_elevated then
@@ -932,8 +968,10 @@ local function say(level, risk)
   elseif risk then
     text = string.format("%s risk %.0f %%", text, risk)
   end
-  if level > GOOD then
-    text = text .. cause_in_words(50 - #text)
+  if is_open then
+    local first, second = cause_in_words()
+    text = #text + #first <= 50 and text .. first or text
+    text = #text + #second <= 50 and text .. second or text
   end
   gcs:send_text(severity, text)
 end
@@ -1226,6 +1264,21 @@ local function shares_of(factors, axis)
   return shares
 end
 
+-- The motor on the other side of the middle; of two on one arm the one that turns the same way.
+local function find_opposites(factors)
+  for i, motor in ipairs(factors) do
+    local least = huge
+    for other, factor in ipairs(factors) do
+      local faces = math.abs(factor[1] + motor[1]) < 0.1 and math.abs(factor[2] + motor[2]) < 0.1
+      local is_in_the_middle = math.abs(motor[1]) < 0.1 and math.abs(motor[2]) < 0.1
+      local turns = math.abs(factor[3] - motor[3])
+      if has_geometry and faces and not is_in_the_middle and turns < least then
+        least, opposite[i] = turns, other
+      end
+    end
+  end
+end
+
 local function read_geometry()
   local class, kind = param:get("FRAME_CLASS"), param:get("FRAME_TYPE")
   local frame = class and kind and string.match("\n" .. FRAMES, string.format("\n%.0f/%.0f [^:]* (%%d+: [^\n]*)", class, kind))
@@ -1247,6 +1300,7 @@ local function read_geometry()
   for i = 1, motors do
     yaw_factor[i] = factors[i][3]
   end
+  find_opposites(factors)
 end
 
 set_up = function()
@@ -1298,8 +1352,13 @@ local function update()
   local risk = fly()
   local level = level_now()
   if level ~= before and flown_us and not down_us then
-    say(level, risk)
+    say(level, risk, false)
   end
+  -- What is raised where the level stands already is told, too.
+  if raised and level == before and flown_us and not down_us then
+    say(level, risk, true)
+  end
+  raised = false
   sent_us = later(sent_us, held_us)
   if risk and sent_us >= SEND_US then
     sent_us = 0

@@ -734,7 +734,8 @@ local risk_level = GOOD -- of the risk alone
 local reached_at = {} -- since when the thresholds of each level are reached
 local held_at = 0 -- when something last held the level
 local is_open, open_level, by_elevated, cause = false, GOOD, false, nil -- the time of trouble
-local seen, mean_margin, least_margin, is_upper = 0, {}, {}, {} -- the motors in it
+local seen, mean_margin, least_margin, is_upper = 0, {}, {}, {} -- the motors while a level is being reached
+local limit_motor = nil -- the motor that is nearest to a limit, where that is the cause
 
 -- The rule that raises the risk most: the largest share of it, above half of its value.
 local function find_cause(risk)
@@ -744,7 +745,7 @@ local function find_cause(risk)
   local most, rule = -huge, nil
   for i = 1, #CAUSES do
     local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
-    if (fired[i] or 0.0) > 0 and raises >= most then
+    if (fired[i] or 0.0) > 0 and raises > most then
       most, rule = raises, i
     end
   end
@@ -760,6 +761,17 @@ local function is_reached(risk, risk_limit, elevated_limit)
   return false, false
 end
 
+-- The motor with the least mean margin, where it is near a limit.
+local function weakest()
+  local found
+  for i = 1, motors do
+    if mean_margin[i] and (not found or mean_margin[i] < mean_margin[found]) then
+      found = i
+    end
+  end
+  return found and least_margin[found] < 0.1 and found or nil
+end
+
 local function raise(level, of_elevated, risk)
   risk_level = level
   if not is_open or open_level ~= level then
@@ -767,6 +779,7 @@ local function raise(level, of_elevated, risk)
   end
   if not is_open or level > open_level then
     cause, open_level = find_cause(risk), level
+    limit_motor = cause and CAUSES[cause][5] and weakest()
   end
   is_open = true
 end
@@ -790,30 +803,33 @@ local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, 
   return held
 end
 
-local function watch_motors()
-  if not reached_at[WARN] and not reached_at[FAIL] then
+-- Keeps what the motors do while a level is being reached, from its beginning.
+local function watch_motors(risk, takes_off)
+  local warns = not takes_off and is_reached(risk, WARN_RISK, WARN_ELEVATED)
+  local fails = is_reached(risk, FAIL_RISK, FAIL_ELEVATED)
+  if not warns and not fails then
     return
+  end
+  if warns and not reached_at[WARN] or fails and not reached_at[FAIL] then
+    seen, mean_margin, least_margin = 0, {}, {}
   end
   seen = seen + 1
   for i = 1, motors do
     local e = command[i]
-    local margin = e < 0.5 and e or 1 - e
+    local near = e < 0.5 and e or 1 - e
     local mean = mean_margin[i] or 0.0
-    mean_margin[i] = mean + (margin - mean) / seen
-    if margin < (least_margin[i] or huge) then
-      least_margin[i], is_upper[i] = margin, e >= 0.5
+    mean_margin[i] = mean + (near - mean) / seen
+    if near < (least_margin[i] or huge) then
+      least_margin[i], is_upper[i] = near, e >= 0.5
     end
   end
 end
 
 local function judge(risk, takes_off)
-  if not reached_at[WARN] and not reached_at[FAIL] and not is_open then
-    seen, mean_margin, least_margin = 0, {}, {}
-  end
+  watch_motors(risk, takes_off)
   local held = GOOD
   held = follow(WARN, held, risk, not takes_off, WARN_RISK, WARN_ELEVATED, WARN_AFTER_US, WARN_UNTIL_RISK, WARN_UNTIL_ELEVATED)
   held = follow(FAIL, held, risk, true, FAIL_RISK, FAIL_ELEVATED, FAIL_AFTER_US, FAIL_UNTIL_RISK, FAIL_UNTIL_ELEVATED)
-  watch_motors()
   if held >= risk_level then
     held_at = clock_us
   elseif clock_us - held_at >= CLEAR_AFTER_US then
@@ -836,28 +852,20 @@ local function level_now()
   return level
 end
 
-local function cause_in_words(room)
+-- A cause in two parts; where there is no room for the last one, the first one is true alone.
+local function cause_in_words()
   local about = cause and CAUSES[cause]
   if not about then
-    return ""
+    return ", interpolated", ""
   end
-  if about[5] then
-    local weakest
-    for i = 1, motors do
-      if mean_margin[i] and (not weakest or mean_margin[i] < mean_margin[weakest]) then
-        weakest = i
-      end
-    end
-    return weakest and string.format(", motor %d %s limit", numbers[weakest], is_upper[weakest] and "upper" or "lower") or ""
+  if limit_motor then
+    local side = is_upper[limit_motor] and "upper" or "lower"
+    return ", " .. side .. " limit", string.format(", motor %d", numbers[limit_motor])
   end
-  local text = ", " .. about[3] .. " " .. about[4]
-  if #text > room then
-    text = ", " .. about[3]
-  end
-  return #text <= room and text or ""
+  return ", " .. about[3], " " .. about[4]
 end
 
-local function say(level, risk)
+local function say(level, risk, of_notice)
   if level == GOOD and not risk then
     gcs:send_text(INFO, "FLAGRED: risk unknown")
     return
@@ -869,8 +877,10 @@ local function say(level, risk)
   elseif risk then
     text = string.format("%s risk %.0f %%", text, risk)
   end
-  if level > GOOD then
-    text = text .. cause_in_words(50 - #text)
+  if is_open then
+    local first, second = cause_in_words()
+    text = #text + #first <= 50 and text .. first or text
+    text = #text + #second <= 50 and text .. second or text
   end
   gcs:send_text(severity, text)
 end
@@ -1064,7 +1074,7 @@ local function update()
   local risk = fly()
   local level = level_now()
   if level ~= before and flown_us and not down_us then
-    say(level, risk)
+    say(level, risk, false)
   end
   sent_us = later(sent_us, held_us)
   if risk and sent_us >= SEND_US then
