@@ -16,6 +16,7 @@ use crate::{
     tree::{Letter, Node, Offsets, Scalar, Value},
 };
 
+mod cause;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -34,7 +35,10 @@ const MOST_FROM_ALIASES: usize = 100_000;
 /// The first syntax error; parsing stops there.
 #[doc(hidden)]
 pub fn read(text: &str) -> Result<Node, Findings> {
-    build(text).map_err(|finding| Findings::locate(alloc::vec![*finding], text))
+    build(text).map_err(|finding| {
+        let finding = cause::cause(text).unwrap_or(*finding);
+        Findings::locate(alloc::vec![finding], text)
+    })
 }
 
 /// Reads a rule set in YAML.
@@ -71,7 +75,10 @@ pub fn parse(text: &str) -> Result<Document, Findings> {
             warnings: Findings::locate(document.warnings.0, text),
             ..document
         }),
-        Err(findings) => Err(Findings::locate(findings, text)),
+        Err(findings) => {
+            let findings = cause::cause(text).map_or(findings, |cause| alloc::vec![cause]);
+            Err(Findings::locate(findings, text))
+        }
     }
 }
 
