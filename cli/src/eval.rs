@@ -17,6 +17,7 @@ use crate::{
     failure::{Exit, Failure},
     output::{self, Files, Stdout, number_or_cell},
     rule_set,
+    table::semicolons,
 };
 
 #[derive(clap::Args)]
@@ -52,6 +53,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .headers()
         .map_err(|error| unreadable(&error))?
         .clone();
+    let names: Vec<String> = header.iter().map(str::to_owned).collect();
+    if let Some(failure) = semicolons(&path.display().to_string(), &names) {
+        return Err(failure);
+    }
     let columns = columns(&engine, &header)?;
     let mut writer = csv::Writer::from_writer(Stdout::data());
     let names = header.iter().map(number_or_cell);

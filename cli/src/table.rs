@@ -11,6 +11,17 @@ pub(crate) struct Table {
     records: Vec<(u64, csv::StringRecord)>,
 }
 
+/// What to say of a table whose columns are separated by semicolons: spreadsheets with a decimal comma write them so.
+pub(crate) fn semicolons(file: &str, header: &[String]) -> Option<Failure> {
+    let [only] = header else { return None };
+    let failure = Failure::unreadable(format!(
+        "the columns of `{file}` are separated by `;`, not by `,`"
+    ));
+    only.contains(';').then(|| {
+        failure.help("save the table with commas between the columns and points in the numbers")
+    })
+}
+
 /// A cell that is not a finite number.
 pub(crate) struct BadCell {
     pub(crate) line: u64,
@@ -43,6 +54,9 @@ impl Table {
         if header.iter().all(String::is_empty) {
             return Err(Failure::unreadable(format!("`{file}` is empty"))
                 .help("the first line names the columns, the others hold the rows"));
+        }
+        if let Some(failure) = semicolons(&file, &header) {
+            return Err(failure);
         }
         let mut records = Vec::new();
         for record in reader.records() {

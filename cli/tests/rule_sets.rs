@@ -90,6 +90,37 @@ fn check_reads_standard_input_and_tells_what_cannot_be_read() {
 }
 
 #[test]
+fn a_text_in_utf_16_is_read_and_in_latin_1_is_told() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("encodings");
+    fs::create_dir_all(&folder).unwrap();
+    let text = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../rules/flagred-paper.yaml"),
+    )
+    .unwrap();
+    let file = folder.join("rules.yaml");
+    let check = |bytes: &[u8]| {
+        fs::write(&file, bytes).unwrap();
+        let (output, text) = flagred(&["check", file.to_str().unwrap()], "");
+        (output.status.code(), text + &errors(&output))
+    };
+    let as_utf_8 = check(text.as_bytes());
+    let units = || std::iter::once(0xfeff).chain(text.encode_utf16());
+    let little: Vec<u8> = units().flat_map(u16::to_le_bytes).collect();
+    let big: Vec<u8> = units().flat_map(u16::to_be_bytes).collect();
+    assert_eq!(check(&little), as_utf_8);
+    assert_eq!(check(&big), as_utf_8);
+    assert_eq!(check(format!("\u{feff}{text}").as_bytes()).0, Some(0));
+    let (code, said) = check(b"fuzzy: 1\nname: k\xfche\n");
+    assert_eq!(code, Some(3));
+    assert!(said.contains("line 2 holds the byte FC"), "{said}");
+    assert!(
+        said.contains("Latin-1, where the byte is `\u{fc}`"),
+        "{said}"
+    );
+    assert!(check(b"\xff\xfea").1.contains("is not UTF-16"));
+}
+
+#[test]
 fn explain_shows_why() {
     let (output, text) = flagred(
         &[
@@ -235,6 +266,11 @@ fn eval_says_what_is_wrong_with_points() {
             "line 3: `wide` of `spread` is not a number",
         ),
         ("margin,spread\n0.1\n", 3, "as many fields as the header"),
+        (
+            "margin;spread\n0,1;0,1\n",
+            3,
+            "the columns of `-` are separated by `;`, not by `,`",
+        ),
     ] {
         let (output, _) = flagred(&["eval", "flagred-paper.yaml"], points);
         assert_eq!(output.status.code(), Some(code), "{points}");
