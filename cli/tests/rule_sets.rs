@@ -297,8 +297,12 @@ fn new_writes_a_rule_set_that_passes_check() {
             .unwrap()
             .contains("name: fan-control")
     );
-    let (output, text) = flagred(&["check", file, "--deny", "warnings"], "");
+    let (output, text) = flagred(&["check", file, "--deny", "notes"], "");
     assert_eq!(output.status.code(), Some(0), "{text}");
+    let template = fs::read_to_string(file).unwrap();
+    for shown in ["OR (", "NOT", "very", "WITH", "note:"] {
+        assert!(template.contains(shown), "no {shown}");
+    }
     let (output, _) = flagred(&["explain", file, "temperature=24", "humidity=70"], "");
     assert_eq!(output.status.code(), Some(0));
     // Nobody's work is overwritten.
