@@ -13,12 +13,14 @@ pub(super) struct Gap<'r> {
 /// The gaps of a report. A region that no rule could cover, because an input has no term there, is told as a hole.
 pub(super) fn gaps(report: &Report) -> Vec<Gap<'_>> {
     let in_hole = |one: &Uncovered| {
-        one.missing.is_empty()
-            && one.sides.iter().any(|side| {
-                let mut holes = report.holes.iter().filter(|hole| hole.input == side.input);
-                one.weak.contains(&side.input)
-                    && holes.any(|hole| hole.low <= side.high && side.low <= hole.high)
+        one.sides.iter().any(|side| {
+            let mut holes = report.holes.iter().filter(|hole| hole.input == side.input);
+            let weak = one.missing.is_empty() && one.weak.contains(&side.input);
+            holes.any(|hole| {
+                (hole.low <= side.low && side.high <= hole.high)
+                    || (weak && hole.low <= side.high && side.low <= hole.high)
             })
+        })
     };
     let within = |inner: &Uncovered, outer: &Uncovered| {
         let contains = |outer: &Side| {

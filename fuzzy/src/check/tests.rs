@@ -333,7 +333,8 @@ fn a_single_value_without_a_term_is_told_in_few_digits() {
         said.iter().any(|s| s.contains("`x` has no term at 0\n")),
         "{said:#?}"
     );
-    assert!(said.iter().all(|s| s.len() < 200), "{said:#?}");
+    let gaps = said.iter().filter(|s| s.starts_with("warning"));
+    assert_eq!(gaps.count(), 2, "{said:#?}");
     assert_eq!(
         (shown(1e-300), shown(1.0 / 3.0)),
         ("1e-300".into(), "0.333333".into())
