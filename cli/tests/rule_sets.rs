@@ -184,6 +184,53 @@ fn explain_draws_terms_rules_and_the_aggregated_set() {
 }
 
 #[test]
+fn explain_draws_the_number_of_each_rule_of_a_sugeno_output() {
+    let point = ["temperature=24", "humidity=55"];
+    let model = "../cli/src/new.yaml";
+    let (_, text) = flagred(&[&["explain", model][..], &point].concat(), "");
+    assert!(text.contains("0.40000   25 %         100  4: IF"), "{text}");
+    let (_, svg) = flagred(
+        &[&["explain", model, "--svg", "-"][..], &point].concat(),
+        "",
+    );
+    for rule in ["rule 2: 50<", "rule 4: 100<", "rule 1: 0<"] {
+        assert!(svg.contains(rule), "no `{rule}` in {svg}");
+    }
+}
+
+#[test]
+fn plot_draws_the_terms_and_the_curve_of_one_input() {
+    let heater = "fuzzy: 1\nname: heater\n\
+        inputs: {room: {range: [0, 30], unit: °C, partition: {cold: 10, mild: 18, warm: 24}}}\n\
+        outputs: {power: {range: [0, 100], unit: \"%\", partition: [none, half, full]}}\n\
+        rules: [IF room IS cold THEN power IS full, IF room IS mild THEN power IS half, \
+        IF room IS warm THEN power IS none]\n";
+    let (output, text) = flagred(&["plot", "-"], heater);
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    insta::assert_snapshot!(text);
+    let (_, svg) = flagred(&["plot", "-", "--svg", "-"], heater);
+    assert!(
+        svg.contains("room [°C]<") && svg.contains("power [%] over room [°C]<"),
+        "{svg}"
+    );
+    // With more inputs there is no curve.
+    let (_, text) = flagred(&["plot", "tipper.yaml"], "");
+    assert!(
+        text.contains("service") && !text.contains(" over "),
+        "{text}"
+    );
+    let (output, _) = flagred(&["plot", "tipper.yaml", "--svg", "fan.png"], "");
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn a_surface_is_drawn_on_a_terminal_too() {
+    let (output, text) = flagred(&["map", "tipper.yaml", "--surface"], "");
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    insta::assert_snapshot!(text);
+}
+
+#[test]
 fn explain_asks_for_what_is_missing() {
     for (arguments, said) in [
         (&["margin=0.1"][..], "input `spread` has no value"),

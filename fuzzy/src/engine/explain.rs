@@ -111,6 +111,11 @@ pub struct Share {
     /// this rule is the highest; with sums, its part of the area of all sets; in a Takagi-Sugeno output, its part of the
     /// weights.
     pub share: f64,
+    /// In a Takagi-Sugeno output the number that its consequent gives at these inputs.
+    pub value: Option<f64>,
+    /// The implied set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno outputs. Not serialised.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub implied: Vec<(f64, f64)>,
 }
 
 /// Even steps of the aggregated set.
@@ -164,8 +169,8 @@ impl Engine {
         let values: Vec<f64> = explained.iter().map(|input| input.value).collect();
         let rules = fired(model, &values);
         let outputs = model.outputs.iter().zip(&outcomes);
-        let outputs =
-            outputs.map(|(output, outcome)| explain_output(model, output, outcome, &rules));
+        let outputs = outputs
+            .map(|(output, outcome)| explain_output(model, output, outcome, &rules, &values));
         Ok(Explanation {
             outputs: outputs.collect(),
             inputs: explained,
@@ -251,6 +256,7 @@ fn explain_output(
     output: &Output,
     outcome: &Outcome,
     fired: &[FiredRule],
+    values: &[f64],
 ) -> ExplainedOutput {
     let variable = &output.variable;
     let weighted = output.defuzzifier.is_weighted();
@@ -275,10 +281,10 @@ fn explain_output(
         }
     }
     let mut set = Vec::new();
+    let step = |i: f64| variable.low + (variable.high - variable.low) * i / STEPS as f64;
     if weighted {
         active.iter_mut().for_each(|one| one.part = one.strength);
     } else {
-        let step = |i: f64| variable.low + (variable.high - variable.low) * i / STEPS as f64;
         set = (0..=STEPS)
             .map(|i| {
                 (
@@ -299,6 +305,14 @@ fn explain_output(
             term: one.term.name.clone(),
             strength: one.strength,
             share: if whole > 0.0 { one.part / whole } else { 0.0 },
+            value: weighted.then(|| number(one.term, model, values)).flatten(),
+            implied: if weighted {
+                Vec::new()
+            } else {
+                let at = |i: usize| step(i as f64);
+                let implied = (0..=STEPS).map(|i| (at(i), one.degree(model.operators, at(i))));
+                implied.collect()
+            },
         })
         .collect();
     rules.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -318,6 +332,29 @@ fn explain_output(
             _ => Vec::new(),
         },
         set,
+    }
+}
+
+/// The number that a term of a Takagi-Sugeno output gives at the values of the inputs.
+fn number(term: &Term, model: &Model, values: &[f64]) -> Option<f64> {
+    match &term.membership_function {
+        MembershipFunction::Constant { value } => Some(*value),
+        MembershipFunction::Singleton { at } => Some(*at),
+        MembershipFunction::Linear {
+            coefficients,
+            constant,
+        } => {
+            let of = |name: &str| {
+                let mut inputs = model.inputs.iter().zip(values);
+                inputs
+                    .find(|(input, _)| input.name == name)
+                    .map(|(_, value)| *value)
+            };
+            let parts = coefficients.iter();
+            let parts = parts.map(|(name, factor)| factor * of(name).unwrap_or(0.0));
+            Some(parts.sum::<f64>() + constant)
+        }
+        _ => None,
     }
 }
 
