@@ -153,9 +153,9 @@ impl NoText {
 
 /// The text of a file: UTF-8, or UTF-16 behind a byte order mark.
 fn decoded(bytes: Vec<u8>) -> Result<String, NoText> {
-    let unit: fn([u8; 2]) -> u16 = match bytes.get(..2) {
-        Some([0xff, 0xfe]) => u16::from_le_bytes,
-        Some([0xfe, 0xff]) => u16::from_be_bytes,
+    let low_first = match bytes.get(..2) {
+        Some([0xff, 0xfe]) => true,
+        Some([0xfe, 0xff]) => false,
         _ => {
             return String::from_utf8(bytes).map_err(|error| {
                 let good = error.utf8_error().valid_up_to();
@@ -172,7 +172,15 @@ fn decoded(bytes: Vec<u8>) -> Result<String, NoText> {
         }
     };
     let (units, rest) = bytes.get(2..).unwrap_or_default().as_chunks::<2>();
-    let units: Vec<u16> = units.iter().map(|pair| unit(*pair)).collect();
+    let unit = |&[first, second]: &[u8; 2]| {
+        let (low, high) = if low_first {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        u16::from(high) << 8 | u16::from(low)
+    };
+    let units: Vec<u16> = units.iter().map(unit).collect();
     match String::from_utf16(&units) {
         Ok(text) if rest.is_empty() => Ok(text),
         _ => Err(NoText { at: None }),
