@@ -164,13 +164,68 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
                 .help("rule sets and profiles are small YAML files"),
         );
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let good = error.utf8_error().valid_up_to();
-        Failure::unreadable(format!(
-            "`{shown}` is not a text file: invalid UTF-8 at byte {good}"
-        ))
-        .help("save it as UTF-8")
-    })
+    decoded(bytes).map_err(|error| error.failure(&shown.to_string()))
+}
+
+/// Why bytes are no text.
+struct NoText {
+    /// The line that holds the first byte that is none, and the byte; `None` in UTF-16.
+    at: Option<(usize, u8)>,
+}
+
+impl NoText {
+    fn failure(&self, file: &str) -> Failure {
+        let failure = Failure::unreadable(match self.at {
+            Some((line, byte)) => {
+                format!("`{file}` is not UTF-8: line {line} holds the byte {byte:02X}")
+            }
+            None => format!("`{file}` is not UTF-16, which its first two bytes announce"),
+        });
+        failure.help(match self.at {
+            // A control character in Latin-1, and so hardly a text in it.
+            Some((_, byte)) if byte >= 0xa0 => {
+                let letter = char::from(byte);
+                format!("it may be Latin-1, where the byte is `{letter}`; save the file as UTF-8")
+            }
+            _ => String::from("save the file as UTF-8"),
+        })
+    }
+}
+
+/// The text of a file: UTF-8, or UTF-16 behind a byte order mark.
+fn decoded(bytes: Vec<u8>) -> Result<String, NoText> {
+    let low_first = match bytes.get(..2) {
+        Some([0xff, 0xfe]) => true,
+        Some([0xfe, 0xff]) => false,
+        _ => {
+            return String::from_utf8(bytes).map_err(|error| {
+                let good = error.utf8_error().valid_up_to();
+                let bytes = error.as_bytes();
+                let lines = bytes
+                    .iter()
+                    .take(good)
+                    .filter(|byte| **byte == b'\n')
+                    .count();
+                NoText {
+                    at: bytes.get(good).map(|byte| (lines + 1, *byte)),
+                }
+            });
+        }
+    };
+    let (units, rest) = bytes.get(2..).unwrap_or_default().as_chunks::<2>();
+    let unit = |&[first, second]: &[u8; 2]| {
+        let (low, high) = if low_first {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        u16::from(high) << 8 | u16::from(low)
+    };
+    let units: Vec<u16> = units.iter().map(unit).collect();
+    match String::from_utf16(&units) {
+        Ok(text) if rest.is_empty() => Ok(text),
+        _ => Err(NoText { at: None }),
+    }
 }
 
 /// All bytes, or one more than are allowed.

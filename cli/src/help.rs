@@ -9,6 +9,7 @@ Examples:
   flagred new my-rules                           a commented rule set to start from
   flagred check my-rules.yaml                    its errors, gaps and conflicts
   flagred explain my-rules.yaml temperature=24 humidity=70   how a result comes about
+  flagred plot my-rules.yaml                     the terms of its variables
   flagred map my-rules.yaml                      the output over the inputs
   flagred learn my-rules.yaml rows.csv --output learned.yaml   rules from a table
   flagred watch udpin:0.0.0.0:14550              assess a flight live
@@ -104,11 +105,17 @@ pub(crate) const MAP: &str = "\
 Examples:
   flagred map my-rules.yaml
   flagred map my-rules.yaml --svg map.svg
+  flagred map my-rules.yaml --surface
   flagred map my-rules.yaml --surface --svg surface.svg
   flagred map my-rules.yaml --activations        the dominant rule of each cell
   flagred map my-rules.yaml --fix battery=20 --x margin:0..0.3 --y spread
   flagred map my-profile.yaml                    interpolated as the profile says
   flagred map my-rules.yaml --csv";
+
+pub(crate) const PLOT: &str = "\
+Examples:
+  flagred plot my-rules.yaml
+  flagred plot my-rules.yaml --svg terms.svg";
 
 pub(crate) const NEW: &str = "\
 Examples:
@@ -118,7 +125,7 @@ Examples:
 
 pub(crate) const SCHEMA: &str = "\
 Examples:
-  flagred schema rule-set > rule-set-schema.json
+  flagred schema rule-set
   flagred schema profile
   flagred schema assess";
 

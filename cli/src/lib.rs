@@ -27,6 +27,7 @@ mod map;
 mod new;
 mod output;
 mod parallel;
+mod plot;
 mod profile;
 mod report;
 mod rule_set;
@@ -85,6 +86,9 @@ enum Command {
     /// Draw the output of a rule set over its inputs
     #[command(after_help = help::MAP)]
     Map(map::Arguments),
+    /// Draw the terms of every variable of a rule set
+    #[command(after_help = help::PLOT)]
+    Plot(plot::Arguments),
     /// Make a table of flights for `learn`: inputs, attitude error and risk of each
     #[command(after_help = help::DATASET)]
     Dataset(dataset::Arguments),
@@ -122,6 +126,7 @@ impl Command {
             Command::Fmt(arguments) => fmt::run(&arguments),
             Command::Lsp(arguments) => lsp::run(&arguments),
             Command::Map(arguments) => map::run(&arguments),
+            Command::Plot(arguments) => plot::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Evaluate(arguments) => evaluate::run(&arguments),

@@ -90,6 +90,37 @@ fn check_reads_standard_input_and_tells_what_cannot_be_read() {
 }
 
 #[test]
+fn a_text_in_utf_16_is_read_and_in_latin_1_is_told() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("encodings");
+    fs::create_dir_all(&folder).unwrap();
+    let text = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../rules/flagred-paper.yaml"),
+    )
+    .unwrap();
+    let file = folder.join("rules.yaml");
+    let check = |bytes: &[u8]| {
+        fs::write(&file, bytes).unwrap();
+        let (output, text) = flagred(&["check", file.to_str().unwrap()], "");
+        (output.status.code(), text + &errors(&output))
+    };
+    let as_utf_8 = check(text.as_bytes());
+    let units = || std::iter::once(0xfeff).chain(text.encode_utf16());
+    let little: Vec<u8> = units().flat_map(u16::to_le_bytes).collect();
+    let big: Vec<u8> = units().flat_map(u16::to_be_bytes).collect();
+    assert_eq!(check(&little), as_utf_8);
+    assert_eq!(check(&big), as_utf_8);
+    assert_eq!(check(format!("\u{feff}{text}").as_bytes()).0, Some(0));
+    let (code, said) = check(b"fuzzy: 1\nname: k\xfche\n");
+    assert_eq!(code, Some(3));
+    assert!(said.contains("line 2 holds the byte FC"), "{said}");
+    assert!(
+        said.contains("Latin-1, where the byte is `\u{fc}`"),
+        "{said}"
+    );
+    assert!(check(b"\xff\xfea").1.contains("is not UTF-16"));
+}
+
+#[test]
 fn explain_shows_why() {
     let (output, text) = flagred(
         &[
@@ -150,6 +181,53 @@ fn explain_draws_terms_rules_and_the_aggregated_set() {
         "{}",
         errors(&output)
     );
+}
+
+#[test]
+fn explain_draws_the_number_of_each_rule_of_a_sugeno_output() {
+    let point = ["temperature=24", "humidity=55"];
+    let model = "../cli/src/new.yaml";
+    let (_, text) = flagred(&[&["explain", model][..], &point].concat(), "");
+    assert!(text.contains("0.40000   25 %         100  4: IF"), "{text}");
+    let (_, svg) = flagred(
+        &[&["explain", model, "--svg", "-"][..], &point].concat(),
+        "",
+    );
+    for rule in ["rule 2: 50<", "rule 4: 100<", "rule 1: 0<"] {
+        assert!(svg.contains(rule), "no `{rule}` in {svg}");
+    }
+}
+
+#[test]
+fn plot_draws_the_terms_and_the_curve_of_one_input() {
+    let heater = "fuzzy: 1\nname: heater\n\
+        inputs: {room: {range: [0, 30], unit: °C, partition: {cold: 10, mild: 18, warm: 24}}}\n\
+        outputs: {power: {range: [0, 100], unit: \"%\", partition: [none, half, full]}}\n\
+        rules: [IF room IS cold THEN power IS full, IF room IS mild THEN power IS half, \
+        IF room IS warm THEN power IS none]\n";
+    let (output, text) = flagred(&["plot", "-"], heater);
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    insta::assert_snapshot!(text);
+    let (_, svg) = flagred(&["plot", "-", "--svg", "-"], heater);
+    assert!(
+        svg.contains("room [°C]<") && svg.contains("power [%] over room [°C]<"),
+        "{svg}"
+    );
+    // With more inputs there is no curve.
+    let (_, text) = flagred(&["plot", "tipper.yaml"], "");
+    assert!(
+        text.contains("service") && !text.contains(" over "),
+        "{text}"
+    );
+    let (output, _) = flagred(&["plot", "tipper.yaml", "--svg", "fan.png"], "");
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn a_surface_is_drawn_on_a_terminal_too() {
+    let (output, text) = flagred(&["map", "tipper.yaml", "--surface"], "");
+    assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+    insta::assert_snapshot!(text);
 }
 
 #[test]
@@ -349,8 +427,12 @@ fn new_writes_a_rule_set_that_passes_check() {
             .unwrap()
             .contains("name: fan-control")
     );
-    let (output, text) = flagred(&["check", file, "--deny", "warnings"], "");
+    let (output, text) = flagred(&["check", file, "--deny", "notes"], "");
     assert_eq!(output.status.code(), Some(0), "{text}");
+    let template = fs::read_to_string(file).unwrap();
+    for shown in ["OR (", "NOT", "very", "WITH", "note:"] {
+        assert!(template.contains(shown), "no {shown}");
+    }
     let (output, _) = flagred(&["explain", file, "temperature=24", "humidity=70"], "");
     assert_eq!(output.status.code(), Some(0));
     // Nobody's work is overwritten.

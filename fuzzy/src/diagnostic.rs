@@ -7,6 +7,8 @@ use alloc::{
 };
 use core::{fmt, ops::Range};
 
+use crate::foreign;
+
 /// A finding in a text an author wrote.
 ///
 /// Messages are in lower case without a full stop, the author's own words in backticks; what to do
@@ -316,14 +318,44 @@ pub(crate) fn duplicate(
         .help(help)
 }
 
+/// The candidates that a word stands for: what another program calls so, or else the nearest one.
+pub(crate) fn meant<'a>(word: &str, candidates: &[&'a str]) -> Vec<&'a str> {
+    let mut meant = foreign::meant(word, candidates.iter().copied());
+    if meant.is_empty() {
+        meant.extend(nearest(word, candidates.iter().copied()));
+    }
+    meant
+}
+
 /// ``did you mean `heat`?``, or else the candidates: ``there are `heat` and `humidity` ``.
 pub fn suggest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
-    match nearest(word, candidates.iter().copied()) {
-        Some(candidate) => Some(format!("did you mean `{candidate}`?")),
-        None if candidates.is_empty() => None,
-        None if candidates.len() == 1 => Some(format!("there is {}", listed(&candidates))),
-        None => Some(format!("there are {}", listed(&candidates))),
+    let meant = meant(word, &candidates);
+    let bare = |name: &str| name.trim_matches(is_curly_quote) == word;
+    match meant.as_slice() {
+        [one] if *one != word && bare(one) => Some(format!(
+            "the curly quotes belong to the name `{one}`; write it in straight quotes or in none"
+        )),
+        [] => match candidates.as_slice() {
+            [] => None,
+            [_] => Some(format!("there is {}", listed(&candidates))),
+            _ => Some(format!("there are {}", listed(&candidates))),
+        },
+        words => Some(format!("did you mean {}?", either(words))),
+    }
+}
+
+/// Quotes that a word processor writes.
+pub(crate) fn is_curly_quote(c: char) -> bool {
+    matches!(c, '\u{2018}'..='\u{201f}' | '«' | '»')
+}
+
+/// `` `A`, `B` or `C` ``
+pub(crate) fn either(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
+    match quoted.split_last() {
+        Some((last, first)) if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+        _ => quoted.join(""),
     }
 }
 

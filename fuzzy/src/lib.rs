@@ -59,6 +59,8 @@ pub mod engine;
 #[cfg(feature = "serde")]
 mod fields;
 #[cfg(feature = "alloc")]
+mod foreign;
+#[cfg(feature = "alloc")]
 pub mod format;
 #[cfg(feature = "learn")]
 pub mod learn;

@@ -13,7 +13,9 @@ use flagred::{
 };
 use fuzzy::{
     Engine, Model,
-    drawing::{Colour, Slice, map_svg, map_text, rules_svg, rules_text, short, surface_svg},
+    drawing::{
+        Colour, Slice, map_svg, map_text, rules_svg, rules_text, short, surface_svg, surface_text,
+    },
     map::{DecisionMap, Grid},
 };
 
@@ -70,7 +72,7 @@ pub(crate) struct Arguments {
     svg: Option<PathBuf>,
 
     /// Draw a surface in three dimensions instead of a flat map
-    #[arg(long, requires = "svg")]
+    #[arg(long, conflicts_with = "csv")]
     surface: bool,
 
     /// Show in each cell the rule with the largest firing strength instead of the value
@@ -185,13 +187,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         None if arguments.activations => {
             write!(out, "{}", rules_text(&slice, model, painted))?;
         }
+        None if arguments.surface => {
+            let drawn = surface_text(&slice, painted).ok_or_else(no_surface)?;
+            write!(out, "{drawn}")?;
+        }
         None => write!(out, "{}", map_text(&slice, painted))?,
         Some(svg) if arguments.surface => {
-            let drawn = surface_svg(&slice).ok_or_else(|| {
-                Failure::usage("`--surface` needs two inputs, and one is left")
-                    .help("without `--surface`, the picture of one input is a curve")
-            })?;
-            svg.write(&drawn)?;
+            svg.write(&surface_svg(&slice).ok_or_else(no_surface)?)?;
         }
         Some(svg) if arguments.activations => svg.write(&rules_svg(&slice, model))?,
         Some(svg) => svg.write(&map_svg(&slice))?,
@@ -200,8 +202,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Clean)
 }
 
-/// A cell of a map on a terminal, in its colour.
-fn painted(cell: char, colour: Option<Colour>) -> String {
+fn no_surface() -> Failure {
+    Failure::usage("`--surface` needs two inputs, and one is left")
+        .help("without `--surface`, the picture of one input is a curve")
+}
+
+/// A cell of a picture on a terminal, in its colour.
+pub(crate) fn painted(cell: char, colour: Option<Colour>) -> String {
     let rgb = |colour: Colour| Some(RgbColor(colour.0, colour.1, colour.2).into());
     match colour {
         None => cell.to_string(),

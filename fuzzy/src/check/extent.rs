@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_default_value_counts_and_linear_terms_have_no_bound() {
-        let output = "{range: [0, 12], partition: [low, high], when_no_rule_fires: 12}";
+        let output = "{range: [0, 12], partition: [low, high], when_no_rule_fires: {value: 12}}";
         assert_eq!(of(output, "[IF x IS a THEN y IS low]").unwrap().1, 12.0);
         let takagi = "{range: [0, 9], defuzzifier: weighted_average, terms: {c: {constant: 4}, l: {linear: {x: 2, constant: 1}}}}";
         assert_eq!(of(takagi, "[IF x IS a THEN y IS c]"), Some((4.0, 4.0)));

@@ -9,8 +9,11 @@ use alloc::{
 use core::ops::Range;
 
 use super::{
-    AgainstTrend, Coordinate, Counterexample, Direction, Hole, Jump, Reach, Report, TermOf,
-    Uncovered, shown, terms::is_outside,
+    AgainstTrend, Contradiction, Coordinate, Counterexample, Direction, EqualTerms, Hole, Jump,
+    Reach, Report, TermOf, Uncovered,
+    gaps::{Gap, gaps, is_missing},
+    shown,
+    terms::is_outside,
 };
 use crate::{
     diagnostic::{Diagnostic, listed},
@@ -29,14 +32,20 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
     let at = At { model, spans };
     let mut found = Vec::new();
     duplicate_rules(model, &at, &mut found);
-    for (i, one) in report.uncovered.iter().enumerate() {
-        if i == MOST_BOXES_TOLD {
-            found.push(at.more_uncovered(report));
-            break;
-        }
-        found.push(at.uncovered(one));
+    let gaps = gaps(report);
+    for gap in gaps.iter().take(MOST_BOXES_TOLD) {
+        found.push(at.uncovered(gap));
+    }
+    if let Some(more) = gaps.len().checked_sub(MOST_BOXES_TOLD)
+        && more > 0
+    {
+        found.push(at.more_uncovered(more, report.uncovered_complete));
     }
     for one in &report.contradictions {
+        if one.first == one.second {
+            found.push(at.contradicts_itself(one));
+            continue;
+        }
         let message = format!(
             "rule {} concludes `{}` IS `{}` where rule {} concludes `{}`",
             one.second + 1,
@@ -63,14 +72,19 @@ pub(super) fn of(report: &Report, model: &Model, spans: &Spans) -> Vec<Diagnosti
         );
     }
     for &rule in &report.never_firing {
-        let message = format!("rule {} never fires", rule + 1);
-        found.push(
-            Diagnostic::warning("never-fires", at.rule(rule), message)
-                .help("no inputs satisfy its condition, or its weight is 0"),
-        );
+        found.extend(at.never_fires(rule, report));
     }
-    found.extend(report.unused.iter().map(|one| at.unused(one)));
-    found.extend(report.unreachable.iter().map(|one| at.unreachable(one)));
+    found.extend(
+        report
+            .unused
+            .iter()
+            .filter(|one| !is_missing(one, &gaps))
+            .map(|one| at.unused(one)),
+    );
+    // Output terms that no rule reaches are told with the rules that never fire.
+    let outside = report.unreachable.iter();
+    found.extend(outside.filter_map(|one| at.outside_range(one)));
+    found.extend(report.equal_terms.iter().map(|one| at.equal_terms(one)));
     found.extend(report.holes.iter().map(|one| at.hole(one)));
     found.extend(report.reach.iter().filter_map(|one| at.reach(one)));
     found.extend(report.against_trend.iter().map(|one| at.against_trend(one)));
@@ -141,15 +155,20 @@ impl At<'_> {
         term.unwrap_or_else(|| self.name(&one.variable))
     }
 
-    fn uncovered(&self, one: &Uncovered) -> Diagnostic {
-        let output = &one.output;
-        let place = match one.sides.as_slice() {
+    fn place(&self, one: &Uncovered) -> String {
+        match one.sides.as_slice() {
             [] => String::from("anywhere"),
             sides => {
                 let sides = sides.iter().map(|side| self.side(side));
                 format!("where {}", sides.collect::<Vec<_>>().join(" and "))
             }
-        };
+        }
+    }
+
+    fn uncovered(&self, gap: &Gap<'_>) -> Diagnostic {
+        let one = gap.region;
+        let output = &one.output;
+        let place = self.place(one);
         let share = match one.share {
             0.0 => String::new(),
             share => format!(
@@ -170,7 +189,11 @@ impl At<'_> {
             }
         } else {
             let level = shown(one.coverage);
-            let message = format!("no rule for `{output}` reaches {level} {place}{share}");
+            let mut message = format!("no rule for `{output}` reaches {level} {place}{share}");
+            let silent: Vec<String> = gap.silent.iter().map(|one| self.place(one)).collect();
+            if !silent.is_empty() {
+                message += &format!("; none fires {}", silent.join(" and "));
+            }
             Diagnostic::warning("uncovered", place_of_rules, message)
         };
         let rules: Vec<String> = one
@@ -226,13 +249,8 @@ impl At<'_> {
         }
     }
 
-    fn more_uncovered(&self, report: &Report) -> Diagnostic {
-        let more = report.uncovered.len() - MOST_BOXES_TOLD;
-        let least = if report.uncovered_complete {
-            ""
-        } else {
-            "at least "
-        };
+    fn more_uncovered(&self, more: usize, complete: bool) -> Diagnostic {
+        let least = if complete { "" } else { "at least " };
         let message =
             format!("{least}{more} more regions have no rule; only the largest are listed");
         Diagnostic::warning("uncovered", self.spans.rules_key.clone(), message)
@@ -248,31 +266,81 @@ impl At<'_> {
             .help("write a rule for it, or remove it")
     }
 
-    fn unreachable(&self, one: &TermOf) -> Diagnostic {
-        let term = one.term.as_deref().unwrap_or("");
-        let here = self.term(one);
-        let input = self
-            .model
-            .inputs
-            .iter()
-            .find(|input| input.name == one.variable);
-        let outside = input.filter(|input| is_outside(input, term));
-        if let Some(Variable {
-            name, low, high, ..
-        }) = outside
-        {
-            let message =
-                format!("term `{term}` of input `{name}` is 0 on the whole range [{low}, {high}]");
-            return Diagnostic::warning("term-outside-range", here, message)
-                .help("widen the range or move the term");
+    fn contradicts_itself(&self, one: &Contradiction) -> Diagnostic {
+        let (first, second, output) = (&one.first_term, &one.second_term, &one.output);
+        let message = format!(
+            "rule {} concludes both `{output}` IS `{first}` and `{output}` IS `{second}`",
+            one.first + 1
+        );
+        Diagnostic::warning("contradiction", self.rule(one.first), message)
+            .help("keep one of them; what lies between two terms is a term of its own")
+    }
+
+    /// Reported unless a term of its condition is 0 on the whole range, which is a finding.
+    fn never_fires(&self, index: usize, report: &Report) -> Option<Diagnostic> {
+        let rule = &self.model.rules.get(index)?.rule;
+        let mut is_told = false;
+        if let Condition::Is(_) | Condition::And(_) = rule.condition {
+            rule.condition.visit(&mut |proposition| {
+                let term = proposition.term.as_ref().map(|term| &term.text);
+                let of = |one: &TermOf| {
+                    one.variable == proposition.variable.text && one.term.as_ref() == term
+                };
+                is_told |= proposition.hedges.is_empty() && report.unreachable.iter().any(of);
+            });
         }
-        let message = format!("the term `{term}` of `{}` is never reached", one.variable);
-        Diagnostic::warning("unreachable-term", here, message)
-            .help("no rule that concludes it ever fires")
+        if is_told {
+            return None;
+        }
+        let mut help = String::from("no inputs satisfy its condition, or its weight is 0");
+        for consequent in &rule.consequents {
+            let (output, term) = (&consequent.output.text, &consequent.term.text);
+            let of = |one: &TermOf| one.variable == *output && one.term.as_ref() == Some(term);
+            if report.unreachable.iter().any(of) {
+                help += &format!("; the term `{term}` of `{output}` is never reached");
+            }
+        }
+        let message = format!("rule {} never fires", index + 1);
+        Some(Diagnostic::warning("never-fires", self.rule(index), message).help(help))
+    }
+
+    /// A term that is 0 on the whole range; `None` for an output's term that no rule reaches.
+    fn outside_range(&self, one: &TermOf) -> Option<Diagnostic> {
+        let term = one.term.as_deref()?;
+        let mut inputs = self.model.inputs.iter();
+        let input = inputs.find(|input| input.name == one.variable)?;
+        if !is_outside(input, term) {
+            return None;
+        }
+        let Variable {
+            name, low, high, ..
+        } = input;
+        let message =
+            format!("term `{term}` of input `{name}` is 0 on the whole range [{low}, {high}]");
+        let finding = Diagnostic::warning("term-outside-range", self.term(one), message);
+        Some(finding.help("widen the range or move the term"))
+    }
+
+    fn equal_terms(&self, one: &EqualTerms) -> Diagnostic {
+        let of = |term: &String| TermOf {
+            variable: one.variable.clone(),
+            term: Some(term.clone()),
+        };
+        let EqualTerms {
+            variable,
+            first,
+            second,
+        } = one;
+        let message = format!("the terms `{first}` and `{second}` of `{variable}` are the same");
+        Diagnostic::warning("equal-terms", self.term(&of(second)), message)
+            .related(self.term(&of(first)), "the other term")
+            .help("move one of them, or use one term in all rules")
     }
 
     fn hole(&self, one: &Hole) -> Diagnostic {
         let input = &one.input;
+        let ends = self.variable(input);
+        let at_end = ends.is_some_and(|(_, v)| one.low == v.low || one.high == v.high);
         let place = if one.low == one.high {
             format!("at {}", shown(one.low))
         } else {
@@ -283,13 +351,22 @@ impl At<'_> {
             self.name(input),
             format!("`{input}` has no term {place}"),
         )
-        .help("let the neighbouring terms overlap, or add a term between them")
+        .help(if at_end {
+            "let the outermost term begin beyond the range, or make it a shoulder"
+        } else {
+            "let the neighbouring terms overlap, or add a term between them"
+        })
     }
 
-    /// Reported only if the output stays away from an end of its range.
+    /// Reported only if the output leaves its range or stays away from an end of it.
     fn reach(&self, one: &Reach) -> Option<Diagnostic> {
         const NEAR: f64 = 0.01;
+        const BEYOND: f64 = 1e-9;
         let [low, high] = one.range;
+        let beyond = BEYOND * (high - low);
+        if one.low < low - beyond || one.high > high + beyond {
+            return Some(self.outside(one));
+        }
         let near = NEAR * (high - low);
         if one.low - low <= near && high - one.high <= near {
             return None;
@@ -302,9 +379,24 @@ impl At<'_> {
             shown(low),
             shown(high)
         );
-        let help = "the centroid of a term lies inside the range; let the outer terms extend beyond the range, or use another \
-                    defuzzifier";
+        let help = "the centroid of a term lies inside the term, and a term ends with the range; make the range wider than the \
+                    values you need, or use another defuzzifier";
         Some(Diagnostic::note("narrow-reach", self.name(&one.output), message).help(help))
+    }
+
+    /// A Takagi-Sugeno output that takes values outside its range.
+    fn outside(&self, one: &Reach) -> Diagnostic {
+        let [low, high] = one.range;
+        let message = format!(
+            "`{}` takes values from {} to {}, outside its range [{}, {}]",
+            one.output,
+            shown(one.low),
+            shown(one.high),
+            shown(low),
+            shown(high)
+        );
+        Diagnostic::warning("output-outside-range", self.name(&one.output), message)
+            .help("widen the range, or change the constants and coefficients of its terms")
     }
 
     fn against_trend(&self, one: &AgainstTrend) -> Diagnostic {

@@ -10,7 +10,7 @@ use crate::{
     Engine,
     diagnostic::{Diagnostic, Findings, suggest},
     model::{
-        Aggregation, Model,
+        Aggregation, Model, Variable,
         chain::{Stage, stages},
         document::{Document, Spans},
     },
@@ -21,6 +21,7 @@ mod axis;
 mod coverage;
 mod extent;
 mod findings;
+mod gaps;
 mod jumps;
 mod logic;
 mod monotone;
@@ -39,7 +40,7 @@ pub use monotone::{Counterexample, Direction, Monotone};
 pub use probe::Coordinate;
 pub use reach::Reach;
 pub use rules::{Contradiction, Subsumed};
-pub use terms::{Hole, TermOf};
+pub use terms::{EqualTerms, Hole, TermOf};
 pub use trend::AgainstTrend;
 
 /// How to analyse a rule set.
@@ -83,7 +84,7 @@ pub struct Report {
     pub uncovered: Vec<Uncovered>,
     /// Whether the list is complete; in a large rule set the search stops early.
     pub uncovered_complete: bool,
-    /// Rules with equal conditions and different conclusions.
+    /// Rules with equal conditions and different conclusions, and rules with two terms of one output as conclusions.
     pub contradictions: Vec<Contradiction>,
     /// Rules that add nothing to a wider one.
     pub subsumed: Vec<Subsumed>,
@@ -97,6 +98,8 @@ pub struct Report {
     pub unused: Vec<TermOf>,
     /// Terms that no value reaches.
     pub unreachable: Vec<TermOf>,
+    /// Terms of a variable with the same membership function.
+    pub equal_terms: Vec<EqualTerms>,
     /// Parts of an input's range in which every term is 0.
     pub holes: Vec<Hole>,
     /// The values each output takes.
@@ -166,6 +169,7 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
         unused: terms::unused(model),
         unreachable: terms::unreachable(model, &never_firing),
         never_firing,
+        equal_terms: all_variables(model).flat_map(terms::equal).collect(),
         holes: holes.collect(),
         reach: probe.reach(),
         against_trend: stages.iter().flat_map(against_trend).collect(),
@@ -255,6 +259,11 @@ fn against_trend(stage: &Stage<'_>) -> Vec<AgainstTrend> {
     found
 }
 
+fn all_variables(model: &Model) -> impl Iterator<Item = &Variable> {
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    model.inputs.iter().chain(outputs)
+}
+
 /// The uncovered boxes of all outputs: those where no rule fires at all, then those where none reaches the coverage.
 /// Outputs with the same boxes are listed once.
 fn all_uncovered(stages: &[Stage<'_>], coverage: f64) -> (Vec<Uncovered>, bool) {
@@ -308,11 +317,15 @@ impl Report {
     }
 }
 
-/// A number for a message: at most six digits.
+/// A number for a message: at most six digits, very small and very large ones as `1e-9`.
 fn shown(x: f64) -> String {
     if x == 0.0 {
         return "0".into();
     }
-    let digits = alloc::format!("{x:.5e}").parse().unwrap_or(x);
-    alloc::format!("{digits}")
+    let digits: f64 = alloc::format!("{x:.5e}").parse().unwrap_or(x);
+    if (1e-5..1e15).contains(&libm::fabs(digits)) {
+        alloc::format!("{digits}")
+    } else {
+        alloc::format!("{digits:e}")
+    }
 }

@@ -12,7 +12,7 @@ use crate::{
     rule::{Condition, Rule},
 };
 
-/// Two rules with the same condition that conclude different terms of one output.
+/// Two rules with the same condition that conclude different terms of one output, or one rule that does.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -23,7 +23,7 @@ pub struct Contradiction {
         serde(serialize_with = "crate::serial::rule_number")
     )]
     pub first: usize,
-    /// The later rule.
+    /// The later rule; the same where one rule contradicts itself.
     #[cfg_attr(
         feature = "serde",
         serde(serialize_with = "crate::serial::rule_number")
@@ -105,15 +105,32 @@ fn canonical(condition: &Condition) -> String {
     }
 }
 
-/// Rules with the condition of an earlier one and another conclusion, each with the first that it contradicts.
+/// Rules that conclude two terms of one output, and rules with the condition of an earlier one and another conclusion, each
+/// with the first that it contradicts.
 pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
+    let mut found = Vec::new();
+    for (i, rule) in model.rules.iter().enumerate() {
+        let consequents = &rule.rule.consequents;
+        for (k, one) in consequents.iter().enumerate() {
+            let earlier = consequents.iter().take(k);
+            let other = earlier
+                .rev()
+                .find(|c| c.output == one.output && c.term != one.term);
+            found.extend(other.map(|other| Contradiction {
+                first: i,
+                second: i,
+                output: one.output.text.clone(),
+                first_term: other.term.text.clone(),
+                second_term: one.term.text.clone(),
+            }));
+        }
+    }
     let mut numbers = Numbers::default();
     let mut by_parts: BTreeMap<Parts, Vec<usize>> = BTreeMap::new();
     for (i, rule) in model.rules.iter().enumerate() {
         let parts = numbers.parts(&rule.rule.condition);
         by_parts.entry(parts).or_default().push(i);
     }
-    let mut found = Vec::new();
     for rules in by_parts.values() {
         // Of rules with one conclusion the first stands for all.
         let mut firsts: Vec<usize> = Vec::new();

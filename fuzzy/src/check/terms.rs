@@ -28,6 +28,46 @@ pub struct Hole {
     pub high: f64,
 }
 
+/// Two terms of a variable with the same degrees everywhere.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct EqualTerms {
+    /// The input or output.
+    pub variable: String,
+    /// The earlier term.
+    pub first: String,
+    /// The later term.
+    pub second: String,
+}
+
+/// Terms with the same membership function as an earlier term of the variable.
+pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
+    let values = axis::values(variable);
+    let outside = outside(variable);
+    let same = |a: &Term, b: &Term| {
+        let sets = is_set(&a.membership_function) && is_set(&b.membership_function);
+        let equal = || values.iter().all(|&x| a.membership(x) == b.membership(x));
+        (a.membership_function == b.membership_function && a.height == b.height)
+            || (sets && equal())
+    };
+    let mut found = Vec::new();
+    for (i, second) in variable.terms.iter().enumerate() {
+        let mut earlier = variable.terms.iter().take(i);
+        // That a term is 0 everywhere is a finding of its own.
+        if let Some(first) = earlier.find(|first| same(first, second))
+            && !outside.contains(&i)
+        {
+            found.push(EqualTerms {
+                variable: variable.name.clone(),
+                first: first.name.clone(),
+                second: second.name.clone(),
+            });
+        }
+    }
+    found
+}
+
 /// Terms that stand in no rule, and variables none of whose terms does.
 pub(super) fn unused(model: &Model) -> Vec<TermOf> {
     let mut used: BTreeSet<(&str, &str)> = BTreeSet::new();
@@ -169,7 +209,12 @@ pub(super) fn holes(input: &Variable) -> Vec<Hole> {
     found
 }
 
+/// A narrower hole is a single value and a rounding error.
+const THIN: f64 = 1e-9;
+
 fn hole(input: &Variable, low: f64, high: f64) -> Hole {
+    let is_thin = high - low <= THIN * (input.high - input.low);
+    let high = if is_thin { low } else { high };
     Hole {
         input: input.name.clone(),
         low,

@@ -308,7 +308,7 @@ fn an_output_that_is_read_counts_as_an_input_over_its_range() {
         .map(|finding| finding.message.as_str())
         .collect();
     assert!(
-        told.contains(&"no rule for `z` fires where 0.4 < mid < 0.6: 20 % of the input space"),
+        told.contains(&"`mid` has no term from 0.4 to 0.6"),
         "{told:?}"
     );
     let unknown = Monotone {
@@ -345,4 +345,81 @@ rules:
         .collect();
     assert_eq!(along_mid.len(), 1, "{:?}", report.against_trend);
     assert_eq!((along_mid[0].from_rule, along_mid[0].to_rule), (6, 7));
+}
+
+fn findings_of(text: &str) -> Vec<String> {
+    let (_, findings) = report_of(text, &Options::default());
+    findings.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn terms_that_are_the_same_and_rules_that_contradict_themselves_are_found() {
+    let said = findings_of(
+        "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 4], terms: {low: {triangle: [-4, 0, 4]}, \
+         small: {triangle: {left: -4, peak: 0, right: 4}}, high: {right_shoulder: [0, 4]}}}}\n\
+         outputs: {z: {range: [-1, 5], partition: {slow: 0, fast: 4}}}\n\
+         rules: [IF x IS low THEN z IS slow, IF x IS small THEN z IS fast, \
+         IF x IS high THEN z IS fast AND z IS slow]\n",
+    );
+    let said = said.join("\n");
+    assert!(
+        said.contains("the terms `low` and `small` of `x` are the same"),
+        "{said}"
+    );
+    let both = "rule 3 concludes both `z` IS `fast` and `z` IS `slow`";
+    assert!(said.contains(both), "{said}");
+}
+
+#[test]
+fn a_sugeno_output_beyond_its_range_is_found() {
+    let said = findings_of(
+        "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 1], partition: [low, high]}}\n\
+         outputs: {z: {range: [0, 9], defuzzifier: weighted_average, \
+         terms: {slow: {constant: 0}, fast: {linear: {x: 5, constant: 7}}}}}\n\
+         rules: [IF x IS low THEN z IS slow, IF x IS high THEN z IS fast]\n",
+    );
+    let beyond =
+        "warning[output-outside-range]: `z` takes values from 0 to 12, outside its range [0, 9]";
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].starts_with(beyond), "{said:?}");
+}
+
+#[test]
+fn a_gap_is_told_once() {
+    // Between 3 and 5 lies no term: neither what fires nor what is covered there is told again.
+    let said = findings_of(
+        "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 8], terms: {low: {left_shoulder: [1, 3]}, \
+         high: {right_shoulder: [5, 7]}}}}\n\
+         outputs: {z: {range: [0, 1], defuzzifier: weighted_average, terms: {a: {constant: 0}, b: {constant: 1}}}}\n\
+         rules: [IF x IS low THEN z IS a, IF x IS high THEN z IS b]\n",
+    );
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].contains("`x` has no term from 3 to 5"), "{said:?}");
+    // A missing rule is one finding, not also an unused term and a region where none fires.
+    let said = findings_of(
+        "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 1], partition: [low, medium, high]}}\n\
+         outputs: {z: {range: [0, 1], defuzzifier: weighted_average, terms: {a: {constant: 0}, b: {constant: 1}}}}\n\
+         rules: [IF x IS low THEN z IS a, IF x IS high THEN z IS b]\n",
+    );
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].contains("0.25 < x < 0.75"), "{said:?}");
+}
+
+#[test]
+fn a_single_value_without_a_term_is_told_in_few_digits() {
+    let said = findings_of(
+        "fuzzy: 1\nname: a\ninputs: {x: {range: [0, 4], terms: {low: {triangle: [0, 2, 4]}}}}\n\
+         outputs: {z: {range: [0, 1], defuzzifier: weighted_average, terms: {a: {constant: 0}}}}\n\
+         rules: [IF x IS low THEN z IS a]\n",
+    );
+    assert!(
+        said.iter().any(|s| s.contains("`x` has no term at 0\n")),
+        "{said:#?}"
+    );
+    let gaps = said.iter().filter(|s| s.starts_with("warning"));
+    assert_eq!(gaps.count(), 2, "{said:#?}");
+    assert_eq!(
+        (shown(1e-300), shown(1.0 / 3.0)),
+        ("1e-300".into(), "0.333333".into())
+    );
 }

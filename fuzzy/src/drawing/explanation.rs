@@ -1,14 +1,14 @@
 //! The terms of a variable, and an evaluation with its reasons, as SVG.
 
 use super::{
-    colour::{Colour, distinct, distinct_line},
+    colour::{Colour, distinct},
     plot::{Plot, Series, draw},
     scale::Scale,
     sheet::{Anchor, Frame, LABEL_WIDTH, Sheet},
     text::{number, short, titled, wrapped},
 };
 use crate::{
-    engine::{ExplainedOutput, Explanation},
+    engine::{ExplainedOutput, Explanation, Share},
     model::{Model, Variable},
 };
 
@@ -78,16 +78,30 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
             "title",
             &titles(output, &written.variable, explanation),
         );
-        if output.set.is_empty() {
+        let shade = |share: &Share| {
+            let mut rules = explanation.rules.iter();
+            distinct(rules.position(|rule| rule.rule == share.rule).unwrap_or(0))
+        };
+        if written.defuzzifier.is_weighted() {
+            let numbers = output.rules.iter();
+            let numbers = numbers.filter_map(|rule| {
+                let text = format!("rule {}: {}", rule.rule + 1, short(rule.value?));
+                Some((rule.value?, rule.strength, shade(rule), text))
+            });
+            let numbers: Vec<Number> = numbers.collect();
+            sticks(&mut sheet, &frame, &written.variable, &numbers);
             let scale = Scale::new(written.variable.low, written.variable.high);
-            sheet.axes(&frame, (scale, ""), (Scale::new(0.0, 1.0), ""));
             marker(&mut sheet, &frame, scale, output.value);
         } else {
+            let implied = output.rules.iter();
+            let implied: Vec<Area<'_>> = implied
+                .map(|rule| (rule.implied.as_slice(), shade(rule)))
+                .collect();
             terms(
                 &mut sheet,
                 &frame,
                 &written.variable,
-                &output.set,
+                &implied,
                 output.value,
             );
         }
@@ -98,11 +112,11 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
             (70.0, y),
             Anchor::Start,
             "title",
-            "Rules that fired, with their firing strengths",
+            "Rules that fired: firing strength from 0 to 1, in the shade of what they imply above",
         );
     }
     y += 20.0;
-    for (fired, lines) in explanation.rules.iter().zip(&written) {
+    for (i, (fired, lines)) in explanation.rules.iter().zip(&written).enumerate() {
         let bar = Frame {
             left: 110.0,
             top: y - 8.0,
@@ -114,7 +128,7 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
             ..bar
         };
         sheet.rect(bar, format_args!(r##"fill="#eee""##));
-        sheet.rect(full, format_args!(r#"fill="{}""#, distinct_line(1)));
+        sheet.rect(full, format_args!(r#"fill="{}""#, distinct(i)));
         sheet.text((104.0, y), Anchor::End, "label", &number(fired.strength, 3));
         for line in lines {
             sheet.text((bar.right() + 10.0, y), Anchor::Start, "label", line);
@@ -175,24 +189,55 @@ pub(super) fn digits(x: f64) -> String {
     rounded.to_string()
 }
 
-/// The terms of a variable in a frame: their membership functions, an aggregated set, a value and the degrees there.
-fn terms(
+/// The implied set of a rule, and its shade.
+type Area<'a> = (&'a [(f64, f64)], Colour);
+
+/// A number of a Takagi-Sugeno output, its weight, its colour and what is said of it.
+pub(super) type Number = (f64, f64, Colour, String);
+
+/// The numbers of a Takagi-Sugeno output in a frame, each as a stick as high as its weight.
+pub(super) fn sticks(sheet: &mut Sheet, frame: &Frame, variable: &Variable, numbers: &[Number]) {
+    let ends = numbers.iter().map(|(value, ..)| *value);
+    // A number may lie outside the range.
+    let x = Scale::new(
+        ends.clone().fold(variable.low, f64::min),
+        ends.fold(variable.high, f64::max),
+    );
+    for (value, weight, colour, _) in numbers {
+        let ends = [
+            frame.at(x.share(*value), 0.0),
+            frame.at(x.share(*value), *weight),
+        ];
+        let paint = format_args!(r#"stroke="{colour}" stroke-width="6""#);
+        sheet.through("polyline", &ends, paint);
+    }
+    sheet.axes(frame, (x, ""), (Scale::new(0.0, 1.0), "weight"));
+    let keys = numbers.iter();
+    let keys: Vec<(Colour, String)> = keys.map(|(_, _, c, text)| (*c, text.clone())).collect();
+    sheet.keys(frame.right() + 14.0, frame.top, &keys);
+}
+
+/// The terms of a variable in a frame: their membership functions, the implied sets of rules, a value and the degrees there.
+pub(super) fn terms(
     sheet: &mut Sheet,
     frame: &Frame,
     variable: &Variable,
-    set: &[(f64, f64)],
+    implied: &[Area<'_>],
     at: Option<f64>,
 ) {
     let (x, y) = (
         Scale::new(variable.low, variable.high),
         Scale::new(0.0, 1.0),
     );
-    if let (Some(first), Some(last)) = (set.first(), set.last()) {
+    for (set, colour) in implied {
+        let (Some(first), Some(last)) = (set.first(), set.last()) else {
+            continue;
+        };
         let ends = [(last.0, 0.0), (first.0, 0.0)];
         let outline = set.iter().chain(&ends);
         let outline = outline.map(|(value, degree)| frame.at(x.share(*value), y.share(*degree)));
         let outline: Vec<(f64, f64)> = outline.collect();
-        let paint = format_args!(r#"fill="{}" fill-opacity=".45""#, distinct(0));
+        let paint = format_args!(r#"fill="{colour}" fill-opacity=".55""#);
         sheet.through("polygon", &outline, paint);
     }
     let series = variable.terms.iter().enumerate().map(|(i, term)| Series {

@@ -49,16 +49,21 @@ fn add_input(text: &mut String, variable: &Variable, input: &ExplainedInput) {
         let _ = write!(text, ", outside the range, used as {}", digits(input.value));
     }
     text.push('\n');
-    add_degrees(text, &input.terms);
+    add_degrees(text, &input.terms, input.value);
 }
 
-/// A line for each term: its degree as a number and as a bar.
-fn add_degrees(text: &mut String, terms: &[Degree]) {
+/// A line for each term: the degree of a value in it, as a number and as a bar.
+fn add_degrees(text: &mut String, terms: &[Degree], value: f64) {
     let terms = terms.iter().map(|term| (visible(&term.term), term.degree));
     let terms: Vec<_> = terms.collect();
     let names = terms.iter().map(|(term, _)| term.chars().count());
     let width = names.max().unwrap_or(0).max(4);
     if !terms.is_empty() {
+        let _ = writeln!(
+            text,
+            "  degree of {} in each term, the bar from 0 to 1:",
+            digits(value)
+        );
         let _ = writeln!(
             text,
             "  {:width$}   degree  0{:>scale$}",
@@ -83,17 +88,22 @@ fn add_output(text: &mut String, variable: &Variable, output: &ExplainedOutput, 
         "  coverage {:.5}, the largest firing strength",
         output.coverage
     );
-    add_degrees(text, &output.terms);
+    add_degrees(text, &output.terms, output.value.unwrap_or(f64::NAN));
+    let weighted = output.rules.iter().any(|rule| rule.value.is_some());
     if !output.rules.is_empty() {
-        text.push_str("\n  strength  share  rule\n");
+        let value = if weighted { "       value" } else { "" };
+        let _ = writeln!(text, "\n  strength  share{value}  rule");
     }
     for share in &output.rules {
         let fired = all.rules.iter().find(|rule| rule.rule == share.rule);
         let rule = fired.map_or("".into(), |rule| visible(&rule.text));
         let (number, percent) = (share.rule + 1, 100.0 * share.share);
+        let value = share
+            .value
+            .map_or_else(String::new, |value| format!("{:>12}", digits(value)));
         let _ = writeln!(
             text,
-            "  {:>8.5} {percent:>4.0} %  {number}: {rule}",
+            "  {:>8.5} {percent:>4.0} %{value}  {number}: {rule}",
             share.strength
         );
     }

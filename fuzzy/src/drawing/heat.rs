@@ -33,7 +33,16 @@ pub fn map_svg(slice: &Slice) -> String {
             sheet.legend(slice);
             sheet.notes(slice);
         }
-        None => curve(&mut sheet, slice),
+        None => {
+            curve(&mut sheet, &Frame::MAP, slice);
+            if slice.any_filled() {
+                let note = format!(
+                    "dashed: interpolated where no rule applies ({})",
+                    slice.filling_text()
+                );
+                sheet.text((Frame::MAP.left, 486.0), Anchor::Start, "label", &note);
+            }
+        }
     }
     sheet.finish(&whole_title(slice))
 }
@@ -162,12 +171,11 @@ fn contours(sheet: &mut Sheet, slice: &Slice) {
 }
 
 /// The output over one input; filled parts are dashed.
-fn curve(sheet: &mut Sheet, slice: &Slice) {
+pub(super) fn curve(sheet: &mut Sheet, frame: &Frame, slice: &Slice) {
     const DRAWN: &str = r##"fill="none" stroke="#2a788e" stroke-width="2.5""##;
     const DASHED: &str =
         r##"fill="none" stroke="#d55e00" stroke-width="2.5" stroke-dasharray="6 4""##;
-    let frame = Frame::MAP;
-    sheet.grid(&frame, slice.range);
+    sheet.grid(frame, slice.range);
     let mut piece: Vec<(f64, f64)> = Vec::new();
     let mut style = DRAWN;
     for (i, x) in slice.x.points.iter().enumerate() {
@@ -191,14 +199,11 @@ fn curve(sheet: &mut Sheet, slice: &Slice) {
         piece.extend(point);
     }
     sheet.through("polyline", &piece, format_args!("{style}"));
-    axes(sheet, slice, slice.range, &slice.output_title());
-    if slice.any_filled() {
-        let note = format!(
-            "dashed: interpolated where no rule applies ({})",
-            slice.filling_text()
-        );
-        sheet.text((frame.left, 486.0), Anchor::Start, "label", &note);
-    }
+    sheet.axes(
+        frame,
+        (slice.x.scale(), &slice.x.title()),
+        (slice.range, &slice.output_title()),
+    );
 }
 
 #[cfg(test)]

@@ -5,8 +5,9 @@
 //! | picture | as SVG | as text |
 //! |---|---|---|
 //! | the terms of a variable | [`terms_svg`] | |
+//! | the terms of all variables | [`variables_svg`] | [`variables_text`] |
 //! | an evaluation with its reasons | [`explanation_svg`] | [`explanation_text`] |
-//! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`], [`values_text`] |
+//! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`], [`surface_text`], [`values_text`] |
 //! | the rule that dominates each part of a map | [`rules_svg`] | [`rules_text`] |
 //! | lines over a number ([`Plot`]) | [`plots_svg`] | |
 //! | curves over time ([`Panel`]) | [`Panel::svg`] | [`over_time_text`] |
@@ -38,7 +39,9 @@ mod scale;
 mod sheet;
 mod slice;
 mod surface;
+mod surface_text;
 mod text;
+mod variables;
 
 pub use colour::{Colour, distinct, reds, viridis};
 pub use curve::{Stretch, over_time_text, path};
@@ -53,4 +56,6 @@ pub use scale::Scale;
 pub use sheet::{Anchor, Frame, Sheet};
 pub use slice::{Axis, Cell, Slice};
 pub use surface::surface_svg;
+pub use surface_text::surface_text;
 pub use text::{Escaped, bar, number, short, visible, visible_lines};
+pub use variables::{variables_svg, variables_text};

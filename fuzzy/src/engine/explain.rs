@@ -113,6 +113,11 @@ pub struct Share {
     /// this rule is the highest; with sums, its part of the area of all sets; in a Takagi-Sugeno output, its part of the
     /// weights.
     pub share: f64,
+    /// In a Takagi-Sugeno output the number that its consequent gives at these inputs.
+    pub value: Option<f64>,
+    /// The implied set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno outputs. Not serialised.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub implied: Vec<(f64, f64)>,
 }
 
 /// Even steps of the aggregated set.
@@ -337,10 +342,10 @@ fn explain_output(
         }
     }
     let mut set = Vec::new();
+    let step = |i: f64| variable.low + (variable.high - variable.low) * i / STEPS as f64;
     if weighted {
         active.iter_mut().for_each(|one| one.part = one.strength);
     } else {
-        let step = |i: f64| variable.low + (variable.high - variable.low) * i / STEPS as f64;
         set = (0..=STEPS)
             .map(|i| {
                 (
@@ -361,6 +366,14 @@ fn explain_output(
             term: one.term.name.clone(),
             strength: one.strength,
             share: if whole > 0.0 { one.part / whole } else { 0.0 },
+            value: weighted.then(|| number(one.term, known)).flatten(),
+            implied: if weighted {
+                Vec::new()
+            } else {
+                let at = |i: usize| step(i as f64);
+                let implied = (0..=STEPS).map(|i| (at(i), one.degree(model.operators, at(i))));
+                implied.collect()
+            },
         })
         .collect();
     rules.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -385,6 +398,25 @@ fn explain_output(
             _ => Vec::new(),
         },
         set,
+    }
+}
+
+/// The number that a term of a Takagi-Sugeno output gives at the values of the inputs.
+fn number(term: &Term, known: &Known<'_>) -> Option<f64> {
+    match &term.membership_function {
+        MembershipFunction::Constant { value } => Some(*value),
+        MembershipFunction::Singleton { at } => Some(*at),
+        MembershipFunction::Linear {
+            coefficients,
+            constant,
+        } => {
+            let parts = coefficients.iter().map(|(name, factor)| {
+                let (_, value) = known.variable(name)?;
+                Some(factor * value?)
+            });
+            Some(parts.sum::<Option<f64>>()? + constant)
+        }
+        _ => None,
     }
 }
 

@@ -18,7 +18,11 @@ pub(super) fn read(
     spans: &mut Spans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Rule>> {
-    let items = node.items("`rules`", findings)?;
+    let Value::List(items) = &node.value else {
+        let finding = node.unexpected("a list for `rules`");
+        findings.push(finding.help("begin the line of each rule with `- IF`; rules have no names"));
+        return None;
+    };
     let mut rules = Vec::with_capacity(items.len());
     for (i, item) in items.iter().enumerate() {
         let mut here = RuleSpans {
@@ -63,22 +67,10 @@ fn one(
         findings.push(finding.help("write `IF input IS term THEN output IS term`"));
         return None;
     };
-    // `- IF ... THEN speed IS fast: why` reads as a mapping: the colon is the mistake, not the key.
-    if let [(key, _)] = pairs.as_slice()
-        && let Value::Scalar(scalar) = &key.value
-        && scalar
-            .text
-            .get(..3)
-            .is_some_and(|start| start.eq_ignore_ascii_case("if "))
+    if let [(key, value)] = pairs.as_slice()
+        && let Some(finding) = colon(&what, key, value)
     {
-        findings.push(
-            Diagnostic::error(
-                "wrong-type",
-                key.span.clone(),
-                format!("{what} holds a colon"),
-            )
-            .help("put the rule in quotes, or a remark behind `#`"),
-        );
+        findings.push(finding);
         return None;
     }
     let fields = node.fields(&what, &KEYS, findings)?;
@@ -104,6 +96,27 @@ fn one(
     }
     found.rule = parse(text?.words(&what, findings)?, findings)?;
     Some(found)
+}
+
+/// A rule that a colon makes a mapping: `RULE 4 : IF ...`, or `IF ... THEN speed IS fast: why`.
+fn colon(what: &str, key: &Node, value: &Node) -> Option<Diagnostic> {
+    let is_rule = |node: &Node| match &node.value {
+        Value::Scalar(scalar) => {
+            let start = scalar.text.get(..3);
+            start.is_some_and(|start| start.eq_ignore_ascii_case("if "))
+        }
+        _ => false,
+    };
+    let (message, help) = if is_rule(key) {
+        let help = "put the rule in quotes, or a remark behind `#`";
+        (format!("{what} holds a colon"), help)
+    } else if is_rule(value) && !matches!(&key.value, Value::Scalar(key) if key.text == "rule") {
+        let help = "rules have no names or numbers; write `- IF ... THEN ...`";
+        (format!("{what} has a name before it"), help)
+    } else {
+        return None;
+    };
+    Some(Diagnostic::error("wrong-type", key.span.clone(), message).help(help))
 }
 
 /// `{term: high, degree: 0.4, support: 3}`

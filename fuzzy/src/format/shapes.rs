@@ -32,6 +32,26 @@ pub(super) fn read(
         );
         return None;
     };
+    let known = MembershipFunction::FORMS.iter().map(|form| form.name);
+    let known = known.chain(["piecewise", "linear"]);
+    if !known.clone().any(|name| name == shape.key) {
+        let message = format!("there is no membership function `{}`", shape.key);
+        let mut finding = Diagnostic::error(
+            "unknown-membership-function",
+            shape.key_span.clone(),
+            message,
+        );
+        finding.help = match &shape.value.value {
+            // `{type: triangle, points: [0, 1, 2]}`
+            Value::Scalar(name) if known.clone().any(|known| known == name.text) => Some(format!(
+                "a membership function is the key itself: `{{{}: ...}}`",
+                name.text
+            )),
+            _ => suggest(shape.key, known),
+        };
+        findings.push(finding);
+        return None;
+    }
     if let Some(second) = shapes.next() {
         let message = format!("{term} has a second membership function, `{}`", second.key);
         findings.push(
@@ -43,24 +63,11 @@ pub(super) fn read(
     match shape.key {
         "piecewise" => points(term, shape.value, spans, findings),
         "linear" => linear(shape.value, spans, findings),
-        name => match MembershipFunction::FORMS
-            .iter()
-            .find(|form| form.name == name)
-        {
-            Some(form) => by_form(form, shape.value, spans, findings),
-            None => {
-                let known = MembershipFunction::FORMS.iter().map(|form| form.name);
-                let message = format!("there is no membership function `{name}`");
-                let mut finding = Diagnostic::error(
-                    "unknown-membership-function",
-                    shape.key_span.clone(),
-                    message,
-                );
-                finding.help = suggest(name, known.chain(["piecewise", "linear"]));
-                findings.push(finding);
-                None
-            }
-        },
+        name => {
+            let mut forms = MembershipFunction::FORMS.iter();
+            let form = forms.find(|form| form.name == name)?;
+            by_form(form, shape.value, spans, findings)
+        }
     }
 }
 
@@ -111,8 +118,10 @@ fn by_form(
                     names.len(),
                     items.len()
                 );
+                finding.help = Node::list_advice(items, names.len());
             }
-            findings.push(finding.help(spelling(form)));
+            finding.help.get_or_insert_with(|| spelling(form));
+            findings.push(finding);
             return None;
         }
     }

@@ -472,3 +472,29 @@ proptest! {
         prop_assert_eq!(read.as_ref(), Ok(&model), "{}", theirs);
     }
 }
+
+#[test]
+fn another_programs_word_is_answered_with_one_of_this_format() {
+    fn words<T>(table: &[(&'static str, T)]) -> Vec<&'static str> {
+        table.iter().map(|(word, _)| *word).collect()
+    }
+    let shapes = crate::model::MembershipFunction::FORMS.iter();
+    let known: Vec<&str> = [
+        shapes.map(|form| form.name).collect(),
+        words(&super::words::CONJUNCTIONS),
+        words(&super::words::DISJUNCTIONS),
+        words(&super::words::AGGREGATIONS),
+        words(&super::words::DEFUZZIFIERS),
+        super::variables::OUTPUT_KEYS.to_vec(),
+        crate::rule::Hedge::ALL
+            .map(crate::rule::Hedge::word)
+            .to_vec(),
+        Vec::from(["piecewise", "and", "or", "implication", "aggregation"]),
+    ]
+    .concat();
+    for (word, meanings) in crate::foreign::WORDS {
+        for meaning in *meanings {
+            assert!(known.contains(meaning), "{word}: {meaning}");
+        }
+    }
+}

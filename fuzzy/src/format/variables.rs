@@ -179,6 +179,7 @@ fn variable(
             )
             .help("keep one; all terms of a variable stand together"),
         ),
+        (None, None) if fields.misspells("partition") => {}
         (None, None) => {
             let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
             fields.require("terms", help, findings);
@@ -196,6 +197,7 @@ fn range(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(f64
     };
     let [low, high] = ends.as_slice() else {
         let message = format!("the range of {what} takes 2 numbers, not {}", ends.len());
+        let help = Node::list_advice(ends, 2).unwrap_or_else(|| help.into());
         findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
         return None;
     };
@@ -239,7 +241,15 @@ fn partition(
             for entry in &entries {
                 names.push((entry.key, entry.value));
                 let peak = format!("the peak of `{}` of {what}", entry.key);
+                let before = findings.len();
                 found.extend(entry.value.finite(&peak, findings));
+                // `{warm: 20,5}` reads as a term `5` without a peak.
+                if entry.value.is_null()
+                    && entry.key.bytes().all(|c| c.is_ascii_digit())
+                    && let Some(finding) = findings.get_mut(before)
+                {
+                    finding.help = Some("a decimal point is written as `.`: `20.5`".into());
+                }
             }
             if found.len() == names.len() && rising(what, &names, &found, variable, findings) {
                 peaks = Some(found);
@@ -370,7 +380,11 @@ fn term(
     let Value::Mapping(pairs) = &entry.value.value else {
         let expected = format!("a membership function for {term}");
         let finding = entry.value.unexpected(&expected);
-        findings.push(finding.help("write one: `{triangle: [0, 1, 2]}`"));
+        findings.push(finding.help(match &entry.value.value {
+            Value::List(items) if items.len() == 4 => "name it: `{trapezoid: [0, 1, 2, 3]}`",
+            Value::List(_) => "name it: `{triangle: [0, 1, 2]}`",
+            _ => "write one: `{triangle: [0, 1, 2]}`",
+        }));
         return None;
     };
     // Which keys are known depends on the membership function, so any key is let through here and looked at there.

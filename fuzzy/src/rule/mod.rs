@@ -7,6 +7,7 @@ use core::{ops::Range, str::FromStr};
 
 use crate::diagnostic::Diagnostic;
 
+mod mistake;
 mod parse;
 mod print;
 #[cfg(test)]

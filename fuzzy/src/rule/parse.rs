@@ -14,18 +14,20 @@
 //! Whatever keyword has been read commits the parser, so the first mistake met is the furthest one, and every error
 //! knows what could have stood in its place.
 
-use alloc::{boxed::Box, format, string::String, vec::Vec};
+use alloc::{boxed::Box, string::String, vec::Vec};
 
 use nom::{
     Err, IResult, Parser,
     bytes::complete::{take_till, take_while, take_while1},
     character::complete::char,
-    error::{ErrorKind, ParseError},
     multi::many0_count,
     sequence::preceded,
 };
 
-use super::{Condition, Consequent, Hedge, Name, Proposition, Rule, is_plain_name};
+use super::{
+    Condition, Consequent, Hedge, Name, Proposition, Rule, is_plain_name,
+    mistake::{Mistake, Wrong},
+};
 use crate::diagnostic::{Diagnostic, nearest};
 
 /// Brackets and NOTs deeper than this are an error: a tree is walked by recursion.
@@ -51,7 +53,7 @@ pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
     let source = Source { text };
     match source.rule(text) {
         Ok((_, rule)) => Ok(rule),
-        Err(Err::Error(mistake) | Err::Failure(mistake)) => Err(Box::new(source.explain(mistake))),
+        Err(Err::Error(mistake) | Err::Failure(mistake)) => Err(Box::new(mistake.explain(text))),
         // Only nom's streaming parsers ask for more, and none is used.
         Err(Err::Incomplete(_)) => Err(Box::new(Diagnostic::error(
             "rule-syntax",
@@ -61,50 +63,9 @@ pub fn parse(text: &str) -> Result<Rule, Box<Diagnostic>> {
     }
 }
 
-/// What is wrong, and the text that was left when it was met.
-struct Mistake<'a> {
-    rest: &'a str,
-    kind: Wrong,
-}
-
-enum Wrong {
-    /// One of these words should have stood here: `after` says after what.
-    Keyword(&'static [&'static str], &'static str),
-    /// A name of this kind should have stood here.
-    Name(&'static str),
-    /// A hedge behind THEN.
-    HedgeInConsequent,
-    /// A quote without its partner.
-    OpenQuote,
-    /// A bracket without its partner.
-    OpenBracket,
-    /// Something between quotes that is not there.
-    EmptyName,
-    /// No number behind WITH.
-    Number,
-    /// A weight outside [0, 1].
-    Weight(f64),
-    /// Nested deeper than [`DEEPEST_NESTING`].
-    TooDeep,
-}
-
 type Step<'a, T> = IResult<&'a str, T, Mistake<'a>>;
 
-impl<'a> ParseError<&'a str> for Mistake<'a> {
-    // nom's own parsers are only tried, never required: what they would say is always replaced.
-    fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
-        Mistake {
-            rest,
-            kind: Wrong::Name("a word"),
-        }
-    }
-
-    fn append(_: &'a str, _: ErrorKind, other: Self) -> Self {
-        other
-    }
-}
-
-fn wrong<T>(rest: &str, kind: Wrong) -> Step<'_, T> {
+fn wrong<'a, T>(rest: &'a str, kind: Wrong<'a>) -> Step<'a, T> {
     Err(Err::Failure(Mistake { rest, kind }))
 }
 
@@ -116,18 +77,18 @@ fn space(rest: &str) -> Step<'_, ()> {
     Ok((rest, ()))
 }
 
-fn is_name_letter(c: char) -> bool {
+pub(super) fn is_name_letter(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '.' | '-' | '%')
 }
 
 /// The word here, empty where there is none.
-fn word(rest: &str) -> Step<'_, &str> {
+pub(super) fn word(rest: &str) -> Step<'_, &str> {
     let (rest, ()) = space(rest)?;
     take_while(is_name_letter).parse(rest)
 }
 
 /// Takes the keyword if it is the next word: keywords end where words end.
-fn keyword<'a>(rest: &'a str, expected: &str) -> Option<&'a str> {
+pub(super) fn keyword<'a>(rest: &'a str, expected: &str) -> Option<&'a str> {
     let (after, word) = word(rest).ok()?;
     word.eq_ignore_ascii_case(expected).then_some(after)
 }
@@ -154,10 +115,7 @@ impl<'a> Source<'a> {
         };
         let (rest, condition) = self.any_of(rest, 0)?;
         let Some(mut rest) = keyword(rest, "THEN") else {
-            return wrong(
-                rest,
-                Wrong::Keyword(&["AND", "OR", "THEN"], "after the condition"),
-            );
+            return wrong(rest, Wrong::Joint);
         };
         let mut consequents = Vec::new();
         loop {
@@ -223,9 +181,13 @@ impl<'a> Source<'a> {
                 ),
             };
         }
+        if hedge(rest).is_some() {
+            return wrong(rest, Wrong::HedgeBeforeInput);
+        }
+        let start = rest;
         let (rest, variable) = self.name(rest, "the name of an input, `NOT` or `(`")?;
         let Some(mut rest) = keyword(rest, "IS") else {
-            return wrong(rest, Wrong::Keyword(&["IS"], "after the input"));
+            return wrong(rest, Wrong::NoIs("input", start));
         };
         let mut hedges = Vec::new();
         while let Some((after, hedge)) = hedge(rest) {
@@ -238,8 +200,13 @@ impl<'a> Source<'a> {
         let (rest, term) = if hedges.last() == Some(&Hedge::Any) && !names_follow {
             (rest, None)
         } else {
-            let (rest, term) = self.name(rest, "a term or a hedge")?;
-            (rest, Some(term))
+            let (after, term) = self.name(rest, "a term or a hedge")?;
+            let next = word(after).map_or("", |(_, next)| next);
+            let is_bare = !rest.trim_start().starts_with(['"', '\'']);
+            if is_bare && is_second_word(after, next) {
+                return wrong(rest, Wrong::TwoWords(next));
+            }
+            (after, Some(term))
         };
         let proposition = Proposition {
             variable,
@@ -250,9 +217,10 @@ impl<'a> Source<'a> {
     }
 
     fn consequent(&self, rest: &'a str) -> Step<'a, Consequent> {
+        let start = rest;
         let (rest, output) = self.name(rest, "the name of an output")?;
         let Some(rest) = keyword(rest, "IS") else {
-            return wrong(rest, Wrong::Keyword(&["IS"], "after the output"));
+            return wrong(rest, Wrong::NoIs("output", start));
         };
         if hedge(rest).is_some() {
             return wrong(rest, Wrong::HedgeInConsequent);
@@ -276,73 +244,6 @@ impl<'a> Source<'a> {
         };
         let span = start..self.at(after);
         Ok((after, Name { text, span }))
-    }
-
-    /// The mistake in words.
-    fn explain(&self, mistake: Mistake<'a>) -> Diagnostic {
-        let rest = mistake.rest.trim_start();
-        let start = self.at(rest);
-        let found = found_here(rest);
-        let span = start..start + found.len();
-        let shown = match found {
-            "" => String::from("the end of the rule"),
-            found => format!("`{found}`"),
-        };
-        let syntax = |message: String| Diagnostic::error("rule-syntax", span.clone(), message);
-        match mistake.kind {
-            Wrong::Keyword(expected, after) => {
-                let message = match expected {
-                    [] => format!("the rule ends {after}, but here stands {shown}"),
-                    _ => format!("expected {} {after}, found {shown}", either(expected)),
-                };
-                let diagnostic = syntax(message);
-                let help = match nearest(found, expected.iter().copied()) {
-                    Some(word) => Some(format!("did you mean `{word}`?")),
-                    None => advice(found, expected),
-                };
-                with_help(diagnostic, help)
-            }
-            Wrong::Name(what) => {
-                let help = if Rule::is_keyword(found) {
-                    Some(format!(
-                        "`{found}` is a word of the rule language; as a name it stands in quotes: `\"{found}\"`"
-                    ))
-                } else {
-                    advice(found, &[])
-                };
-                with_help(syntax(format!("expected {what}, found {shown}")), help)
-            }
-            Wrong::HedgeInConsequent => syntax(format!("`{found}` cannot stand after `THEN`"))
-                .help("hedges and `NOT` belong in the condition; here name one term of the output"),
-            Wrong::OpenQuote => syntax(String::from("the quoted name is never closed"))
-                .help("add the closing quote"),
-            Wrong::OpenBracket => Diagnostic::error(
-                "rule-syntax",
-                start..start + 1,
-                "the bracket `(` is never closed",
-            )
-            .help("add `)` at the end of what belongs together"),
-            Wrong::EmptyName => {
-                Diagnostic::error("rule-syntax", start..start + 2, "the name is empty")
-                    .help("write the name of a variable or a term between the quotes")
-            }
-            Wrong::Number => syntax(format!("expected a weight after `WITH`, found {shown}"))
-                .help("a weight is a number from 0 to 1: `WITH 0.8`"),
-            Wrong::Weight(weight) => Diagnostic::error(
-                "weight-outside-range",
-                span,
-                format!("the weight `{weight}` is outside [0, 1]"),
-            )
-            .help(
-                "a weight multiplies the firing strength of its rule; write a number from 0 to 1",
-            ),
-            Wrong::TooDeep => Diagnostic::error(
-                "rule-too-deep",
-                span,
-                format!("brackets and NOTs are nested deeper than {DEEPEST_NESTING}"),
-            )
-            .help("split the rule into several rules of the same conclusion"),
-        }
     }
 }
 
@@ -374,12 +275,20 @@ fn one_or(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> C
     }
 }
 
+/// Whether the word behind a term could only be a part of it: no keyword, none misspelt, and not the input of a further
+/// proposition.
+fn is_second_word(after: &str, next: &str) -> bool {
+    is_plain_name(next)
+        && nearest(next, ["AND", "OR", "THEN"]).is_none()
+        && word(after).is_ok_and(|(behind, _)| keyword(behind, "IS").is_none())
+}
+
 fn starts_name(rest: &str) -> bool {
     rest.starts_with(['"', '\'']) || word(rest).is_ok_and(|(_, word)| is_plain_name(word))
 }
 
 /// A name in quotes; a backslash takes the next quote or backslash as it is.
-fn quoted(rest: &str, quote: char) -> Step<'_, String> {
+pub(super) fn quoted(rest: &str, quote: char) -> Step<'_, String> {
     let mut name = String::new();
     let mut letters = rest.char_indices().skip(1);
     while let Some((at, c)) = letters.next() {
@@ -416,77 +325,4 @@ fn weight(rest: &str) -> Step<'_, f64> {
         }
         _ => wrong(rest, Wrong::Number),
     }
-}
-
-/// What an author would call the thing that stands here: a word, a quoted name, a sign.
-fn found_here(rest: &str) -> &str {
-    const LONGEST: usize = 40;
-    let end = |in_it: fn(char) -> bool| {
-        let at = rest
-            .char_indices()
-            .take(LONGEST)
-            .find(|&(_, c)| !in_it(c))
-            .map(|(at, _)| at);
-        let most = rest
-            .char_indices()
-            .nth(LONGEST)
-            .map_or(rest.len(), |(at, _)| at);
-        at.unwrap_or(most)
-    };
-    let Some(first) = rest.chars().next() else {
-        return "";
-    };
-    let length = match first {
-        '"' | '\'' => match quoted(rest, first) {
-            Ok((after, _)) => rest.len() - after.len(),
-            Err(_) => end(|c| c != '\n'),
-        },
-        '(' | ')' => 1,
-        _ if is_name_letter(first) || first == '+' => end(|c| is_name_letter(c) || c == '+'),
-        _ => end(|c| !is_name_letter(c) && !c.is_whitespace() && !matches!(c, '"' | '\'')),
-    };
-    rest.get(..length).unwrap_or(rest)
-}
-
-/// `` `A`, `B` or `C` ``
-fn either(words: &[&str]) -> String {
-    let quoted: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
-    match quoted.split_last() {
-        Some((last, first)) if !first.is_empty() => format!("{} or {last}", first.join(", ")),
-        _ => quoted.join(""),
-    }
-}
-
-/// What authors of other languages write, and what it is called here.
-fn advice(found: &str, expected: &[&str]) -> Option<String> {
-    let say = |text: &str| Some(String::from(text));
-    match found {
-        "," => say("write `AND` or `THEN`"),
-        "&" | "&&" => say("write `AND`"),
-        "|" | "||" => say("write `OR`"),
-        "!" | "~" => say("write `NOT`"),
-        "=" | "==" | ":" => say("write `IS`"),
-        "!=" | "<>" => say("write `IS NOT`"),
-        "=>" | "->" => say("write `THEN`"),
-        "%" => say("write `WITH` and a number from 0 to 1"),
-        _ if found.eq_ignore_ascii_case("else") => {
-            say("there is no `ELSE`: write a second rule with `NOT`")
-        }
-        _ if found.eq_ignore_ascii_case("or") && expected.contains(&"WITH") => {
-            say("conclusions are joined by `AND`; for `OR` write two rules")
-        }
-        _ if found.starts_with('\'') || found.starts_with('"') => None,
-        _ if found.starts_with(is_name_letter)
-            && !expected.is_empty()
-            && !expected.contains(&"IF") =>
-        {
-            say("a name of several words stands in quotes: `\"very low\"`")
-        }
-        _ if expected.contains(&"IF") => say("a rule reads `IF input IS term THEN output IS term`"),
-        _ => None,
-    }
-}
-
-fn with_help(diagnostic: Diagnostic, help: Option<String>) -> Diagnostic {
-    Diagnostic { help, ..diagnostic }
 }

@@ -113,7 +113,7 @@ fn every_mistake_says_where_and_what_to_do() {
             "IF margin low THEN r IS h",
             "low",
             "expected `IS` after the input, found `low`",
-            "several words stands in quotes",
+            "write `margin IS low`",
         ),
         (
             "IF wind speed IS low THEN r IS h",
@@ -137,7 +137,7 @@ fn every_mistake_says_where_and_what_to_do() {
             "IF margin IS low ANd AND s IS low THEN r IS h",
             "AND",
             "expected the name of an input, `NOT` or `(`, found `AND`",
-            "in quotes",
+            "remove the word before it",
         ),
         (
             "IF margin IS low THNE r IS h",
@@ -173,13 +173,13 @@ fn every_mistake_says_where_and_what_to_do() {
             "IF (margin IS low s IS low) THEN r IS h",
             "s",
             "expected `AND`, `OR` or `)` after the condition, found `s`",
-            "in quotes",
+            "write `AND` before `s`",
         ),
         (
             "IF margin IS low) THEN r IS h",
             ")",
             "expected `AND`, `OR` or `THEN` after the condition, found `)`",
-            "",
+            "no `(` stands before it",
         ),
         (
             "IF margin IS 'low THEN r IS h",
@@ -203,19 +203,19 @@ fn every_mistake_says_where_and_what_to_do() {
             "IF margin IS low THEN r IS",
             "",
             "expected a term of the output, found the end of the rule",
-            "",
+            "add a term",
         ),
         (
             "IF margin IS low THEN",
             "",
             "expected the name of an output, found the end of the rule",
-            "",
+            "add a conclusion",
         ),
         (
             "IF margin IS low THEN r h",
             "h",
             "expected `IS` after the output, found `h`",
-            "in quotes",
+            "write `r IS h`",
         ),
         (
             "IF margin IS low THEN r IS h OR r IS l",
@@ -263,13 +263,13 @@ fn every_mistake_says_where_and_what_to_do() {
             "IF margin IS low THEN r IS h WITH 0.5 x",
             "x",
             "the rule ends after the conclusion, but here stands `x`",
-            "",
+            "a weight ends its rule",
         ),
         (
             "IF margin IS low ; THEN r IS h",
             ";",
             "expected `AND`, `OR` or `THEN` after the condition, found `;`",
-            "",
+            "remove it",
         ),
     ] {
         let found = parse(text).unwrap_err();

@@ -8,7 +8,13 @@ use alloc::{
 use core::ops::Range;
 
 use super::{Node, Scalar, Value};
-use crate::diagnostic::{Diagnostic, duplicate, suggest};
+use crate::{
+    diagnostic::{Diagnostic, duplicate, meant, suggest},
+    foreign,
+};
+
+/// What to say of `5 // five`.
+const COMMENT: &str = "a comment begins with `#`, not with `//`";
 
 /// The fields of a mapping whose keys are known.
 pub struct Fields<'a> {
@@ -17,6 +23,8 @@ pub struct Fields<'a> {
     /// Where to tell that something is missing.
     place: Range<usize>,
     entries: Vec<Entry<'a>>,
+    /// The known keys that an unknown one stands for: they are not told as missing too.
+    meant: Vec<String>,
 }
 
 /// A key and what stands behind it.
@@ -45,6 +53,11 @@ impl<'a> Fields<'a> {
             .find(|entry| entry.key == key && !entry.value.is_null())
     }
 
+    /// Whether an unknown key stands for this one.
+    pub fn misspells(&self, key: &str) -> bool {
+        self.meant.iter().any(|meant| meant == key)
+    }
+
     /// All keys that are there once, with their values.
     #[must_use]
     pub fn entries(&self) -> &[Entry<'a>] {
@@ -59,7 +72,7 @@ impl<'a> Fields<'a> {
         findings: &mut Vec<Diagnostic>,
     ) -> Option<&'a Node> {
         let found = self.get(key);
-        if found.is_none() {
+        if found.is_none() && !self.misspells(key) {
             let place = self.entries.iter().find(|entry| entry.key == key);
             let span = place.map_or(self.place.clone(), |entry| entry.key_span.clone());
             let message = match place {
@@ -98,11 +111,17 @@ impl Node {
         findings: &mut Vec<Diagnostic>,
     ) -> Option<Fields<'a>> {
         let entries = self.entries(what, "key", findings)?;
+        let mut misspelt: Vec<String> = Vec::new();
         for entry in &entries {
             if !known.contains(&entry.key) {
                 let message = format!("{what} has no key `{}`", entry.key);
                 let mut finding = Diagnostic::error("unknown-key", entry.key_span.clone(), message);
-                finding.help = suggest(entry.key, known.iter().copied());
+                let meant = meant(entry.key, known);
+                finding.help = match foreign::elsewhere(entry.key) {
+                    Some(help) if meant.is_empty() => Some(help.into()),
+                    _ => suggest(entry.key, known.iter().copied()),
+                };
+                misspelt.extend(meant.into_iter().map(String::from));
                 findings.push(finding);
             }
         }
@@ -110,6 +129,7 @@ impl Node {
             what: what.to_string(),
             place: self.span.start..self.span.start,
             entries,
+            meant: misspelt,
         })
     }
 
@@ -196,10 +216,11 @@ impl Node {
             Some(number) if number >= least => Some(number),
             _ => {
                 let expected = format!("a whole number from {least} on for {what}");
-                findings.push(
-                    self.unexpected(&expected)
-                        .help("write a whole number without quotes"),
-                );
+                let help = "write a whole number without quotes";
+                findings.push(self.unexpected(&expected).help(match &self.value {
+                    Value::Scalar(scalar) if scalar.text.contains(" //") => COMMENT,
+                    _ => help,
+                }));
                 None
             }
         }
@@ -288,6 +309,34 @@ impl Node {
         }
     }
 
+    /// What to do about a list that should hold so many numbers. `[0, 20,5]` holds a decimal comma: no blank stands behind
+    /// that one, and one behind the others. `[0 1]` holds no comma.
+    #[must_use]
+    pub fn list_advice(items: &[Node], expected: usize) -> Option<String> {
+        if let [only] = items
+            && let Value::Scalar(scalar) = &only.value
+        {
+            let numbers: Vec<&str> = scalar.text.split_whitespace().collect();
+            let is_list = numbers.len() > 1 && numbers.iter().all(|n| n.parse::<f64>().is_ok());
+            return is_list
+                .then(|| format!("separate the numbers by commas: `[{}]`", numbers.join(", ")));
+        }
+        let number = |node: &Node| match &node.value {
+            Value::Scalar(scalar) => scalar.as_number().map(|_| scalar.text.clone()),
+            _ => None,
+        };
+        let mut adjoining = items.windows(2).filter_map(|pair| match pair {
+            [whole, part] if part.span.start == whole.span.end + 1 => {
+                let (whole, part) = (number(whole)?, number(part)?);
+                let is_part = part.bytes().all(|c| c.is_ascii_digit());
+                is_part.then(|| format!("write a decimal point: `{whole}.{part}`"))
+            }
+            _ => None,
+        });
+        let first = adjoining.next()?;
+        (items.len() == expected + 1 + adjoining.count()).then_some(first)
+    }
+
     fn number_advice(&self) -> Option<String> {
         let Value::Scalar(scalar) = &self.value else {
             return None;
@@ -296,6 +345,9 @@ impl Node {
         let plain = |s: &str| s.parse::<f64>().ok().filter(|x| x.is_finite());
         if plain(text).is_some() {
             return Some("a number stands without quotes".into());
+        }
+        if text.contains(" //") {
+            return Some(COMMENT.into());
         }
         if let Some(percent) = text.strip_suffix('%').and_then(plain) {
             return Some(format!(

@@ -16,6 +16,7 @@ use crate::{
     tree::{Letter, Node, Offsets, Scalar, Value},
 };
 
+mod cause;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -43,7 +44,10 @@ pub fn read(text: &str) -> Result<Node, Findings> {
         let finding = finding.help("rule sets and profiles are small YAML files");
         return Err(Findings::locate(alloc::vec![finding], ""));
     }
-    build(text).map_err(|finding| Findings::locate(alloc::vec![*finding], text))
+    build(text).map_err(|finding| {
+        let finding = cause::cause(text).unwrap_or(*finding);
+        Findings::locate(alloc::vec![finding], text)
+    })
 }
 
 /// Reads a rule set in YAML.
@@ -80,7 +84,10 @@ pub fn parse(text: &str) -> Result<Document, Findings> {
             warnings: Findings::locate(document.warnings.0, text),
             ..document
         }),
-        Err(findings) => Err(Findings::locate(findings, text)),
+        Err(findings) => {
+            let findings = cause::cause(text).map_or(findings, |cause| alloc::vec![cause]);
+            Err(Findings::locate(findings, text))
+        }
     }
 }
 

@@ -1,0 +1,58 @@
+//! The gaps of a report, each once: regions without a rule, less those that follow from another finding.
+
+use alloc::vec::Vec;
+
+use super::{Report, Side, TermOf, Uncovered};
+
+/// A region without a rule, and the parts of it in which none fires at all. One cause gives one of them.
+pub(super) struct Gap<'r> {
+    pub(super) region: &'r Uncovered,
+    pub(super) silent: Vec<&'r Uncovered>,
+}
+
+/// The gaps of a report. A region that no rule could cover, because an input has no term there, is told as a hole.
+pub(super) fn gaps(report: &Report) -> Vec<Gap<'_>> {
+    let in_hole = |one: &Uncovered| {
+        one.sides.iter().any(|side| {
+            let mut holes = report.holes.iter().filter(|hole| hole.input == side.input);
+            let weak = one.missing.is_empty() && one.weak.contains(&side.input);
+            holes.any(|hole| {
+                (hole.low <= side.low && side.high <= hole.high)
+                    || (weak && hole.low <= side.high && side.low <= hole.high)
+            })
+        })
+    };
+    let within = |inner: &Uncovered, outer: &Uncovered| {
+        let contains = |outer: &Side| {
+            let mut sides = inner.sides.iter().filter(|side| side.input == outer.input);
+            sides.any(|side| outer.low <= side.low && side.high <= outer.high)
+        };
+        inner.output == outer.output && outer.sides.iter().all(contains)
+    };
+    let told = || report.uncovered.iter().filter(|one| !in_hole(one));
+    let (silent, weak): (Vec<_>, Vec<_>) = told().partition(|one| one.silent);
+    let lone = silent
+        .iter()
+        .filter(|one| !weak.iter().any(|outer| within(one, outer)));
+    let lone = lone.map(|region| Gap {
+        region,
+        silent: Vec::new(),
+    });
+    let weak = weak.iter().map(|region| Gap {
+        region,
+        silent: silent
+            .iter()
+            .copied()
+            .filter(|one| within(one, region))
+            .collect(),
+    });
+    lone.chain(weak).collect()
+}
+
+/// Whether a term stands in no rule because the rules of a gap are missing.
+pub(super) fn is_missing(one: &TermOf, gaps: &[Gap<'_>]) -> bool {
+    let mut missing = gaps.iter().flat_map(|gap| &gap.region.missing).flatten();
+    one.term
+        .as_ref()
+        .is_some_and(|term| missing.any(|m| m.input == one.variable && m.term == *term))
+}

@@ -1,0 +1,213 @@
+//! The terms of all variables of a model, and the curve of a model of one input.
+
+use super::{
+    colour::{Colour, distinct, distinct_line},
+    explanation::{Number, sticks, terms},
+    heat::curve,
+    scale::Scale,
+    sheet::{Anchor, Frame, Sheet},
+    slice::Slice,
+    text::{number, short, titled, visible},
+};
+use crate::model::{MembershipFunction, Model, Output, Term, Variable};
+
+const WIDTH: f64 = 640.0;
+/// The height of a frame, and of all that belongs to it.
+const FRAME: f64 = 110.0;
+const BLOCK: f64 = 176.0;
+
+/// The SVG of the terms of every input and output of a model. `curves` are drawn below: the outputs over the one input of a
+/// model that has no other.
+pub fn variables_svg(model: &Model, curves: &[Slice]) -> String {
+    let blocks = model.inputs.len() + model.outputs.len() + 2 * curves.len();
+    let mut sheet = Sheet::new(WIDTH, 60.0 + BLOCK * blocks as f64);
+    sheet.heading(70.0, &model.name, "");
+    let frame = |i: usize, height: f64| Frame {
+        left: 70.0,
+        top: 62.0 + BLOCK * i as f64,
+        width: 400.0,
+        height,
+    };
+    let title = |sheet: &mut Sheet, frame: &Frame, title: &str| {
+        sheet.text((70.0, frame.top - 8.0), Anchor::Start, "title", title);
+    };
+    let heading = |variable: &Variable| titled(&variable.name, variable.unit.as_deref());
+    for (i, input) in model.inputs.iter().enumerate() {
+        let frame = frame(i, FRAME);
+        title(&mut sheet, &frame, &heading(input));
+        terms(&mut sheet, &frame, input, &[], None);
+    }
+    for (i, output) in model.outputs.iter().enumerate() {
+        let frame = frame(model.inputs.len() + i, FRAME);
+        title(&mut sheet, &frame, &heading(&output.variable));
+        if output.defuzzifier.is_weighted() {
+            let numbers: Vec<Number> = numbers(output);
+            sticks(&mut sheet, &frame, &output.variable, &numbers);
+        } else {
+            terms(&mut sheet, &frame, &output.variable, &[], None);
+        }
+    }
+    let first = model.inputs.len() + model.outputs.len();
+    for (i, slice) in curves.iter().enumerate() {
+        let frame = frame(first + 2 * i, FRAME + BLOCK);
+        let name = format!("{} over {}", slice.output_title(), slice.x.title());
+        title(&mut sheet, &frame, &name);
+        curve(&mut sheet, &frame, slice);
+    }
+    sheet.finish(&format!("{}: its variables and their terms", model.name))
+}
+
+/// The terms of a Takagi-Sugeno output. A linear function has no stick, only its formula.
+fn numbers(output: &Output) -> Vec<Number> {
+    let terms = output.variable.terms.iter().enumerate();
+    let numbers = terms.filter_map(|(i, term)| {
+        let text = formula(term)?;
+        Some(match term.membership_function {
+            MembershipFunction::Constant { value: at } | MembershipFunction::Singleton { at } => {
+                (at, 1.0, distinct(i), text)
+            }
+            _ => (output.variable.low, 0.0, distinct(i), text),
+        })
+    });
+    numbers.collect()
+}
+
+/// `fast = 0.1 heat + 3`; `None` for a fuzzy set.
+fn formula(term: &Term) -> Option<String> {
+    let value = match &term.membership_function {
+        MembershipFunction::Constant { value: at } | MembershipFunction::Singleton { at } => {
+            short(*at)
+        }
+        MembershipFunction::Linear {
+            coefficients,
+            constant,
+        } => {
+            let parts = coefficients.iter();
+            let parts = parts.map(|(input, factor)| format!("{} {input} + ", short(*factor)));
+            parts.collect::<String>() + &short(*constant)
+        }
+        _ => return None,
+    };
+    Some(format!("{} = {value}", term.name))
+}
+
+/// Columns and rows of a picture as text.
+const COLUMNS: usize = 60;
+const ROWS: usize = 8;
+
+/// The terms of every input and output of a model as text, and the curves below: a character for each term.
+///
+/// `paint` gives a character its colour on a terminal, or returns the character alone: `|mark, _| mark.to_string()`.
+pub fn variables_text(
+    model: &Model,
+    curves: &[Slice],
+    paint: impl Fn(char, Option<Colour>) -> String,
+) -> String {
+    let mut text = format!("{}\n", visible(&model.name));
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    for variable in model.inputs.iter().chain(outputs) {
+        text += &format!(
+            "\n{}\n",
+            visible(&titled(&variable.name, variable.unit.as_deref()))
+        );
+        let x = Scale::new(variable.low, variable.high);
+        let sets = variable.terms.iter().filter(|term| formula(term).is_none());
+        let sets: Vec<&Term> = sets.collect();
+        if !sets.is_empty() {
+            let degree = |i: usize, column: usize| {
+                let at = x.value(column as f64 / (COLUMNS - 1) as f64);
+                Some(sets.get(i)?.membership(at)).filter(|degree| *degree > 0.0)
+            };
+            lines(&mut text, sets.len(), degree, ("1", "0"), x, &paint);
+        }
+        for (i, term) in sets.iter().enumerate() {
+            let mark = paint(mark(i), Some(distinct_line(i)));
+            text += &format!("  {mark} {}\n", visible(&term.name));
+        }
+        for formula in variable.terms.iter().filter_map(formula) {
+            text += &format!("  {}\n", visible(&formula));
+        }
+    }
+    for slice in curves {
+        let title = format!("{} over {}", slice.output_title(), slice.x.title());
+        text += &format!("\n{}\n", visible(&title));
+        let last = slice.columns().saturating_sub(1);
+        let at = |_: usize, column: usize| {
+            let value = slice.cell(column * last / (COLUMNS - 1), 0).value?;
+            Some(slice.share(value))
+        };
+        let ends = (short(slice.range.high), short(slice.range.low));
+        lines(
+            &mut text,
+            1,
+            at,
+            (&ends.0, &ends.1),
+            slice.x.scale(),
+            |_, colour| paint('•', colour),
+        );
+    }
+    text
+}
+
+/// The character of the i-th term.
+fn mark(i: usize) -> char {
+    char::from_digit((i % 35 + 1) as u32, 36).unwrap_or('+')
+}
+
+/// Lines over a scale, their values as shares of the height; the last stands on top.
+fn lines(
+    text: &mut String,
+    count: usize,
+    share: impl Fn(usize, usize) -> Option<f64>,
+    (high, low): (&str, &str),
+    x: Scale,
+    paint: impl Fn(char, Option<Colour>) -> String,
+) {
+    let width = high.len().max(low.len());
+    let row_of = |share: f64| (share * (ROWS - 1) as f64).round() as usize;
+    for row in (0..ROWS).rev() {
+        let label = match row {
+            0 => low,
+            r if r + 1 == ROWS => high,
+            _ => "",
+        };
+        let mut line = String::new();
+        for column in 0..COLUMNS {
+            let here = |i: &usize| share(*i, column).is_some_and(|share| row_of(share) == row);
+            match (0..count).rev().find(here) {
+                Some(i) => line += &paint(mark(i), Some(distinct_line(i))),
+                None => line.push(' '),
+            }
+        }
+        *text += &format!("  {label:>width$} │{}\n", line.trim_end());
+    }
+    *text += &format!("  {:>width$} └{}\n", "", "─".repeat(COLUMNS));
+    let (low, high) = (number(x.low, 4), number(x.high, 4));
+    let gap = COLUMNS.saturating_sub(low.len() + high.len());
+    *text += &format!("  {:>width$}  {low}{}{high}\n", "", " ".repeat(gap));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_term_has_its_line_and_its_name() {
+        let model: Model = "
+fuzzy: 1
+name: fan
+inputs: {heat: {range: [0, 40], unit: °C, partition: [low, high]}}
+outputs: {speed: {range: [0, 9], defuzzifier: weighted_average, terms: {slow: {constant: 2}, fast: {linear: {heat: 0.1, constant: 3}}}}}
+rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
+"
+        .parse()
+        .unwrap();
+        let text = variables_text(&model, &[], |mark, _| mark.to_string());
+        insta::assert_snapshot!(text);
+        let svg = variables_svg(&model, &[]);
+        assert!(
+            svg.contains("heat [°C]") && svg.contains("slow = 2"),
+            "{svg}"
+        );
+    }
+}

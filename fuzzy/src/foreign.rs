@@ -1,0 +1,171 @@
+//! The words of other programs for shapes, operators, defuzzifiers, keys and hedges.
+
+use alloc::{string::String, vec::Vec};
+
+/// The words of MATLAB's Fuzzy Logic Toolbox, scikit-fuzzy, fuzzylite and IEC 61131-7, in lower case without `_`, `-` and
+/// blanks, and what they are called here; of several words those that fit the place are meant.
+pub(crate) const WORDS: &[(&str, &[&str])] = &[
+    // Membership functions.
+    ("trimf", &["triangle"]),
+    ("trapmf", &["trapezoid"]),
+    ("linzmf", &["left_shoulder"]),
+    ("linsmf", &["right_shoulder"]),
+    ("ramp", &["right_shoulder", "left_shoulder"]),
+    ("gaussmf", &["gaussian"]),
+    ("gauss2mf", &["gaussian2"]),
+    ("gaussianproduct", &["gaussian2"]),
+    ("gbellmf", &["bell"]),
+    ("sigmf", &["sigmoid"]),
+    ("dsigmf", &["sigmoid_difference"]),
+    ("psigmf", &["sigmoid_product"]),
+    ("smf", &["s_shape"]),
+    ("zmf", &["z_shape"]),
+    ("pimf", &["pi_shape"]),
+    ("piecemf", &["piecewise"]),
+    ("discrete", &["piecewise"]),
+    ("points", &["piecewise"]),
+    ("binary", &["rectangle"]),
+    ("spikemf", &["spike"]),
+    // Operators.
+    ("fmin", &["minimum"]),
+    ("fmax", &["maximum"]),
+    ("zadeh", &["minimum", "maximum"]),
+    ("mamdani", &["minimum"]),
+    ("larsen", &["product"]),
+    ("prod", &["product"]),
+    ("algebraicproduct", &["product"]),
+    ("probor", &["probabilistic_sum"]),
+    ("asum", &["probabilistic_sum"]),
+    ("algebraicsum", &["probabilistic_sum"]),
+    ("bdif", &["bounded_difference"]),
+    ("bsum", &["bounded_sum"]),
+    ("lukasiewicz", &["bounded_difference", "bounded_sum"]),
+    ("unboundedsum", &["sum"]),
+    ("dmin", &["drastic"]),
+    ("dmax", &["drastic"]),
+    ("drasticproduct", &["drastic"]),
+    ("drasticsum", &["drastic"]),
+    ("eprod", &["einstein"]),
+    ("esum", &["einstein"]),
+    ("einsteinproduct", &["einstein"]),
+    ("einsteinsum", &["einstein"]),
+    ("hprod", &["hamacher"]),
+    ("hsum", &["hamacher"]),
+    ("hamacherproduct", &["hamacher"]),
+    ("hamachersum", &["hamacher"]),
+    ("nmin", &["nilpotent_minimum"]),
+    ("nmax", &["nilpotent_maximum"]),
+    // Defuzzifiers.
+    ("cog", &["centroid"]),
+    ("centerofgravity", &["centroid"]),
+    ("centreofgravity", &["centroid"]),
+    ("coa", &["centroid", "bisector"]),
+    ("centerofarea", &["bisector"]),
+    ("centreofarea", &["bisector"]),
+    ("cogs", &["weighted_average"]),
+    ("wtaver", &["weighted_average"]),
+    ("wtsum", &["weighted_sum"]),
+    ("mom", &["mean_of_maxima"]),
+    ("mm", &["mean_of_maxima"]),
+    ("som", &["smallest_of_maxima"]),
+    ("lm", &["smallest_of_maxima"]),
+    ("lom", &["largest_of_maxima"]),
+    ("rm", &["largest_of_maxima"]),
+    // Keys.
+    ("mfs", &["terms"]),
+    ("membershipfunctions", &["terms"]),
+    ("universe", &["range"]),
+    ("default", &["when_no_rule_fires"]),
+    ("defaultvalue", &["when_no_rule_fires"]),
+    ("method", &["defuzzifier"]),
+    ("defuzzmethod", &["defuzzifier"]),
+    ("andmethod", &["and"]),
+    ("conjunction", &["and"]),
+    ("tnorm", &["and"]),
+    ("ormethod", &["or"]),
+    ("disjunction", &["or"]),
+    ("snorm", &["or"]),
+    ("impmethod", &["implication"]),
+    ("activation", &["implication"]),
+    ("act", &["implication"]),
+    ("aggmethod", &["aggregation"]),
+    ("accumulation", &["aggregation"]),
+    ("accu", &["aggregation"]),
+    // Hedges.
+    ("slightly", &["somewhat"]),
+    ("fairly", &["somewhat"]),
+    ("rather", &["somewhat"]),
+    ("quite", &["somewhat"]),
+    ("highly", &["very"]),
+    ("intensify", &["extremely"]),
+];
+
+/// Keys whose matter has another place in a rule set, and what to write there.
+const ELSEWHERE: &[(&str, &str)] = &[
+    (
+        "weight",
+        "a weight stands at the end of its rule: `IF ... THEN ... WITH 0.8`",
+    ),
+    (
+        "type",
+        "a rule set has no type: with the defuzzifier `weighted_average` or `weighted_sum` an output is of Takagi and Sugeno's \
+         kind, with any other of Mamdani's",
+    ),
+    (
+        "defuzzmethod",
+        "each output has its own: `defuzzifier: centroid`",
+    ),
+    (
+        "defuzzifier",
+        "each output has its own: `defuzzifier: centroid`",
+    ),
+    ("andmethod", "write `operators: {and: minimum}`"),
+    ("ormethod", "write `operators: {or: maximum}`"),
+];
+
+fn folded(word: &str) -> String {
+    word.chars()
+        .filter(|c| !matches!(c, '_' | '-' | ' '))
+        .flat_map(char::to_lowercase)
+        .collect()
+}
+
+/// The candidates that another program's word stands for.
+pub(crate) fn meant<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+    let word = folded(word);
+    let known = WORDS.iter().find(|(other, _)| *other == word);
+    let meanings = known.map_or(&[][..], |(_, meanings)| meanings);
+    let is_meant = |candidate: &&str| meanings.contains(candidate) || folded(candidate) == word;
+    candidates.into_iter().filter(is_meant).collect()
+}
+
+/// What to do about a key whose matter stands elsewhere.
+pub(crate) fn elsewhere(key: &str) -> Option<&'static str> {
+    let key = folded(key);
+    let found = ELSEWHERE.iter().find(|(other, _)| *other == key);
+    found.map(|(_, help)| *help)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_word_is_folded_and_stands_once() {
+        for (i, (word, meanings)) in WORDS.iter().enumerate() {
+            assert_eq!(folded(word), *word);
+            assert!(!meanings.is_empty(), "{word}");
+            assert!(WORDS[..i].iter().all(|(other, _)| other != word), "{word}");
+        }
+    }
+
+    #[test]
+    fn a_word_means_what_fits_the_place() {
+        let or = ["maximum", "bounded_sum"];
+        let and = ["minimum", "bounded_difference"];
+        assert_eq!(meant("Lukasiewicz", or), ["bounded_sum"]);
+        assert_eq!(meant("Lukasiewicz", and), ["bounded_difference"]);
+        assert_eq!(meant("BoundedSum", or), ["bounded_sum"]);
+        assert!(meant("trimf", or).is_empty());
+    }
+}

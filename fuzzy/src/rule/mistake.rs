@@ -1,0 +1,372 @@
+//! The first mistake of a rule, in words, with what to write instead.
+
+use alloc::{format, string::String, vec::Vec};
+
+use nom::error::{ErrorKind, ParseError};
+
+use super::{
+    Hedge, Rule, is_plain_name,
+    parse::{DEEPEST_NESTING, is_name_letter, keyword, quoted, word},
+};
+use crate::diagnostic::{Diagnostic, either, is_curly_quote, meant, nearest, suggest};
+
+/// What is wrong, and the text that was left when it was met.
+pub(super) struct Mistake<'a> {
+    pub(super) rest: &'a str,
+    pub(super) kind: Wrong<'a>,
+}
+
+pub(super) enum Wrong<'a> {
+    /// One of these words should have stood here: `after` says after what.
+    Keyword(&'static [&'static str], &'static str),
+    /// `AND`, `OR` or `THEN` should have stood here.
+    Joint,
+    /// No IS behind the name of an input or an output; the text from that name on.
+    NoIs(&'static str, &'a str),
+    /// A name of this kind should have stood here.
+    Name(&'static str),
+    /// A hedge before the input.
+    HedgeBeforeInput,
+    /// A hedge behind THEN.
+    HedgeInConsequent,
+    /// A term, and a second word behind it.
+    TwoWords(&'a str),
+    /// A quote without its partner.
+    OpenQuote,
+    /// A bracket without its partner.
+    OpenBracket,
+    /// Something between quotes that is not there.
+    EmptyName,
+    /// No number behind WITH.
+    Number,
+    /// A weight outside [0, 1].
+    Weight(f64),
+    /// Nested deeper than [`DEEPEST_NESTING`].
+    TooDeep,
+}
+
+impl<'a> ParseError<&'a str> for Mistake<'a> {
+    // nom's own parsers are only tried, never required: what they would say is always replaced.
+    fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
+        Mistake {
+            rest,
+            kind: Wrong::Name("a word"),
+        }
+    }
+
+    fn append(_: &'a str, _: ErrorKind, other: Self) -> Self {
+        other
+    }
+}
+
+const JOINTS: [&str; 3] = ["AND", "OR", "THEN"];
+
+impl Mistake<'_> {
+    /// The mistake in words.
+    pub(super) fn explain(self, text: &str) -> Diagnostic {
+        let rest = self.rest.trim_start();
+        let start = text.len() - rest.len();
+        let found = found_here(rest);
+        let span = start..start + found.len();
+        let shown = match found {
+            "" => String::from("the end of the rule"),
+            found => format!("`{found}`"),
+        };
+        let syntax = |message: String| Diagnostic::error("rule-syntax", span.clone(), message);
+        let expected = |what: &str, after: &str| {
+            syntax(format!("expected {what} after {after}, found {shown}"))
+        };
+        match self.kind {
+            Wrong::Keyword(words, after) => {
+                let diagnostic = match words {
+                    [] => syntax(format!("the rule ends {after}, but here stands {shown}")),
+                    _ => syntax(format!("expected {} {after}, found {shown}", either(words))),
+                };
+                let help = match nearest(found, words.iter().copied()) {
+                    Some(word) => Some(format!("did you mean `{word}`?")),
+                    None if words.contains(&"IF") => Some(at_start(rest)),
+                    None if words.contains(&")") => sign(rest).or_else(|| joint(rest)),
+                    None => sign(rest).or_else(|| behind_conclusion(rest, words.is_empty())),
+                };
+                with_help(diagnostic, help)
+            }
+            Wrong::Joint => {
+                let help = match nearest(found, JOINTS) {
+                    Some(word) => Some(format!("did you mean `{word}`?")),
+                    None => sign(rest).or_else(|| joint(rest)),
+                };
+                with_help(expected(&either(&JOINTS), "the condition"), help)
+            }
+            Wrong::NoIs(kind, from) => {
+                let from = from.trim_start();
+                let name = found_here(from);
+                let help = is_missing(kind, name, rest, text.len() - from.len(), text);
+                with_help(expected("`IS`", &format!("the {kind}")), help)
+            }
+            Wrong::Name(what) => {
+                let help = name_is_missing(what, found).or_else(|| sign(rest));
+                with_help(syntax(format!("expected {what}, found {shown}")), help)
+            }
+            Wrong::HedgeBeforeInput => {
+                let diagnostic = syntax(format!("the hedge {shown} stands before the input"));
+                diagnostic.help(format!(
+                    "a hedge stands between `IS` and the term: `input IS {found} term`"
+                ))
+            }
+            Wrong::HedgeInConsequent => syntax(format!("`{found}` cannot stand after `THEN`"))
+                .help("hedges and `NOT` belong in the condition; here name one term of the output"),
+            Wrong::TwoWords(second) => two_words(span, found, second),
+            Wrong::OpenQuote => syntax(String::from("the quoted name is never closed"))
+                .help("add the closing quote"),
+            Wrong::OpenBracket => Diagnostic::error(
+                "rule-syntax",
+                start..start + 1,
+                "the bracket `(` is never closed",
+            )
+            .help("add `)` at the end of what belongs together"),
+            Wrong::EmptyName => {
+                Diagnostic::error("rule-syntax", start..start + 2, "the name is empty")
+                    .help("write the name of a variable or a term between the quotes")
+            }
+            Wrong::Number => syntax(format!("expected a weight after `WITH`, found {shown}"))
+                .help("a weight is a number from 0 to 1: `WITH 0.8`"),
+            Wrong::Weight(weight) => Diagnostic::error(
+                "weight-outside-range",
+                span,
+                format!("the weight `{weight}` is outside [0, 1]"),
+            )
+            .help(
+                "a weight multiplies the firing strength of its rule; write a number from 0 to 1",
+            ),
+            Wrong::TooDeep => Diagnostic::error(
+                "rule-too-deep",
+                span,
+                format!("brackets and NOTs are nested deeper than {DEEPEST_NESTING}"),
+            )
+            .help("split the rule into several rules of the same conclusion"),
+        }
+    }
+}
+
+/// `vrey hot`: the first word is a misspelt hedge, or both are one name.
+fn two_words(span: core::ops::Range<usize>, first: &str, second: &str) -> Diagnostic {
+    if second.parse::<f64>().is_ok() {
+        let message = format!("expected a term after `IS`, found `{first} {second}`");
+        return Diagnostic::error("rule-syntax", span, message)
+            .help("a condition names a term of the input; give the input a term for these values");
+    }
+    let hedges: Vec<&str> = Hedge::ALL.iter().map(|hedge| hedge.word()).collect();
+    let message = format!("there is no hedge `{first}`");
+    let mut help = suggest(first, hedges.iter().copied()).unwrap_or_default();
+    if meant(first, &hedges).is_empty() {
+        help += &format!("; a name of two words stands in quotes: `\"{first} {second}\"`");
+    }
+    Diagnostic::error("rule-syntax", span, message).help(help)
+}
+
+/// What to write where no IS stands behind the name of an input or an output; `start` is the place of the name.
+fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> Option<String> {
+    let found = found_here(rest);
+    if found.is_empty()
+        || JOINTS
+            .iter()
+            .chain(&["WITH", ")"])
+            .any(|w| w.eq_ignore_ascii_case(found))
+    {
+        // `x IS low OR high`: the name is a term, and what it is a term of stands before it.
+        let before = text.get(..start).unwrap_or("");
+        let mut words = before.split_whitespace().rev();
+        let joint = words.next().unwrap_or("");
+        let owner = words.clone().zip(words.clone().skip(1));
+        let owner = owner
+            .take_while(|(word, _)| !word.eq_ignore_ascii_case("THEN"))
+            .find(|(word, _)| word.eq_ignore_ascii_case("IS"))
+            .map(|(_, owner)| owner.trim_start_matches('('));
+        return Some(match owner {
+            Some(_) if kind == "output" => {
+                String::from("each conclusion names its output and one term: `output IS term`")
+            }
+            Some(owner) => {
+                format!(
+                    "name the input again: `{} {owner} IS {name}`",
+                    joint.to_uppercase()
+                )
+            }
+            None => format!("write `{name} IS` and a term"),
+        });
+    }
+    if found.starts_with(['<', '>', '≤', '≥']) {
+        return Some(format!(
+            "a condition names a term, not a number: give `{name}` a term for these values and write `{name} IS term`"
+        ));
+    }
+    if found.starts_with('[') {
+        return Some(format!("write `{name} IS term`"));
+    }
+    if found.starts_with('=')
+        && let Some(value) = rest.trim_start_matches('=').split_whitespace().next()
+        && value.parse::<f64>().is_ok()
+    {
+        return Some(format!(
+            "write `IS` and a term; for the number {value} give the {kind} a term, such as `{{constant: {value}}}`"
+        ));
+    }
+    let behind = rest.get(found.len()..).unwrap_or("");
+    if is_plain_name(found) && keyword(behind, "IS").is_none() {
+        return Some(match nearest(found, ["IS"]) {
+            Some(word) => format!("did you mean `{word}`?"),
+            None => format!("write `{name} IS {found}`"),
+        });
+    }
+    if is_plain_name(found) {
+        return Some(format!(
+            "a name of several words stands in quotes: `\"{name} {found}\"`"
+        ));
+    }
+    sign(rest)
+}
+
+/// What to write where a name should stand and a word of the rule language or the end does.
+fn name_is_missing(what: &str, found: &str) -> Option<String> {
+    let is = |word: &str| found.eq_ignore_ascii_case(word);
+    let input = what.contains("input");
+    if input && is("IF") {
+        return Some("write `IF` once".into());
+    }
+    if input && (is("THEN") || is("AND") || is("OR")) {
+        return Some(
+            "add a condition before it, `input IS term`, or remove the word before it".into(),
+        );
+    }
+    if found.is_empty() {
+        return Some(match what {
+            "the name of an output" => "add a conclusion: `THEN output IS term`".into(),
+            _ if input => "add a condition: `input IS term`".into(),
+            _ => "add a term".into(),
+        });
+    }
+    Rule::is_keyword(found).then(|| {
+        format!(
+            "`{found}` is a word of the rule language; as a name it stands in quotes: `\"{found}\"`"
+        )
+    })
+}
+
+/// What to write where a rule does not begin with IF.
+fn at_start(rest: &str) -> String {
+    let numbered = rest
+        .split_whitespace()
+        .take(4)
+        .any(|word| word.eq_ignore_ascii_case("IF"));
+    if numbered {
+        "begin with `IF`; rules have no names or numbers".into()
+    } else {
+        "a rule reads `IF input IS term THEN output IS term`".into()
+    }
+}
+
+/// What to write where a condition is not followed by AND, OR or THEN.
+fn joint(rest: &str) -> Option<String> {
+    let found = found_here(rest);
+    match found {
+        "," => return Some("write `AND` or `THEN`".into()),
+        ";" => return Some("remove it".into()),
+        ")" => return Some("no `(` stands before it; remove it, or add one".into()),
+        "" => return Some("add a conclusion: `THEN output IS term`".into()),
+        _ => {}
+    }
+    if Hedge::ALL
+        .iter()
+        .any(|hedge| hedge.word().eq_ignore_ascii_case(found))
+    {
+        return Some("a hedge stands before the term: `input IS very low`".into());
+    }
+    let (behind, _) = word(rest).ok()?;
+    if !is_plain_name(found) || keyword(behind, "IS").is_none() {
+        return None;
+    }
+    let has_then = rest
+        .split_whitespace()
+        .any(|word| word.eq_ignore_ascii_case("THEN"));
+    let joint = if has_then { "AND" } else { "THEN" };
+    Some(format!("write `{joint}` before `{found}`"))
+}
+
+/// What to write behind a conclusion, or behind its weight.
+fn behind_conclusion(rest: &str, weighted: bool) -> Option<String> {
+    let found = found_here(rest);
+    let is = |word: &str| found.eq_ignore_ascii_case(word);
+    if is("else") {
+        return Some("there is no `ELSE`: write a second rule with `NOT`".into());
+    }
+    if is("or") {
+        return Some("conclusions are joined by `AND`; for `OR` write two rules".into());
+    }
+    if let Some(number) = rest.strip_prefix(',')
+        && number.starts_with(|c: char| c.is_ascii_digit())
+    {
+        return Some("write a decimal point: `WITH 0.8`".into());
+    }
+    match found {
+        "," => Some("join conclusions by `AND`".into()),
+        ";" => Some("remove it; each rule is an item of the list `rules`".into()),
+        "(" | "%" | "[" => Some("a weight stands behind `WITH`: `WITH 0.8`".into()),
+        _ if weighted => Some("a weight ends its rule; remove what follows".into()),
+        _ if is_plain_name(found) => {
+            Some("a name of several words stands in quotes: `\"very low\"`".into())
+        }
+        _ => None,
+    }
+}
+
+/// What the signs of other languages are called here.
+fn sign(rest: &str) -> Option<String> {
+    let found = found_here(rest);
+    let text = match found {
+        "&" | "&&" => "write `AND`",
+        "|" | "||" => "write `OR`",
+        "!" | "~" => "write `NOT`",
+        "=" | "==" | ":" => "write `IS`",
+        "!=" | "<>" => "write `IS NOT`",
+        "=>" | "->" => "write `THEN`",
+        _ if found.starts_with("//") => "a comment begins with `#`",
+        _ if found.starts_with(is_curly_quote) => "write straight quotes: `\"`",
+        _ if found.starts_with('`') => "a name stands bare or in quotes: `\"`",
+        _ => return None,
+    };
+    Some(text.into())
+}
+
+/// What an author would call the thing that stands here: a word, a quoted name, a sign.
+fn found_here(rest: &str) -> &str {
+    const LONGEST: usize = 40;
+    let end = |in_it: fn(char) -> bool| {
+        let at = rest
+            .char_indices()
+            .take(LONGEST)
+            .find(|&(_, c)| !in_it(c))
+            .map(|(at, _)| at);
+        let most = rest
+            .char_indices()
+            .nth(LONGEST)
+            .map_or(rest.len(), |(at, _)| at);
+        at.unwrap_or(most)
+    };
+    let Some(first) = rest.chars().next() else {
+        return "";
+    };
+    let length = match first {
+        '"' | '\'' => match quoted(rest, first) {
+            Ok((after, _)) => rest.len() - after.len(),
+            Err(_) => end(|c| c != '\n'),
+        },
+        '(' | ')' => 1,
+        _ if is_name_letter(first) || first == '+' => end(|c| is_name_letter(c) || c == '+'),
+        _ => end(|c| !is_name_letter(c) && !c.is_whitespace() && !matches!(c, '"' | '\'')),
+    };
+    rest.get(..length).unwrap_or(rest)
+}
+
+fn with_help(diagnostic: Diagnostic, help: Option<String>) -> Diagnostic {
+    Diagnostic { help, ..diagnostic }
+}

@@ -1,0 +1,70 @@
+//! Why a text is not YAML at all: another program's format, a Markdown fence around it, comments of another language.
+
+use alloc::{format, string::String, vec::Vec};
+
+use crate::diagnostic::Diagnostic;
+
+/// The one cause why a text is not read: it is another format, or it has signs around it or in it that YAML lacks. To be asked
+/// only about a text that is not read.
+pub(super) fn cause(text: &str) -> Option<Diagnostic> {
+    let mut at = 0;
+    let lines: Vec<(usize, &str)> = text
+        .split_inclusive('\n')
+        .map(|line| {
+            let indent = line.len() - line.trim_start_matches(['\u{feff}', ' ', '\t']).len();
+            let start = at + indent;
+            at += line.len();
+            (start, line.trim_matches('\u{feff}').trim())
+        })
+        .collect();
+    let foreign = |(start, line): (usize, &str), message: String, help: &str| {
+        Some(Diagnostic::error("foreign-format", start..start + line.len(), message).help(help))
+    };
+    let comment = |line: &str| {
+        line.is_empty()
+            || ["#", "%", "//", "(*"]
+                .iter()
+                .any(|sign| line.starts_with(sign))
+    };
+    let &first = lines.iter().find(|(_, line)| !comment(line))?;
+    if first.1.starts_with("```") {
+        let message = String::from("a Markdown fence stands around the rule set");
+        let help = "remove the lines that begin with three backticks";
+        return foreign(first, message, help);
+    }
+    if let Some(program) = program(first.1) {
+        let message = format!("this is {program}, not a rule set in YAML");
+        let help = "write inputs, outputs and rules as YAML; a rule set begins with `fuzzy: 1`";
+        return foreign(first, message, help);
+    }
+    let slashes = lines.iter().find(|(_, line)| line.starts_with("//"))?;
+    let span = slashes.0..slashes.0 + 2;
+    Some(
+        Diagnostic::error("yaml-syntax", span, "`//` does not begin a comment")
+            .help("a comment begins with `#`"),
+    )
+}
+
+/// The format of a text that begins with this line.
+fn program(first: &str) -> Option<&'static str> {
+    let folded = first.to_lowercase();
+    let begins = |starts: &[&str]| starts.iter().any(|start| folded.starts_with(start));
+    if begins(&["[system]", "[input1]"]) {
+        Some("a FIS file of MATLAB")
+    } else if begins(&["function_block"]) {
+        Some("a text in the Fuzzy Control Language (FCL)")
+    } else if begins(&["engine:", "inputvariable:"]) {
+        Some("a text in the FuzzyLite Language (FLL)")
+    } else if begins(&["<"]) {
+        Some("XML")
+    } else if begins(&["import ", "from "]) {
+        Some("Python")
+    } else if ["mamfis", "sugfis", "newfis", "readfis"]
+        .iter()
+        .any(|call| folded.contains(call))
+    {
+        Some("a script of MATLAB")
+    } else {
+        None
+    }
+}
