@@ -72,7 +72,7 @@ fn compile(
 pub(crate) fn examine(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
     let known = flightlog::known_signals();
     let signals: Vec<(&str, &str)> = known.iter().map(|s| (s.name, s.unit)).collect();
-    flagred::profile::check(profile_text, model, &signals)
+    flagred::check::profile(profile_text, model, &signals)
 }
 
 /// The rule set that a profile names, and its text.

@@ -36,6 +36,8 @@ mod cause;
 #[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.
 pub mod channel;
 #[cfg(feature = "std")]
+pub mod check;
+#[cfg(feature = "std")]
 mod craft;
 mod effort;
 #[cfg(feature = "std")]

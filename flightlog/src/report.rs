@@ -83,11 +83,20 @@ const MOST_NUMBERS: u64 = 1 << 26;
 const MOST_CHANGES: u64 = 10_000;
 
 /// What is kept so far, where rows and changes share a bound.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Room {
     numbers: u64,
     changes: u64,
 }
+
+/// What is kept depends on the options; a report is the same whatever is kept.
+impl PartialEq for Room {
+    fn eq(&self, _: &Room) -> bool {
+        true
+    }
+}
+
+impl Eq for Room {}
 
 impl Report {
     /// Whether nothing was skipped, rejected or cut off. What was left out is no damage: see [`Report::left_out`].

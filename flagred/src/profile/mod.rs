@@ -7,11 +7,9 @@ use crate::{
     verdict::VerdictSettings,
 };
 
-mod check;
 mod read;
 
 pub use crate::sample::Sampling;
-pub use check::check;
 
 /// The JSON Schema of the format, for editors that complete and check while one types.
 pub const SCHEMA: &str = include_str!("../../rules/profile-schema.json");

@@ -209,7 +209,7 @@ pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
         "flagred: 1\nname: every-signal\nrules: every-signal.yaml\ntake_off_s: 4\ninputs:\n{sources}\
          verdict:\n  warn: {{risk: 45, after_s: 0.2}}\n  fail: {{risk: 60, after_s: 0.2}}\n  idle_below: 0.05\n  \
          noise: {{above: 0.001, after_s: 0}}\n  reserve: {{below: 0.6, after_s: 0.5}}\n  \
-         imbalance: {{above: 0.01, after_s: 0.1}}\n"
+         imbalance: {{above: 0.002, after_s: 0.1}}\n"
     );
     let model = fuzzy::yaml::parse(&rules).unwrap().model;
     let estimator = Estimator::new(&profile.parse().unwrap(), &model).unwrap();

@@ -34,24 +34,24 @@ fn rules(text: &str) -> Model {
 
 /// What is found after a part of the profile, or of the rule set, is replaced: the text it is about, and the finding.
 fn found(replaced: &str, by: &str) -> Vec<String> {
-    let (profile, model) = (PROFILE.replace(replaced, by), RULES.replace(replaced, by));
-    assert_ne!((PROFILE, RULES), (profile.as_str(), model.as_str()));
-    let (findings, estimator) = check(&profile, &rules(&model), &SIGNALS);
+    let (text, model) = (PROFILE.replace(replaced, by), RULES.replace(replaced, by));
+    assert_ne!((PROFILE, RULES), (text.as_str(), model.as_str()));
+    let (findings, estimator) = profile(&text, &rules(&model), &SIGNALS);
     let is_error = |one: &Diagnostic| one.severity == Severity::Error;
     assert_eq!(estimator.is_none(), findings.0.iter().any(is_error));
-    let shown = |one: &Diagnostic| format!("{}: {one}", &profile[one.span.clone()]);
+    let shown = |one: &Diagnostic| format!("{}: {one}", &text[one.span.clone()]);
     findings.0.iter().map(shown).collect()
 }
 
 #[test]
 fn a_profile_that_fits_its_rule_set_has_no_finding() {
-    let (findings, estimator) = check(PROFILE, &rules(RULES), &SIGNALS);
+    let (findings, estimator) = profile(PROFILE, &rules(RULES), &SIGNALS);
     assert_eq!(findings.0, []);
     assert!(estimator.is_some());
-    for (profile, rules) in crate::shipped::PROFILES.iter().zip([0, 1]) {
+    for (shipped, rules) in crate::shipped::PROFILES.iter().zip([0, 1]) {
         let model = self::rules(crate::shipped::RULE_SETS[rules].text);
-        let (findings, estimator) = check(profile.text, &model, &SIGNALS);
-        assert_eq!(findings.0, [], "{}", profile.name);
+        let (findings, estimator) = profile(shipped.text, &model, &SIGNALS);
+        assert_eq!(findings.0, [], "{}", shipped.name);
         assert!(estimator.is_some());
     }
 }
@@ -103,7 +103,7 @@ fn what_does_not_fit_is_told_at_its_place() {
 
 #[test]
 fn a_mistake_in_the_profile_is_told_first() {
-    let (findings, estimator) = check("flagred: 1\nname: x", &rules(RULES), &SIGNALS);
+    let (findings, estimator) = profile("flagred: 1\nname: x", &rules(RULES), &SIGNALS);
     assert!(estimator.is_none());
     assert!(findings.0.iter().all(|one| one.code == "missing-key"));
 }

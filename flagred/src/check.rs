@@ -15,9 +15,9 @@ use fuzzy::{
     yaml,
 };
 
-use super::{Profile, ProfileInput};
 use crate::{
     estimator::{Estimator, EstimatorError},
+    profile::{Profile, ProfileInput},
     source::{Motors, Signal, Source, Statistic},
     verdict::{LevelSettings, Threshold},
 };
@@ -34,15 +34,19 @@ const LEAST_SHARE: f64 = 0.02;
 ///
 /// # Example: a threshold above what the rules can say
 /// ```
-/// use flagred::{profile, shipped};
+/// use flagred::{check, shipped};
 ///
 /// let rules = shipped::flagred_paper_rules();
-/// let text = shipped::PROFILES[1].text.replace("inputs:", "verdict: {fail: {risk: 99}}\ninputs:");
-/// let (findings, estimator) = profile::check(&text, &rules, &[]);
+/// let text = shipped::PROFILES[1].text.replace("fail: {risk: 85", "fail: {risk: 99");
+/// let (findings, estimator) = check::profile(&text, &rules, &[]);
 /// assert_eq!(findings.0[0].code, "out-of-reach");
 /// assert!(estimator.is_some());
 /// ```
-pub fn check(text: &str, model: &Model, signals: &[(&str, &str)]) -> (Findings, Option<Estimator>) {
+pub fn profile(
+    text: &str,
+    model: &Model,
+    signals: &[(&str, &str)],
+) -> (Findings, Option<Estimator>) {
     let (tree, profile) = match yaml::read(text).and_then(|tree| Ok((tree, text.parse()?))) {
         Ok(read) => read,
         Err(findings) => return (findings, None),
@@ -223,7 +227,7 @@ fn reached(
             let message = format!("`{name}` at risk {limit} {what}: the rules give {bound}");
             let help = match above {
                 true => {
-                    "lower it in `verdict`, or let the last term of the output reach beyond the range: the centroid of a term lies inside it"
+                    "lower it in `verdict`, or make the last term of the output narrower: the centroid of a term lies inside it"
                 }
                 false => "raise it in `verdict` above what the rules give at rest",
             };
