@@ -66,6 +66,7 @@ pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
         alone = alone.rule(Rule::new(condition, output, term.name.as_str()));
     }
     let mut only = found.clone();
+    only.variable.terms = terms.iter().map(|term| (*term).clone()).collect();
     only.when_no_rule_fires = NoRuleFires::Undefined;
     let engine = Engine::new(&alone.input(selector).output(only).build()).ok()?;
     let mut found_values = alloc::vec::Vec::new();
