@@ -17,15 +17,26 @@ enum Meaning {
     Term(usize, usize),
 }
 
-/// The variables, inputs first, each with the place of its name and the places of its terms' names.
-fn variables(rules: &Partial) -> Vec<(&Variable, Range<usize>, Vec<Range<usize>>)> {
+/// A variable and where it is defined.
+struct Defined<'r> {
+    variable: &'r Variable,
+    name: Range<usize>,
+    terms: Vec<Range<usize>>,
+}
+
+/// The variables, inputs first.
+fn variables(rules: &Partial) -> Vec<Defined<'_>> {
     let inputs = rules.model.inputs.iter().zip(&rules.spans.inputs);
     let outputs = rules.model.outputs.iter().map(|output| &output.variable);
     inputs
         .chain(outputs.zip(&rules.spans.outputs))
         .map(|(variable, spans)| {
             let terms = spans.terms.iter().map(|term| term.name.clone());
-            (variable, spans.name.clone(), terms.collect())
+            Defined {
+                variable,
+                name: spans.name.clone(),
+                terms: terms.collect(),
+            }
         })
         .collect()
 }
@@ -34,22 +45,20 @@ fn variables(rules: &Partial) -> Vec<(&Variable, Range<usize>, Vec<Range<usize>>
 fn all(rules: &Partial) -> Vec<(Range<usize>, Meaning)> {
     let variables = variables(rules);
     let mut found = Vec::new();
-    for (v, (_, name, terms)) in variables.iter().enumerate() {
-        found.push((name.clone(), Meaning::Variable(v)));
-        let terms = terms.iter().cloned().enumerate();
+    for (v, defined) in variables.iter().enumerate() {
+        found.push((defined.name.clone(), Meaning::Variable(v)));
+        let terms = defined.terms.iter().cloned().enumerate();
         found.extend(terms.map(|(t, span)| (span, Meaning::Term(v, t))));
     }
     let mut used = |variable: &Name, term: Option<&Name>| {
-        let named = variables.iter().enumerate();
-        let Some((v, (known, ..))) = named
-            .into_iter()
-            .find(|(_, (known, ..))| known.name == variable.text)
-        else {
+        let mut named = variables.iter().enumerate();
+        let Some((v, known)) = named.find(|(_, known)| known.variable.name == variable.text) else {
             return;
         };
         found.push((variable.span.clone(), Meaning::Variable(v)));
+        let mut terms = known.variable.terms.iter();
         if let Some(term) = term
-            && let Some(t) = known.terms.iter().position(|known| known.name == term.text)
+            && let Some(t) = terms.position(|known| known.name == term.text)
         {
             found.push((term.span.clone(), Meaning::Term(v, t)));
         }
@@ -82,9 +91,9 @@ pub(super) fn describe(document: &Document, offset: usize) -> Option<(Range<usiz
     let (rules, span, meaning) = at(document, offset)?;
     let variables = variables(rules);
     let text = match meaning {
-        Meaning::Variable(v) => variable(variables.get(v)?.0),
+        Meaning::Variable(v) => variable(variables.get(v)?.variable),
         Meaning::Term(v, t) => {
-            let of = variables.get(v)?.0;
+            let of = variables.get(v)?.variable;
             term(of.terms.get(t)?, of)
         }
     };
@@ -121,8 +130,8 @@ pub(super) fn definition(document: &Document, offset: usize) -> Option<Range<usi
     let (rules, _, meaning) = at(document, offset)?;
     let variables = variables(rules);
     match meaning {
-        Meaning::Variable(v) => variables.get(v).map(|(_, name, _)| name.clone()),
-        Meaning::Term(v, t) => variables.get(v)?.2.get(t).cloned(),
+        Meaning::Variable(v) => variables.get(v).map(|defined| defined.name.clone()),
+        Meaning::Term(v, t) => variables.get(v)?.terms.get(t).cloned(),
     }
 }
 
@@ -145,10 +154,10 @@ pub(super) fn rename(
     }
     let variables = variables(rules);
     let taken = match meaning {
-        Meaning::Variable(_) => variables.iter().any(|(known, ..)| known.name == new),
+        Meaning::Variable(_) => variables.iter().any(|known| known.variable.name == new),
         Meaning::Term(v, _) => variables
             .get(v)
-            .is_some_and(|(known, ..)| known.terms.iter().any(|term| term.name == new)),
+            .is_some_and(|known| known.variable.terms.iter().any(|term| term.name == new)),
     };
     if taken {
         return Err(format!("there is a `{new}` already"));
