@@ -92,13 +92,31 @@ fn is_read_back(flight: &Flight) {
         );
     }
     let twice = converted(&again).unwrap();
-    let twice = String::from_utf8_lossy(&twice);
+    assert_same_lines(&written, &twice, true);
+    let again = flightlog::read(&twice[..], &Options::default()).unwrap();
+    assert_same_lines(&twice, &converted(&again).unwrap(), false);
+}
+
+/// Two tables are the same, but for the times in the air where `flicker` tells that one may have lost a landing that is
+/// about a second long: its ends have moved to those of rows.
+fn assert_same_lines(one: &[u8], other: &[u8], flicker: bool) {
+    let text = |bytes| std::str::from_utf8(bytes).unwrap();
     // A motor of a CSV is from its column.
-    let lines = |text| str::lines(text).filter(|line| !line.starts_with("# motor"));
-    for (line, same) in lines(&text).zip(lines(&twice)) {
-        assert_eq!(same, line);
+    let lines = |bytes| str::lines(text(bytes)).filter(|line| !line.starts_with("# motor"));
+    let head = lines(one)
+        .find(|line| line.starts_with("t_s,"))
+        .unwrap_or("");
+    let column = head.split(',').position(|name| name == "in_air");
+    let column = column.filter(|_| flicker);
+    let without = |line: &str| -> Vec<String> {
+        let cells = line.split(',').enumerate();
+        let cells = cells.filter(|(i, _)| Some(*i) != column);
+        cells.map(|(_, cell)| cell.to_owned()).collect()
+    };
+    for (line, same) in lines(one).zip(lines(other)) {
+        assert_eq!(without(same), without(line));
     }
-    assert_eq!(lines(&twice).count(), lines(&text).count());
+    assert_eq!(lines(other).count(), lines(one).count());
 }
 
 /// What is said of any flight: words that act on no terminal, documents that are JSON, pages that are markup.
