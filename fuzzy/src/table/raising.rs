@@ -46,13 +46,14 @@ where
     let strengths = strengths.get_mut(first as usize..of.end_strength as usize)?;
     strengths.fill(0.0);
     let alone = |strength: u32| {
-        let strength = (strength - first) as usize;
-        strengths[strength] = 1.0;
+        // In a damaged table it may be one of another output.
+        let index = strength.checked_sub(first)? as usize;
+        *strengths.get_mut(index)? = 1.0;
         let value = match of.form {
             ClosedForm::NONE => integrate(output, strengths),
             _ => closed(table, of, strengths, values),
         };
-        strengths[strength] = 0.0;
+        *strengths.get_mut(index)? = 0.0;
         value
     };
     let mut raising = Raising {
