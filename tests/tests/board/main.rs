@@ -7,7 +7,10 @@ mod lua;
 use std::{collections::BTreeSet, path::Path, process::Command};
 
 use flagred::{
-    board::{self, Factors, OwnedMemory, Plan},
+    board::{
+        self, Factors, OwnedMemory, Plan,
+        table::{Partial, Scratch, Strongest, Table},
+    },
     estimator::Estimator,
     monitor::{Craft, Monitor},
 };
@@ -170,6 +173,37 @@ fn a_plan_and_an_exported_plan_say_what_the_monitor_says_of_every_flight() {
             }
         }
     }
+}
+
+/// An action on a strength before those of its output raises nothing, and is no panic.
+#[test]
+fn an_action_on_a_strength_of_no_output_raises_nothing() {
+    let estimator = estimator("flagred-paper");
+    let plan = estimator.plan().unwrap();
+    let mut outputs = plan.table.outputs.to_vec();
+    let table = plan.table;
+    let sizes = table.sizes;
+    let (mut low, mut high) = (None, None);
+    for (first, found) in [(0, &mut low), (outputs[0].end_strength - 1, &mut high)] {
+        outputs[0].first_strength = first;
+        let table = Table {
+            outputs: &outputs,
+            ..table
+        };
+        let mut scratch = Scratch {
+            values: &mut [0.0; 2],
+            degrees: &mut vec![0.0; sizes.degrees as usize],
+            alive: &mut vec![Partial::NONE; sizes.alive as usize],
+            partial: &mut vec![Partial::NONE; sizes.partial as usize],
+            next: &mut vec![Partial::NONE; sizes.partial as usize],
+            stack: &mut vec![0.0; sizes.stack as usize],
+            strengths: &mut vec![0.0; sizes.strengths as usize],
+            strongest: &mut [Strongest::NONE],
+        };
+        *found = table.raised_by(&mut scratch, &[0.3, 0.1], 0, 10.0);
+    }
+    assert!(low.is_some());
+    assert_eq!(high, None);
 }
 
 /// A profile with every signal of motors, every statistic and every notice, and the file of it.
