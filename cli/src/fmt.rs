@@ -2,7 +2,7 @@
 
 use std::{io::Write, path::PathBuf};
 
-use fuzzy::drawing::visible;
+use fuzzy::{drawing::visible, format::Document};
 use pretty_yaml::config::FormatOptions;
 
 use crate::{
@@ -55,15 +55,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// capitals. It means the same, comments included, or there is a reason why not.
 pub(crate) fn formatted(text: &str) -> Result<String, String> {
     let before = fuzzy::yaml::read(text).map_err(|findings| findings.to_string())?;
-    let rules = with_capitals(text);
+    let document = fuzzy::yaml::parse(text).ok();
+    let capitals = document.as_ref().map(|rules| with_capitals(text, rules));
     let mut options = FormatOptions::default();
     options.layout.print_width = WIDTH;
     options.language.brace_spacing = false;
-    let formatted =
-        pretty_yaml::format_text(&rules, &options).map_err(|error| error.to_string())?;
-    let same = match fuzzy::yaml::parse(text) {
-        Ok(document) => fuzzy::yaml::parse(&formatted).is_ok_and(|new| new.model == document.model),
-        Err(_) => {
+    let formatted = pretty_yaml::format_text(capitals.as_deref().unwrap_or(text), &options)
+        .map_err(|error| error.to_string())?;
+    let same = match document {
+        Some(document) => {
+            fuzzy::yaml::parse(&formatted).is_ok_and(|new| new.model == document.model)
+        }
+        None => {
             let after = fuzzy::yaml::read(&formatted);
             after.is_ok_and(|after| means(&after) == means(&before))
         }
@@ -80,10 +83,7 @@ fn means(tree: &fuzzy::tree::Node) -> serde_json::Value {
 }
 
 /// The text with each rule in one line as the rule language prints it, where nothing else is on that line.
-fn with_capitals(text: &str) -> String {
-    let Ok(document) = fuzzy::yaml::parse(text) else {
-        return text.to_owned();
-    };
+fn with_capitals(text: &str, document: &Document) -> String {
     let mut changed = text.to_owned();
     let rules = document.model.rules.iter().zip(&document.spans.rules);
     for (rule, spans) in rules.rev() {

@@ -47,8 +47,12 @@ pub fn profile(
     model: &Model,
     signals: &[(&str, &str)],
 ) -> (Findings, Option<Estimator>) {
-    let (tree, profile) = match yaml::read(text).and_then(|tree| Ok((tree, text.parse()?))) {
-        Ok(read) => read,
+    let tree = match yaml::read(text) {
+        Ok(tree) => tree,
+        Err(findings) => return (findings, None),
+    };
+    let profile = match Profile::from_tree(&tree, text) {
+        Ok(profile) => profile,
         Err(findings) => return (findings, None),
     };
     let mut found = Vec::new();

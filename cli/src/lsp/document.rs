@@ -5,6 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use flagred::profile::Profile;
 use fuzzy::{
     check,
     diagnostic::{Diagnostic, Findings, Severity},
@@ -27,22 +28,19 @@ pub(super) struct Document {
 impl Document {
     pub(super) fn new(uri: &lsp::Uri, text: String) -> Document {
         if profile::is_profile(&text) {
-            let path = path(uri);
-            let named = text.parse().map(|parsed| {
-                let folder = path.as_deref().and_then(Path::parent);
-                profile::rules(&parsed, folder)
-            });
-            let rules = named
-                .ok()
-                .and_then(|rules| rules.ok())
-                .map(|(_, text)| text);
-            let model = rules
-                .as_deref()
-                .and_then(|text| fuzzy::yaml::parse(text).ok());
-            let findings = match (&model, text.parse::<flagred::profile::Profile>()) {
-                (Some(document), Ok(_)) => profile::examine(&text, &document.model).0,
-                (None, Ok(parsed)) => unusable_rules(&text, &parsed.rules),
-                (_, Err(findings)) => findings,
+            let (rules, findings) = match text.parse::<Profile>() {
+                Ok(parsed) => {
+                    let path = path(uri);
+                    let folder = path.as_deref().and_then(Path::parent);
+                    let rules = profile::rules(&parsed, folder).ok().map(|(_, text)| text);
+                    let model = rules.as_deref().map(fuzzy::yaml::parse);
+                    let findings = match model {
+                        Some(Ok(document)) => profile::examine(&text, &document.model).0,
+                        _ => unusable_rules(&text, &parsed.rules),
+                    };
+                    (rules, findings)
+                }
+                Err(findings) => (None, findings),
             };
             return Document {
                 text,

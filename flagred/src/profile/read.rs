@@ -35,9 +35,15 @@ impl FromStr for Profile {
 
     /// Reads a profile from YAML; on failure gives all errors of the text, each with its location and help.
     fn from_str(text: &str) -> Result<Profile, Findings> {
-        let tree = yaml::read(text)?;
+        Profile::from_tree(&yaml::read(text)?, text)
+    }
+}
+
+impl Profile {
+    /// Reads a profile from the tree of a text.
+    pub(crate) fn from_tree(tree: &Node, text: &str) -> Result<Profile, Findings> {
         let mut found = Vec::new();
-        match read(&tree, &mut found) {
+        match read(tree, &mut found) {
             Some(profile) if found.is_empty() => Ok(profile),
             _ => Err(Findings::locate(found, text)),
         }

@@ -1,6 +1,6 @@
 //! The values that an output can take, from its consequents alone.
 
-use alloc::{format, string::String};
+use alloc::{format, string::String, vec::Vec};
 
 use crate::{
     Engine,
@@ -45,7 +45,7 @@ pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
             .any(|c| c.term.text == term)
     };
     let terms = found.variable.terms.iter();
-    let terms: alloc::vec::Vec<_> = terms.filter(|term| concluded(&term.name)).collect();
+    let terms: Vec<_> = terms.filter(|term| concluded(&term.name)).collect();
     let is_linear = |f: &MembershipFunction| matches!(f, MembershipFunction::Linear { .. });
     if terms
         .iter()
@@ -69,18 +69,18 @@ pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
     only.variable.terms = terms.iter().map(|term| (*term).clone()).collect();
     only.when_no_rule_fires = NoRuleFires::Undefined;
     let engine = Engine::new(&alone.input(selector).output(only).build()).ok()?;
-    let mut found_values = alloc::vec::Vec::new();
+    let mut values = Vec::new();
     if let NoRuleFires::Value(value) = found.when_no_rule_fires {
-        found_values.push(value);
+        values.push(value);
     }
     for i in 0..terms.len() {
         for strength in STRENGTHS {
             let outcomes = engine.evaluate(&[2.0 * i as f64 + strength]).ok()?;
-            found_values.extend(outcomes.first().and_then(|outcome| outcome.value()));
+            values.extend(outcomes.first().and_then(|outcome| outcome.value()));
         }
     }
-    let low = found_values.iter().copied().reduce(f64::min)?;
-    let high = found_values.iter().copied().reduce(f64::max)?;
+    let low = values.iter().copied().reduce(f64::min)?;
+    let high = values.iter().copied().reduce(f64::max)?;
     Some((low, high))
 }
 
