@@ -1,5 +1,5 @@
 // The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 3548 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54328 bytes of memory.
+// 3644 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54424 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -116,6 +116,12 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             moments: &[],
             consequents: &[],
             coefficients: &[],
+            sets: &[],
+            set_terms: &[],
+            sections: &[],
+            strands: &[],
+            flanks: &[],
+            knots: &[],
         },
         output: 0,
         order: &[0, 1],

@@ -6,8 +6,8 @@ use flagred::{
         self, Proposition,
         table::{
             self, Action, Axis, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
-            Dimension, Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point,
-            Program, Sizes, Step, Table,
+            Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node,
+            Output, Pair, Point, Program, Section, SetTerm, Sizes, Step, Strand, Table,
         },
     },
     channel::{self, Channel, Motors, Observed, Statistic},

@@ -3,10 +3,11 @@
 
 use alloc::vec::Vec;
 
-use super::piece::{Piece, root};
+use super::piece::Piece;
 use super::polyline::Workspace;
 use super::{Joint, Strengths};
 use crate::model::{Aggregation, Implication, Term};
+use crate::table::numeric::root;
 
 /// The terms of one output and the cuts of its range.
 #[derive(Debug, Clone)]

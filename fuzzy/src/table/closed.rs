@@ -21,11 +21,17 @@ impl ClosedForm {
     /// Takagi-Sugeno, `sum(w z)`: [`Consequent`]s.
     pub const WEIGHTED_SUM: ClosedForm = ClosedForm(4);
 
-    /// Whether the consequents are fuzzy sets. Then only the ratios of firing strengths count where all are tiny.
-    pub(crate) fn is_fuzzy(self) -> bool {
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are cut off: the implication is the minimum.
+    pub const CUT: ClosedForm = ClosedForm(5);
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled: the implication is the product.
+    pub const SCALED: ClosedForm = ClosedForm(6);
+
+    /// Whether only the ratios of firing strengths count where all are tiny. Consequents that are numbers are scaled by the
+    /// strengths themselves, and a curve is not straight however low it is cut.
+    pub(crate) fn scales(self) -> bool {
         !matches!(
             self,
-            ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM
+            ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM | ClosedForm::CUT
         )
     }
 }
@@ -147,6 +153,7 @@ pub(super) fn closed<A: Arrays>(
             }
             sum
         }
+        ClosedForm::CUT | ClosedForm::SCALED => return super::set::value(table, output, strengths),
         // Not clamped to the range: consequents are numbers that the author chose.
         form => {
             let consequents = &table.consequents()[range];

@@ -12,11 +12,14 @@ mod arrays;
 mod check;
 mod closed;
 mod firing;
+pub(crate) mod flank;
 mod input;
+pub(crate) mod numeric;
 pub(crate) mod operators;
 mod outcome;
 mod raising;
 mod rules;
+pub(crate) mod set;
 
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
@@ -24,12 +27,14 @@ pub use check::Damaged;
 pub(crate) use closed::centroid;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub use firing::{Partial, Strongest};
+pub use flank::{Flank, Knot};
 #[cfg(test)]
 pub(crate) use input::degrees;
 pub use input::{Curve, Input, Line, Point};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
 pub use rules::{Action, Axis, Dimension, Edge, Node, Op, Program, Step};
+pub use set::{FuzzySet, Section, SetDefuzzifier, SetTerm, Strand};
 
 pub use crate::shape::Kind;
 
@@ -229,7 +234,7 @@ fn state<A: Arrays, N: DerefMut<Target = [f64]>, P, S>(
     if strongest > 0.0 {
         let range = output.first_strength as usize..output.end_strength as usize;
         let strengths = &mut scratch.strengths[range];
-        if strongest < TINY && output.form.is_fuzzy() {
+        if strongest < TINY && output.form.scales() {
             for strength in strengths.iter_mut() {
                 *strength *= FROM_TINY;
             }
