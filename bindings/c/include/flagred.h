@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_PLAN_FORMAT 4
+#define FLAGRED_PLAN_FORMAT 5
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -216,7 +216,8 @@ typedef struct flagred_action {
 } flagred_action;
 
 typedef struct flagred_program {
-    uint32_t first_step, end_step, first_action, end_action;
+    double weight;
+    uint32_t first_step, end_step, first_action, end_action, first_hedge, end_hedge;
 } flagred_program;
 
 typedef struct flagred_step {

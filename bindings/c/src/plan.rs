@@ -23,7 +23,7 @@ use crate::{memory::Block, status::Status};
 mod tests;
 
 /// The version of the data that this library reads.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// An array of C and its length.
 #[derive(Debug, Clone, Copy)]

@@ -4,14 +4,20 @@ use alloc::{vec, vec::Vec};
 
 use super::arrays::OwnedTable;
 use super::literal::Literals;
-use crate::table::{Action, Axis, Conjunctions, Dimension, Edge, Line, Node, Op, Program, Step};
+use crate::table::{
+    Action, Axis, Conjunctions, Dimension, Edge, Hedge, Line, Node, Op, Program, Step,
+};
 
 /// A rule with indices in place of names.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
-    /// The literals of a plain AND, ascending, each of another input; `None` of another antecedent.
+    /// The literals of a plain AND, ascending, each of another input; `None` of another antecedent, and where there are hedges.
     pub(super) literals: Option<Vec<u32>>,
     pub(super) steps: Vec<Step>,
+    /// The hedges of its consequents, in the order in which they apply.
+    pub(super) hedges: Vec<Hedge>,
+    /// What multiplies the degree before the hedges.
+    pub(super) weight: f64,
     pub(super) actions: Vec<Action>,
 }
 
@@ -31,13 +37,18 @@ impl OwnedTable {
     pub(super) fn rules(&mut self, drafts: &[Draft], inputs: &[Literals], unused: u32) {
         for draft in drafts.iter().filter(|draft| draft.literals.is_none()) {
             let (first_step, first_action) = (self.steps.len(), self.actions.len());
+            let first_hedge = self.hedges.len();
             self.steps.extend(&draft.steps);
             self.actions.extend(&draft.actions);
+            self.hedges.extend(&draft.hedges);
             self.programs.push(Program {
+                weight: draft.weight,
                 first_step: first_step as u32,
                 end_step: self.steps.len() as u32,
                 first_action: first_action as u32,
                 end_action: self.actions.len() as u32,
+                first_hedge: first_hedge as u32,
+                end_hedge: self.hedges.len() as u32,
             });
             let pushes = draft.steps.iter().filter(|step| step.op == Op::PUSH);
             self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);

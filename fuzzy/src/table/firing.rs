@@ -240,11 +240,15 @@ fn fire_with<A: Arrays>(
         let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
         let degree = run(steps, degrees, table.and(), table.or(), stack);
         if degree > 0.0 {
+            let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
+            let strength = program.weight * degree;
+            let strength = hedges.iter().fold(strength, |x, hedge| hedge.of(x));
             let range = program.first_action as usize..program.end_action as usize;
-            firing.act(&table.actions()[range], degree);
+            firing.act(&table.actions()[range], strength);
         }
     }
 }
+
 #[inline(always)]
 fn fire_uniform<A: Arrays>(
     table: &A,
