@@ -11,7 +11,7 @@ use flagred_tests::reference;
 use fuzzy::Engine;
 use fuzzy::engine::Outcome;
 use fuzzy::map::{DecisionMap, Grid};
-use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, Model};
+use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Model};
 
 /// How far from the value the engine may be, and the plain integration with few samples, as a part of the
 /// output's range. Maxima are as good as the samples of the integration are dense.
