@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_PLAN_FORMAT 4
+#define FLAGRED_PLAN_FORMAT 5
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -248,7 +248,7 @@ typedef struct flagred_coefficient {
 
 typedef struct flagred_channel {
     double window_s, limit;
-    uint32_t observed, signal, motors, threshold, in_bins;
+    uint32_t observed, indices[2], motors, threshold, in_bins;
 } flagred_channel;
 
 /* Which input a rule is about. */
@@ -257,6 +257,7 @@ typedef struct flagred_proposition {
 } flagred_proposition;
 
 typedef struct flagred_source {
+    double number;
     uint32_t channel, statistic;
 } flagred_source;
 
