@@ -93,6 +93,8 @@ pub enum Motors {
     Min,
     /// The largest of them.
     Max,
+    /// One of them, counted from 0 in the order of the samples; unknown where there are fewer.
+    One(u32),
 }
 
 /// What a sample gives to a channel.
@@ -164,6 +166,15 @@ pub struct Channel {
     pub in_bins: bool,
     /// Over how many seconds.
     pub window_s: f64,
+}
+
+/// The number of motors that a craft needs so that every motor that channels name is there.
+pub(crate) fn motors_needed(channels: &[Channel]) -> usize {
+    let needed = channels.iter().map(|channel| match channel.motors {
+        Motors::One(motor) => (motor as usize).saturating_add(1),
+        _ => 1,
+    });
+    needed.max().unwrap_or(1)
 }
 
 /// An input: a statistic of a channel.

@@ -214,8 +214,9 @@ impl Follower {
         }
         let by_rules = update.risk.ok().filter(|said| said.filled_from.is_none());
         let cause = by_rules.and_then(|said| cause(said.risk_pct));
-        let is_of_limits = cause.is_some_and(|cause| is_of_limits(plan, cause.input));
-        self.alert.explain(cause, is_of_limits);
+        self.alert.explain(cause, |motor| {
+            cause.is_some_and(|cause| is_of_limits(plan, cause.input, motor))
+        });
     }
 
     /// Ends the flight: the findings that were still open.

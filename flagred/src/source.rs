@@ -291,6 +291,9 @@ mod tests {
             (Statistic::Mean, Motors::Min, "motor_margin", 0.1),
             (Statistic::Mean, Motors::Min, "motor_margin_low_side", 0.3),
             (Statistic::Mean, Motors::Min, "motor_margin_high_side", 0.2),
+            (Statistic::Mean, Motors::One(0), "motor_command", 0.3),
+            (Statistic::Max, Motors::One(1), "motor_margin", 0.4),
+            (Statistic::ShareAbove(0.3), Motors::One(0), "motor_command", 0.5),
             (Statistic::Min, Motors::Pooled, "motor_margin", 0.0),
             (Statistic::Max, Motors::Mean, "motor_command", 0.7),
             (Statistic::Mean, Motors::Std, "motor_command", 0.25),
@@ -341,9 +344,12 @@ mod tests {
             source(Statistic::Last, Motors::Min, "motor_command"),
             // The geometry is unknown.
             source(Statistic::Mean, Motors::Pooled, "motor_command_less_yaw"),
+            source(Statistic::Mean, Motors::One(1), "motor_command"),
+            // There are two motors.
+            source(Statistic::Mean, Motors::One(2), "motor_command"),
         ];
         let found = observe(&sources, &[[0.2, f64::NAN], [f64::NAN; 2]]);
-        assert_eq!(found, [Some(0.2), None, Some(0.2)]);
+        assert_eq!(found, [Some(0.2), None, Some(0.2), None, None]);
     }
 
     #[test]

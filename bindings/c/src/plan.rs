@@ -305,7 +305,7 @@ impl CChannel {
         let known = || {
             Some(Channel {
                 observed: Observed::from_code(self.observed, self.indices)?,
-                motors: Motors::from_code(self.motors)?,
+                motors: Motors::from_code(self.motors),
                 threshold: channel::Threshold::from_code(self.threshold, self.limit)?,
                 in_bins: self.in_bins != 0,
                 window_s: self.window_s,

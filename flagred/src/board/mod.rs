@@ -29,7 +29,7 @@ use fuzzy::table::{Damaged, Outcome, Scratch, Table};
 
 use crate::{
     cause::{Cause, cause},
-    channel::{Channel, Input, Observed, Seen},
+    channel::{Channel, Input, Observed, Seen, motors_needed},
     effort::ROLL_PITCH_YAW_THRUST,
     follower::{Follower, Room, Settings},
     gap::FilledKnots,
@@ -82,7 +82,7 @@ pub struct Plan<'a> {
 pub enum Refused {
     /// The memory does not have the sizes of the plan.
     Memory,
-    /// The number of motors is 0.
+    /// The number of motors is 0, or the profile names a motor that there is not.
     NoMotors,
     /// The plan is damaged.
     Plan(Damaged),
@@ -94,7 +94,9 @@ impl core::fmt::Display for Refused {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Refused::Memory => f.write_str("the memory does not have the sizes of the plan"),
-            Refused::NoMotors => f.write_str("the number of motors is 0"),
+            Refused::NoMotors => f.write_str(
+                "the number of motors is 0, or the profile names a motor that there is not",
+            ),
             Refused::Plan(damaged) => damaged.fmt(f),
             Refused::Geometry => f.write_str(
                 "the geometry does not tell roll, pitch, yaw and thrust of all motors apart",
@@ -209,11 +211,11 @@ impl<'a> Monitor<'a> {
     /// A monitor of a new flight, with as many motors as the memory holds.
     ///
     /// # Errors
-    /// The memory does not have the sizes of the plan, the number of motors is 0, or the plan is damaged.
+    /// The memory does not have the sizes of the plan, motors are missing, or the plan is damaged.
     #[doc(hidden)] // For the C interface. Rust uses `Storage::monitor` or `OwnedMemory::monitor`.
     pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, Refused> {
         plan.check().map_err(Refused::Plan)?;
-        if memory.motors.is_empty() {
+        if memory.motors.len() < motors_needed(plan.channels) {
             return Err(Refused::NoMotors);
         }
         let monitor = Monitor::divide(plan, memory).ok_or(Refused::Memory)?;

@@ -46,19 +46,20 @@ impl Motors {
             Motors::Std => 2,
             Motors::Min => 3,
             Motors::Max => 4,
+            Motors::One(motor) => motor.saturating_add(5),
         }
     }
 
     /// How motors become one value, from its code.
-    pub const fn from_code(code: u32) -> Option<Motors> {
-        Some(match code {
+    pub const fn from_code(code: u32) -> Motors {
+        match code {
             0 => Motors::Pooled,
             1 => Motors::Mean,
             2 => Motors::Std,
             3 => Motors::Min,
             4 => Motors::Max,
-            _ => return None,
-        })
+            5.. => Motors::One(code - 5),
+        }
     }
 }
 
@@ -132,8 +133,8 @@ mod tests {
             })
             .collect();
         assert_eq!(codes, (0..10).collect::<Vec<u32>>());
-        for code in 0..5 {
-            assert_eq!(Motors::from_code(code).map(Motors::code), Some(code));
+        for code in all.clone().chain([u32::MAX]) {
+            assert_eq!(Motors::from_code(code).code(), code);
         }
         let observed = all.map_while(|code| Observed::from_code(code, [3, 2]));
         let codes: Vec<u32> = observed

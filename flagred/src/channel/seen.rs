@@ -252,14 +252,18 @@ impl Channel {
     }
 
     /// The values of the motors, NaN where one is unknown.
-    fn over(&self, motors: impl Iterator<Item = f64> + Clone) -> Moments {
+    fn over(&self, mut motors: impl Iterator<Item = f64> + Clone) -> Moments {
+        if let Motors::One(motor) = self.motors {
+            let one = motors.nth(motor as usize);
+            return self.threshold(one.unwrap_or(f64::NAN));
+        }
         let known = motors.filter(|value| value.is_finite());
         if self.motors == Motors::Pooled {
             return Moments::alike(known.map(|value| self.counted(value)));
         }
         let all = Moments::alike(known);
         let one = match self.motors {
-            Motors::Pooled | Motors::Mean => all.mean(),
+            Motors::Pooled | Motors::Mean | Motors::One(_) => all.mean(),
             Motors::Std => all.std(),
             Motors::Min => all.min(),
             Motors::Max => all.max(),

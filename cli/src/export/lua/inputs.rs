@@ -255,12 +255,18 @@ impl Script {
         if !self.lists.contains(&list) {
             self.lists.push(list);
         }
+        if let Motors::One(motor) = channel.motors {
+            let motor = u64::from(motor) + 1;
+            let name = format!("{list}_of_motor_{motor}");
+            let value = self.computed(name, format!("sum and {list}[{motor}]"));
+            return (counted(&value, channel.threshold, squared), None);
+        }
         if channel.motors != Motors::Pooled {
             let function = match channel.motors {
                 Motors::Std => "deviation_of",
                 Motors::Min => "lowest_of",
                 Motors::Max => "highest_of",
-                Motors::Mean | Motors::Pooled => "mean_of",
+                Motors::Mean | Motors::Pooled | Motors::One(_) => "mean_of",
             };
             let value = self.of_list(function, list, None);
             return (counted(&value, channel.threshold, squared), None);

@@ -122,28 +122,44 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
     })
 }
 
-/// `motor_margin` or `{min: motor_margin}`.
+/// `motor_margin`, `{min: motor_margin}` or `{motor: 3, of: motor_margin}`.
 fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)> {
     if !matches!(node.value, Value::Mapping(_)) {
         let name = node.words(&format!("the signal of {what}"), found)?;
         return Some((Motors::Pooled, Signal::named(&name.text)));
     }
-    let keys = MOTORS.map(|(name, _)| name);
+    let statistics = MOTORS.iter().map(|(name, _)| *name);
+    let keys: Vec<&str> = statistics.chain(["motor", "of"]).collect();
     let over = format!("the statistic over motors of {what}");
     let before = found.len();
     let fields = node.fields(&over, &keys, found)?;
-    let mut given = MOTORS.iter().filter(|(name, _)| fields.get(name).is_some());
-    let (Some((key, motors)), None) = (given.next(), given.next()) else {
-        if found.len() == before {
-            let message = format!("{over} is one of `mean`, `std`, `min` and `max`");
-            found.push(
-                Diagnostic::error("statistic", node.span.clone(), message)
-                    .help("write for example `{min: motor_margin}`"),
-            );
-        }
-        return None;
+    let given: Vec<&str> = keys
+        .into_iter()
+        .filter(|key| fields.get(key).is_some())
+        .collect();
+    let over_motors = match given.as_slice() {
+        [key] => MOTORS.iter().find(|(name, _)| name == key),
+        _ => None,
     };
-    let node = fields.get(key)?;
+    let (motors, node) = match (over_motors, given.as_slice()) {
+        (Some((key, motors)), _) => (*motors, fields.get(key)?),
+        (None, ["motor", "of"]) => {
+            let number = fields.get("motor")?.whole("the motor", 1, found)?;
+            let motor = u32::try_from(number - 1).unwrap_or(u32::MAX);
+            (Motors::One(motor), fields.get("of")?)
+        }
+        _ => {
+            if found.len() == before {
+                let message = format!("{over} is one of `mean`, `std`, `min`, `max` and `motor`");
+                found.push(
+                    Diagnostic::error("statistic", node.span.clone(), message).help(
+                        "write for example `{min: motor_margin}` or `{motor: 1, of: motor_margin}`",
+                    ),
+                );
+            }
+            return None;
+        }
+    };
     let name = &node.words(&format!("the signal of {what}"), found)?.text;
     let signal = Signal::named(name);
     if !signal.is_of_motors() {
@@ -159,5 +175,5 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         );
         return None;
     }
-    Some((*motors, signal))
+    Some((motors, signal))
 }

@@ -40,6 +40,7 @@ inputs:
   f: {std_less_noise: {std: motor_command_less_yaw}}
   g: {noise: roll_effort}
   h: {mean: command_noise}
+  i: {mean: {motor: 3, of: motor_margin}}
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
@@ -102,6 +103,7 @@ verdict:
             ),
             &source(Statistic::Noise, Motors::Pooled, "roll_effort", 3.0),
             &source(Statistic::Mean, Motors::Pooled, "command_noise", 3.0),
+            &source(Statistic::Mean, Motors::One(2), "motor_margin", 3.0),
         ]
     );
     assert_eq!(
@@ -187,6 +189,21 @@ verdict:
   noise: 0.04
   reserve: {above: 0.1}
   imbalance: {above: 0.25, after_s: -3}
+";
+    let findings = text.parse::<Profile>().unwrap_err();
+    insta::assert_snapshot!(findings);
+}
+
+#[test]
+fn mistakes_in_signals_are_told() {
+    let text = "flagred: 1
+name: wrong
+rules: flagred
+inputs:
+  zero: {mean: {motor: 0, of: motor_margin}}
+  alone: {mean: {motor: 2}}
+  one: {mean: {motor: 1, of: battery_v}}
+  both: {mean: {motor: 1, min: motor_margin}}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);
