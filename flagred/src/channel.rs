@@ -116,6 +116,21 @@ pub enum Observed {
     CommandNoise,
     /// The signal of this index among those that samples carry.
     Named(usize),
+    /// The signal `a` less the signal `b`, by their indices; of angles in degrees the short way around, in [-180, 180).
+    Difference {
+        /// The signal.
+        a: usize,
+        /// What is taken from it.
+        b: usize,
+        /// Whether they are angles in degrees.
+        circular: bool,
+    },
+}
+
+/// A difference of angles, the short way around, in [-180, 180).
+pub(crate) fn short_way_deg(difference_deg: f64) -> f64 {
+    let short_deg = libm::remainder(difference_deg, 360.0);
+    if short_deg == 180.0 { -180.0 } else { short_deg }
 }
 
 /// The values that count, where a share of time is asked for.

@@ -18,7 +18,7 @@ use fuzzy::{
 use crate::{
     estimator::{Estimator, EstimatorError},
     profile::{Profile, ProfileInput},
-    source::{Motors, Signal, Source, Statistic},
+    source::{Motors, Signal, Source, Statistic, is_angle},
     verdict::{LevelSettings, Threshold},
 };
 
@@ -262,29 +262,51 @@ fn signal(
 ) -> Option<Diagnostic> {
     let place = at.of(&["inputs", &input.name]);
     let variable = model.inputs.iter().find(|v| v.name == input.name)?;
-    if let Signal::Named(name) = &input.source.signal {
-        let Some((_, unit)) = known.iter().find(|(known, _)| known == name) else {
-            // Logs in CSV name their signals as they like; only a near miss is a mistake.
-            let logged = known.iter().map(|(name, _)| *name);
-            let meant = nearest(name, logged).or_else(|| nearest(name, Signal::names()))?;
-            let message = format!("no log format has a signal `{name}`");
-            return Some(
-                Diagnostic::warning("unknown-signal", place, message)
-                    .help(format!("did you mean `{meant}`?")),
-            );
+    let unit_of = |name: &str| {
+        let unit = known.iter().find(|(known, _)| *known == name);
+        unit.map(|(_, unit)| *unit)
+    };
+    if let Signal::Difference { a, b } = &input.source.signal {
+        let message = match (unit_of(a), unit_of(b)) {
+            (Some(of_a), Some(of_b)) if normal(of_a) != normal(of_b) => {
+                Some(format!("`{a}` is in `{of_a}`, but `{b}` is in `{of_b}`"))
+            }
+            _ if is_angle(a) != is_angle(b) => {
+                let (angle, other) = if is_angle(a) { (a, b) } else { (b, a) };
+                Some(format!("`{angle}` is in degrees, and `{other}` is not"))
+            }
+            _ => None,
         };
+        if let Some(message) = message {
+            let help = "a difference is of two signals of one unit; the names of angles in degrees end in `_deg`";
+            return Some(Diagnostic::error("unit", place, message).help(help));
+        }
+    }
+    let mut carried = input.source.signal.carried();
+    if let Some(name) = carried.find(|name| unit_of(name).is_none())
+        // Logs in CSV name their signals as they like; only a near miss is a mistake.
+        && let Some(meant) = nearest(name, known.iter().map(|(name, _)| *name))
+            .or_else(|| nearest(name, Signal::names()))
+    {
+        let message = format!("no log format has a signal `{name}`");
+        return Some(
+            Diagnostic::warning("unknown-signal", place, message)
+                .help(format!("did you mean `{meant}`?")),
+        );
+    }
+    let first = input.source.signal.carried().next();
+    let first = first.and_then(|name| Some((name, unit_of(name)?)));
+    if let (Some((name, unit)), Some(wanted)) = (first, variable.unit.as_deref()) {
         let is_share = matches!(
             input.source.statistic,
             Statistic::ShareBelow(_) | Statistic::ShareAbove(_)
         );
         let unit = if is_share { "1" } else { unit };
-        let wanted = variable.unit.as_deref().map(normal)?;
-        let is_unit = known.iter().any(|(_, unit)| normal(unit) == wanted);
-        if is_unit && !unit.is_empty() && wanted != normal(unit) {
+        let is_unit = known.iter().any(|(_, unit)| normal(unit) == normal(wanted));
+        if is_unit && !unit.is_empty() && normal(wanted) != normal(unit) {
             let message = format!(
-                "input `{}` of the rule set is in `{}`, but `{name}` is in `{unit}`",
-                input.name,
-                variable.unit.as_deref().unwrap_or_default()
+                "input `{}` of the rule set is in `{wanted}`, but `{name}` is in `{unit}`",
+                input.name
             );
             let help = "take a signal of that unit, or write the terms of the input in the unit of the signal";
             return Some(Diagnostic::warning("unit", place, message).help(help));

@@ -37,6 +37,13 @@ pub enum Signal {
     CommandNoise,
     /// A signal that the flight carries beside the motors, by name: `battery_v`.
     Named(String),
+    /// One such signal less another one. Where both names end in `_deg`, the short way around, in [-180, 180).
+    Difference {
+        /// The signal.
+        a: String,
+        /// What is taken from it.
+        b: String,
+    },
 }
 
 /// The signals with a value for each motor, by the names profiles use.
@@ -76,6 +83,16 @@ impl Signal {
             .chain(OF_ALL_MOTORS)
             .find(|(known, _)| *known == name)
             .map_or_else(|| Signal::Named(name.into()), |(_, signal)| signal)
+    }
+
+    /// The names of the signals that samples have to carry for it.
+    pub fn carried(&self) -> impl Iterator<Item = &str> {
+        let (first, second) = match self {
+            Signal::Named(name) => (Some(name), None),
+            Signal::Difference { a, b } => (Some(a), Some(b)),
+            _ => (None, None),
+        };
+        first.into_iter().chain(second).map(String::as_str)
     }
 
     /// Whether the signal has one value for each motor.
@@ -198,6 +215,11 @@ impl Observer {
     }
 }
 
+/// Whether a signal is an angle in degrees, by its name.
+pub(crate) fn is_angle(name: &str) -> bool {
+    name.ends_with("_deg")
+}
+
 /// The channels that sources need, each shared by those that look at the same thing, and which of them each source is
 /// a statistic of. The named signals stand at the places of their names; a name that is not among them is the error.
 pub(crate) fn channels<'a>(
@@ -206,6 +228,10 @@ pub(crate) fn channels<'a>(
 ) -> Result<(Vec<Channel>, Vec<Input>), String> {
     let mut channels: Vec<Channel> = vec![];
     let mut inputs = vec![];
+    let place = |name: &String| {
+        let place = names.iter().position(|known| known == name);
+        place.ok_or_else(|| name.clone())
+    };
     for source in sources {
         let observed = match &source.signal {
             Signal::MotorCommand => Observed::Command,
@@ -218,12 +244,12 @@ pub(crate) fn channels<'a>(
             Signal::YawEffort => Observed::Effort(2),
             Signal::ThrustEffort => Observed::Effort(3),
             Signal::CommandNoise => Observed::CommandNoise,
-            Signal::Named(name) => Observed::Named(
-                names
-                    .iter()
-                    .position(|known| known == name)
-                    .ok_or_else(|| name.clone())?,
-            ),
+            Signal::Named(name) => Observed::Named(place(name)?),
+            Signal::Difference { a, b } => Observed::Difference {
+                circular: is_angle(a) && is_angle(b),
+                a: place(a)?,
+                b: place(b)?,
+            },
         };
         let channel = Channel {
             observed,
@@ -350,6 +376,36 @@ mod tests {
         ];
         let found = observe(&sources, &[[0.2, f64::NAN], [f64::NAN; 2]]);
         assert_eq!(found, [Some(0.2), None, Some(0.2), None, None]);
+    }
+
+    #[test]
+    fn a_difference_of_angles_goes_the_short_way_around() {
+        let names = ["yaw_des_deg", "yaw_deg", "ekf_wind_m_s", "wind_m_s"];
+        let difference = |a: usize, b: usize| Source {
+            signal: Signal::Difference {
+                a: names[a].into(),
+                b: names[b].into(),
+            },
+            ..source(Statistic::Last, Motors::Pooled, "")
+        };
+        let sources = [difference(0, 1), difference(2, 3)];
+        for (a, b, angle, plain) in [
+            (10.0, 4.0, 6.0, 6.0),
+            (179.0, -179.0, -2.0, 358.0),
+            (-179.0, 179.0, 2.0, -358.0),
+            (350.0, 5.0, -15.0, 345.0),
+            (90.0, -90.0, -180.0, 180.0),
+            (-90.0, 90.0, -180.0, -180.0),
+            (725.0, 0.0, 5.0, 725.0),
+        ] {
+            let mut observer = Observer::new(&sources, craft(&names)).unwrap();
+            observer.push(1.0, 0.1, &[], &[a, b, a, b]);
+            let found = [0, 1].map(|i| observer.value(i).map(|o| o.value));
+            assert_eq!(found, [Some(angle), Some(plain)], "{a} - {b}");
+            observer.push(1.1, 0.1, &[], &[f64::NAN, b, a, f64::NAN]);
+            assert_eq!(observer.value(0), None);
+        }
+        assert_eq!(Observer::new(&sources, craft(&names[..3])).unwrap_err(), "wind_m_s");
     }
 
     #[test]

@@ -131,8 +131,10 @@ impl Plan<'_> {
         )?;
         require(
             self.channels.iter().all(|channel| {
+                let is_signal = |signal: usize| signal < self.signals as usize;
                 let is_known = match channel.observed {
-                    Observed::Named(signal) => signal < self.signals as usize,
+                    Observed::Named(signal) => is_signal(signal),
+                    Observed::Difference { a, b, .. } => is_signal(a) && is_signal(b),
                     Observed::Effort(axis) => axis < ROLL_PITCH_YAW_THRUST,
                     _ => true,
                 };

@@ -75,12 +75,15 @@ impl Observed {
             Observed::CommandLessYaw => (5, [0; 2]),
             Observed::Effort(axis) => (6, [axis as u32, 0]),
             Observed::CommandNoise => (7, [0; 2]),
+            Observed::Difference { a, b, circular } => {
+                (if circular { 9 } else { 8 }, [a as u32, b as u32])
+            }
         }
     }
 
     /// What is observed, from its code.
     pub const fn from_code(code: u32, indices: [u32; 2]) -> Option<Observed> {
-        let [first, _] = indices;
+        let [first, second] = indices;
         Some(match code {
             0 => Observed::Command,
             1 => Observed::Margin,
@@ -90,6 +93,11 @@ impl Observed {
             5 => Observed::CommandLessYaw,
             6 => Observed::Effort(first as usize),
             7 => Observed::CommandNoise,
+            8 | 9 => Observed::Difference {
+                a: first as usize,
+                b: second as usize,
+                circular: code == 9,
+            },
             _ => return None,
         })
     }
@@ -144,7 +152,7 @@ mod tests {
                 code
             })
             .collect();
-        assert_eq!(codes, (0..8).collect::<Vec<u32>>());
+        assert_eq!(codes, (0..10).collect::<Vec<u32>>());
         for threshold in [None, Some(Threshold::Below(0.5)), Some(Threshold::Above(2.0))] {
             let (code, limit) = Threshold::code(threshold);
             assert_eq!(Threshold::from_code(code, limit), Some(threshold));

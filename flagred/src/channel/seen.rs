@@ -1,6 +1,6 @@
 //! What channels see of a flight, in memory that is lent.
 
-use super::{Channel, Input, Motors, Observed, Statistic, Threshold};
+use super::{Channel, Input, Motors, Observed, Statistic, Threshold, short_way_deg};
 use crate::{
     margin::margin,
     moments::Moments,
@@ -132,6 +132,13 @@ pub(crate) struct Now<'a> {
     pub(crate) named: &'a [f64],
 }
 
+impl Now<'_> {
+    /// A signal that samples carry; NaN is unknown.
+    fn signal(&self, index: usize) -> f64 {
+        self.named.get(index).copied().unwrap_or(f64::NAN)
+    }
+}
+
 /// Adds a sample, of a time and the seconds before it that it stands for, to all channels.
 pub(crate) fn push(
     channels: &[Channel],
@@ -236,8 +243,13 @@ impl Channel {
     fn reduce(&self, now: &Now<'_>) -> Moments {
         let commands = now.motors.iter().map(|motor| motor.command);
         match self.observed {
-            Observed::Named(index) => {
-                self.threshold(now.named.get(index).copied().unwrap_or(f64::NAN))
+            Observed::Named(index) => self.threshold(now.signal(index)),
+            Observed::Difference { a, b, circular } => {
+                let difference = now.signal(a) - now.signal(b);
+                self.threshold(match circular {
+                    true => short_way_deg(difference),
+                    false => difference,
+                })
             }
             Observed::Effort(axis) => {
                 let effort = now.together.efforts.get(axis).copied();

@@ -183,10 +183,8 @@ impl<'a> BaselineObserver<'a> {
         let places = baselines
             .iter()
             .map(|baseline| {
-                let is_there = match &baseline.source.signal {
-                    Signal::Named(name) => names.contains(&name.as_str()),
-                    _ => true,
-                };
+                let mut carried = baseline.source.signal.carried();
+                let is_there = carried.all(|name| names.contains(&name));
                 let sources = match baseline.per_motor {
                     Some(_) => &mut apart,
                     None => &mut pooled,

@@ -85,14 +85,13 @@ pub struct ProfileInput {
 
 impl Profile {
     /// The names of the signals beside the motors that it needs, each once.
-    ///
     pub fn signals(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for input in &self.inputs {
-            if let crate::source::Signal::Named(name) = &input.source.signal
-                && !names.contains(&name.as_str())
-            {
-                names.push(name);
+            for name in input.source.signal.carried() {
+                if !names.contains(&name) {
+                    names.push(name);
+                }
             }
         }
         names

@@ -30,6 +30,7 @@ enum Source {
     Effort,
     Noise,
     Signal(usize),
+    Difference(usize, usize),
 }
 
 /// A window of the script: channels that bring values at the same times share it.
@@ -169,6 +170,7 @@ impl Window {
                 Observed::Effort(_) => Source::Effort,
                 Observed::CommandNoise => Source::Noise,
                 Observed::Named(signal) => Source::Signal(signal),
+                Observed::Difference { a, b, .. } => Source::Difference(a, b),
                 Observed::Command
                 | Observed::CommandLessYaw
                 | Observed::Margin
@@ -221,9 +223,14 @@ impl Script {
         signals: &[&'static str],
     ) -> (String, Option<String>) {
         let one = match channel.observed {
-            Observed::Named(signal) => {
-                let read = signals.get(signal).copied().unwrap_or("nil");
-                Some(self.computed(format!("signal_{}", signal + 1), read.to_owned()))
+            Observed::Named(signal) => Some(self.signal(signal, signals)),
+            Observed::Difference { a, b, circular } => {
+                let [a, b] = [a, b].map(|signal| self.signal(signal, signals));
+                let less = match circular {
+                    true => format!("({a} - {b} + 180) % 360 - 180"),
+                    false => format!("{a} - {b}"),
+                };
+                Some(self.computed(format!("{a}_less_{b}"), format!("{a} and {b} and {less}")))
             }
             Observed::Effort(axis) => {
                 if !self.efforts.contains(&axis) {
@@ -291,6 +298,12 @@ impl Script {
             }
             _ => (self.of_list("mean_of", list, None), None),
         }
+    }
+
+    /// A signal of the autopilot; nil where it is unknown.
+    fn signal(&mut self, signal: usize, signals: &[&'static str]) -> String {
+        let read = signals.get(signal).copied().unwrap_or("nil");
+        self.computed(format!("signal_{}", signal + 1), read.to_owned())
     }
 
     /// A value that all motors have together; nil where the commands are unknown.

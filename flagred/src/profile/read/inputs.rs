@@ -122,14 +122,14 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
     })
 }
 
-/// `motor_margin`, `{min: motor_margin}` or `{motor: 3, of: motor_margin}`.
+/// `motor_margin`, `{min: motor_margin}`, `{motor: 3, of: motor_margin}` or `{difference: [yaw_des_deg, yaw_deg]}`.
 fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)> {
     if !matches!(node.value, Value::Mapping(_)) {
         let name = node.words(&format!("the signal of {what}"), found)?;
         return Some((Motors::Pooled, Signal::named(&name.text)));
     }
     let statistics = MOTORS.iter().map(|(name, _)| *name);
-    let keys: Vec<&str> = statistics.chain(["motor", "of"]).collect();
+    let keys: Vec<&str> = statistics.chain(["motor", "of", "difference"]).collect();
     let over = format!("the statistic over motors of {what}");
     let before = found.len();
     let fields = node.fields(&over, &keys, found)?;
@@ -148,9 +148,13 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
             let motor = u32::try_from(number - 1).unwrap_or(u32::MAX);
             (Motors::One(motor), fields.get("of")?)
         }
+        (None, ["difference"]) => {
+            let signal = difference(fields.get("difference")?, found)?;
+            return Some((Motors::Pooled, signal));
+        }
         _ => {
             if found.len() == before {
-                let message = format!("{over} is one of `mean`, `std`, `min`, `max` and `motor`");
+                let message = format!("{over} is one of `mean`, `std`, `min`, `max`, `motor` and `difference`");
                 found.push(
                     Diagnostic::error("statistic", node.span.clone(), message).help(
                         "write for example `{min: motor_margin}` or `{motor: 1, of: motor_margin}`",
@@ -176,4 +180,30 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         return None;
     }
     Some((motors, signal))
+}
+
+/// `[yaw_des_deg, yaw_deg]`.
+fn difference(node: &Node, found: &mut Found) -> Option<Signal> {
+    let [a, b] = node.items("`difference`", found)? else {
+        let message = "`difference` takes two signals, the second from the first";
+        found.push(
+            Diagnostic::error("signal", node.span.clone(), message)
+                .help("write for example `{difference: [yaw_des_deg, yaw_deg]}`"),
+        );
+        return None;
+    };
+    let mut name = |node: &Node| {
+        let name = &node.words("a signal of `difference`", found)?.text;
+        if Signal::names().any(|known| known == name) {
+            let message = format!("`difference` takes signals of the vehicle, not `{name}`");
+            found.push(
+                Diagnostic::error("signal", node.span.clone(), message)
+                    .help("write the names of two signals of the log"),
+            );
+            return None;
+        }
+        Some(name.clone())
+    };
+    let (a, b) = (name(a), name(b));
+    Some(Signal::Difference { a: a?, b: b? })
 }

@@ -41,6 +41,7 @@ inputs:
   g: {noise: roll_effort}
   h: {mean: command_noise}
   i: {mean: {motor: 3, of: motor_margin}}
+  j: {rms: {difference: [yaw_des_deg, yaw_deg]}}
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
@@ -104,6 +105,13 @@ verdict:
             &source(Statistic::Noise, Motors::Pooled, "roll_effort", 3.0),
             &source(Statistic::Mean, Motors::Pooled, "command_noise", 3.0),
             &source(Statistic::Mean, Motors::One(2), "motor_margin", 3.0),
+            &Source {
+                signal: Signal::Difference {
+                    a: "yaw_des_deg".into(),
+                    b: "yaw_deg".into(),
+                },
+                ..source(Statistic::Rms, Motors::Pooled, "", 3.0)
+            },
         ]
     );
     assert_eq!(
@@ -204,6 +212,8 @@ inputs:
   alone: {mean: {motor: 2}}
   one: {mean: {motor: 1, of: battery_v}}
   both: {mean: {motor: 1, min: motor_margin}}
+  three: {mean: {difference: [roll_deg, pitch_deg, yaw_deg]}}
+  motors: {mean: {difference: [motor_command, motor_margin]}}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);
