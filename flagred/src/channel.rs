@@ -52,12 +52,21 @@ pub enum Statistic {
     /// bins of 0.1 s (of successive samples where they are rarer). White noise has `noise = std`, slow movement 0.
     /// docs/profiles.md defines the bins. The first one has no step before it, and counts with a step of 0.
     Noise,
+    /// The rate of change per second: the slope of the least-squares line through the means of the window's slots, weighted
+    /// by their times.
+    Rate,
 }
 
 impl Statistic {
     /// Whether it is one of means over 0.1 s, and not of samples.
     pub(crate) const fn is_of_bins(self) -> bool {
         matches!(self, Statistic::StdLessNoise | Statistic::Noise)
+    }
+
+    /// Whether it is one of the means of slots, and not of samples.
+    #[cfg(feature = "std")]
+    pub(crate) const fn is_of_slots(self) -> bool {
+        matches!(self, Statistic::Rate)
     }
 }
 

@@ -301,12 +301,22 @@ fn signal(
             input.source.statistic,
             Statistic::ShareBelow(_) | Statistic::ShareAbove(_)
         );
-        let unit = if is_share { "1" } else { unit };
-        let is_unit = known.iter().any(|(_, unit)| normal(unit) == normal(wanted));
-        if is_unit && !unit.is_empty() && normal(wanted) != normal(unit) {
+        let is_rate = input.source.statistic == Statistic::Rate;
+        let unit = match unit {
+            _ if is_share => "1".into(),
+            "" => String::new(),
+            _ if is_rate => format!("{unit}/s").replace("/s/s", "/s2"),
+            _ => unit.to_owned(),
+        };
+        let is_known = |(_, unit): &(&str, &str)| {
+            let unit = normal(unit);
+            normal(wanted) == unit || normal(wanted) == unit + "/s"
+        };
+        if known.iter().any(is_known) && !unit.is_empty() && normal(wanted) != normal(&unit) {
             let message = format!(
-                "input `{}` of the rule set is in `{wanted}`, but `{name}` is in `{unit}`",
-                input.name
+                "input `{}` of the rule set is in `{wanted}`, but {}`{name}` is in `{unit}`",
+                input.name,
+                if is_rate { "the rate of " } else { "" }
             );
             let help = "take a signal of that unit, or write the terms of the input in the unit of the signal";
             return Some(Diagnostic::warning("unit", place, message).help(help));
@@ -352,6 +362,7 @@ fn range(source: &Source) -> Option<(f64, f64)> {
         Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => (0.0, 1.0),
         Statistic::Std | Statistic::StdLessNoise => (0.0, (high - low) / 2.0),
         Statistic::Noise => (0.0, high - low),
+        Statistic::Rate => return None,
         Statistic::Mean | Statistic::Rms | Statistic::Min | Statistic::Max | Statistic::Last => {
             (low, high)
         }

@@ -6,6 +6,8 @@
 
 use crate::moments::Moments;
 
+mod slots;
+
 /// Over how many slots the samples of a window are spread. See [`Window`].
 const SLOTS: usize = 128;
 

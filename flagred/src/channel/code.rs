@@ -16,6 +16,7 @@ impl Statistic {
             Statistic::ShareAbove(limit) => (7, limit),
             Statistic::StdLessNoise => (8, 0.0),
             Statistic::Noise => (9, 0.0),
+            Statistic::Rate => (10, 0.0),
         }
     }
 
@@ -32,6 +33,7 @@ impl Statistic {
             7 => Statistic::ShareAbove(number),
             8 => Statistic::StdLessNoise,
             9 => Statistic::Noise,
+            10 => Statistic::Rate,
             _ => return None,
         })
     }
@@ -140,7 +142,7 @@ mod tests {
                 code
             })
             .collect();
-        assert_eq!(codes, (0..10).collect::<Vec<u32>>());
+        assert_eq!(codes, (0..11).collect::<Vec<u32>>());
         for code in all.clone().chain([u32::MAX]) {
             assert_eq!(Motors::from_code(code).code(), code);
         }

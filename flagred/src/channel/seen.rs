@@ -193,6 +193,7 @@ pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Obs
         Statistic::Last => *last,
         Statistic::StdLessNoise => total.std_less_noise(),
         Statistic::Noise => total.noise(),
+        Statistic::Rate => window.rate(),
     };
     Some(Observation {
         value: value?,

@@ -57,6 +57,7 @@ pub(super) fn fill(
         let Some(channel) = plan.channels.get(*channel) else {
             continue;
         };
+        carried(*statistic)?;
         let (x, within) = script.value(channel, *statistic, &signals);
         let index = input + 1;
         let name = names.get(input).map_or("", String::as_str);
@@ -141,10 +142,24 @@ fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
         Statistic::Noise => ("mean", format!("sqrt({read} / 2)")),
         Statistic::Min => ("lowest", read),
         Statistic::Max => ("highest", read),
-        Statistic::Mean | Statistic::Last | Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => {
-            ("mean", read)
-        }
+        Statistic::Mean
+        | Statistic::Last
+        | Statistic::ShareBelow(_)
+        | Statistic::ShareAbove(_)
+        | Statistic::Rate => ("mean", read),
     }
+}
+
+/// Refuses what a script has no time for: to go through all slots of a window at every call.
+fn carried(statistic: Statistic) -> Result<(), Refused> {
+    let name = match statistic {
+        Statistic::Rate => "rate",
+        _ => return Ok(()),
+    };
+    Err(Refused::new(
+        format!("a script on the autopilot cannot compute the statistic `{name}`"),
+        "it can compute all others; `export --rust` and `--c` carry this one too",
+    ))
 }
 
 /// How the script reads each signal of a profile.

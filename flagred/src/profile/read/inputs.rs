@@ -13,7 +13,7 @@ use crate::{
     source::{Motors, Signal, Source, Statistic},
 };
 
-const STATISTICS: [(&str, Statistic); 8] = [
+const STATISTICS: [(&str, Statistic); 9] = [
     ("mean", Statistic::Mean),
     ("std", Statistic::Std),
     ("rms", Statistic::Rms),
@@ -22,6 +22,7 @@ const STATISTICS: [(&str, Statistic); 8] = [
     ("last", Statistic::Last),
     ("std_less_noise", Statistic::StdLessNoise),
     ("noise", Statistic::Noise),
+    ("rate", Statistic::Rate),
 ];
 
 type Share = fn(f64) -> Statistic;
@@ -105,11 +106,13 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
         }
     };
     let (motors, signal) = signal(observed, &what, found)?;
-    if statistic.is_of_bins() && motors == Motors::Pooled && signal.is_of_motors() {
+    let needs_one = statistic.is_of_bins() || statistic.is_of_slots();
+    if needs_one && motors == Motors::Pooled && signal.is_of_motors() {
         let message = format!("`{key}` needs one value for all motors");
+        let over = if statistic.is_of_bins() { "std" } else { "mean" };
         found.push(
             Diagnostic::error("statistic", behind.span.clone(), message).help(format!(
-                "write for example `{{{key}: {{std: motor_command}}}}`"
+                "write for example `{{{key}: {{{over}: motor_command}}}}`"
             )),
         );
         return None;

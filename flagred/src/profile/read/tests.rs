@@ -42,6 +42,7 @@ inputs:
   h: {mean: command_noise}
   i: {mean: {motor: 3, of: motor_margin}}
   j: {rms: {difference: [yaw_des_deg, yaw_deg]}}
+  k: {rate: battery_v}
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
@@ -112,6 +113,7 @@ verdict:
                 },
                 ..source(Statistic::Rms, Motors::Pooled, "", 3.0)
             },
+            &source(Statistic::Rate, Motors::Pooled, "battery_v", 3.0),
         ]
     );
     assert_eq!(
@@ -214,6 +216,7 @@ inputs:
   both: {mean: {motor: 1, min: motor_margin}}
   three: {mean: {difference: [roll_deg, pitch_deg, yaw_deg]}}
   motors: {mean: {difference: [motor_command, motor_margin]}}
+  pooled: {rate: motor_command}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);
