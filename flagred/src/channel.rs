@@ -55,6 +55,9 @@ pub enum Statistic {
     /// The rate of change per second: the slope of the least-squares line through the means of the window's slots, weighted
     /// by their times.
     Rate,
+    /// The value below which so many percent of the means of the window's slots lie, weighted by their times; of 50 the
+    /// median. docs/profiles.md has the definition.
+    Percentile(f64),
 }
 
 impl Statistic {
@@ -66,7 +69,7 @@ impl Statistic {
     /// Whether it is one of the means of slots, and not of samples.
     #[cfg(feature = "std")]
     pub(crate) const fn is_of_slots(self) -> bool {
-        matches!(self, Statistic::Rate)
+        matches!(self, Statistic::Rate | Statistic::Percentile(_))
     }
 }
 

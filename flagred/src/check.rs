@@ -363,9 +363,12 @@ fn range(source: &Source) -> Option<(f64, f64)> {
         Statistic::Std | Statistic::StdLessNoise => (0.0, (high - low) / 2.0),
         Statistic::Noise => (0.0, high - low),
         Statistic::Rate => return None,
-        Statistic::Mean | Statistic::Rms | Statistic::Min | Statistic::Max | Statistic::Last => {
-            (low, high)
-        }
+        Statistic::Mean
+        | Statistic::Rms
+        | Statistic::Min
+        | Statistic::Max
+        | Statistic::Last
+        | Statistic::Percentile(_) => (low, high),
     };
     high.is_finite().then_some((low, high))
 }

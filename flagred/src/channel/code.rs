@@ -3,7 +3,7 @@
 use super::{Motors, Observed, Statistic, Threshold};
 
 impl Statistic {
-    /// Its code, and the number that belongs to it: a limit, 0 where there is none.
+    /// Its code, and the number that belongs to it: a limit or percents, 0 where there is none.
     pub const fn code(self) -> (u32, f64) {
         match self {
             Statistic::Mean => (0, 0.0),
@@ -17,6 +17,7 @@ impl Statistic {
             Statistic::StdLessNoise => (8, 0.0),
             Statistic::Noise => (9, 0.0),
             Statistic::Rate => (10, 0.0),
+            Statistic::Percentile(percent) => (11, percent),
         }
     }
 
@@ -34,6 +35,7 @@ impl Statistic {
             8 => Statistic::StdLessNoise,
             9 => Statistic::Noise,
             10 => Statistic::Rate,
+            11 => Statistic::Percentile(number),
             _ => return None,
         })
     }
@@ -142,7 +144,7 @@ mod tests {
                 code
             })
             .collect();
-        assert_eq!(codes, (0..11).collect::<Vec<u32>>());
+        assert_eq!(codes, (0..12).collect::<Vec<u32>>());
         for code in all.clone().chain([u32::MAX]) {
             assert_eq!(Motors::from_code(code).code(), code);
         }

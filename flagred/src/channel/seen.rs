@@ -194,6 +194,7 @@ pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Obs
         Statistic::StdLessNoise => total.std_less_noise(),
         Statistic::Noise => total.noise(),
         Statistic::Rate => window.rate(),
+        Statistic::Percentile(percent) => window.percentile(percent),
     };
     Some(Observation {
         value: value?,

@@ -1,6 +1,6 @@
 //! Statistics of the means of a window's slots: at most 130 values, whatever the window's length.
 
-use super::Window;
+use super::{SLOTS, Window};
 
 /// The samples of a slot together.
 #[derive(Debug, Clone, Copy)]
@@ -45,6 +45,40 @@ impl Window {
     }
 }
 
+impl Window {
+    /// The value below which `percent` % of the weight of the slots' means lies, which are sorted for it. Each mean stands at
+    /// the middle of its weight; between two of them the percentile is a straight line, beyond the outer ones it is
+    /// these. `None` in an empty window.
+    pub(crate) fn percentile(&self, percent: f64) -> Option<f64> {
+        let mut sorted = [(0.0, 0.0); SLOTS + 2];
+        let mut count = 0;
+        let mut weight = 0.0;
+        for (place, mean) in sorted.iter_mut().zip(self.means()) {
+            *place = (mean.value, mean.weight);
+            weight += mean.weight;
+            count += 1;
+        }
+        let sorted = sorted.get_mut(..count)?;
+        sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let wanted = weight * percent / 100.0;
+        let mut below = 0.0;
+        let mut before: Option<(f64, f64)> = None;
+        for &(value, weight) in sorted.iter() {
+            let middle = below + weight / 2.0;
+            match before {
+                _ if middle < wanted => {}
+                Some((lower, at)) if middle > at => {
+                    return Some(lower + (value - lower) * ((wanted - at) / (middle - at)));
+                }
+                _ => return Some(value),
+            }
+            below += weight;
+            before = Some((value, middle));
+        }
+        before.map(|(value, _)| value)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,6 +106,35 @@ mod tests {
         assert_eq!(window(2.0, 50.0, 60.0, |_| 0.3).rate(), Some(0.0));
         assert_eq!(window(2.0, 50.0, 0.02, |_| 0.3).rate(), None);
         assert_eq!(Window::new(2.0).rate(), None);
+    }
+
+    fn of(values: &[f64], percent: f64) -> Option<f64> {
+        let mut window = Window::new(values.len() as f64);
+        for (i, value) in (1..).zip(values) {
+            window.push(f64::from(i), 1.0, &Moments::of(*value, 1.0));
+        }
+        window.percentile(percent)
+    }
+
+    #[test]
+    fn percentiles_of_equal_weights_are_those_one_expects() {
+        for (values, percent, expected) in [
+            (&[3.0][..], 50.0, 3.0),
+            (&[5.0, 1.0, 3.0], 50.0, 3.0),
+            (&[5.0, 1.0, 3.0, 11.0], 50.0, 4.0),
+            (&[5.0, 1.0, 3.0, 11.0], 0.0, 1.0),
+            (&[5.0, 1.0, 3.0, 11.0], 12.5, 1.0),
+            (&[5.0, 1.0, 3.0, 11.0], 25.0, 2.0),
+            (&[5.0, 1.0, 3.0, 11.0], 75.0, 8.0),
+            (&[5.0, 1.0, 3.0, 11.0], 100.0, 11.0),
+            (&[2.0, 2.0, 2.0, 2.0], 60.0, 2.0),
+            // One spike moves a median by little, a mean by much.
+            (&[1.0, 1.0, 100.0, 1.0, 1.0], 50.0, 1.0),
+        ] {
+            let found = of(values, percent).unwrap();
+            approx::assert_abs_diff_eq!(found, expected, epsilon = 1e-12);
+        }
+        assert_eq!(of(&[], 50.0), None);
     }
 
     #[test]

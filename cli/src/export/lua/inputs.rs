@@ -146,7 +146,8 @@ fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
         | Statistic::Last
         | Statistic::ShareBelow(_)
         | Statistic::ShareAbove(_)
-        | Statistic::Rate => ("mean", read),
+        | Statistic::Rate
+        | Statistic::Percentile(_) => ("mean", read),
     }
 }
 
@@ -154,11 +155,12 @@ fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
 fn carried(statistic: Statistic) -> Result<(), Refused> {
     let name = match statistic {
         Statistic::Rate => "rate",
+        Statistic::Percentile(_) => "percentile",
         _ => return Ok(()),
     };
     Err(Refused::new(
         format!("a script on the autopilot cannot compute the statistic `{name}`"),
-        "it can compute all others; `export --rust` and `--c` carry this one too",
+        "`export --rust` and `export --c` carry it",
     ))
 }
 

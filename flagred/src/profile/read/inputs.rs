@@ -13,7 +13,7 @@ use crate::{
     source::{Motors, Signal, Source, Statistic},
 };
 
-const STATISTICS: [(&str, Statistic); 9] = [
+const STATISTICS: [(&str, Statistic); 10] = [
     ("mean", Statistic::Mean),
     ("std", Statistic::Std),
     ("rms", Statistic::Rms),
@@ -23,13 +23,16 @@ const STATISTICS: [(&str, Statistic); 9] = [
     ("std_less_noise", Statistic::StdLessNoise),
     ("noise", Statistic::Noise),
     ("rate", Statistic::Rate),
+    ("median", Statistic::Percentile(50.0)),
 ];
 
-type Share = fn(f64) -> Statistic;
+type OfNumber = fn(f64) -> Statistic;
 
-const SHARES: [(&str, Share); 2] = [
+/// The statistics with a number, `{share_below: 0.1, of: SIGNAL}`.
+const WITH_NUMBER: [(&str, OfNumber); 3] = [
     ("share_below", Statistic::ShareBelow),
     ("share_above", Statistic::ShareAbove),
+    ("percentile", Statistic::Percentile),
 ];
 
 const MOTORS: [(&str, Motors); 4] = [
@@ -60,16 +63,16 @@ pub(super) fn inputs(fields: &Fields, window_s: f64, found: &mut Found) -> Vec<P
 fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
     let what = format!("input `{}`", entry.key);
     let statistics = STATISTICS.iter().map(|(name, _)| *name);
-    let shares = SHARES.iter().map(|(name, _)| *name);
+    let with_number = WITH_NUMBER.iter().map(|(name, _)| *name);
     let keys: Vec<&str> = statistics
         .clone()
-        .chain(shares.clone())
+        .chain(with_number.clone())
         .chain(["of", "window_s"])
         .collect();
     let before = found.len();
     let fields = entry.value.fields(&what, &keys, found)?;
     let given: Vec<&str> = statistics
-        .chain(shares)
+        .chain(with_number)
         .filter(|k| fields.get(k).is_some())
         .collect();
     let [key] = given.as_slice() else {
@@ -90,7 +93,7 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
         Some((_, statistic)) => {
             if let Some(stray) = fields.entry("of") {
                 let message =
-                    format!("`of` goes with `share_below` and `share_above`, not with `{key}`");
+                    format!("`of` goes with `share_below`, `share_above` and `percentile`, not with `{key}`");
                 found.push(
                     Diagnostic::error("statistic", stray.key_span.clone(), message)
                         .help(format!("write the signal behind `{key}` alone")),
@@ -99,10 +102,20 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
             (*statistic, behind)
         }
         None => {
-            let limit = behind.finite(&format!("`{key}`"), found)?;
-            let (_, share) = SHARES.iter().find(|(name, _)| name == key)?;
-            let help = format!("name the signal: `{{{key}: {limit}, of: motor_margin}}`");
-            (share(limit), fields.require("of", &help, found)?)
+            let number = behind.finite(&format!("`{key}`"), found)?;
+            let (_, of_number) = WITH_NUMBER.iter().find(|(name, _)| name == key)?;
+            let help = format!("name the signal: `{{{key}: {number}, of: battery_v}}`");
+            let observed = fields.require("of", &help, found)?;
+            let statistic = of_number(number);
+            if matches!(statistic, Statistic::Percentile(_)) && !(0.0..=100.0).contains(&number) {
+                let message = format!("`percentile` is {number}");
+                found.push(
+                    Diagnostic::error("out-of-range", behind.span.clone(), message)
+                        .help("write a number from 0 to 100"),
+                );
+                return None;
+            }
+            (statistic, observed)
         }
     };
     let (motors, signal) = signal(observed, &what, found)?;

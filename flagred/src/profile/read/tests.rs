@@ -43,6 +43,8 @@ inputs:
   i: {mean: {motor: 3, of: motor_margin}}
   j: {rms: {difference: [yaw_des_deg, yaw_deg]}}
   k: {rate: battery_v}
+  l: {percentile: 90, of: {max: motor_command}}
+  m: {median: battery_v, window_s: 8}
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
@@ -114,6 +116,18 @@ verdict:
                 ..source(Statistic::Rms, Motors::Pooled, "", 3.0)
             },
             &source(Statistic::Rate, Motors::Pooled, "battery_v", 3.0),
+            &source(
+                Statistic::Percentile(90.0),
+                Motors::Max,
+                "motor_command",
+                3.0
+            ),
+            &source(
+                Statistic::Percentile(50.0),
+                Motors::Pooled,
+                "battery_v",
+                8.0
+            ),
         ]
     );
     assert_eq!(
@@ -217,6 +231,9 @@ inputs:
   three: {mean: {difference: [roll_deg, pitch_deg, yaw_deg]}}
   motors: {mean: {difference: [motor_command, motor_margin]}}
   pooled: {rate: motor_command}
+  most: {percentile: 101, of: battery_v}
+  whose: {percentile: 90}
+  medians: {median: motor_margin}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);
