@@ -33,6 +33,9 @@ const MOST_RULES: usize = 100_000;
 /// Errors that are told of a model; what follows is not looked at.
 const MOST_FINDINGS: usize = 1000;
 
+/// Products of degrees and distances within a narrower range lose their digits.
+const NARROWEST_RANGE: f64 = 1e-250;
+
 /// More samples than this add no accuracy and make an evaluation hang.
 const MOST_SAMPLES: usize = 10_000_000;
 
@@ -263,6 +266,10 @@ impl<'m> Validator<'m> {
                 message,
                 "write the values that can occur",
             );
+        } else if high - low < NARROWEST_RANGE {
+            let message = format!("the range of {what} is too narrow");
+            let help = "write it in a smaller unit";
+            self.error("wrong-range", here, message, help);
         }
     }
 

@@ -8,7 +8,7 @@ use crate::table::operators::{larger, smaller};
 use curves::Curves;
 use maxima::{Highest, Maxima};
 pub(crate) use partition::Partition;
-use piece::{Integrals, Piece};
+use piece::{Integrals, Piece, unit};
 use polyline::{Polylines, Workspace};
 use weighted::Consequents;
 
@@ -143,7 +143,13 @@ impl Defuzzify {
                     Some(Method::Moments(compiled.moments(terms)))
                 }
                 (Method::Lines(lines), Implication::Minimum, Aggregation::Maximum) => {
-                    Partition::new(lines, terms, compiled.middle()).map(Method::Partition)
+                    Partition::new(
+                        lines,
+                        terms,
+                        compiled.middle(),
+                        unit(compiled.high - compiled.low),
+                    )
+                    .map(Method::Partition)
                 }
                 _ => None,
             };
@@ -253,7 +259,8 @@ impl Defuzzify {
             Defuzzifier::Bisector => {
                 let mut whole = self.integrals();
                 self.pieces(strengths, workspace, &mut |piece| whole.add(piece));
-                let half = 0.5 * whole.area;
+                let unit = unit(self.high - self.low);
+                let half = 0.5 * whole.area * unit;
                 let mut sum = 0.0;
                 let mut bisector = None;
                 self.pieces(strengths, workspace, &mut |piece| {
@@ -281,7 +288,7 @@ impl Defuzzify {
     }
 
     fn integrals(&self) -> Integrals {
-        Integrals::about(self.middle())
+        Integrals::about(self.middle(), unit(self.high - self.low))
     }
 
     fn pieces(
@@ -301,3 +308,6 @@ impl Defuzzify {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -62,9 +62,9 @@ impl OwnedTable {
         } else {
             let mut sorted = plain;
             sorted.sort_by_key(|(literals, _)| *literals);
-            self.node(&sorted, 0);
+            let (_, most_open) = self.node(&sorted, 0);
             self.conjunctions = Conjunctions::Trie;
-            self.sizes.partial = self.edges.len() as u32 + 1;
+            self.sizes.partial = most_open.max(1);
         }
     }
 
@@ -180,8 +180,9 @@ impl OwnedTable {
         Some(())
     }
 
-    /// Adds the node of a trie for rules that share their first `depth` literals, and returns its index.
-    fn node(&mut self, rules: &[Plain<'_>], depth: usize) -> u32 {
+    /// Adds the node of a trie for rules that share their first `depth` literals. Returns its index, and the most nodes that
+    /// wait at once while it is walked: its children, of which the last is walked first, or fewer of them and those below.
+    fn node(&mut self, rules: &[Plain<'_>], depth: usize) -> (u32, u32) {
         let node = self.nodes.len();
         self.nodes.push(Node::default());
         let ended = rules
@@ -196,9 +197,11 @@ impl OwnedTable {
         let end_action = self.actions.len() as u32;
         let next = |rule: &Plain<'_>| rule.0.get(depth).copied();
         let mut children = Vec::new();
+        let mut most_open = 0;
         for group in further.chunk_by(|a, b| next(a) == next(b)) {
             if let Some(literal) = group.first().and_then(next) {
-                let node = self.node(group, depth + 1);
+                let (node, below) = self.node(group, depth + 1);
+                most_open = most_open.max(children.len() as u32 + below.max(1));
                 children.push(Edge { literal, node });
             }
         }
@@ -210,6 +213,6 @@ impl OwnedTable {
             first_action,
             end_action,
         };
-        node as u32
+        (node as u32, most_open)
     }
 }

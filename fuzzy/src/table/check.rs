@@ -195,10 +195,7 @@ impl Table<'_> {
                 )?;
             }
         }
-        require(
-            !self.nodes.is_empty() && self.sizes.partial as usize > self.edges.len(),
-            "nodes",
-        )
+        require(!self.nodes.is_empty() && self.sizes.partial > 0, "nodes")
     }
 
     /// The bounds in `lines` of the intervals of an input.

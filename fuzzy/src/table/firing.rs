@@ -396,8 +396,11 @@ fn fire_trie<A: Arrays>(
         firing.act(&table.actions()[range], degree);
         for edge in &table.edges()[node.first_edge as usize..node.end_edge as usize] {
             let both = and(degree, degrees[edge.literal as usize]);
-            if both > 0.0 {
-                path[open] = Partial {
+            // In a damaged table there may be no room.
+            if both > 0.0
+                && let Some(next) = path.get_mut(open)
+            {
+                *next = Partial {
                     degree: both,
                     at: edge.node,
                 };
