@@ -71,6 +71,10 @@ pub(crate) fn is_of_limits(
             _ => true,
         };
         let of = channel.observed;
-        is_meant && matches!(of, Observed::Margin | Observed::LowSide | Observed::HighSide)
+        is_meant
+            && matches!(
+                of,
+                Observed::Margin | Observed::LowSide | Observed::HighSide
+            )
     })
 }

@@ -4,8 +4,8 @@
 mod code;
 mod seen;
 
+pub(crate) use seen::{Now, push, restart, value};
 pub use seen::{Observation, Seen};
-pub(crate) use seen::{Now, push, value};
 
 /// A statistic over time.
 ///
@@ -15,7 +15,7 @@ pub(crate) use seen::{Now, push, value};
 /// use flagred::channel::Statistic;
 ///
 /// let of = |statistic| -> Result<f64, String> {
-///     # let wind = Source { statistic, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 1.0 };
+///     # let wind = Source { statistic, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 1.0, exponential: false };
 ///     # let craft = flagred::monitor::Craft::new(1).with_signals(&["wind_m_s"]);
 ///     # let mut observer = Observer::new([&wind], craft)?;
 ///     # for i in 1..=8 { observer.push(f64::from(i) * 0.125, 0.125, &[], &[if i <= 4 { 2.0 } else { 4.0 }]); }
@@ -66,6 +66,18 @@ impl Statistic {
         matches!(self, Statistic::StdLessNoise | Statistic::Noise)
     }
 
+    /// Whether it can be taken over an exponential window.
+    pub(crate) const fn is_of_weights(self) -> bool {
+        matches!(
+            self,
+            Statistic::Mean
+                | Statistic::Std
+                | Statistic::Rms
+                | Statistic::ShareBelow(_)
+                | Statistic::ShareAbove(_)
+        )
+    }
+
     /// Whether it is one of the means of slots, and not of samples.
     #[cfg(feature = "std")]
     pub(crate) const fn is_of_slots(self) -> bool {
@@ -81,7 +93,7 @@ impl Statistic {
 /// use flagred::channel::{Motors, Statistic};
 ///
 /// let of = |statistic, motors| -> Result<f64, String> {
-///     # let source = Source { statistic, motors, signal: Signal::MotorCommand, window_s: 1.0 };
+///     # let source = Source { statistic, motors, signal: Signal::MotorCommand, window_s: 1.0, exponential: false };
 ///     # let mut observer = Observer::new([&source], flagred::monitor::Craft::new(2))?;
 ///     # for i in 1..=8 { observer.push(f64::from(i) * 0.125, 0.125, &[0.25, 0.75], &[]); }
 ///     let observed = observer.value(0).ok_or("nothing observed")?;
@@ -142,7 +154,11 @@ pub enum Observed {
 /// A difference of angles, the short way around, in [-180, 180).
 pub(crate) fn short_way_deg(difference_deg: f64) -> f64 {
     let short_deg = libm::remainder(difference_deg, 360.0);
-    if short_deg == 180.0 { -180.0 } else { short_deg }
+    if short_deg == 180.0 {
+        -180.0
+    } else {
+        short_deg
+    }
 }
 
 /// The values that count, where a share of time is asked for.
@@ -177,7 +193,7 @@ pub enum Threshold {
 ///
 /// let plan = estimator.plan()?;
 /// assert_eq!(plan.inputs[1], Input { channel: 1, statistic: Statistic::Std });
-/// let spread = Channel { observed: Observed::Command, motors: Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 };
+/// let spread = Channel { observed: Observed::Command, motors: Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false };
 /// assert_eq!(plan.channels[1], spread);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -193,6 +209,8 @@ pub struct Channel {
     pub in_bins: bool,
     /// Over how many seconds.
     pub window_s: f64,
+    /// Whether the window is an exponential one, and `window_s` its time constant.
+    pub exponential: bool,
 }
 
 /// The number of motors that a craft needs so that every motor that channels name is there.

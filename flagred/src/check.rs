@@ -354,9 +354,7 @@ fn range(source: &Source) -> Option<(f64, f64)> {
     let width = high - low;
     let (low, high) = match source.motors {
         Motors::Std => (0.0, width / 2.0),
-        Motors::Pooled | Motors::Mean | Motors::Min | Motors::Max | Motors::One(_) => {
-            (low, high)
-        }
+        Motors::Pooled | Motors::Mean | Motors::Min | Motors::Max | Motors::One(_) => (low, high),
     };
     let (low, high) = match source.statistic {
         Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => (0.0, 1.0),

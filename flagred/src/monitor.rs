@@ -3,7 +3,7 @@
 use alloc::{format, string::String, vec, vec::Vec};
 
 use crate::{
-    channel::{Channel, Input, Seen, motors_needed},
+    channel::{Channel, Input, Seen, motors_needed, restart},
     estimator::{Estimator, Memory},
     follower::{Follower, Room, reading},
     motor::{Motor, set_geometry},
@@ -136,6 +136,7 @@ impl Monitor {
             motors: Motors::Pooled,
             signal,
             window_s: profile.window_s,
+            exponential: false,
         });
         let sources = profile.inputs.iter().map(|input| &input.source);
         let (channels, inputs) = channels(sources.chain(&always), craft.signals)
@@ -145,14 +146,15 @@ impl Monitor {
             let motors = craft.motors;
             return Err(MonitorError::FewMotors { motor, motors });
         }
-        let seen = channels.iter().map(|channel| Seen::new(channel.window_s));
         let mut motors = vec![Motor::UNKNOWN; craft.motors];
         set_geometry(&mut motors, craft.geometry);
+        let mut seen = vec![Seen::IDLE; channels.len()];
+        restart(&channels, &mut seen);
         Ok(Monitor {
             memory: Memory::of(estimator),
             room: OwnRoom {
                 risks: Window::new(profile.elevated_risk.window_s),
-                seen: seen.collect(),
+                seen,
                 inputs: vec![f64::NAN; profile.inputs.len()],
                 motors,
             },
@@ -222,7 +224,13 @@ impl Monitor {
 
     fn reading(&self, input: usize) -> Option<f64> {
         let sampling = &self.follower.settings().sampling;
-        reading(&self.inputs, &self.room.seen, sampling, input).ok()
+        reading(
+            (&self.channels, &self.inputs),
+            &self.room.seen,
+            sampling,
+            input,
+        )
+        .ok()
     }
 }
 

@@ -4,7 +4,7 @@ use alloc::{string::String, vec, vec::Vec};
 
 pub use crate::channel::{Motors, Observation, Statistic};
 use crate::{
-    channel::{Channel, Input, Now, Observed, Seen, Threshold, push, value},
+    channel::{Channel, Input, Now, Observed, Seen, Threshold, push, restart, value},
     craft::Craft,
     motor::{Bin, Motor, clear, set_geometry, take},
 };
@@ -117,6 +117,7 @@ impl Signal {
 ///     motors: Motors::Min,
 ///     signal: Signal::MotorMargin,
 ///     window_s: 5.0,
+///     exponential: false,
 /// };
 /// assert_eq!(text.parse::<Profile>()?.inputs[0].source, lowest);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -129,8 +130,10 @@ pub struct Source {
     pub motors: Motors,
     /// What is observed.
     pub signal: Signal,
-    /// Over how many seconds.
+    /// Over how many seconds; of an exponential window its time constant.
     pub window_s: f64,
+    /// Whether all values count with weights that fall by their age, `exp(-age / window_s)`, and not alike for `window_s`.
+    pub exponential: bool,
 }
 
 /// The windows that a number of sources need, each window shared by those that look at the same thing.
@@ -145,6 +148,7 @@ pub struct Source {
 ///     motors: Motors::Pooled,
 ///     signal: Signal::named("motor_margin"),
 ///     window_s: 1.0,
+///     exponential: false,
 /// };
 /// let mut observer = Observer::new([&margin], Craft::new(2))?;
 /// for i in 1..=20 {
@@ -175,11 +179,12 @@ impl Observer {
         craft: Craft<'_>,
     ) -> Result<Observer, String> {
         let (channels, inputs) = channels(sources, craft.signals)?;
-        let seen = channels.iter().map(|channel| Seen::new(channel.window_s));
+        let mut seen = vec![Seen::IDLE; channels.len()];
+        restart(&channels, &mut seen);
         let mut motors = vec![Motor::UNKNOWN; craft.motors];
         set_geometry(&mut motors, craft.geometry);
         Ok(Observer {
-            seen: seen.collect(),
+            seen,
             inputs,
             channels,
             motors,
@@ -211,7 +216,7 @@ impl Observer {
 
     /// The value of a source, by its index; `None` where nothing is known.
     pub fn value(&self, input: usize) -> Option<Observation> {
-        value(&self.inputs, &self.seen, input)
+        value((&self.channels, &self.inputs), &self.seen, input)
     }
 }
 
@@ -261,6 +266,7 @@ pub(crate) fn channels<'a>(
             },
             in_bins: source.statistic.is_of_bins(),
             window_s: source.window_s,
+            exponential: source.exponential,
         };
         let same = channels.iter().position(|known| *known == channel);
         inputs.push(Input {
@@ -288,6 +294,7 @@ mod tests {
             motors,
             signal: Signal::named(signal),
             window_s: 1.0,
+            exponential: false,
         }
     }
 
@@ -319,7 +326,12 @@ mod tests {
             (Statistic::Mean, Motors::Min, "motor_margin_high_side", 0.2),
             (Statistic::Mean, Motors::One(0), "motor_command", 0.3),
             (Statistic::Max, Motors::One(1), "motor_margin", 0.4),
-            (Statistic::ShareAbove(0.3), Motors::One(0), "motor_command", 0.5),
+            (
+                Statistic::ShareAbove(0.3),
+                Motors::One(0),
+                "motor_command",
+                0.5,
+            ),
             (Statistic::Min, Motors::Pooled, "motor_margin", 0.0),
             (Statistic::Max, Motors::Mean, "motor_command", 0.7),
             (Statistic::Mean, Motors::Std, "motor_command", 0.25),
@@ -405,7 +417,10 @@ mod tests {
             observer.push(1.1, 0.1, &[], &[f64::NAN, b, a, f64::NAN]);
             assert_eq!(observer.value(0), None);
         }
-        assert_eq!(Observer::new(&sources, craft(&names[..3])).unwrap_err(), "wind_m_s");
+        assert_eq!(
+            Observer::new(&sources, craft(&names[..3])).unwrap_err(),
+            "wind_m_s"
+        );
     }
 
     #[test]

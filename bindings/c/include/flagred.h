@@ -248,7 +248,7 @@ typedef struct flagred_coefficient {
 
 typedef struct flagred_channel {
     double window_s, limit;
-    uint32_t observed, indices[2], motors, threshold, in_bins;
+    uint32_t observed, indices[2], motors, threshold, in_bins, exponential;
 } flagred_channel;
 
 /* Which input a rule is about. */

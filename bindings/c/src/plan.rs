@@ -66,6 +66,7 @@ struct CChannel {
     motors: u32,
     threshold: u32,
     in_bins: u32,
+    exponential: u32,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -309,6 +310,7 @@ impl CChannel {
                 threshold: channel::Threshold::from_code(self.threshold, self.limit)?,
                 in_bins: self.in_bins != 0,
                 window_s: self.window_s,
+                exponential: self.exponential != 0,
             })
         };
         known().ok_or(Status::DamagedPlan)

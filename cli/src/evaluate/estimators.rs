@@ -55,7 +55,11 @@ impl Estimators {
         let profiles = self.profiles.iter();
         let mut names: Vec<&str> = profiles
             .flat_map(|profile| profile.estimator.profile().signals())
-            .chain(self.baselines.iter().flat_map(|b| b.source.signal.carried()))
+            .chain(
+                self.baselines
+                    .iter()
+                    .flat_map(|b| b.source.signal.carried()),
+            )
             .collect();
         names.sort_unstable();
         names.dedup();

@@ -196,11 +196,12 @@ fn channel(channel: &Channel) -> String {
     let (observed, [first, second]) = channel.observed.code();
     let (threshold, limit) = Threshold::code(channel.threshold);
     format!(
-        "{{{}, {}, {observed}, {{{first}, {second}}}, {}, {threshold}, {}}}",
+        "{{{}, {}, {observed}, {{{first}, {second}}}, {}, {threshold}, {}, {}}}",
         number(channel.window_s),
         number(limit),
         channel.motors.code(),
-        u32::from(channel.in_bins)
+        u32::from(channel.in_bins),
+        u32::from(channel.exponential)
     )
 }
 

@@ -113,6 +113,7 @@ fn channel(channel: &Channel) -> String {
         threshold,
         in_bins,
         window_s,
+        exponential,
     } = channel;
     let threshold = match threshold {
         None => "None".to_owned(),
@@ -121,7 +122,8 @@ fn channel(channel: &Channel) -> String {
     };
     format!(
         "channel::Channel {{ observed: channel::Observed::{observed:?}, motors: channel::Motors::{motors:?}, \
-         threshold: {threshold}, in_bins: {in_bins}, window_s: {window_s:?} }}"
+         threshold: {threshold}, in_bins: {in_bins}, window_s: {window_s:?}, \
+         exponential: {exponential} }}"
     )
 }
 

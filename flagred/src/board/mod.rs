@@ -29,7 +29,7 @@ use fuzzy::table::{Damaged, Outcome, Scratch, Table};
 
 use crate::{
     cause::{Cause, cause},
-    channel::{Channel, Input, Observed, Seen, motors_needed},
+    channel::{Channel, Input, Observed, Seen, motors_needed, restart},
     effort::ROLL_PITCH_YAW_THRUST,
     follower::{Follower, Room, Settings},
     gap::FilledKnots,
@@ -125,7 +125,10 @@ impl Plan<'_> {
         require(
             self.inputs.iter().all(|input| {
                 let channel = self.channels.get(input.channel);
-                channel.is_some_and(|channel| channel.in_bins == input.statistic.is_of_bins())
+                channel.is_some_and(|channel| {
+                    channel.in_bins == input.statistic.is_of_bins()
+                        && (!channel.exponential || input.statistic.is_of_weights())
+                })
             }),
             "inputs of the profile",
         )?;
@@ -221,9 +224,7 @@ impl<'a> Monitor<'a> {
             return Err(Refused::NoMotors);
         }
         let monitor = Monitor::divide(plan, memory).ok_or(Refused::Memory)?;
-        for (seen, channel) in monitor.seen.iter_mut().zip(plan.channels) {
-            seen.restart(channel.window_s);
-        }
+        restart(plan.channels, monitor.seen);
         let window_s = plan.settings.elevated_risk.window_s;
         monitor.risks.restart(window_s);
         monitor.motors.fill(Motor::UNKNOWN);

@@ -136,7 +136,9 @@ mod tests {
     #[test]
     fn codes_are_read_back() {
         let all = 0..1000;
-        let statistics = all.clone().map_while(|code| Statistic::from_code(code, 0.25));
+        let statistics = all
+            .clone()
+            .map_while(|code| Statistic::from_code(code, 0.25));
         let codes: Vec<u32> = statistics
             .map(|statistic| {
                 let (code, number) = statistic.code();
@@ -157,7 +159,11 @@ mod tests {
             })
             .collect();
         assert_eq!(codes, (0..10).collect::<Vec<u32>>());
-        for threshold in [None, Some(Threshold::Below(0.5)), Some(Threshold::Above(2.0))] {
+        for threshold in [
+            None,
+            Some(Threshold::Below(0.5)),
+            Some(Threshold::Above(2.0)),
+        ] {
             let (code, limit) = Threshold::code(threshold);
             assert_eq!(Threshold::from_code(code, limit), Some(threshold));
         }

@@ -2,6 +2,7 @@
 
 use super::{Channel, Input, Motors, Observed, Statistic, Threshold, short_way_deg};
 use crate::{
+    exponential::Exponential,
     margin::margin,
     moments::Moments,
     motor::{BIN_S, Motor, Together, bin_of},
@@ -12,6 +13,8 @@ use crate::{
 #[derive(Debug, Clone)]
 pub struct Seen {
     window: Window,
+    /// In place of the window.
+    exponential: Exponential,
     /// The latest value; over motors, their mean.
     last: Option<f64>,
     bin: Bin,
@@ -61,32 +64,25 @@ impl Bin {
 }
 
 impl Seen {
-    /// Nothing yet, over a window of so many seconds.
-    #[cfg(feature = "std")]
-    pub(crate) const fn new(window_s: f64) -> Seen {
-        Seen {
-            window: Window::new(window_s),
-            last: None,
-            bin: Bin::EMPTY,
-        }
-    }
-
     /// Memory for what a channel sees, all zeros; see [`Window::IDLE`].
     pub const IDLE: Seen = Seen {
         window: Window::IDLE,
+        exponential: Exponential::IDLE,
         last: None,
         bin: Bin::IDLE,
     };
 
     /// Nothing yet, over a window of so many seconds, where it is.
-    pub(crate) fn restart(&mut self, window_s: f64) {
+    fn restart(&mut self, window_s: f64) {
         self.window.restart(window_s);
+        self.exponential = Exponential::new(window_s);
         self.clear_latest();
     }
 
     /// Forgets everything.
     pub(crate) fn clear(&mut self) {
         self.window.clear();
+        self.exponential.clear();
         self.clear_latest();
     }
 
@@ -120,6 +116,13 @@ impl Seen {
             self.bin.held_s += held_s;
             self.bin.end_s = t_s;
         }
+    }
+}
+
+/// Nothing seen yet by any channel, whatever the memory held.
+pub(crate) fn restart(channels: &[Channel], seen: &mut [Seen]) {
+    for (channel, seen) in channels.iter().zip(seen) {
+        seen.restart(channel.window_s);
     }
 }
 
@@ -161,7 +164,9 @@ pub(crate) fn push(
             Observed::CommandNoise => held_s.max(BIN_S),
             _ => held_s,
         };
-        if channel.in_bins {
+        if channel.exponential {
+            seen.exponential.push(t_s, held_s, &now);
+        } else if channel.in_bins {
             seen.push_into_bin(bin, (t_s, held_s), now.mean());
         } else if now.weight() > 0.0 {
             // A sample weighs its time, however many motors it knows.
@@ -174,11 +179,23 @@ pub(crate) fn push(
 }
 
 /// The value of an input, and how much of its window is behind it; `None` where nothing is known.
-pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Observation> {
+pub(crate) fn value(
+    (channels, inputs): (&[Channel], &[Input]),
+    seen: &[Seen],
+    input: usize,
+) -> Option<Observation> {
     let Input { channel, statistic } = *inputs.get(input)?;
-    let Seen { window, last, bin } = seen.get(channel)?;
-    let mut total = window.total();
-    let mut samples = window.samples();
+    let Seen {
+        window,
+        exponential,
+        last,
+        bin,
+    } = seen.get(channel)?;
+    let is_exponential = channels.get(channel)?.exponential;
+    let (mut total, mut samples) = match is_exponential {
+        true => (exponential.total(), exponential.samples()),
+        false => (window.total(), window.samples()),
+    };
     if statistic.is_of_bins() {
         let latest = bin.moments();
         samples += u32::from(latest.weight() > 0.0);
@@ -202,7 +219,10 @@ pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Obs
             Statistic::Last => None,
             _ => Some(samples),
         },
-        covered_s: total.weight(),
+        covered_s: match is_exponential {
+            true => exponential.covered_s(),
+            false => total.weight(),
+        },
         window_s: window.length_s(),
     })
 }
@@ -213,7 +233,7 @@ pub(crate) fn value(inputs: &[Input], seen: &[Seen], input: usize) -> Option<Obs
 /// ```
 /// use flagred::{monitor::Craft, source::{Motors, Observation, Observer, Signal, Source, Statistic}};
 ///
-/// let load = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorCommand, window_s: 5.0 };
+/// let load = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorCommand, window_s: 5.0, exponential: false };
 /// let mut observer = Observer::new([&load], Craft::new(4))?;
 /// for i in 1..=4 {
 ///     observer.push(f64::from(i) * 0.25, 0.25, &[0.5; 4], &[]);

@@ -114,7 +114,10 @@ fn what_does_not_fit_is_told_at_its_place() {
             "{last: battery_remaining_pct}",
             "{share_above: 5, of: {difference: [roll_des_deg, roll_deg]}}",
         ),
-        ("{last: battery_remaining_pct}", "{rate: battery_remaining_pct}"),
+        (
+            "{last: battery_remaining_pct}",
+            "{rate: battery_remaining_pct}",
+        ),
         ("range: [0, 0.5]", "range: [0, 50]"),
     ];
     let shown: Vec<String> = cases

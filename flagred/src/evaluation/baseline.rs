@@ -62,6 +62,7 @@ impl Baseline {
             motors,
             signal,
             window_s,
+            exponential: false,
         };
         let of_motors = |statistic, motors, signal| over(WINDOW_S, statistic, motors, signal);
         let of_each = |statistic, signal| over(SHORT_WINDOW_S, statistic, Motors::Pooled, signal);

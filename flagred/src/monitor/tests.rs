@@ -66,6 +66,7 @@ fn profile() -> Profile {
         motors: Motors::Pooled,
         signal: Signal::named(signal),
         window_s: 2.0,
+        exponential: false,
     };
     Profile {
         name: "test".into(),

@@ -71,7 +71,7 @@ pub struct Profile {
 /// use flagred::source::{Motors, Signal, Source, Statistic};
 ///
 /// let text = "flagred: 1\nname: windy\nrules: my.yaml\ninputs: {wind: {last: wind_m_s}}";
-/// let source = Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 2.0 };
+/// let source = Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 2.0, exponential: false };
 /// assert_eq!(text.parse::<Profile>()?.inputs, [ProfileInput { name: "wind".into(), source }]);
 /// # Ok::<(), fuzzy::diagnostic::Findings>(())
 /// ```

@@ -193,6 +193,7 @@ fn channel(channel: &Channel) -> CChannel {
         motors: channel.motors.code(),
         threshold,
         in_bins: channel.in_bins.into(),
+        exponential: channel.exponential.into(),
     }
 }
 

@@ -57,7 +57,7 @@ pub(super) fn fill(
         let Some(channel) = plan.channels.get(*channel) else {
             continue;
         };
-        carried(*statistic)?;
+        carried(channel, *statistic)?;
         let (x, within) = script.value(channel, *statistic, &signals);
         let index = input + 1;
         let name = names.get(input).map_or("", String::as_str);
@@ -151,16 +151,17 @@ fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
     }
 }
 
-/// Refuses what a script has no time for: to go through all slots of a window at every call.
-fn carried(statistic: Statistic) -> Result<(), Refused> {
-    let name = match statistic {
-        Statistic::Rate => "rate",
-        Statistic::Percentile(_) => "percentile",
+/// Refuses what a script has no time for, to go through all slots of a window at every call, and what it does not have.
+fn carried(channel: &Channel, statistic: Statistic) -> Result<(), Refused> {
+    let what = match statistic {
+        Statistic::Rate => "the statistic `rate`",
+        Statistic::Percentile(_) => "the statistics `median` and `percentile`",
+        _ if channel.exponential => "windows with a `time_constant_s`",
         _ => return Ok(()),
     };
     Err(Refused::new(
-        format!("a script on the autopilot cannot compute the statistic `{name}`"),
-        "`export --rust` and `export --c` carry it",
+        format!("a script on the autopilot cannot compute {what}"),
+        "`export --rust` and `export --c` carry them",
     ))
 }
 

@@ -67,7 +67,7 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
     let keys: Vec<&str> = statistics
         .clone()
         .chain(with_number.clone())
-        .chain(["of", "window_s"])
+        .chain(["of", "window_s", "time_constant_s"])
         .collect();
     let before = found.len();
     let fields = entry.value.fields(&what, &keys, found)?;
@@ -92,8 +92,9 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
     let (statistic, observed) = match plain {
         Some((_, statistic)) => {
             if let Some(stray) = fields.entry("of") {
-                let message =
-                    format!("`of` goes with `share_below`, `share_above` and `percentile`, not with `{key}`");
+                let message = format!(
+                    "`of` goes with `share_below`, `share_above` and `percentile`, not with `{key}`"
+                );
                 found.push(
                     Diagnostic::error("statistic", stray.key_span.clone(), message)
                         .help(format!("write the signal behind `{key}` alone")),
@@ -119,10 +120,30 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
         }
     };
     let (motors, signal) = signal(observed, &what, found)?;
+    let exponential = fields.entry("time_constant_s");
+    if let Some(entry) = exponential {
+        let mistake = if fields.get("window_s").is_some() {
+            Some("either `window_s` or `time_constant_s`, not both".into())
+        } else if !statistic.is_of_weights() {
+            Some(format!("`time_constant_s` does not go with `{key}`"))
+        } else {
+            None
+        };
+        if let Some(mistake) = mistake {
+            let help = "all values count in `mean`, `std`, `rms` and shares of time, with weights that fall by their age: \
+                        `{mean: motor_command, time_constant_s: 5}`";
+            found.push(Diagnostic::error("window", entry.key_span.clone(), mistake).help(help));
+            return None;
+        }
+    }
     let needs_one = statistic.is_of_bins() || statistic.is_of_slots();
     if needs_one && motors == Motors::Pooled && signal.is_of_motors() {
         let message = format!("`{key}` needs one value for all motors");
-        let over = if statistic.is_of_bins() { "std" } else { "mean" };
+        let over = if statistic.is_of_bins() {
+            "std"
+        } else {
+            "mean"
+        };
         found.push(
             Diagnostic::error("statistic", behind.span.clone(), message).help(format!(
                 "write for example `{{{key}: {{{over}: motor_command}}}}`"
@@ -134,7 +155,8 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
         statistic,
         motors,
         signal,
-        window_s,
+        window_s: number(&fields, "time_constant_s", window_s, Least::Above0, found),
+        exponential: exponential.is_some(),
     })
 }
 
@@ -170,7 +192,9 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         }
         _ => {
             if found.len() == before {
-                let message = format!("{over} is one of `mean`, `std`, `min`, `max`, `motor` and `difference`");
+                let message = format!(
+                    "{over} is one of `mean`, `std`, `min`, `max`, `motor` and `difference`"
+                );
                 found.push(
                     Diagnostic::error("statistic", node.span.clone(), message).help(
                         "write for example `{min: motor_margin}` or `{motor: 1, of: motor_margin}`",

@@ -45,6 +45,7 @@ inputs:
   k: {rate: battery_v}
   l: {percentile: 90, of: {max: motor_command}}
   m: {median: battery_v, window_s: 8}
+  n: {mean: battery_v, time_constant_s: 7}
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
@@ -79,6 +80,7 @@ verdict:
         motors,
         signal: Signal::named(signal),
         window_s,
+        exponential: false,
     };
     let sources: Vec<&Source> = profile.inputs.iter().map(|i| &i.source).collect();
     assert_eq!(
@@ -128,6 +130,10 @@ verdict:
                 "battery_v",
                 8.0
             ),
+            &Source {
+                exponential: true,
+                ..source(Statistic::Mean, Motors::Pooled, "battery_v", 7.0)
+            },
         ]
     );
     assert_eq!(
@@ -234,6 +240,9 @@ inputs:
   most: {percentile: 101, of: battery_v}
   whose: {percentile: 90}
   medians: {median: motor_margin}
+  two: {mean: battery_v, window_s: 1, time_constant_s: 5}
+  weightless: {max: battery_v, time_constant_s: 5}
+  constant: {mean: battery_v, time_constant_s: 0}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);
