@@ -216,7 +216,8 @@ typedef struct flagred_action {
 } flagred_action;
 
 typedef struct flagred_program {
-    uint32_t first_step, end_step, first_action, end_action;
+    double weight;
+    uint32_t first_step, end_step, first_action, end_action, first_hedge, end_hedge;
 } flagred_program;
 
 typedef struct flagred_step {
