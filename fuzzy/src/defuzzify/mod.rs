@@ -2,7 +2,9 @@
 
 use alloc::vec::Vec;
 
-use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Sampling, Variable};
+use crate::model::{
+    Aggregation, Defuzzifier, Implication, Operators, Output, Sampling, Term, Variable,
+};
 use crate::table::Moment;
 use crate::table::operators::{larger, smaller};
 use curves::Curves;
@@ -81,14 +83,16 @@ pub(crate) enum Method {
     Moments(Vec<Moment>),
     /// Takagi-Sugeno.
     Weighted(Consequents),
+    /// Tsukamoto, with monotone terms.
+    Places(Vec<Term>),
 }
 
 impl Merging {
     pub(crate) fn of(defuzzifier: Defuzzifier, operators: Operators) -> Self {
         use Aggregation::{BoundedSum, Maximum, Sum};
-        let weighted = defuzzifier.is_weighted();
         match (operators.aggregation, operators.implication) {
-            _ if weighted => Merging::Sum,
+            _ if defuzzifier.takes_numbers() => Merging::Sum,
+            _ if defuzzifier == Defuzzifier::Tsukamoto => Merging::Apart,
             (Maximum, _) => Merging::Largest,
             (Sum | BoundedSum, Implication::Product) => Merging::Sum,
             _ => Merging::Apart,
@@ -97,12 +101,17 @@ impl Merging {
 }
 
 impl Defuzzifier {
-    /// Whether it takes Takagi-Sugeno consequents rather than fuzzy sets.
-    pub(crate) fn is_weighted(self) -> bool {
+    /// Whether its terms are numbers and functions, as Takagi-Sugeno consequents are, rather than fuzzy sets.
+    pub(crate) fn takes_numbers(self) -> bool {
         matches!(
             self,
             Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
         )
+    }
+
+    /// Whether it weighs numbers, one for each rule: Takagi-Sugeno or Tsukamoto.
+    pub(crate) fn is_weighted(self) -> bool {
+        self.takes_numbers() || self == Defuzzifier::Tsukamoto
     }
 }
 
@@ -116,7 +125,7 @@ impl Method {
         if let Some(sampling) = output.samples {
             return Method::Sampled(sampling, Curves::new(terms, low, high));
         }
-        let lines = Polylines::new(terms, low, high);
+        let lines = Polylines::new(terms, low, high).filter(|_| Polylines::can(joint));
         if output.defuzzifier == Defuzzifier::Centroid
             && joint.implication == Implication::Minimum
             && joint.aggregation == Aggregation::Maximum
@@ -162,12 +171,8 @@ impl Defuzzify {
         }
     }
 
-    /// Compiles a Takagi-Sugeno output.
-    pub(crate) fn weighted(
-        output: &Output,
-        operators: Operators,
-        consequents: Consequents,
-    ) -> Self {
+    /// Compiles a Takagi-Sugeno or Tsukamoto output.
+    pub(crate) fn weighted(output: &Output, operators: Operators, method: Method) -> Self {
         Defuzzify {
             low: output.variable.low,
             high: output.variable.high,
@@ -176,7 +181,7 @@ impl Defuzzify {
                 implication: operators.implication,
                 aggregation: operators.aggregation,
             },
-            method: Method::Weighted(consequents),
+            method,
         }
     }
 
@@ -211,7 +216,7 @@ impl Defuzzify {
             Method::Partition(partition) => partition.is_empty(term),
             Method::Prepared(prepared) => prepared.is_empty(term),
             Method::Moments(moments) => moments.get(term).is_none_or(|m| m.area <= 0.0),
-            Method::Weighted(_) => false,
+            Method::Weighted(_) | Method::Places(_) => false,
         }
     }
 
@@ -229,7 +234,8 @@ impl Defuzzify {
             Method::Partition(_)
             | Method::Prepared(_)
             | Method::Moments(_)
-            | Method::Weighted(_) => None,
+            | Method::Weighted(_)
+            | Method::Places(_) => None,
         }?;
         Some(larger(self.low, smaller(self.high, value)))
     }
@@ -297,7 +303,8 @@ impl Defuzzify {
             | Method::Prepared(_)
             | Method::Sampled(..)
             | Method::Moments(_)
-            | Method::Weighted(_) => {}
+            | Method::Weighted(_)
+            | Method::Places(_) => {}
         }
     }
 }

@@ -50,7 +50,11 @@ impl Prepared {
             Defuzzifier::LargestOfMaxima if !sum => To::LARGEST_OF_MAXIMA,
             _ => return None,
         };
-        if terms.len() > MOST_TERMS {
+        let has_form = matches!(
+            joint.implication,
+            Implication::Minimum | Implication::Product
+        );
+        if !has_form || terms.len() > MOST_TERMS {
             return None;
         }
         let measure = Measure {

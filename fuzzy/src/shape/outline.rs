@@ -138,6 +138,10 @@ impl MembershipFunction {
                 end - 5.0 * (end - inflection),
                 end - 25.0 * (end - inflection),
             ]),
+            MembershipFunction::Arc { start, end } => Smooth(vec![start, end]),
+            MembershipFunction::SemiEllipse { left, right } => {
+                Smooth(vec![left, 0.5 * (left + right), right])
+            }
             MembershipFunction::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
             MembershipFunction::Linear { .. } => Smooth(vec![]),
         }

@@ -1,7 +1,7 @@
 //! Defuzzifiers with a closed form: from firing strengths to a number by a few sums.
 
 use super::operators::smaller;
-use super::{Arrays, Output};
+use super::{Arrays, Curve, Output, Point};
 
 /// The closed form of a defuzzifier.
 #[doc(hidden)] // Exported data.
@@ -21,17 +21,22 @@ impl ClosedForm {
     /// Takagi-Sugeno, `sum(w z)`: [`Consequent`]s.
     pub const WEIGHTED_SUM: ClosedForm = ClosedForm(4);
 
+    /// Tsukamoto, `sum(w z) / sum(w)` with `z` where a term has the degree `w`: [`Curve`]s, one for each firing strength.
+    pub const TSUKAMOTO: ClosedForm = ClosedForm(5);
     /// A [`FuzzySet`](super::FuzzySet) of terms that are cut off: the implication is the minimum.
-    pub const CUT: ClosedForm = ClosedForm(5);
+    pub const CUT: ClosedForm = ClosedForm(6);
     /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled: the implication is the product.
-    pub const SCALED: ClosedForm = ClosedForm(6);
+    pub const SCALED: ClosedForm = ClosedForm(7);
 
     /// Whether only the ratios of firing strengths count where all are tiny. Consequents that are numbers are scaled by the
     /// strengths themselves, and a curve is not straight however low it is cut.
     pub(crate) fn scales(self) -> bool {
         !matches!(
             self,
-            ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM | ClosedForm::CUT
+            ClosedForm::WEIGHTED_AVERAGE
+                | ClosedForm::WEIGHTED_SUM
+                | ClosedForm::TSUKAMOTO
+                | ClosedForm::CUT
         )
     }
 }
@@ -153,6 +158,10 @@ pub(super) fn closed<A: Arrays>(
             }
             sum
         }
+        ClosedForm::TSUKAMOTO => {
+            let curves = &table.curves()[range];
+            return tsukamoto(output, curves, table.points(), strengths);
+        }
         ClosedForm::CUT | ClosedForm::SCALED => return super::set::value(table, output, strengths),
         // Not clamped to the range: consequents are numbers that the author chose.
         form => {
@@ -162,6 +171,37 @@ pub(super) fn closed<A: Arrays>(
     };
     let value = centroid(area, moment, output.origin())?;
     Some(super::larger(output.low, smaller(output.high, value)))
+}
+
+/// A place, or the end of the range on the side where it lies at infinity.
+pub(crate) fn finite(place: f64, low: f64, high: f64) -> f64 {
+    if place.is_finite() {
+        place
+    } else if place > 0.0 {
+        high
+    } else {
+        low
+    }
+}
+
+/// `sum(w z) / sum(w)` with firing strengths w; `None` where none is over 0. Not clamped to the range.
+fn tsukamoto(
+    output: &Output,
+    curves: &[Curve],
+    points: &[Point],
+    strengths: &[f64],
+) -> Option<f64> {
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (curve, &strength) in curves.iter().zip(strengths) {
+        if strength > 0.0 {
+            let points = &points[curve.first_point as usize..curve.end_point as usize];
+            let part = smaller(1.0, strength / curve.height);
+            let place = curve.kind.place(&curve.parameters, points, part);
+            sum += strength * finite(place, output.low, output.high);
+            total += strength;
+        }
+    }
+    (total > 0.0).then(|| sum / total)
 }
 
 /// `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; `None` where none is over 0.

@@ -24,8 +24,8 @@ pub(crate) mod set;
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
 pub use check::Damaged;
-pub(crate) use closed::centroid;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
+pub(crate) use closed::{centroid, finite};
 pub use firing::{Partial, Strongest};
 pub use flank::{Flank, Knot};
 #[cfg(test)]
