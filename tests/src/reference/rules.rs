@@ -9,9 +9,28 @@ use fuzzy::model::{
 };
 use fuzzy::rule::{Condition, Hedge, Proposition};
 
-/// The value of each output at a point; `None` where no rule fires and the author chose no value.
-/// `samples` are taken between every two places at which a shape has a parameter.
+/// The aggregated set of an output, for a function that makes a number of it.
+#[expect(missing_docs, reason = "each says what it is")]
+pub struct Set<'a> {
+    pub low: f64,
+    pub high: f64,
+    /// The ends of the range and all places at which a shape has a parameter.
+    pub cuts: Vec<f64>,
+    pub defuzzifier: Defuzzifier,
+    pub degree: &'a dyn Fn(f64) -> f64,
+}
+
+/// Defuzzifies a [`Set`].
+pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> f64;
+
+/// The value of each output at a point; `None` where no rule fires and the author chose no value. The integrals are sums of so
+/// many samples between every two places at which a shape has a parameter.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
+    evaluate_with(model, point, &|set| sampled(set, samples))
+}
+
+/// [`evaluate`] with integrals of the caller.
+pub fn evaluate_with(model: &Model, point: &[f64], defuzzify: Defuzzify<'_>) -> Vec<Option<f64>> {
     let mut values = Values::new();
     for (variable, x) in model.inputs.iter().zip(point) {
         values.insert(
@@ -32,7 +51,7 @@ pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>
                 continue;
             }
             if reads.iter().all(|read| before[read].is_some()) {
-                *number = value(model, output, &before, samples);
+                *number = value(model, output, &before, defuzzify);
             }
             let clamped = number.map(|x: f64| (variable, x.clamp(variable.low, variable.high)));
             values.insert(&variable.name, clamped);
@@ -68,7 +87,12 @@ fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
     names
 }
 
-fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) -> Option<f64> {
+fn value(
+    model: &Model,
+    output: &Output,
+    values: &Values<'_>,
+    defuzzify: Defuzzify<'_>,
+) -> Option<f64> {
     let mut fired: Vec<(f64, &Term)> = Vec::new();
     for rule in &model.rules {
         for consequent in &rule.rule.consequents {
@@ -91,7 +115,7 @@ fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) ->
             NoRuleFires::Undefined | NoRuleFires::Error => None,
         };
     }
-    Some(number(model, output, &fired, values, samples))
+    Some(number(model, output, &fired, values, defuzzify))
 }
 
 fn term<'m>(terms: &'m [Term], name: &str) -> &'m Term {
@@ -170,7 +194,7 @@ fn or(operator: Disjunction, a: f64, b: f64) -> f64 {
         Disjunction::Drastic if b == 0.0 => a,
         Disjunction::Drastic => 1.0,
         Disjunction::Einstein => (a + b) / (1.0 + a * b),
-        Disjunction::Hamacher if a * b == 1.0 => 1.0,
+        Disjunction::Hamacher if a == 1.0 || b == 1.0 => 1.0,
         Disjunction::Hamacher => (a + b - 2.0 * a * b) / (1.0 - a * b),
         Disjunction::NilpotentMaximum if a + b < 1.0 => a.max(b),
         Disjunction::NilpotentMaximum => 1.0,
@@ -182,7 +206,7 @@ fn number(
     output: &Output,
     fired: &[(f64, &Term)],
     values: &Values<'_>,
-    samples: usize,
+    defuzzify: Defuzzify<'_>,
 ) -> f64 {
     if let Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum = output.defuzzifier {
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
@@ -230,6 +254,17 @@ fn number(
     cuts.extend([low, high]);
     cuts.sort_by(f64::total_cmp);
     cuts.dedup();
+    defuzzify(&Set {
+        low,
+        high,
+        cuts,
+        defuzzifier: output.defuzzifier,
+        degree: &aggregated,
+    })
+}
+
+fn sampled(set: &Set<'_>, samples: usize) -> f64 {
+    let (high, cuts, aggregated, defuzzifier) = (set.high, &set.cuts, set.degree, set.defuzzifier);
     // (place, width of the cell, degree)
     let mut set = Vec::new();
     for ends in cuts.windows(2) {
@@ -242,7 +277,7 @@ fn number(
     let area: f64 = set.iter().map(|(_, width, y)| width * y).sum();
     let highest = set.iter().fold(0.0, |most: f64, (_, _, y)| most.max(*y));
     let top = set.iter().filter(|(_, _, y)| *y >= highest * (1.0 - 1e-9));
-    match output.defuzzifier {
+    match defuzzifier {
         Defuzzifier::Centroid => set.iter().map(|(x, width, y)| x * width * y).sum::<f64>() / area,
         Defuzzifier::Bisector => {
             let mut sum = 0.0;
