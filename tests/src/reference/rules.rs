@@ -20,13 +20,13 @@ pub struct Set<'a> {
     pub degree: &'a dyn Fn(f64) -> f64,
 }
 
-/// Defuzzifies a [`Set`].
-pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> f64;
+/// Defuzzifies a [`Set`]; `None` of one that is 0 everywhere.
+pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> Option<f64>;
 
 /// The value of each output at a point; `None` where no rule fires and the author chose no value. The integrals are sums of so
 /// many samples between every two places at which a shape has a parameter.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
-    evaluate_with(model, point, &|set| sampled(set, samples))
+    evaluate_with(model, point, &|set| Some(sampled(set, samples)))
 }
 
 /// [`evaluate`] with integrals of the caller.
@@ -115,7 +115,7 @@ fn value(
             NoRuleFires::Undefined | NoRuleFires::Error => None,
         };
     }
-    Some(number(model, output, &fired, values, defuzzify))
+    number(model, output, &fired, values, defuzzify)
 }
 
 fn term<'m>(terms: &'m [Term], name: &str) -> &'m Term {
@@ -207,24 +207,24 @@ fn number(
     fired: &[(f64, &Term)],
     values: &Values<'_>,
     defuzzify: Defuzzify<'_>,
-) -> f64 {
+) -> Option<f64> {
     if let Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum = output.defuzzifier {
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
         let sum: f64 = fired
             .iter()
             .map(|(weight, term)| weight * consequent(&term.membership_function, values))
             .sum();
-        return match output.defuzzifier {
+        return Some(match output.defuzzifier {
             Defuzzifier::WeightedSum => sum,
             _ => sum / total,
-        };
+        });
     }
     if output.defuzzifier == Defuzzifier::Tsukamoto {
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
         let sums = fired
             .iter()
             .map(|(weight, term)| weight * place(term, *weight, &output.variable));
-        return sums.sum::<f64>() / total;
+        return Some(sums.sum::<f64>() / total);
     }
     let aggregated = |x: f64| {
         let mut y = 0.0;
