@@ -15,7 +15,7 @@ use crate::{
     defuzzify::Defuzzify,
     diagnostic::{Diagnostic, duplicate, nearest, suggest},
     model::{
-        Defuzzifier, MembershipFunction, Model, NoRuleFires, Output, Rule, Variable,
+        Defuzzifier, Formula, MembershipFunction, Model, NoRuleFires, Output, Rule, Variable,
         chain::circles,
         document::{RuleSpans, Spans, TermSpans, VariableSpans},
     },
@@ -88,7 +88,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     for (i, input) in model.inputs.iter().enumerate() {
         let spans = spans.inputs.get(i).unwrap_or(&no_spans);
         validator.variable(&format!("input `{}`", input.name), input, spans);
-        validator.no_linear_terms(input, spans);
+        validator.terms_are_sets(input, spans);
     }
     if model.outputs.is_empty() {
         validator.findings.push(
@@ -273,16 +273,43 @@ impl<'m> Validator<'m> {
         }
     }
 
-    fn no_linear_terms(&mut self, input: &Variable, spans: &VariableSpans) {
+    /// Terms of an input are no linear functions, and formulas over the input alone.
+    fn terms_are_sets(&mut self, input: &Variable, spans: &VariableSpans) {
         for (i, term) in input.terms.iter().enumerate() {
-            if let MembershipFunction::Linear { .. } = term.membership_function {
-                let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());
-                let message = format!(
-                    "term `{}` of input `{}` is a linear function",
-                    term.name, input.name
+            let no_spans = TermSpans::default();
+            let spans = spans.terms.get(i).unwrap_or(&no_spans);
+            let what = format!("term `{}` of input `{}`", term.name, input.name);
+            match &term.membership_function {
+                MembershipFunction::Linear { .. } => {
+                    let message = format!("{what} is a linear function");
+                    let help = "only outputs may have one; an input needs a membership function such as `triangle`";
+                    self.error("wrong-term", &spans.name, message, help);
+                }
+                MembershipFunction::Function { formula } => {
+                    self.own_formula(&what, input, formula, spans);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A formula that is a fuzzy set reads its own variable alone.
+    fn own_formula(
+        &mut self,
+        what: &str,
+        variable: &Variable,
+        formula: &Formula,
+        spans: &TermSpans,
+    ) {
+        for (i, name) in formula.variables().enumerate() {
+            if name != variable.name {
+                let here = spans.parameters.get(i).unwrap_or(&spans.name);
+                let message = format!("{what}: the formula of a fuzzy set reads `{name}`");
+                let own = &variable.name;
+                let help = format!(
+                    "write `{own}` for the value of the variable; formulas over several variables are for outputs with `weighted_average` or `weighted_sum`"
                 );
-                let help = "only outputs may have one; an input needs a membership function such as `triangle`";
-                self.error("wrong-term", &here, message, help);
+                self.error("wrong-term", here, message, &help);
             }
         }
     }
@@ -344,6 +371,14 @@ impl<'m> Validator<'m> {
                     }
                     self.coefficients(&what, coefficients, spans);
                 }
+                MembershipFunction::Function { formula } if weighted => {
+                    for (i, name) in formula.variables().enumerate() {
+                        self.is_read(name, spans.parameters.get(i).unwrap_or(here));
+                    }
+                }
+                MembershipFunction::Function { formula } if !tsukamoto => {
+                    self.own_formula(&what, &output.variable, formula, spans);
+                }
                 shape if tsukamoto && !shape.is_monotone() => {
                     let message = format!("{what} does not rise or fall all along");
                     let help = "with `tsukamoto` each degree has one place: write `right_shoulder`, `left_shoulder`, `s_shape`, `z_shape`, `sigmoid`, `concave`, `arc` or a monotone `piecewise`";
@@ -381,16 +416,21 @@ impl<'m> Validator<'m> {
                 // In a rule set this key is the constant part.
                 let message = format!("{what} has a coefficient for an input called `constant`");
                 self.error("wrong-term", here, message, "rename the input");
-            } else if !self.inputs.contains_key(input.as_str())
-                && !self.outputs.contains_key(input.as_str())
-            {
-                let finding = self.unknown_input(input, here);
-                self.findings.push(finding);
+            } else {
+                self.is_read(input, here);
             }
             if !seen.insert(input) {
                 let message = format!("{what} has two coefficients for `{input}`");
                 self.error("duplicate-key", here, message, "keep one of them");
             }
+        }
+    }
+
+    /// What a consequent reads is an input or an output.
+    fn is_read(&mut self, name: &str, here: &Range<usize>) {
+        if !self.inputs.contains_key(name) && !self.outputs.contains_key(name) {
+            let finding = self.unknown_input(name, here);
+            self.findings.push(finding);
         }
     }
 

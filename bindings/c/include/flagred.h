@@ -239,7 +239,7 @@ typedef struct flagred_moment {
 
 typedef struct flagred_consequent {
     double constant;
-    uint32_t first, end;
+    uint32_t first, end, first_code, end_code;
 } flagred_consequent;
 
 typedef struct flagred_coefficient {

@@ -106,8 +106,12 @@ impl OwnedTable {
     fn curve(&mut self, index: u32, term: &Term, hedges: &[Hedge]) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
         let (kind, parameters) = term.membership_function.kind();
-        if let MembershipFunction::Piecewise { points } = &term.membership_function {
-            self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
+        match &term.membership_function {
+            MembershipFunction::Piecewise { points } => {
+                self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
+            }
+            MembershipFunction::Function { formula } => self.points.extend(formula.code()),
+            _ => {}
         }
         self.hedges.extend(hedges);
         self.curves.push(Curve {
@@ -145,10 +149,13 @@ impl OwnedTable {
             }
             Method::Weighted(weighted) => {
                 let (first, _) = extend(&mut self.coefficients, &weighted.coefficients);
+                let (first_code, _) = extend(&mut self.points, &weighted.code);
                 let mut consequents = weighted.consequents.clone();
                 for consequent in &mut consequents {
                     consequent.first += first;
                     consequent.end += first;
+                    consequent.first_code += first_code;
+                    consequent.end_code += first_code;
                 }
                 let form = match defuzzify.defuzzifier {
                     Defuzzifier::WeightedSum => ClosedForm::WEIGHTED_SUM,

@@ -428,6 +428,11 @@ fn number(output: &Output, active: &Active<'_>, known: &Known<'_>) -> Option<f64
             });
             Some(parts.sum::<Option<f64>>()? + constant)
         }
+        MembershipFunction::Function { formula } => {
+            let value = |name: &str| known.variable(name).and_then(|(_, value)| value);
+            let value = formula.evaluate(|name| value(name).unwrap_or(f64::NAN));
+            value.is_finite().then_some(value)
+        }
         _ => None,
     }
 }

@@ -26,7 +26,7 @@ macro_rules! table_arrays {
             lines: Line,
             /// The terms of inputs that are curved or hedged.
             curves: Curve,
-            /// The corners of piecewise linear curves.
+            /// The corners of piecewise linear curves, and the code of formulas.
             points: Point,
             /// The hedges of curves.
             hedges: Hedge,

@@ -109,7 +109,12 @@ impl Table<'_> {
             )?;
         }
         for consequent in self.consequents {
-            let span = within(consequent.first, consequent.end, self.coefficients.len());
+            let span = within(consequent.first, consequent.end, self.coefficients.len())
+                && within(
+                    consequent.first_code,
+                    consequent.end_code,
+                    self.points.len(),
+                );
             require(span, "consequents")?;
         }
         for coefficient in self.coefficients {

@@ -362,6 +362,7 @@ fn parameters(shape: &MembershipFunction) -> Vec<f64> {
             ..
         } => vec![left_inflection, right_inflection],
         MembershipFunction::Singleton { .. }
+        | MembershipFunction::Function { .. }
         | MembershipFunction::Constant { .. }
         | MembershipFunction::Linear { .. } => vec![],
     }
@@ -499,6 +500,14 @@ fn membership(shape: &MembershipFunction, x: f64) -> f64 {
             let (centre, radius) = ((left + right) / 2.0, (right - left) / 2.0);
             let away = (x - centre).abs().min(radius);
             (radius.powi(2) - away.powi(2)).sqrt() / radius
+        }
+        MembershipFunction::Function { ref formula } => {
+            let degree = formula.evaluate(|_| x);
+            if degree.is_nan() {
+                0.0
+            } else {
+                degree.clamp(0.0, 1.0)
+            }
         }
         MembershipFunction::Constant { value } => value,
         MembershipFunction::Linear { .. } => 0.0,
