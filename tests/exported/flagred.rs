@@ -1,10 +1,10 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4012 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122640 bytes of memory.
+// 4052 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122296 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
-    ::flagred::board::Storage<37, 52, 1, 6, MOTORS>;
+    ::flagred::board::Storage<37, 28, 1, 6, MOTORS>;
 
 /// What the cause of a finding is called.
 #[allow(dead_code)]
@@ -58,7 +58,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             and: Conjunction::Product,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Trie,
-            sizes: Sizes { degrees: 13, alive: 4, partial: 24, stack: 0, strengths: 6 },
+            least_strength: 1e-12,
+            sizes: Sizes { degrees: 13, alive: 4, partial: 12, stack: 0, strengths: 6 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 3, first_start: 0, first_curve: 0, end_curve: 0 },
                 Input { low: 0.0, high: 0.5, first_literal: 2, first_cut: 3, end_cut: 6, first_start: 5, first_curve: 0, end_curve: 0 },
@@ -154,8 +155,10 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             ],
             programs: &[],
             steps: &[],
+            blocks: &[],
+            weights: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0 },
             ],
             pairs: &[],
             moments: &[

@@ -5,9 +5,9 @@ use flagred::{
     board::{
         self, Proposition,
         table::{
-            self, Action, Axis, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
-            Dimension, Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point,
-            Program, Sizes, Step, Table,
+            self, Action, Axis, Block as RuleBlock, Coefficient, Conjunction, Conjunctions,
+            Consequent, Curve, Dimension, Disjunction, Edge, Hedge, Input, Line, Moment, Node,
+            Output, Pair, Point, Program, Sizes, Step, Table,
         },
     },
     channel::{self, Channel, Motors, Observed, Statistic},
@@ -23,7 +23,7 @@ use crate::{memory::Block, status::Status};
 mod tests;
 
 /// The version of the data that this library reads.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// An array of C and its length.
 #[derive(Debug, Clone, Copy)]
@@ -137,6 +137,7 @@ macro_rules! define {
             output: u32,
             signals: u32,
             coverage_below: f64,
+            least_strength: f64,
             settings: CSettings,
             $($array: Array<define!(@item $item)>,)*
             order: Array<u32>,
@@ -160,6 +161,7 @@ macro_rules! define {
                         and: conjunction(self.and)?,
                         or: disjunction(self.or)?,
                         conjunctions: self.conjunctions()?,
+                        least_strength: self.least_strength,
                         sizes: self.sizes,
                         $($array: define!(@read $item self.$array),)*
                     })
@@ -169,6 +171,7 @@ macro_rules! define {
     };
     // An enumeration, whose codes are verified before they become a reference. Of all other items every bit pattern is valid.
     (@item Hedge) => { u32 };
+    (@item Block) => { RuleBlock };
     (@item $item:ident) => { $item };
     (@read Hedge $array:expr) => { hedges($array.read()?)? };
     (@read $item:ident $array:expr) => { $array.read()? };

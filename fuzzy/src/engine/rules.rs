@@ -4,7 +4,10 @@ use alloc::{vec, vec::Vec};
 
 use super::arrays::OwnedTable;
 use super::literal::Literals;
-use crate::table::{Action, Axis, Conjunctions, Dimension, Edge, Line, Node, Op, Program, Step};
+use crate::model::{Activation, Conjunction, Disjunction, Model};
+use crate::table::{
+    Action, Axis, Block, Conjunctions, Dimension, Edge, Line, Node, Op, Program, Step,
+};
 
 /// A rule with indices in place of names.
 #[derive(Debug, Clone)]
@@ -13,6 +16,63 @@ pub(super) struct Draft {
     pub(super) literals: Option<Vec<u32>>,
     pub(super) steps: Vec<Step>,
     pub(super) actions: Vec<Action>,
+    /// The rule's weight. In blocks that of its actions is 1, because the activation method comes before them.
+    pub(super) weight: f64,
+    /// The index of its block.
+    pub(super) block: usize,
+}
+
+/// How the rules of a stage fire.
+#[derive(Debug, Clone)]
+pub(super) struct Firing {
+    pub(super) and: Conjunction,
+    pub(super) or: Disjunction,
+    pub(super) least_strength: f64,
+    /// Empty where all rules share the operators and fire as they hold.
+    pub(super) blocks: Vec<FiringBlock>,
+}
+
+/// How the rules of a block fire.
+#[derive(Debug, Clone)]
+pub(super) struct FiringBlock {
+    pub(super) index: usize,
+    pub(super) operators: (Conjunction, Disjunction),
+    pub(super) activation: Activation,
+}
+
+impl Firing {
+    pub(super) fn of(model: &Model) -> Self {
+        let of_model = FiringBlock {
+            index: 0,
+            operators: (model.operators.and, model.operators.or),
+            activation: model.activation,
+        };
+        let blocks = model.blocks.iter().enumerate();
+        let blocks = blocks.filter(|(_, block)| block.enabled);
+        let mut blocks: Vec<FiringBlock> = blocks
+            .map(|(index, block)| FiringBlock {
+                index,
+                operators: (block.and, block.or),
+                activation: block.activation,
+            })
+            .collect();
+        if model.blocks.is_empty() {
+            blocks.push(of_model.clone());
+        }
+        let (and, or) = blocks.first().unwrap_or(&of_model).operators;
+        let is_plain = |block: &FiringBlock| {
+            block.operators == (and, or) && block.activation == Activation::General
+        };
+        if blocks.iter().all(is_plain) {
+            blocks.clear();
+        }
+        Firing {
+            and,
+            or,
+            least_strength: model.least_strength,
+            blocks,
+        }
+    }
 }
 
 /// The literals and actions of a plain AND.
@@ -30,17 +90,7 @@ impl OwnedTable {
     /// firing strength of no output.
     pub(super) fn rules(&mut self, drafts: &[Draft], inputs: &[Literals], unused: u32) {
         for draft in drafts.iter().filter(|draft| draft.literals.is_none()) {
-            let (first_step, first_action) = (self.steps.len(), self.actions.len());
-            self.steps.extend(&draft.steps);
-            self.actions.extend(&draft.actions);
-            self.programs.push(Program {
-                first_step: first_step as u32,
-                end_step: self.steps.len() as u32,
-                first_action: first_action as u32,
-                end_action: self.actions.len() as u32,
-            });
-            let pushes = draft.steps.iter().filter(|step| step.op == Op::PUSH);
-            self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
+            self.program(draft);
         }
         let plain: Vec<Plain<'_>> = drafts
             .iter()
@@ -55,6 +105,40 @@ impl OwnedTable {
             self.conjunctions = Conjunctions::Trie;
             self.sizes.partial = most_open.max(1);
         }
+    }
+
+    /// Adds the rules of blocks, in the order of `drafts`.
+    pub(super) fn blocks(&mut self, blocks: &[FiringBlock], drafts: &[Draft]) {
+        for block in blocks {
+            let first_program = self.programs.len() as u32;
+            for draft in drafts.iter().filter(|draft| draft.block == block.index) {
+                self.program(draft);
+                self.weights.push(draft.weight);
+            }
+            let end_program = self.programs.len() as u32;
+            let span = (first_program, end_program);
+            let block = Block::new(block.operators, block.activation, span);
+            self.blocks.push(block);
+            self.sizes.partial = self.sizes.partial.max(end_program - first_program);
+        }
+        // No rule is found by it.
+        self.nodes.push(Node::default());
+        self.conjunctions = Conjunctions::Trie;
+        self.sizes.partial = self.sizes.partial.max(1);
+    }
+
+    fn program(&mut self, draft: &Draft) {
+        let (first_step, first_action) = (self.steps.len(), self.actions.len());
+        self.steps.extend(&draft.steps);
+        self.actions.extend(&draft.actions);
+        self.programs.push(Program {
+            first_step: first_step as u32,
+            end_step: self.steps.len() as u32,
+            first_action: first_action as u32,
+            end_action: self.actions.len() as u32,
+        });
+        let pushes = draft.steps.iter().filter(|step| step.op == Op::PUSH);
+        self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
     }
 
     /// Adds a dense table; `None` where it would have too many cells.

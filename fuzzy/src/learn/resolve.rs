@@ -181,6 +181,7 @@ fn rule(
             }],
             weight: 1.0,
         },
+        block: 0,
         confidence: decision.confidence,
         support: Some(cell.map_or(0, |cell| cell.samples)),
         against: against

@@ -20,14 +20,6 @@ impl ClosedForm {
     pub const WEIGHTED_AVERAGE: ClosedForm = ClosedForm(3);
     /// Takagi-Sugeno, `sum(w z)`: [`Consequent`]s.
     pub const WEIGHTED_SUM: ClosedForm = ClosedForm(4);
-
-    /// Whether the consequents are fuzzy sets. Then only the ratios of firing strengths count where all are tiny.
-    pub(crate) fn is_fuzzy(self) -> bool {
-        !matches!(
-            self,
-            ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM
-        )
-    }
 }
 
 /// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
@@ -147,10 +139,14 @@ pub(super) fn closed<A: Arrays>(
             }
             sum
         }
-        // Not clamped to the range: consequents are numbers that the author chose.
+        // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
         form => {
             let consequents = &table.consequents()[range];
-            return weighted(form, consequents, table.coefficients(), strengths, inputs);
+            let value = weighted(form, consequents, table.coefficients(), strengths, inputs)?;
+            return Some(match output.clamps {
+                0 => value,
+                _ => super::larger(output.low, smaller(output.high, value)),
+            });
         }
     };
     let value = centroid(area, moment, output.origin())?;
