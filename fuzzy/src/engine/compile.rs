@@ -9,11 +9,11 @@ use super::literal::{Literal, Literals};
 use super::rules::{Draft, Firing};
 use super::{CompiledOutput, Engine, Input, NamedOutput, Stage};
 use crate::defuzzify::weighted::Consequents;
-use crate::defuzzify::{Defuzzify, Merging};
+use crate::defuzzify::{Defuzzify, Merging, Method};
 use crate::diagnostic::Findings;
 use crate::model::{
-    Activation, MembershipFunction, Model, NoRuleFires, Output, Term, Variable, chain::stages,
-    document::Spans,
+    Activation, Defuzzifier, MembershipFunction, Model, NoRuleFires, Output, Term, Variable,
+    chain::stages, document::Spans,
 };
 use crate::rule::{Condition, Hedge, Proposition};
 use crate::table::{Action, Op, Step};
@@ -73,7 +73,7 @@ impl Stage {
         };
         compiler.literals();
         let firing = Firing::of(model);
-        let drafts = compiler.drafts(!firing.blocks.is_empty());
+        let drafts = compiler.drafts();
         compiler.stage(drafts, &firing)
     }
 }
@@ -134,7 +134,7 @@ impl Compiler<'_> {
 
     /// The rules as literals, steps and actions, in an order that is that of their content: the order of
     /// lines in a rule set changes no bit of an answer. Only activation methods, of which some depend on it, keep that order.
-    fn drafts(&self, in_blocks: bool) -> Vec<Draft> {
+    fn drafts(&self) -> Vec<Draft> {
         let model = self.model;
         let inputs_of: Vec<usize> = self.literals.keys().map(|key| key.0).collect();
         let mut drafts = Vec::new();
@@ -146,7 +146,8 @@ impl Compiler<'_> {
             let rule = &rule.rule;
             let mut steps = Vec::new();
             self.condition(&rule.condition, &mut steps);
-            let mut actions = Vec::new();
+            // Consequents with the same hedges share a draft.
+            let mut by_hedges: BTreeMap<Vec<Hedge>, Vec<Action>> = BTreeMap::new();
             for consequent in &rule.consequents {
                 let name = &consequent.output.text;
                 let outputs = model.outputs.iter();
@@ -155,8 +156,10 @@ impl Compiler<'_> {
                     continue;
                 };
                 let term = position(&output.variable.terms, &consequent.term.text);
+                let hedges: Vec<Hedge> = consequent.hedges.iter().rev().copied().collect();
+                let actions = by_hedges.entry(hedges).or_default();
                 actions.extend(term.map(|term| Action {
-                    weight: if in_blocks { 1.0 } else { rule.weight },
+                    weight: rule.weight,
                     strength: term as u32,
                     output: number,
                     rule: index as u32,
@@ -164,14 +167,22 @@ impl Compiler<'_> {
                 }));
             }
             let kept = (activation != Activation::General).then_some(index);
-            let draft = Draft {
-                literals: plain(&steps, &inputs_of),
-                steps,
-                actions,
-                weight: rule.weight,
-                block,
-            };
-            drafts.push((kept, draft));
+            // A rule without consequents here may still count for the activation method of its block.
+            if by_hedges.is_empty() {
+                by_hedges.insert(Vec::new(), Vec::new());
+            }
+            for (hedges, actions) in by_hedges {
+                let draft = Draft {
+                    literals: plain(&steps, &inputs_of).filter(|_| hedges.is_empty()),
+                    steps: steps.clone(),
+                    weight: rule.weight,
+                    hedges,
+                    actions,
+                    rule: index,
+                    block,
+                };
+                drafts.push((kept, draft));
+            }
         }
         let content = |draft: &Draft| {
             let actions = draft.actions.iter();
@@ -180,12 +191,12 @@ impl Compiler<'_> {
                 .collect::<Vec<_>>()
         };
         drafts.sort_by_cached_key(|(kept, draft)| {
-            let (literals, steps) = (draft.literals.clone(), draft.steps.clone());
+            let hedged = (draft.hedges.clone(), draft.weight.to_bits());
             (
                 *kept,
-                literals,
-                steps,
-                draft.weight.to_bits(),
+                draft.literals.clone(),
+                draft.steps.clone(),
+                hedged,
                 content(draft),
             )
         });
@@ -339,12 +350,16 @@ impl Compiler<'_> {
         if !output.defuzzifier.is_weighted() {
             return Defuzzify::fuzzy(output, operators);
         }
+        if output.defuzzifier == Defuzzifier::Tsukamoto {
+            let terms = output.variable.terms.clone();
+            return Defuzzify::weighted(output, operators, Method::Places(terms));
+        }
         let input = |name: &str| self.model.inputs.iter().position(|v| v.name == name);
         let mut consequents = Consequents::default();
         for term in &output.variable.terms {
             consequents.push(&term.membership_function, input);
         }
-        Defuzzify::weighted(output, operators, consequents)
+        Defuzzify::weighted(output, operators, Method::Weighted(consequents))
     }
 }
 

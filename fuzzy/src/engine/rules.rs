@@ -6,18 +6,22 @@ use super::arrays::OwnedTable;
 use super::literal::Literals;
 use crate::model::{Activation, Conjunction, Disjunction, Model};
 use crate::table::{
-    Action, Axis, Block, Conjunctions, Dimension, Edge, Line, Node, Op, Program, Step,
+    Action, Axis, Block, Conjunctions, Dimension, Edge, Hedge, Line, Node, Op, Program, Step,
 };
 
 /// A rule with indices in place of names.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
-    /// The literals of a plain AND, ascending, each of another input; `None` of another antecedent.
+    /// The literals of a plain AND, ascending, each of another input; `None` of another antecedent, and where there are hedges.
     pub(super) literals: Option<Vec<u32>>,
     pub(super) steps: Vec<Step>,
-    pub(super) actions: Vec<Action>,
-    /// The rule's weight. In blocks that of its actions is 1, because the activation method comes before them.
+    /// The hedges of its consequents, in the order in which they apply.
+    pub(super) hedges: Vec<Hedge>,
+    /// The rule's weight.
     pub(super) weight: f64,
+    pub(super) actions: Vec<Action>,
+    /// The index of the rule.
+    pub(super) rule: usize,
     /// The index of its block.
     pub(super) block: usize,
 }
@@ -90,7 +94,7 @@ impl OwnedTable {
     /// firing strength of no output.
     pub(super) fn rules(&mut self, drafts: &[Draft], inputs: &[Literals], unused: u32) {
         for draft in drafts.iter().filter(|draft| draft.literals.is_none()) {
-            self.program(draft);
+            self.program(draft, &draft.steps);
         }
         let plain: Vec<Plain<'_>> = drafts
             .iter()
@@ -111,9 +115,12 @@ impl OwnedTable {
     pub(super) fn blocks(&mut self, blocks: &[FiringBlock], drafts: &[Draft]) {
         for block in blocks {
             let first_program = self.programs.len() as u32;
+            let mut latest = None;
             for draft in drafts.iter().filter(|draft| draft.block == block.index) {
-                self.program(draft);
-                self.weights.push(draft.weight);
+                // The method takes each rule once, also where hedges make several programs of it.
+                let selects = block.activation != Activation::General;
+                let again = selects && latest.replace(draft.rule) == Some(draft.rule);
+                self.program(draft, if again { &[] } else { &draft.steps });
             }
             let end_program = self.programs.len() as u32;
             let span = (first_program, end_program);
@@ -127,17 +134,22 @@ impl OwnedTable {
         self.sizes.partial = self.sizes.partial.max(1);
     }
 
-    fn program(&mut self, draft: &Draft) {
+    fn program(&mut self, draft: &Draft, steps: &[Step]) {
         let (first_step, first_action) = (self.steps.len(), self.actions.len());
-        self.steps.extend(&draft.steps);
+        let first_hedge = self.hedges.len();
+        self.steps.extend(steps);
         self.actions.extend(&draft.actions);
+        self.hedges.extend(&draft.hedges);
         self.programs.push(Program {
+            weight: draft.weight,
             first_step: first_step as u32,
             end_step: self.steps.len() as u32,
             first_action: first_action as u32,
             end_action: self.actions.len() as u32,
+            first_hedge: first_hedge as u32,
+            end_hedge: self.hedges.len() as u32,
         });
-        let pushes = draft.steps.iter().filter(|step| step.op == Op::PUSH);
+        let pushes = steps.iter().filter(|step| step.op == Op::PUSH);
         self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
     }
 

@@ -48,8 +48,6 @@ macro_rules! table_arrays {
             steps: Step,
             /// The rule blocks, where they have different operators or activation methods. Then all rules are programs.
             blocks: Block,
-            /// The weight of each program of a block, of which the actions have the weight 1.
-            weights: f64,
             /// The outputs.
             outputs: Output,
             /// The closed forms of partitions.

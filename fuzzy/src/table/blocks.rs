@@ -1,7 +1,7 @@
 //! Rule blocks with operators and an activation method of their own. Each rule is a program.
 
 use super::firing::{Act, run};
-use super::{Activation, Arrays, Comparison, Conjunction, Disjunction, Partial};
+use super::{Activation, Arrays, Comparison, Conjunction, Disjunction, Partial, Program};
 
 /// A rule block.
 #[doc(hidden)] // Exported data.
@@ -111,6 +111,15 @@ impl Block {
     }
 }
 
+/// Gives a rule that fires with a strength to `firing`, once the hedges of its consequents have changed it.
+#[inline(always)]
+pub(super) fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing: &mut impl Act) {
+    let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
+    let strength = hedges.iter().fold(strength, |x, hedge| hedge.of(x));
+    let actions = program.first_action as usize..program.end_action as usize;
+    firing.act_with(&table.actions()[actions], strength);
+}
+
 /// Gives the rules of all blocks that fire to `firing`, with the strengths that the activation methods leave. `rules` has room
 /// for those of the largest block.
 // Apart from plain rules, so that these cost nothing more.
@@ -124,20 +133,27 @@ pub(super) fn fire_blocks<A: Arrays>(
 ) {
     for block in table.blocks() {
         let (and, or) = block.operators();
+        let mut count = 0;
         let programs = block.first_program..block.end_program;
-        let rules = &mut rules[..programs.len()];
-        for (rule, at) in rules.iter_mut().zip(programs) {
+        for at in programs {
             let program = &table.programs()[at as usize];
             let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
-            let degree = table.weights()[at as usize] * run(steps, degrees, and, or, stack);
-            *rule = Partial { degree, at };
+            // Without steps it is more of the rule before it.
+            if !steps.is_empty() {
+                let degree = program.weight * run(steps, degrees, and, or, stack);
+                rules[count] = Partial { degree, at };
+                count += 1;
+            }
         }
-        block.activation().activate(table.least_strength(), rules);
-        for rule in rules {
-            if rule.degree > 0.0 {
-                let program = &table.programs()[rule.at as usize];
-                let actions = program.first_action as usize..program.end_action as usize;
-                firing.act(&table.actions()[actions], rule.degree);
+        let rules = &mut rules[..count];
+        let least = table.least_strength();
+        block.activation().activate(least, rules);
+        for rule in rules.iter().filter(|rule| rule.degree >= least) {
+            let programs = &table.programs()[rule.at as usize..block.end_program as usize];
+            let more = |program: &&Program| program.first_step == program.end_step;
+            let others = programs.iter().skip(1).take_while(more);
+            for program in programs.iter().take(1).chain(others) {
+                act(table, program, rule.degree, firing);
             }
         }
     }

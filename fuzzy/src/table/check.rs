@@ -81,6 +81,7 @@ impl Table<'_> {
             require(
                 within(program.first_step, program.end_step, self.steps.len())
                     && within(program.first_action, program.end_action, self.actions.len())
+                    && within(program.first_hedge, program.end_hedge, self.hedges.len())
                     && self.fits_stack(program.first_step as usize..program.end_step as usize),
                 "programs",
             )?;
@@ -89,7 +90,6 @@ impl Table<'_> {
             let rules = block.end_program.saturating_sub(block.first_program);
             require(
                 within(block.first_program, block.end_program, self.programs.len())
-                    && within(block.first_program, block.end_program, self.weights.len())
                     && rules <= self.sizes.partial,
                 "blocks",
             )?;
@@ -105,6 +105,7 @@ impl Table<'_> {
                 ClosedForm::PARTITION => self.pairs.len(),
                 ClosedForm::MOMENTS => self.moments.len(),
                 ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => self.consequents.len(),
+                ClosedForm::TSUKAMOTO => self.curves.len(),
                 _ => 0,
             };
             let of_all = self.sizes.strengths as usize;

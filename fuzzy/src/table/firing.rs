@@ -5,7 +5,7 @@
 
 use core::ops::DerefMut;
 
-use super::blocks::fire_blocks;
+use super::blocks::{act, fire_blocks};
 use super::input::degrees;
 use super::operators::{larger, smaller};
 use super::rules::{Action, Axis, Dimension, Op, Step};
@@ -79,7 +79,17 @@ impl Action {
         strengths: &mut [f64],
         strongest: Strongest,
     ) -> Strongest {
-        let strength = fires(self.weight * degree, least);
+        self.act_with::<SUMS>(fires(self.weight * degree, least), strengths, strongest)
+    }
+
+    /// As [`Action::act`], with a firing strength.
+    #[inline(always)]
+    fn act_with<const SUMS: bool>(
+        &self,
+        strength: f64,
+        strengths: &mut [f64],
+        strongest: Strongest,
+    ) -> Strongest {
         let kept = &mut strengths[self.strength as usize];
         *kept = if SUMS && self.sums != 0 {
             *kept + strength
@@ -100,6 +110,9 @@ pub(super) fn fires(strength: f64, least: f64) -> f64 {
 pub(super) trait Act {
     /// Takes rules with the degree of their antecedent.
     fn act(&mut self, actions: &[Action], degree: f64);
+
+    /// Takes rules with their firing strength, whatever their weights.
+    fn act_with(&mut self, actions: &[Action], strength: f64);
 
     /// Takes the rules of cells of a uniform table.
     #[inline(always)]
@@ -123,6 +136,14 @@ impl Act for Firing<'_> {
         for action in actions {
             let strongest = &mut self.strongest[action.output as usize];
             *strongest = action.act::<true>(degree, self.least, self.strengths, *strongest);
+        }
+    }
+
+    #[inline(always)]
+    fn act_with(&mut self, actions: &[Action], strength: f64) {
+        for action in actions {
+            let strongest = &mut self.strongest[action.output as usize];
+            *strongest = action.act_with::<true>(strength, self.strengths, *strongest);
         }
     }
 
@@ -268,12 +289,13 @@ fn fire_with<A: Arrays>(
     for program in table.programs() {
         let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
         let degree = run(steps, degrees, table.and(), table.or(), stack);
-        if degree > 0.0 {
-            let range = program.first_action as usize..program.end_action as usize;
-            firing.act(&table.actions()[range], degree);
+        let strength = fires(program.weight * degree, table.least_strength());
+        if strength > 0.0 {
+            act(table, program, strength, firing);
         }
     }
 }
+
 #[inline(always)]
 fn fire_uniform<A: Arrays>(
     table: &A,

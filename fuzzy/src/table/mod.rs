@@ -25,8 +25,8 @@ pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
 pub use blocks::{Block, Method};
 pub use check::Damaged;
-pub(crate) use closed::centroid;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
+pub(crate) use closed::{centroid, finite};
 pub use firing::{Partial, Strongest};
 #[cfg(test)]
 pub(crate) use input::degrees;

@@ -80,8 +80,14 @@ struct Raising<F> {
 
 impl<F: FnMut(u32) -> Option<f64>> Act for Raising<F> {
     fn act(&mut self, actions: &[Action], degree: f64) {
-        for action in actions.iter().filter(|action| action.output == self.output) {
+        for action in actions {
             let strength = fires(action.weight * degree, self.least);
+            self.act_with(core::slice::from_ref(action), strength);
+        }
+    }
+
+    fn act_with(&mut self, actions: &[Action], strength: f64) {
+        for action in actions.iter().filter(|action| action.output == self.output) {
             if strength > 0.0
                 && let Some(alone) = (self.alone)(action.strength)
             {

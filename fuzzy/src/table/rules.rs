@@ -90,11 +90,15 @@ pub struct Edge {
     pub node: u32,
 }
 
-/// A rule whose antecedent is not a plain AND.
+/// A rule whose antecedent is not a plain AND, whose conclusion has hedges, or that stands in a [`Block`](super::Block). The
+/// degree of its antecedent times `weight`, then changed by the activation method and the hedges, is the strength that its
+/// actions take. In a block with an activation method, a program without steps is more of the rule before it.
 #[doc(hidden)] // Exported data.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Program {
+    /// The rule's weight, which multiplies the degree before the hedges; those of the actions are not used.
+    pub weight: f64,
     /// Its span of steps.
     pub first_step: u32,
     /// The end of that span.
@@ -103,6 +107,10 @@ pub struct Program {
     pub first_action: u32,
     /// The end of that span.
     pub end_action: u32,
+    /// Its span of hedges, in the order in which they apply.
+    pub first_hedge: u32,
+    /// The end of that span.
+    pub end_hedge: u32,
 }
 
 /// A step of an antecedent, on a stack of degrees.
