@@ -10,7 +10,7 @@ use super::{
     blocks::{self, COMPARISONS, METHODS},
     rules,
     variables::{INPUT_KEYS, OUTPUT_KEYS},
-    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, IMPLICATIONS},
+    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS},
 };
 use crate::{
     model::{Form, LEAST_STRENGTH, MembershipFunction, Role},
@@ -385,7 +385,7 @@ fn operators(description: &str, all: bool) -> Node {
             "implication",
             words(
                 "How a firing strength cuts or scales a term; minimum where absent",
-                &IMPLICATIONS,
+                &CONJUNCTIONS,
             ),
         ),
         (
