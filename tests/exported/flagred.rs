@@ -58,6 +58,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             and: Conjunction::Product,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Trie,
+            least_strength: 1e-12,
             sizes: Sizes { degrees: 13, alive: 4, partial: 24, stack: 0, strengths: 6 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 3, first_start: 0, first_curve: 0, end_curve: 0 },
@@ -154,8 +155,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             ],
             programs: &[],
             steps: &[],
+            blocks: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0 },
             ],
             pairs: &[],
             moments: &[

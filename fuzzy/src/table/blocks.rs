@@ -140,7 +140,14 @@ pub(super) fn fire_blocks<A: Arrays>(
             let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
             // Without steps it is more of the rule before it.
             if !steps.is_empty() {
-                let degree = program.weight * run(steps, degrees, |a, b| and.of(a, b), |a, b| or.of(a, b), stack);
+                let degree = program.weight
+                    * run(
+                        steps,
+                        degrees,
+                        |a, b| and.of(a, b),
+                        |a, b| or.of(a, b),
+                        stack,
+                    );
                 rules[count] = Partial { degree, at };
                 count += 1;
             }
