@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4012 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122640 bytes of memory.
+// 4108 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123168 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -58,6 +58,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             and: Conjunction::Product,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Trie,
+            least_strength: 1e-12,
             sizes: Sizes { degrees: 13, alive: 4, partial: 24, stack: 0, strengths: 6 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 3, first_start: 0, first_curve: 0, end_curve: 0 },
@@ -154,8 +155,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             ],
             programs: &[],
             steps: &[],
+            blocks: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0 },
             ],
             pairs: &[],
             moments: &[
@@ -169,12 +171,12 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         output: 0,
         order: &[0, 1, 2, 3, 4, 5],
         channels: &[
-            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: true, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: true, window_s: 20.0 },
-            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Mean, threshold: None, in_bins: true, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: false, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: Some(channel::Threshold::Below(0.006)), in_bins: false, window_s: 2.0 },
+            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: true, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: true, window_s: 20.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Mean, threshold: None, in_bins: true, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: Some(channel::Threshold::Below(0.006)), in_bins: false, window_s: 2.0, exponential: false },
         ],
         inputs: &[
             channel::Input { channel: 0, statistic: channel::Statistic::StdLessNoise },

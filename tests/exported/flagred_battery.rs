@@ -1,5 +1,5 @@
 // The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 9084 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72008 bytes of memory.
+// 9132 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72272 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// Memory for a monitor of so many motors.
@@ -69,6 +69,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             and: Conjunction::Minimum,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Dense,
+            least_strength: 1e-12,
             sizes: Sizes { degrees: 0, alive: 5, partial: 28, stack: 0, strengths: 8 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 3, first_start: 0, first_curve: 0, end_curve: 0 },
@@ -130,8 +131,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             ],
             programs: &[],
             steps: &[],
+            blocks: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 3, first_strength: 0, end_strength: 7 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 3, first_strength: 0, end_strength: 7, clamps: 0 },
             ],
             pairs: &[
                 Pair { area: [[25.0, 50.0], [-12.5, -25.0]], moment: [[-937.5, -1250.0], [312.5, 625.0], [104.16666666666667, 0.0]], width: [25.0, 25.0], middle: [-37.5, -12.5] },
@@ -145,9 +147,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         output: 0,
         order: &[0, 1, 2],
         channels: &[
-            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Named(0), motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
+            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Named(0), motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
         ],
         inputs: &[
             channel::Input { channel: 0, statistic: channel::Statistic::Mean },
