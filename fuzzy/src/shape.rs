@@ -305,6 +305,14 @@ form::forms! {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
+    /// The place of a singleton.
+    pub(crate) fn at(&self) -> Option<f64> {
+        match self {
+            MembershipFunction::Singleton { at } => Some(*at),
+            _ => None,
+        }
+    }
+
     /// The names of the variables whose values it reads: those of a linear function or a formula.
     pub(crate) fn reads(&self) -> Vec<&str> {
         match self {

@@ -388,9 +388,19 @@ impl<'m> Validator<'m> {
                     let help = "with `tsukamoto` each degree has one place: write `right_shoulder`, `left_shoulder`, `s_shape`, `z_shape`, `sigmoid`, `concave`, `arc` or a monotone `piecewise`";
                     self.error("wrong-term", here, message, help);
                 }
-                MembershipFunction::Singleton { .. } if !weighted => {
-                    let message = format!("{what} is a singleton, which has no area");
-                    self.error("wrong-term", here, message, WEIGHTED);
+                MembershipFunction::Singleton { .. } if !weighted && !output.is_discrete() => {
+                    let message =
+                        format!("{what} is a singleton, which has no area beside fuzzy sets");
+                    let help = "make all terms of the output singletons, or this one a narrow set such as `rectangle`";
+                    self.error("wrong-term", here, message, help);
+                }
+                MembershipFunction::Singleton { .. }
+                    if output.defuzzifier == Defuzzifier::Bisector =>
+                {
+                    let message = format!("{what} is a singleton, which has no area to halve");
+                    let help =
+                        "write `defuzzifier: centroid`, the mean of the places by their degrees";
+                    self.error("wrong-term", here, message, help);
                 }
                 MembershipFunction::Constant { .. } | MembershipFunction::Singleton { .. } => {}
                 shape if weighted => {
@@ -445,8 +455,13 @@ impl<'m> Validator<'m> {
         for (i, term) in variable.terms.iter().enumerate() {
             if compiled.is_empty(i) {
                 let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());
+                let lacks = if output.is_discrete() {
+                    "does not lie"
+                } else {
+                    "has no area"
+                };
                 let message = format!(
-                    "term `{}` of {what} has no area within the range [{}, {}]",
+                    "term `{}` of {what} {lacks} within the range [{}, {}]",
                     term.name, variable.low, variable.high
                 );
                 let help = "widen the range or move the term";

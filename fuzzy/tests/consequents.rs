@@ -233,3 +233,44 @@ rules: [IF x IS very low THEN y IS a, IF x IS high THEN y IS b]
     let found = engine.evaluate(&[1.0]).unwrap()[0].value().unwrap();
     assert!((found - 4.5).abs() < 1e-12, "{found}");
 }
+
+#[test]
+fn an_output_of_singletons_is_a_few_places() {
+    let of = |defuzzifier: &str, operators: &str, x: f64| {
+        let text = format!(
+            "{{fuzzy: 1, name: t, inputs: {{x: {{range: [0, 1], partition: [low, high]}}}}, outputs: {{y: {{range: [0, 10], defuzzifier: {defuzzifier}, terms: {{a: {{singleton: 2}}, b: {{singleton: 8}}, c: {{singleton: 9, height: 0.5}}, d: {{singleton: 2}}}}}}}}, operators: {{{operators}}}, rules: [IF x IS low THEN y IS a, IF x IS high THEN y IS b, IF x IS high THEN y IS c, IF x IS high THEN y IS d WITH 0.5]}}"
+        );
+        let engine = Engine::new(&text.parse().unwrap()).unwrap();
+        let explained = engine.explain(&[x]).unwrap();
+        let found = engine.evaluate(&[x]).unwrap()[0].value().unwrap();
+        assert_eq!(explained.outputs[0].value, Some(found));
+        let shares: f64 = explained.outputs[0].rules.iter().map(|r| r.share).sum();
+        assert!((shares - 1.0).abs() < 1e-12);
+        found
+    };
+    let near = |found: f64, expected: f64| {
+        assert!(
+            (found - expected).abs() < 1e-14,
+            "{found} is not {expected}"
+        );
+    };
+    // At 0.7 the strengths are 0.3, 0.7, 0.7 and 0.35, of which the first and the last conclude one place.
+    near(
+        of("centroid", "aggregation: maximum", 0.7),
+        (2.0 * 0.35 + 8.0 * 0.7 + 9.0 * 0.5) / (0.35 + 0.7 + 0.5),
+    );
+    near(
+        of("centroid", "implication: product, aggregation: sum", 0.7),
+        (2.0 * 0.65 + 8.0 * 0.7 + 9.0 * 0.35) / (0.65 + 0.7 + 0.35),
+    );
+    let either = 0.3 + 0.35 - 0.3 * 0.35;
+    near(
+        of("centroid", "aggregation: probabilistic_sum", 0.7),
+        (2.0 * either + 8.0 * 0.7 + 9.0 * 0.5) / (either + 0.7 + 0.5),
+    );
+    for (x, least, mean, most) in [(0.7, 8.0, 8.0, 8.0), (0.5, 2.0, 19.0 / 3.0, 9.0)] {
+        near(of("smallest_of_maxima", "", x), least);
+        near(of("mean_of_maxima", "", x), mean);
+        near(of("largest_of_maxima", "", x), most);
+    }
+}

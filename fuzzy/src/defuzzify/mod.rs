@@ -10,6 +10,7 @@ use maxima::{Highest, Maxima};
 pub(crate) use partition::Partition;
 use piece::{Integrals, Piece, unit};
 use polyline::{Polylines, Workspace};
+use singletons::Singletons;
 use weighted::Consequents;
 
 mod curves;
@@ -18,6 +19,7 @@ mod partition;
 mod piece;
 pub(crate) mod polyline;
 mod sampled;
+mod singletons;
 pub(crate) mod weighted;
 
 /// The operators that activate and aggregate consequents.
@@ -73,6 +75,8 @@ pub(crate) enum Method {
     Partition(Partition),
     Curves(Curves),
     Sampled(Sampling, Curves),
+    /// All terms are singletons.
+    Singletons(Singletons),
     /// The centroid of a sum of products: the area and moment of each term at a firing strength of 1.
     Moments(Vec<Moment>),
     /// Takagi-Sugeno.
@@ -119,9 +123,10 @@ impl Defuzzify {
             aggregation: operators.aggregation,
         };
         let curves = || Curves::new(&variable.terms, low, high);
-        let method = match output.samples {
-            Some(sampling) => Method::Sampled(sampling, curves()),
-            None => Polylines::new(&variable.terms, low, high)
+        let method = match (Singletons::new(output), output.samples) {
+            (Some(singletons), _) => Method::Singletons(singletons),
+            (None, Some(sampling)) => Method::Sampled(sampling, curves()),
+            (None, None) => Polylines::new(&variable.terms, low, high)
                 .filter(|_| Polylines::can(joint))
                 .map_or_else(|| Method::Curves(curves()), Method::Lines),
         };
@@ -132,7 +137,8 @@ impl Defuzzify {
             joint,
             method,
         };
-        if output.defuzzifier == Defuzzifier::Centroid && output.samples.is_none() {
+        let is_discrete = matches!(compiled.method, Method::Singletons(_));
+        if output.defuzzifier == Defuzzifier::Centroid && output.samples.is_none() && !is_discrete {
             let terms = variable.terms.len();
             let closed = match (
                 &compiled.method,
@@ -223,6 +229,7 @@ impl Defuzzify {
             Method::Curves(curves) | Method::Sampled(_, curves) => curves.is_empty(term),
             Method::Partition(partition) => partition.is_empty(term),
             Method::Moments(moments) => moments.get(term).is_none_or(|m| m.area <= 0.0),
+            Method::Singletons(singletons) => singletons.is_empty(term),
             Method::Weighted(_) | Method::Places(_) => false,
         }
     }
@@ -238,6 +245,9 @@ impl Defuzzify {
                 })
             }
             Method::Lines(_) | Method::Curves(_) => self.exact(strengths, workspace),
+            Method::Singletons(singletons) => {
+                singletons.value(strengths, self.joint, self.defuzzifier)
+            }
             Method::Partition(_) | Method::Moments(_) | Method::Weighted(_) | Method::Places(_) => {
                 None
             }
@@ -302,6 +312,7 @@ impl Defuzzify {
             Method::Curves(curves) => curves.pieces(strengths, self.joint, workspace, visit),
             Method::Partition(_)
             | Method::Sampled(..)
+            | Method::Singletons(_)
             | Method::Moments(_)
             | Method::Weighted(_)
             | Method::Places(_) => {}

@@ -431,7 +431,7 @@ const MISTAKES: [Mistake; 39] = [
         };
     }),
     ("wrong-term", |m| {
-        m.outputs[0].defuzzifier = Defuzzifier::Centroid;
+        m.outputs[0].defuzzifier = Defuzzifier::Bisector;
         m.outputs[0].variable.terms[0].membership_function = MembershipFunction::Singleton {
             at: m.outputs[0].variable.low,
         };

@@ -202,6 +202,13 @@ fn number(
             .map(|(weight, term)| weight * place(term, *weight, &output.variable));
         return sums.sum::<f64>() / total;
     }
+    let is_singleton = |term: &Term| {
+        matches!(
+            term.membership_function,
+            MembershipFunction::Singleton { .. }
+        )
+    };
+    let discrete = output.variable.terms.iter().all(is_singleton);
     let aggregated = |x: f64| {
         let mut y = 0.0;
         for (strength, term) in fired {
@@ -232,11 +239,21 @@ fn number(
     cuts.dedup();
     // (place, width of the cell, degree)
     let mut set = Vec::new();
-    for ends in cuts.windows(2) {
-        let width = (ends[1] - ends[0]) / samples as f64;
-        for i in 0..samples {
-            let x = ends[0] + (i as f64 + 0.5) * width;
-            set.push((x, width, aggregated(x)));
+    if discrete {
+        let mut places: Vec<f64> = fired
+            .iter()
+            .map(|(_, term)| consequent(&term.membership_function, values))
+            .collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        set.extend(places.into_iter().map(|x| (x, 1.0, aggregated(x))));
+    } else {
+        for ends in cuts.windows(2) {
+            let width = (ends[1] - ends[0]) / samples as f64;
+            for i in 0..samples {
+                let x = ends[0] + (i as f64 + 0.5) * width;
+                set.push((x, width, aggregated(x)));
+            }
         }
     }
     let area: f64 = set.iter().map(|(_, width, y)| width * y).sum();
