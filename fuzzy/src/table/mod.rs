@@ -40,7 +40,7 @@ pub use crate::shape::Kind;
 use closed::closed;
 use firing::fire;
 use operators::{larger, smaller};
-pub(crate) use raising::raised_by;
+pub(crate) use raising::{concluded_by, raised_by};
 
 /// How the rules that are plain ANDs of terms of different inputs are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
