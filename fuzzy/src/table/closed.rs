@@ -144,16 +144,14 @@ pub(super) fn closed<A: Arrays>(
         }
         ClosedForm::TSUKAMOTO => {
             let curves = &table.curves()[range];
-            return tsukamoto(output, curves, table.points(), strengths);
+            return tsukamoto(output, curves, table.points(), strengths)
+                .map(|value| output.clamped(value));
         }
         // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
         form => {
             let consequents = &table.consequents()[range];
-            let value = weighted(form, consequents, table.coefficients(), strengths, inputs)?;
-            return Some(match output.clamps {
-                0 => value,
-                _ => super::larger(output.low, smaller(output.high, value)),
-            });
+            return weighted(form, consequents, table.coefficients(), strengths, inputs)
+                .map(|value| output.clamped(value));
         }
     };
     let value = centroid(area, moment, output.origin())?;
