@@ -140,7 +140,7 @@ impl Engine {
         output: usize,
     ) -> Option<(usize, &'a Stage, usize, usize)> {
         let mut outcomes = core::mem::take(&mut scratch.outcomes);
-        self.chained(chain, scratch, inputs, &mut outcomes);
+        self.chained(chain, scratch, inputs, &mut outcomes, |_, _| {});
         scratch.outcomes = outcomes;
         let mut rules = 0;
         for (number, (place, stage)) in chain.stages(&self.first).enumerate() {
