@@ -202,7 +202,15 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let step = |by: usize, output: usize| {
         let mut reads = reads.get(by)?.iter();
         let read = reads.find(|read| read.output == output)?;
-        let rule = read.rule.map(|rule| format!(" in rule {}", rule + 1));
+        let rule = read.rule.map(|rule| {
+            let mut place = format!(" in rule {}", rule + 1);
+            let rule = model.rules.get(rule);
+            // Its activation method asks all rules of the block.
+            if rule.is_some_and(|rule| !concludes(rule, &model.outputs[by])) {
+                place += " of its block";
+            }
+            place
+        });
         let rule = rule.unwrap_or_default();
         let text = format!("`{}` reads `{}`{rule}", name(by)?, name(output)?);
         Some((text, read.span.clone()))

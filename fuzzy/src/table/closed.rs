@@ -164,11 +164,8 @@ pub(super) fn closed<A: Arrays>(
                         inputs,
                     )
                 }
-            }?;
-            return Some(match output.clamps {
-                0 => value,
-                _ => super::larger(output.low, smaller(output.high, value)),
-            });
+            };
+            return value.map(|value| output.clamped(value));
         }
     };
     let value = centroid(area, moment, output.origin())?;

@@ -40,7 +40,7 @@ pub use crate::shape::Kind;
 use closed::closed;
 use firing::fire;
 use operators::{larger, smaller};
-pub(crate) use raising::raised_by;
+pub(crate) use raising::{concluded_by, raised_by};
 
 /// How the rules that are plain ANDs of terms of different inputs are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -128,6 +128,15 @@ pub struct Buffers<N, P, S> {
 pub type Scratch<'m> = Buffers<&'m mut [f64], &'m mut [Partial], &'m mut [Strongest]>;
 
 impl Output {
+    /// The value, clamped to the range where the author says so.
+    #[inline(always)]
+    fn clamped(&self, value: f64) -> f64 {
+        match self.clamps {
+            0 => value,
+            _ => larger(self.low, smaller(self.high, value)),
+        }
+    }
+
     /// The middle of the range. Moments are measured from there, against cancellation.
     #[inline(always)]
     pub(crate) fn origin(&self) -> f64 {
