@@ -5,13 +5,13 @@ use alloc::{string::String, sync::Arc, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     diagnostic::Findings,
-    engine::{EvaluateError, Outcome, Scratch},
+    engine::{EvaluateError, Outcome, Said, Scratch},
     table::ClosedForm,
 };
 
 use crate::{
     board::Plan,
-    cause::{Cause, Proposition, cause},
+    cause::{Asked, Cause, Proposition, Propositions},
     channel::{Channel, Input},
     gap::Filling,
     lookup::Lookup,
@@ -46,8 +46,12 @@ struct Compiled {
     channels: Vec<Channel>,
     inputs: Vec<Input>,
     propositions: Vec<Proposition>,
-    /// The term of each, with its hedges.
-    terms: Vec<String>,
+    /// The same as the engine has them.
+    said: Vec<Said>,
+    /// See [`Propositions`]; empty where no output reads another one.
+    rules: Vec<u32>,
+    /// Of the other risks of the profile, each as if it were the only one.
+    others: Vec<Estimator>,
 }
 
 /// Why a profile and a rule set make no estimator.
@@ -88,6 +92,14 @@ pub enum EstimatorError {
         /// The upper end of its range.
         high: f64,
     },
+    /// An output keeps its previous value, but filling takes the place of rules that do not fire.
+    #[error(
+        "output `{output}` keeps its previous value where no rule fires, which a risk does not"
+    )]
+    KeepsPrevious {
+        /// The output.
+        output: String,
+    },
 }
 
 /// Why a profile and its rule set cannot be exported.
@@ -110,6 +122,14 @@ pub enum NoPlan {
         /// The output that is read.
         read: String,
     },
+    /// The profile has several risks.
+    #[error("the profile has the risks `{output}` and `{other}`, and what flies on board has one")]
+    SeveralRisks {
+        /// The first risk.
+        output: String,
+        /// The second one.
+        other: String,
+    },
 }
 
 impl NoPlan {
@@ -122,6 +142,9 @@ impl NoPlan {
                  `aggregation: sum`, over any terms; the Takagi-Sugeno defuzzifiers. All of them without `samples`"
             }
             NoPlan::Chained { .. } => "write rules whose conditions name inputs only",
+            NoPlan::SeveralRisks { .. } => {
+                "write a profile for each risk, and run a monitor of each: the findings are the same"
+            }
         }
     }
 }
@@ -131,9 +154,22 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// Where the rule set does not compile, the two do not name the same inputs, or the output is no percentage.
+    /// Where the rule set does not compile, the two do not name the same inputs, an output is no percentage, or an output
+    /// keeps its previous value.
     pub fn new(profile: &Profile, model: &Model) -> Result<Estimator, EstimatorError> {
-        let engine = Engine::new(model)?;
+        Estimator::with_engine(profile, model, Engine::new(model)?)
+    }
+
+    fn with_engine(
+        profile: &Profile,
+        model: &Model,
+        engine: Engine,
+    ) -> Result<Estimator, EstimatorError> {
+        let others = profile.other_risks.iter().map(|risk| {
+            let profile = profile.of_risk(risk);
+            Estimator::with_engine(&profile, model, engine.clone())
+        });
+        let others = others.collect::<Result<Vec<Estimator>, EstimatorError>>()?;
         let output =
             engine
                 .output(&profile.output)
@@ -147,6 +183,11 @@ impl Estimator {
                 output: profile.output.clone(),
                 low: variable.low,
                 high: variable.high,
+            });
+        }
+        if let Some(output) = model.outputs.iter().find(|output| output.keeps_previous()) {
+            return Err(EstimatorError::KeepsPrevious {
+                output: output.variable.name.clone(),
             });
         }
         if let Some(stray) = profile
@@ -174,13 +215,25 @@ impl Estimator {
             .map_err(|input| EstimatorError::NoSource { input })?;
         let said = engine.propositions();
         let propositions = said.iter().map(|said| Proposition {
-            rule: said.rule as u32,
-            input: order.get(said.input).copied().unwrap_or_default(),
+            rule: said.place as u32,
+            input: match said.input.checked_sub(order.len()) {
+                None => order.get(said.input).copied().unwrap_or_default(),
+                Some(output) => (profile.inputs.len() + output) as u32,
+            },
             literal: said.literal as u32,
         });
+        let mut rules = Vec::new();
+        for said in said.iter().filter(|_| engine.table().is_none()) {
+            rules.resize(rules.len().max(said.place + 1), 0);
+            if let Some(rule) = rules.get_mut(said.place) {
+                *rule = said.rule as u32;
+            }
+        }
         Ok(Estimator(Arc::new(Compiled {
             propositions: propositions.collect(),
-            terms: said.into_iter().map(|said| said.term).collect(),
+            rules,
+            said,
+            others,
             profile: profile.clone(),
             filling: Filling::new(&engine, model, output, &profile.gap)?,
             engine,
@@ -194,6 +247,11 @@ impl Estimator {
     /// The profile.
     pub fn profile(&self) -> &Profile {
         &self.0.profile
+    }
+
+    /// The estimators of [`Profile::other_risks`], each as if it were the only risk.
+    pub fn others(&self) -> &[Estimator] {
+        &self.0.others
     }
 
     /// The rule set.
@@ -215,17 +273,35 @@ impl Estimator {
     ) -> Option<Cause> {
         let Memory { scratch, point, .. } = memory;
         self.lookup().reorder(inputs, point)?;
-        let rule = (self.0.engine).raised_by(scratch, point, self.0.output, risk_pct)?;
-        cause(&self.0.propositions, scratch.degrees(), rule, inputs)
+        let engine = &self.0.engine;
+        let propositions = Propositions {
+            all: &self.0.propositions,
+            rules: &self.0.rules,
+        };
+        let risk = (self.0.output, risk_pct);
+        let outputs = engine.output_names().len();
+        propositions.cause(inputs, risk, outputs, |output, asked, pick| {
+            let rule = match asked {
+                Asked::Raises(value) => engine.raised_by(scratch, point, output, value),
+                Asked::Concludes(said) => {
+                    engine.concluded_by(scratch, point, self.0.said.get(said)?)
+                }
+            };
+            pick(rule?, scratch.degrees())
+        })
     }
 
     /// The input and the term, with its hedges, of each proposition of the rules, in the order of
     /// [`Plan::propositions`]: what a [`Cause`] is called.
     pub fn propositions(&self) -> impl ExactSizeIterator<Item = (&str, &str)> {
-        let all = self.0.propositions.iter().zip(&self.0.terms);
-        all.map(|(said, term)| {
-            let input = self.0.profile.inputs.get(said.input as usize);
-            (input.map_or("", |input| input.name.as_str()), term.as_str())
+        let all = self.0.propositions.iter().zip(&self.0.said);
+        all.map(|(said, Said { term, .. })| {
+            let inputs = &self.0.profile.inputs;
+            let name = match (said.input as usize).checked_sub(inputs.len()) {
+                None => inputs.get(said.input as usize).map(|input| &*input.name),
+                Some(output) => self.0.engine.output_names().nth(output),
+            };
+            (name.unwrap_or_default(), term.as_str())
         })
     }
 
@@ -255,8 +331,14 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// The output has no closed form, or an output reads another one.
+    /// The output has no closed form, an output reads another one, or the profile has several risks.
     pub fn plan(&self) -> Result<Plan<'_>, NoPlan> {
+        if let Some(other) = self.0.profile.other_risks.first() {
+            return Err(NoPlan::SeveralRisks {
+                output: self.0.profile.output.clone(),
+                other: other.output.clone(),
+            });
+        }
         let Some(table) = self.0.engine.table() else {
             return Err(self.chained());
         };

@@ -13,6 +13,7 @@ pub(crate) use partition::Partition;
 use piece::{Integrals, Piece, unit};
 use polyline::{Polylines, Workspace};
 pub(crate) use prepared::Prepared;
+use singletons::Singletons;
 use weighted::Consequents;
 
 mod curves;
@@ -22,6 +23,7 @@ mod piece;
 pub(crate) mod polyline;
 mod prepared;
 mod sampled;
+mod singletons;
 pub(crate) mod weighted;
 
 /// The operators that activate and aggregate consequents.
@@ -77,6 +79,8 @@ pub(crate) enum Method {
     Partition(Partition),
     Curves(Curves),
     Sampled(Sampling, Curves),
+    /// All terms are singletons.
+    Singletons(Singletons),
     /// What does not depend on the inputs is computed.
     Prepared(Prepared),
     /// The centroid of a sum of products: the area and moment of each term at a firing strength of 1.
@@ -122,6 +126,9 @@ impl Method {
             low, high, terms, ..
         } = &output.variable;
         let (low, high) = (*low, *high);
+        if let Some(singletons) = Singletons::new(output) {
+            return Method::Singletons(singletons);
+        }
         if let Some(sampling) = output.samples {
             return Method::Sampled(sampling, Curves::new(terms, low, high));
         }
@@ -216,6 +223,7 @@ impl Defuzzify {
             Method::Partition(partition) => partition.is_empty(term),
             Method::Prepared(prepared) => prepared.is_empty(term),
             Method::Moments(moments) => moments.get(term).is_none_or(|m| m.area <= 0.0),
+            Method::Singletons(singletons) => singletons.is_empty(term),
             Method::Weighted(_) | Method::Places(_) => false,
         }
     }
@@ -231,6 +239,9 @@ impl Defuzzify {
                 })
             }
             Method::Lines(_) | Method::Curves(_) => self.exact(strengths, workspace),
+            Method::Singletons(singletons) => {
+                singletons.value(strengths, self.joint, self.defuzzifier)
+            }
             Method::Partition(_)
             | Method::Prepared(_)
             | Method::Moments(_)
@@ -302,6 +313,7 @@ impl Defuzzify {
             Method::Partition(_)
             | Method::Prepared(_)
             | Method::Sampled(..)
+            | Method::Singletons(_)
             | Method::Moments(_)
             | Method::Weighted(_)
             | Method::Places(_) => {}

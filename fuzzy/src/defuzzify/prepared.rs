@@ -54,7 +54,13 @@ impl Prepared {
             joint.implication,
             Implication::Minimum | Implication::Product
         );
-        if !has_form || terms.len() > MOST_TERMS {
+        let is_formula = |term: &Term| {
+            matches!(
+                term.membership_function,
+                MembershipFunction::Function { .. }
+            )
+        };
+        if !has_form || terms.len() > MOST_TERMS || terms.iter().any(is_formula) {
             return None;
         }
         let measure = Measure {

@@ -3,16 +3,15 @@
 use alloc::vec::Vec;
 
 use super::literal::Literals;
-use super::rules::Draft;
+use super::rules::{Draft, Firing};
 use super::{CompiledOutput, Input as Range};
 use crate::defuzzify::{Method, Prepared};
 use crate::model::{
-    Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, NoRuleFires, Operators,
-    Term,
+    Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, NoRuleFires, Term,
 };
 use crate::table::{
-    Action, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge, Flank,
-    FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair, Point, Program, Section,
+    Action, Axis, Block, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge,
+    Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair, Point, Program, Section,
     SetTerm, Sizes, Step, Strand, Table, arrays, arrays_from_fields,
 };
 
@@ -24,6 +23,7 @@ macro_rules! define {
             and: Conjunction,
             or: Disjunction,
             pub(super) conjunctions: Conjunctions,
+            least_strength: f64,
             pub(super) sizes: Sizes,
             $(pub(super) $array: Vec<$item>,)*
         }
@@ -34,6 +34,7 @@ macro_rules! define {
                     and: self.and,
                     or: self.or,
                     conjunctions: self.conjunctions,
+                    least_strength: self.least_strength,
                     sizes: self.sizes,
                     $($array: &self.$array,)*
                 }
@@ -46,20 +47,25 @@ arrays!(arrays_from_fields! OwnedTable;);
 
 impl OwnedTable {
     pub(super) fn new(
-        operators: Operators,
+        firing: &Firing,
         inputs: &[Range],
         literals: &[Literals],
         drafts: &[Draft],
         outputs: &[CompiledOutput],
     ) -> Self {
         let mut table = OwnedTable {
-            and: operators.and,
-            or: operators.or,
+            and: firing.and,
+            or: firing.or,
+            least_strength: firing.least_strength,
             ..OwnedTable::default()
         };
         let strengths = outputs.last().map_or(0, |output| output.strengths.end) as u32;
         table.sizes.strengths = strengths + 1;
-        table.rules(drafts, literals, strengths);
+        if firing.blocks.is_empty() {
+            table.rules(drafts, literals, strengths);
+        } else {
+            table.blocks(&firing.blocks, drafts);
+        }
         if !table.programs.is_empty() || table.conjunctions == Conjunctions::Trie {
             table.sizes.degrees = literals.iter().map(|literals| literals.count).sum();
         }
@@ -107,8 +113,12 @@ impl OwnedTable {
     fn curve(&mut self, index: u32, term: &Term, hedges: &[Hedge]) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
         let (kind, parameters) = term.membership_function.kind();
-        if let MembershipFunction::Piecewise { points } = &term.membership_function {
-            self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
+        match &term.membership_function {
+            MembershipFunction::Piecewise { points } => {
+                self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
+            }
+            MembershipFunction::Function { formula } => self.points.extend(formula.code()),
+            _ => {}
         }
         self.hedges.extend(hedges);
         self.curves.push(Curve {
@@ -126,7 +136,7 @@ impl OwnedTable {
     fn output(&mut self, output: &CompiledOutput) {
         let defuzzify = &output.defuzzify;
         let (form, (first, end)) = match &defuzzify.method {
-            Method::Lines(_) | Method::Curves(_) | Method::Sampled(..) => {
+            Method::Lines(_) | Method::Curves(_) | Method::Sampled(..) | Method::Singletons(_) => {
                 (ClosedForm::NONE, (0, 0))
             }
             Method::Partition(partition) => (
@@ -153,10 +163,13 @@ impl OwnedTable {
             }
             Method::Weighted(weighted) => {
                 let (first, _) = extend(&mut self.coefficients, &weighted.coefficients);
+                let (first_code, _) = extend(&mut self.points, &weighted.code);
                 let mut consequents = weighted.consequents.clone();
                 for consequent in &mut consequents {
                     consequent.first += first;
                     consequent.end += first;
+                    consequent.first_code += first_code;
+                    consequent.end_code += first_code;
                 }
                 let form = match defuzzify.defuzzifier {
                     Defuzzifier::WeightedSum => ClosedForm::WEIGHTED_SUM,
@@ -169,14 +182,17 @@ impl OwnedTable {
             low: output.low,
             high: output.high,
             default_value: match output.when_no_rule_fires {
-                NoRuleFires::Value(value) => value,
-                NoRuleFires::Undefined | NoRuleFires::Error => f64::NAN,
+                NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => value,
+                NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => {
+                    f64::NAN
+                }
             },
             form,
             first,
             end,
             first_strength: output.strengths.start as u32,
             end_strength: output.strengths.end as u32,
+            clamps: u32::from(output.clamps),
         });
     }
 }

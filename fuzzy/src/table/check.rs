@@ -86,6 +86,14 @@ impl Table<'_> {
                 "programs",
             )?;
         }
+        for block in self.blocks {
+            let rules = block.end_program.saturating_sub(block.first_program);
+            require(
+                within(block.first_program, block.end_program, self.programs.len())
+                    && rules <= self.sizes.partial,
+                "blocks",
+            )?;
+        }
         for step in self.steps {
             let has_literal = matches!(step.op, Op::PUSH | Op::AND_LITERAL | Op::OR_LITERAL);
             require(!has_literal || (step.literal as usize) < literals, "steps")?;
@@ -122,7 +130,12 @@ impl Table<'_> {
             require(span, "flanks")?;
         }
         for consequent in self.consequents {
-            let span = within(consequent.first, consequent.end, self.coefficients.len());
+            let span = within(consequent.first, consequent.end, self.coefficients.len())
+                && within(
+                    consequent.first_code,
+                    consequent.end_code,
+                    self.points.len(),
+                );
             require(span, "consequents")?;
         }
         for coefficient in self.coefficients {
