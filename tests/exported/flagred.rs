@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4220 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122536 bytes of memory.
+// 4244 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122560 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -55,11 +55,10 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
     Plan {
         name: "flagred",
         table: Table {
-            blocks: &[],
-            least_strength: 1e-12,
             and: Conjunction::Product,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Trie,
+            least_strength: 1e-12,
             sizes: Sizes { degrees: 13, alive: 4, partial: 1, stack: 1, strengths: 6 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 3, first_start: 0, first_curve: 0, end_curve: 0 },
@@ -121,17 +120,17 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 Action { weight: 1.0, strength: 4, output: 0, rule: 0, sums: 1 },
             ],
             programs: &[
-                Program { weight: 1.0, first_step: 0, end_step: 2, first_action: 0, end_action: 1, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.5, first_step: 0, end_step: 2, first_action: 0, end_action: 1, first_hedge: 0, end_hedge: 0 },
                 Program { weight: 1.0, first_step: 2, end_step: 4, first_action: 1, end_action: 2, first_hedge: 0, end_hedge: 0 },
-                Program { weight: 1.0, first_step: 4, end_step: 6, first_action: 2, end_action: 3, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.2, first_step: 4, end_step: 6, first_action: 2, end_action: 3, first_hedge: 0, end_hedge: 0 },
                 Program { weight: 1.0, first_step: 6, end_step: 8, first_action: 3, end_action: 4, first_hedge: 0, end_hedge: 0 },
                 Program { weight: 1.0, first_step: 8, end_step: 10, first_action: 4, end_action: 5, first_hedge: 0, end_hedge: 0 },
-                Program { weight: 1.0, first_step: 10, end_step: 12, first_action: 5, end_action: 6, first_hedge: 0, end_hedge: 0 },
-                Program { weight: 1.0, first_step: 12, end_step: 14, first_action: 6, end_action: 7, first_hedge: 0, end_hedge: 0 },
-                Program { weight: 1.0, first_step: 14, end_step: 16, first_action: 7, end_action: 8, first_hedge: 0, end_hedge: 0 },
-                Program { weight: 1.0, first_step: 16, end_step: 18, first_action: 8, end_action: 9, first_hedge: 0, end_hedge: 0 },
-                Program { weight: 1.0, first_step: 18, end_step: 20, first_action: 9, end_action: 10, first_hedge: 0, end_hedge: 0 },
-                Program { weight: 1.0, first_step: 20, end_step: 22, first_action: 10, end_action: 11, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.35, first_step: 10, end_step: 12, first_action: 5, end_action: 6, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.1, first_step: 12, end_step: 14, first_action: 6, end_action: 7, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.5, first_step: 14, end_step: 16, first_action: 7, end_action: 8, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.35, first_step: 16, end_step: 18, first_action: 8, end_action: 9, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.7, first_step: 18, end_step: 20, first_action: 9, end_action: 10, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.1, first_step: 20, end_step: 22, first_action: 10, end_action: 11, first_hedge: 0, end_hedge: 0 },
                 Program { weight: 1.0, first_step: 22, end_step: 23, first_action: 11, end_action: 12, first_hedge: 0, end_hedge: 0 },
             ],
             steps: &[
@@ -144,8 +143,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 Step { op: Op(0), literal: 9 }, Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 10 },
                 Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 12 },
             ],
+            blocks: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), clamps: 0, first: 0, end: 5, first_strength: 0, end_strength: 5 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0 },
             ],
             pairs: &[],
             moments: &[

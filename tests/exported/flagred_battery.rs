@@ -1,5 +1,5 @@
 // The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 9532 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 71600 bytes of memory.
+// 9556 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 71624 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// Memory for a monitor of so many motors.
@@ -66,11 +66,10 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
     Plan {
         name: "flagred-battery",
         table: Table {
-            blocks: &[],
-            least_strength: 1e-12,
             and: Conjunction::Minimum,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Trie,
+            least_strength: 1e-12,
             sizes: Sizes { degrees: 11, alive: 5, partial: 1, stack: 1, strengths: 8 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 3, first_start: 0, first_curve: 0, end_curve: 0 },
@@ -150,8 +149,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 Step { op: Op(1), literal: 5 }, Step { op: Op(1), literal: 8 }, Step { op: Op(0), literal: 3 },
                 Step { op: Op(1), literal: 6 }, Step { op: Op(1), literal: 8 }, Step { op: Op(0), literal: 7 },
             ],
+            blocks: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), clamps: 0, first: 0, end: 3, first_strength: 0, end_strength: 7 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 3, first_strength: 0, end_strength: 7, clamps: 0 },
             ],
             pairs: &[
                 Pair { area: [[25.0, 50.0], [-12.5, -25.0]], moment: [[-937.5, -1250.0], [312.5, 625.0], [104.16666666666667, 0.0]], width: [25.0, 25.0], middle: [-37.5, -12.5] },
