@@ -16,6 +16,8 @@ pub struct Set<'a> {
     pub high: f64,
     /// The ends of the range and all places at which a shape has a parameter.
     pub cuts: Vec<f64>,
+    /// The places of singletons, where all terms are; the degrees between them count for nothing.
+    pub places: Vec<f64>,
     pub defuzzifier: Defuzzifier,
     pub degree: &'a dyn Fn(f64) -> f64,
 }
@@ -325,6 +327,12 @@ fn number(
         )
     };
     let discrete = output.variable.terms.iter().all(is_singleton);
+    let places = fired.iter().filter(|_| discrete);
+    let mut places: Vec<f64> = places
+        .map(|(_, term)| consequent(&term.membership_function, values))
+        .collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup();
     let operators = model.operators_of_output(output);
     let aggregated = |x: f64| {
         let mut y = 0.0;
@@ -358,6 +366,7 @@ fn number(
         low,
         high,
         cuts,
+        places,
         defuzzifier: output.defuzzifier,
         degree: &aggregated,
     })
@@ -365,16 +374,11 @@ fn number(
 
 fn sampled(set: &Set<'_>, samples: usize) -> f64 {
     let (high, cuts, aggregated, defuzzifier) = (set.high, &set.cuts, set.degree, set.defuzzifier);
+    let places = &set.places;
     // (place, width of the cell, degree)
     let mut set = Vec::new();
-    if discrete {
-        let mut places: Vec<f64> = fired
-            .iter()
-            .map(|(_, term)| consequent(&term.membership_function, values))
-            .collect();
-        places.sort_by(f64::total_cmp);
-        places.dedup();
-        set.extend(places.into_iter().map(|x| (x, 1.0, aggregated(x))));
+    if !places.is_empty() {
+        set.extend(places.iter().map(|x| (*x, 1.0, aggregated(*x))));
     } else {
         for ends in cuts.windows(2) {
             let width = (ends[1] - ends[0]) / samples as f64;
