@@ -3,10 +3,11 @@
 
 use alloc::vec::Vec;
 
-use super::piece::{Piece, root};
+use super::piece::Piece;
 use super::polyline::Workspace;
 use super::{Joint, Strengths};
 use crate::model::{Aggregation, Implication, MembershipFunction, Term};
+use crate::table::numeric::root;
 
 /// A formula may have a kink anywhere: it is integrated between so many even cuts. What is narrower may be missed.
 const EVENLY: u32 = 256;

@@ -24,6 +24,10 @@ impl ClosedForm {
 
     /// Tsukamoto, `sum(w z) / sum(w)` with `z` where a term has the degree `w`: [`Curve`]s, one for each firing strength.
     pub const TSUKAMOTO: ClosedForm = ClosedForm(5);
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are cut off: the implication is the minimum.
+    pub const CUT: ClosedForm = ClosedForm(6);
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled: the implication is the product.
+    pub const SCALED: ClosedForm = ClosedForm(7);
 }
 
 /// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
@@ -147,6 +151,7 @@ pub(super) fn closed<A: Arrays>(
             }
             sum
         }
+        ClosedForm::CUT | ClosedForm::SCALED => return super::set::value(table, output, strengths),
         // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
         form => {
             let points = table.points();
