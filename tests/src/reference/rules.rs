@@ -88,6 +88,14 @@ fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
         if let MembershipFunction::Linear { coefficients, .. } = &term.membership_function {
             names.extend(coefficients.iter().map(|(name, _)| &**name));
         }
+        if let MembershipFunction::Function { formula } = &term.membership_function
+            && matches!(
+                output.defuzzifier,
+                Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
+            )
+        {
+            names.extend(formula.variables());
+        }
     }
     names
 }
@@ -455,6 +463,9 @@ fn consequent(shape: &MembershipFunction, values: &Values<'_>) -> f64 {
                 z += coefficient * values[&**name].unwrap().1;
             }
             z
+        }
+        MembershipFunction::Function { formula } => {
+            formula.evaluate(|name| values[name].unwrap().1)
         }
         other => panic!("{other:?} is no consequent"),
     }
