@@ -77,11 +77,7 @@ impl Engine {
     /// proposition that many rules have says little about one of them.
     pub fn propositions(&self) -> Vec<Said> {
         let model = self.model();
-        let mut compiler = Compiler {
-            model,
-            literals: BTreeMap::new(),
-        };
-        compiler.literals();
+        let compiler = Compiler::new(model);
         let mut all = Vec::new();
         for (rule, found) in model.rules.iter().enumerate() {
             found.rule.condition.visit(&mut |proposition| {
