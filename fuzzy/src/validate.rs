@@ -79,7 +79,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     for (i, input) in model.inputs.iter().enumerate() {
         let spans = spans.inputs.get(i).unwrap_or(&no_spans);
         validator.variable(&format!("input `{}`", input.name), input, spans);
-        validator.no_linear_terms(input, spans);
+        validator.terms_are_sets(input, spans);
     }
     if model.outputs.is_empty() {
         validator.findings.push(

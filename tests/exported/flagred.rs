@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4148 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122464 bytes of memory.
+// 4244 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122560 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -150,11 +150,17 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             pairs: &[],
             moments: &[
                 Moment { area: 5.0, moment: -225.0 }, Moment { area: 5.0, moment: -125.0 },
-                Moment { area: 5.0, moment: 8.881784197001252e-16 }, Moment { area: 5.0, moment: 125.0 },
+                Moment { area: 5.0, moment: 0.0 }, Moment { area: 5.0, moment: 125.0 },
                 Moment { area: 5.0, moment: 225.0 },
             ],
             consequents: &[],
             coefficients: &[],
+            sets: &[],
+            set_terms: &[],
+            sections: &[],
+            strands: &[],
+            flanks: &[],
+            knots: &[],
         },
         output: 0,
         order: &[0, 1, 2, 3, 4, 5],

@@ -9,6 +9,7 @@ mod builder;
 pub(crate) mod chain;
 pub(crate) mod document;
 mod partition;
+pub use crate::formula::Formula;
 #[cfg(feature = "serde")]
 pub(crate) use crate::shape::Role;
 pub(crate) use crate::shape::{Form, Parts};
