@@ -1,5 +1,5 @@
 // The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 9132 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72272 bytes of memory.
+// 9164 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72384 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// Memory for a monitor of so many motors.
@@ -142,6 +142,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             consequents: &[],
             coefficients: &[],
         },
+        stages: &[],
+        places: &[],
         output: 0,
         order: &[0, 1, 2],
         channels: &[

@@ -1,5 +1,5 @@
 // The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 3580 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54504 bytes of memory.
+// 3612 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54616 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -117,6 +117,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             consequents: &[],
             coefficients: &[],
         },
+        stages: &[],
+        places: &[],
         output: 0,
         order: &[0, 1],
         channels: &[

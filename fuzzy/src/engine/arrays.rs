@@ -10,8 +10,8 @@ use crate::model::{
     Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires, Operators, Term,
 };
 use crate::table::{
-    Action, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge, Hedge,
-    Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step, Table, arrays,
+    Action, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge, Ends,
+    Hedge, Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step, Table, arrays,
     arrays_from_fields,
 };
 
@@ -28,6 +28,27 @@ macro_rules! define {
         }
 
         impl OwnedTable {
+            /// Adds the arrays of another stage after those that are there.
+            pub(super) fn append(&mut self, other: &OwnedTable) {
+                (self.and, self.or) = (other.and, other.or);
+                let (own, other_sizes) = (self.sizes, other.sizes);
+                self.sizes = Sizes {
+                    degrees: own.degrees.max(other_sizes.degrees),
+                    alive: own.alive.max(other_sizes.alive),
+                    partial: own.partial.max(other_sizes.partial),
+                    stack: own.stack.max(other_sizes.stack),
+                    strengths: own.strengths.max(other_sizes.strengths),
+                };
+                $(self.$array.extend_from_slice(&other.$array);)*
+            }
+
+            /// Where its arrays end.
+            pub(super) fn ends(&self) -> Ends {
+                Ends {
+                    $($array: self.$array.len() as u32,)*
+                }
+            }
+
             pub(super) fn table(&self) -> Table<'_> {
                 Table {
                     and: self.and,
@@ -103,7 +124,7 @@ impl OwnedTable {
         });
     }
 
-    fn curve(&mut self, index: u32, term: &Term, hedges: &[Hedge]) {
+    pub(super) fn curve(&mut self, index: u32, term: &Term, hedges: &[Hedge]) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
         let (kind, parameters) = term.membership_function.kind();
         if let MembershipFunction::Piecewise { points } = &term.membership_function {

@@ -9,6 +9,7 @@
 use core::ops::DerefMut;
 
 mod arrays;
+pub(crate) mod chain;
 mod check;
 mod closed;
 mod firing;
@@ -20,6 +21,7 @@ mod rules;
 
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
+pub use chain::{Chain, Ends, Sought, Stage, Values};
 pub use check::Damaged;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub(crate) use closed::{centroid, finite};
