@@ -1,6 +1,8 @@
 //! The systems that are timed here and in `benches/peers`, made in code.
 
-use fuzzy::model::{MembershipFunction, Model, Output, Variable};
+use fuzzy::model::{
+    Defuzzifier, Implication, MembershipFunction, Model, ModelBuilder, Output, Variable,
+};
 use fuzzy::rule::{Condition, Rule};
 
 fn triangle(left: f64, peak: f64, right: f64) -> MembershipFunction {
@@ -139,6 +141,59 @@ pub fn four_inputs() -> Model {
     model
 }
 
+/// The published rules with the product as implication.
+pub fn larsen() -> Model {
+    let mut model = published(true);
+    model.operators.implication = Implication::Product;
+    model
+}
+
+/// The published rules with output terms so wide that four overlap.
+pub fn overlapping() -> Model {
+    let mut model = published(true);
+    for output in &mut model.outputs {
+        for (term, peak) in output
+            .variable
+            .terms
+            .iter_mut()
+            .zip([0.0, 25.0, 50.0, 75.0, 100.0])
+        {
+            term.membership_function = triangle(peak - 60.0, peak, peak + 60.0);
+        }
+    }
+    model
+}
+
+/// Takagi-Sugeno: 2 inputs of 3 terms, 9 rules that conclude linear functions of the inputs.
+pub fn takagi_sugeno() -> Model {
+    let names = ["low", "medium", "high"];
+    let mut power = Variable::new("power", 0.0, 100.0);
+    let mut rules = Vec::new();
+    for (i, heat) in (0u8..).zip(names) {
+        for (j, damp) in (0u8..).zip(names) {
+            let term = format!("{heat}_{damp}");
+            let (i, j) = (f64::from(i), f64::from(j));
+            power = power.term(
+                &*term,
+                MembershipFunction::Linear {
+                    coefficients: vec![
+                        ("heat".into(), 1.0 + 0.5 * i),
+                        ("damp".into(), 0.25 * j - 0.3),
+                    ],
+                    constant: 10.0 * i - 4.0 * j,
+                },
+            );
+            let condition = Condition::is("heat", heat).and(Condition::is("damp", damp));
+            rules.push(Rule::new(condition, "power", &term));
+        }
+    }
+    let builder = Model::builder("takagi sugeno")
+        .input(Variable::new("heat", 0.0, 40.0).partition(names))
+        .input(Variable::new("damp", 0.0, 100.0).partition(names))
+        .output(Output::new(power).defuzzifier(Defuzzifier::WeightedAverage));
+    rules.into_iter().fold(builder, ModelBuilder::rule).build()
+}
+
 /// Points spread over the inputs' ranges, the same on every machine: a Weyl sequence.
 pub fn points(model: &Model, count: usize) -> Vec<Vec<f64>> {
     const STEPS: [f64; 4] = [
@@ -155,4 +210,35 @@ pub fn points(model: &Model, count: usize) -> Vec<Vec<f64>> {
                 .collect()
         })
         .collect()
+}
+
+/// (g): the commonest system of gaussians: 2 inputs of 5 terms, 25 rules, an output of so many gaussian terms.
+pub fn gaussians(outputs: usize) -> Model {
+    let of = |name: &str, low: f64, high: f64, count: usize| {
+        let step = (high - low) / (count - 1) as f64;
+        (0..count).fold(Variable::new(name, low, high), |variable, i| {
+            let term = MembershipFunction::Gaussian {
+                mean: low + step * i as f64,
+                // Not all alike, and none so wide that it is flat.
+                sd: step * (0.35 + 0.05 * (i % 3) as f64),
+            };
+            variable.term(format!("t{i}"), term)
+        })
+    };
+    let mut model = Model::builder("gaussians")
+        .input(of("x", 0.0, 10.0, 5))
+        .input(of("y", -1.0, 1.0, 5))
+        .output(Output::new(of("z", 0.0, 100.0, outputs)))
+        .build();
+    for x in 0..5 {
+        for y in 0..5 {
+            let condition =
+                Condition::is("x", &format!("t{x}")).and(Condition::is("y", &format!("t{y}")));
+            let z = (x + y) * (outputs - 1) / 8;
+            model
+                .rules
+                .push(Rule::new(condition, "z", &format!("t{z}")).into());
+        }
+    }
+    model
 }

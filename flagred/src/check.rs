@@ -139,6 +139,11 @@ fn compile(
             at.of(&of_output(output)),
             "write the output of the rule set with `range: [0, 100]`".into(),
         ),
+        EstimatorError::KeepsPrevious { .. } => (
+            "keeps-previous",
+            at.of(&["output"]),
+            "write `when_no_rule_fires: undefined` in the rule set; `gap` of the profile says what fills gaps".into(),
+        ),
         EstimatorError::Rules(_) | EstimatorError::Evaluate(_) => (
             "rule-set",
             at.of(&["rules"]),

@@ -90,6 +90,14 @@ pub enum EstimatorError {
         /// The upper end of its range.
         high: f64,
     },
+    /// An output keeps its previous value, but filling takes the place of rules that do not fire.
+    #[error(
+        "output `{output}` keeps its previous value where no rule fires, which a risk does not"
+    )]
+    KeepsPrevious {
+        /// The output.
+        output: String,
+    },
 }
 
 /// Why a profile and its rule set cannot be exported.
@@ -135,7 +143,8 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// Where the rule set does not compile, the two do not name the same inputs, or an output is no percentage.
+    /// Where the rule set does not compile, the two do not name the same inputs, an output is no percentage, or an output
+    /// keeps its previous value.
     pub fn new(profile: &Profile, model: &Model) -> Result<Estimator, EstimatorError> {
         Estimator::with_engine(profile, model, Engine::new(model)?)
     }
@@ -163,6 +172,11 @@ impl Estimator {
                 output: profile.output.clone(),
                 low: variable.low,
                 high: variable.high,
+            });
+        }
+        if let Some(output) = model.outputs.iter().find(|output| output.keeps_previous()) {
+            return Err(EstimatorError::KeepsPrevious {
+                output: output.variable.name.clone(),
             });
         }
         if let Some(stray) = profile

@@ -224,9 +224,14 @@ typedef struct flagred_step {
     uint32_t op, literal;
 } flagred_step;
 
+typedef struct flagred_block {
+    double strength;
+    uint32_t method, rules, and_operator, or_operator, first_program, end_program;
+} flagred_block;
+
 typedef struct flagred_output {
     double low, high, default_value;
-    uint32_t form, first, end, first_strength, end_strength;
+    uint32_t form, first, end, first_strength, end_strength, clamps;
 } flagred_output;
 
 typedef struct flagred_pair {
@@ -239,13 +244,42 @@ typedef struct flagred_moment {
 
 typedef struct flagred_consequent {
     double constant;
-    uint32_t first, end;
+    uint32_t first, end, first_code, end_code;
 } flagred_consequent;
 
 typedef struct flagred_coefficient {
     double coefficient;
     uint32_t input;
 } flagred_coefficient;
+
+typedef struct flagred_fuzzy_set {
+    double unit;
+    uint32_t defuzzifier, sum, first_section, end_section, first_term, end_term;
+} flagred_fuzzy_set;
+
+typedef struct flagred_set_term {
+    double highest;
+    uint32_t first_flank, end_flank;
+} flagred_set_term;
+
+typedef struct flagred_section {
+    double from, to;
+    uint32_t first_strand, end_strand;
+} flagred_section;
+
+typedef struct flagred_strand {
+    double left, right, left_tail[2], right_tail[2];
+    uint32_t strength, flank;
+} flagred_strand;
+
+typedef struct flagred_flank {
+    double parameters[4], height, from, to, left, right, area, moment, beyond;
+    uint32_t kind, first_knot, end_knot;
+} flagred_flank;
+
+typedef struct flagred_knot {
+    double x, area, moment;
+} flagred_knot;
 
 typedef struct flagred_channel {
     double window_s, limit;
@@ -265,8 +299,9 @@ typedef struct flagred_stage {
     } sizes;
     uint32_t reads, outputs, rules;
     struct {
-        uint32_t inputs, cuts, starts, lines, curves, points, hedges, axes, dimensions, cells, nodes, edges, actions,
-            programs, steps, outputs, pairs, moments, consequents, coefficients;
+        uint32_t inputs, cuts, starts, lines, curves, points, hedges, axes, dimensions, cells, nodes, edges,
+            actions, programs, steps, blocks, outputs, pairs, moments, consequents, coefficients, sets, set_terms,
+            sections, strands, flanks, knots;
     } ends;
 } flagred_stage;
 
@@ -310,7 +345,7 @@ struct flagred_plan {
     uint32_t conjunctions, actions_a_cell, first_action, sums;
     uint32_t degrees, alive, partial, stack, strengths;
     uint32_t output, signals;
-    double coverage_below;
+    double coverage_below, least_strength;
     flagred_settings settings;
     FLAGRED_ARRAY(flagred_input, inputs);
     FLAGRED_ARRAY(double, cuts);
@@ -327,11 +362,18 @@ struct flagred_plan {
     FLAGRED_ARRAY(flagred_action, actions);
     FLAGRED_ARRAY(flagred_program, programs);
     FLAGRED_ARRAY(flagred_step, steps);
+    FLAGRED_ARRAY(flagred_block, blocks);
     FLAGRED_ARRAY(flagred_output, outputs);
     FLAGRED_ARRAY(flagred_pair, pairs);
     FLAGRED_ARRAY(flagred_moment, moments);
     FLAGRED_ARRAY(flagred_consequent, consequents);
     FLAGRED_ARRAY(flagred_coefficient, coefficients);
+    FLAGRED_ARRAY(flagred_fuzzy_set, sets);
+    FLAGRED_ARRAY(flagred_set_term, set_terms);
+    FLAGRED_ARRAY(flagred_section, sections);
+    FLAGRED_ARRAY(flagred_strand, strands);
+    FLAGRED_ARRAY(flagred_flank, flanks);
+    FLAGRED_ARRAY(flagred_knot, knots);
     FLAGRED_ARRAY(uint32_t, order);
     FLAGRED_ARRAY(flagred_channel, channels);
     FLAGRED_ARRAY(flagred_source, sources);

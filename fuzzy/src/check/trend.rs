@@ -84,6 +84,9 @@ impl Table {
             .collect();
         let mut rows = BTreeMap::new();
         for (rule, written) in model.rules.iter().enumerate() {
+            if !model.is_enabled(written) {
+                continue;
+            }
             let consequents = &written.rule.consequents;
             let Some(consequent) = consequents.iter().find(|c| c.output.text == output.name) else {
                 continue;
@@ -196,10 +199,14 @@ fn ranks(variable: &Variable) -> Vec<usize> {
         .collect()
 }
 
-/// The middle of the values at which the degree of a term is highest; the value of a constant; `None` for a linear function.
+/// The middle of the values at which the degree of a term is highest; the value of a constant; `None` for a linear function
+/// or a formula over inputs.
 fn middle(term: &Term, variable: &Variable) -> Option<f64> {
-    match term.membership_function {
-        MembershipFunction::Constant { value } => return Some(value),
+    match &term.membership_function {
+        MembershipFunction::Constant { value } => return Some(*value),
+        MembershipFunction::Function { formula } if !formula.is_over(&variable.name) => {
+            return None;
+        }
         MembershipFunction::Linear { .. } => return None,
         _ => {}
     }

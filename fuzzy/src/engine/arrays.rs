@@ -3,16 +3,16 @@
 use alloc::vec::Vec;
 
 use super::literal::Literals;
-use super::rules::Draft;
+use super::rules::{Draft, Firing};
 use super::{CompiledOutput, Input as Range};
-use crate::defuzzify::Method;
+use crate::defuzzify::{Method, Prepared};
 use crate::model::{
-    Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires, Operators, Term,
+    Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, NoRuleFires, Term,
 };
 use crate::table::{
-    Action, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge, Ends,
-    Hedge, Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step, Table, arrays,
-    arrays_from_fields,
+    Action, Axis, Block, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge,
+    Ends, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair, Point, Program,
+    Section, SetTerm, Sizes, Step, Strand, Table, arrays, arrays_from_fields,
 };
 
 macro_rules! define {
@@ -23,6 +23,7 @@ macro_rules! define {
             and: Conjunction,
             or: Disjunction,
             pub(super) conjunctions: Conjunctions,
+            least_strength: f64,
             pub(super) sizes: Sizes,
             $(pub(super) $array: Vec<$item>,)*
         }
@@ -30,7 +31,9 @@ macro_rules! define {
         impl OwnedTable {
             /// Adds the arrays of another stage after those that are there.
             pub(super) fn append(&mut self, other: &OwnedTable) {
+                // All stages have the operators of the model.
                 (self.and, self.or) = (other.and, other.or);
+                self.least_strength = other.least_strength;
                 let (own, other_sizes) = (self.sizes, other.sizes);
                 self.sizes = Sizes {
                     degrees: own.degrees.max(other_sizes.degrees),
@@ -54,6 +57,7 @@ macro_rules! define {
                     and: self.and,
                     or: self.or,
                     conjunctions: self.conjunctions,
+                    least_strength: self.least_strength,
                     sizes: self.sizes,
                     $($array: &self.$array,)*
                 }
@@ -66,20 +70,25 @@ arrays!(arrays_from_fields! OwnedTable;);
 
 impl OwnedTable {
     pub(super) fn new(
-        operators: Operators,
+        firing: &Firing,
         inputs: &[Range],
         literals: &[Literals],
         drafts: &[Draft],
         outputs: &[CompiledOutput],
     ) -> Self {
         let mut table = OwnedTable {
-            and: operators.and,
-            or: operators.or,
+            and: firing.and,
+            or: firing.or,
+            least_strength: firing.least_strength,
             ..OwnedTable::default()
         };
         let strengths = outputs.last().map_or(0, |output| output.strengths.end) as u32;
         table.sizes.strengths = strengths + 1;
-        table.rules(drafts, literals, strengths);
+        if firing.blocks.is_empty() {
+            table.rules(drafts, literals, strengths);
+        } else {
+            table.blocks(&firing.blocks, drafts);
+        }
         if !table.programs.is_empty() || table.conjunctions == Conjunctions::Trie {
             table.sizes.degrees = literals.iter().map(|literals| literals.count).sum();
         }
@@ -127,8 +136,12 @@ impl OwnedTable {
     pub(super) fn curve(&mut self, index: u32, term: &Term, hedges: &[Hedge]) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
         let (kind, parameters) = term.membership_function.kind();
-        if let MembershipFunction::Piecewise { points } = &term.membership_function {
-            self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
+        match &term.membership_function {
+            MembershipFunction::Piecewise { points } => {
+                self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
+            }
+            MembershipFunction::Function { formula } => self.points.extend(formula.code()),
+            _ => {}
         }
         self.hedges.extend(hedges);
         self.curves.push(Curve {
@@ -146,13 +159,20 @@ impl OwnedTable {
     fn output(&mut self, output: &CompiledOutput) {
         let defuzzify = &output.defuzzify;
         let (form, (first, end)) = match &defuzzify.method {
-            Method::Lines(_) | Method::Curves(_) | Method::Sampled(..) => {
+            Method::Lines(_) | Method::Curves(_) | Method::Sampled(..) | Method::Singletons(_) => {
                 (ClosedForm::NONE, (0, 0))
             }
             Method::Partition(partition) => (
                 ClosedForm::PARTITION,
                 extend(&mut self.pairs, partition.pairs()),
             ),
+            Method::Prepared(prepared) => {
+                let form = match defuzzify.implication() {
+                    Implication::Product => ClosedForm::SCALED,
+                    _ => ClosedForm::CUT,
+                };
+                (form, self.set(prepared, &output.offsets))
+            }
             Method::Moments(moments) => (ClosedForm::MOMENTS, extend(&mut self.moments, moments)),
             Method::Places(terms) => {
                 let first = self.curves.len() as u32;
@@ -166,10 +186,13 @@ impl OwnedTable {
             }
             Method::Weighted(weighted) => {
                 let (first, _) = extend(&mut self.coefficients, &weighted.coefficients);
+                let (first_code, _) = extend(&mut self.points, &weighted.code);
                 let mut consequents = weighted.consequents.clone();
                 for consequent in &mut consequents {
                     consequent.first += first;
                     consequent.end += first;
+                    consequent.first_code += first_code;
+                    consequent.end_code += first_code;
                 }
                 let form = match defuzzify.defuzzifier {
                     Defuzzifier::WeightedSum => ClosedForm::WEIGHTED_SUM,
@@ -182,15 +205,62 @@ impl OwnedTable {
             low: output.low,
             high: output.high,
             default_value: match output.when_no_rule_fires {
-                NoRuleFires::Value(value) => value,
-                NoRuleFires::Undefined | NoRuleFires::Error => f64::NAN,
+                NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => value,
+                NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => {
+                    f64::NAN
+                }
             },
             form,
             first,
             end,
             first_strength: output.strengths.start as u32,
             end_strength: output.strengths.end as u32,
+            clamps: u32::from(output.clamps),
         });
+    }
+}
+
+impl OwnedTable {
+    /// Adds a prepared set whose term k has the firing strengths `offsets[k]..offsets[k + 1]`.
+    fn set(&mut self, prepared: &Prepared, offsets: &[usize]) -> (u32, u32) {
+        let (first_knot, first_flank) = (self.knots.len() as u32, self.flanks.len() as u32);
+        let (first_strand, first_term) = (self.strands.len() as u32, self.set_terms.len() as u32);
+        self.knots.extend(&prepared.knots);
+        self.flanks
+            .extend(prepared.flanks.iter().map(|flank| Flank {
+                first_knot: flank.first_knot + first_knot,
+                end_knot: flank.end_knot + first_knot,
+                ..*flank
+            }));
+        self.strands
+            .extend(prepared.strands.iter().map(|strand| Strand {
+                flank: strand.flank + first_flank,
+                ..*strand
+            }));
+        let ends = offsets.iter().zip(offsets.iter().skip(1));
+        for (term, (first, end)) in prepared.terms.iter().zip(ends) {
+            let term = SetTerm {
+                first_flank: term.first_flank + first_flank,
+                end_flank: term.end_flank + first_flank,
+                ..*term
+            };
+            self.set_terms.extend((*first..*end).map(|_| term));
+        }
+        let sections = prepared.sections.iter().map(|section| Section {
+            first_strand: section.first_strand + first_strand,
+            end_strand: section.end_strand + first_strand,
+            ..*section
+        });
+        let first_section = self.sections.len() as u32;
+        self.sections.extend(sections);
+        let set = FuzzySet {
+            first_section,
+            end_section: self.sections.len() as u32,
+            first_term,
+            end_term: self.set_terms.len() as u32,
+            ..prepared.set
+        };
+        extend(&mut self.sets, &[set])
     }
 }
 

@@ -112,7 +112,8 @@ impl Chain {
 }
 
 impl Engine {
-    /// [`Engine::outcomes`](super::Engine) of a model that chains.
+    /// [`Engine::outcomes`](super::Engine) of a model that chains. `keep` may change the outcome of an output before others read
+    /// it.
     // Apart from the evaluation of one stage, so that this one costs nothing where there is no chain.
     #[inline(never)]
     pub(super) fn chained(
@@ -121,6 +122,7 @@ impl Engine {
         scratch: &mut Scratch,
         inputs: &[f64],
         outcomes: &mut [Outcome],
+        mut keep: impl FnMut(usize, &mut Outcome),
     ) {
         let Scratch {
             first,
@@ -135,9 +137,10 @@ impl Engine {
             core::iter::once((&chain.first, &self.first, first)).chain(stages)
         {
             let given = (inputs, &mut values[..], &mut own[..]);
-            table::chain::stage(place.lend(), given, outcomes, |inputs, own| {
+            let evaluate = |inputs: &[f64], own: &mut [Outcome]| {
                 stage.outcomes(scratch, inputs, own);
-            });
+            };
+            table::chain::stage(place.lend(), given, outcomes, evaluate, &mut keep);
         }
     }
 
@@ -164,7 +167,7 @@ impl Engine {
         output: usize,
     ) -> Option<(usize, &'a Stage, usize, usize)> {
         let mut outcomes = core::mem::take(&mut scratch.outcomes);
-        self.chained(chain, scratch, inputs, &mut outcomes);
+        self.chained(chain, scratch, inputs, &mut outcomes, |_, _| {});
         scratch.outcomes = outcomes;
         let mut rules = 0;
         for (number, (place, stage)) in chain.stages(&self.first).enumerate() {

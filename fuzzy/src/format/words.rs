@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use crate::{
     diagnostic::Diagnostic,
-    model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, Operators},
+    model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Operators},
     tree::Node,
 };
 
@@ -28,16 +28,15 @@ pub(super) const DISJUNCTIONS: [(&str, Disjunction); 7] = [
     ("nilpotent_maximum", Disjunction::NilpotentMaximum),
 ];
 
-pub(super) const IMPLICATIONS: [(&str, Implication); 2] = [
-    ("minimum", Implication::Minimum),
-    ("product", Implication::Product),
-];
-
-pub(super) const AGGREGATIONS: [(&str, Aggregation); 4] = [
+pub(super) const AGGREGATIONS: [(&str, Aggregation); 8] = [
     ("maximum", Aggregation::Maximum),
     ("probabilistic_sum", Aggregation::ProbabilisticSum),
     ("bounded_sum", Aggregation::BoundedSum),
     ("sum", Aggregation::Sum),
+    ("drastic", Aggregation::Drastic),
+    ("einstein", Aggregation::Einstein),
+    ("hamacher", Aggregation::Hamacher),
+    ("nilpotent_maximum", Aggregation::NilpotentMaximum),
 ];
 
 pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); 8] = [
@@ -59,10 +58,16 @@ pub(super) fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'
         .map_or("", |(word, _)| *word)
 }
 
-pub(super) fn operators(node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Operators> {
-    let keys = ["and", "or", "implication", "aggregation"];
-    let fields = node.fields("`operators`", &keys, findings)?;
-    let mut operators = Operators::default();
+/// Reads operators under some of the keys; what is not written is as in `otherwise`.
+pub(super) fn operators(
+    node: &Node,
+    what: &str,
+    keys: &[&str],
+    otherwise: Operators,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Operators> {
+    let fields = node.fields(what, keys, findings)?;
+    let mut operators = otherwise;
     if let Some(node) = fields.get("and") {
         let word = node.choice("the operator `and`", &CONJUNCTIONS, findings);
         operators.and = word.unwrap_or(operators.and);
@@ -72,7 +77,7 @@ pub(super) fn operators(node: &Node, findings: &mut Vec<Diagnostic>) -> Option<O
         operators.or = word.unwrap_or(operators.or);
     }
     if let Some(node) = fields.get("implication") {
-        let word = node.choice("the operator `implication`", &IMPLICATIONS, findings);
+        let word = node.choice("the operator `implication`", &CONJUNCTIONS, findings);
         operators.implication = word.unwrap_or(operators.implication);
     }
     if let Some(node) = fields.get("aggregation") {
@@ -80,4 +85,20 @@ pub(super) fn operators(node: &Node, findings: &mut Vec<Diagnostic>) -> Option<O
         operators.aggregation = word.unwrap_or(operators.aggregation);
     }
     Some(operators)
+}
+
+/// The operators in a file, each with its key.
+pub(super) fn written(operators: Operators) -> [(&'static str, Node); 4] {
+    [
+        ("and", Node::text(word_of(&CONJUNCTIONS, operators.and))),
+        ("or", Node::text(word_of(&DISJUNCTIONS, operators.or))),
+        (
+            "implication",
+            Node::text(word_of(&CONJUNCTIONS, operators.implication)),
+        ),
+        (
+            "aggregation",
+            Node::text(word_of(&AGGREGATIONS, operators.aggregation)),
+        ),
+    ]
 }

@@ -1,14 +1,21 @@
 //! Chains: outputs that the rules of other outputs read.
 //!
 //! An output reads another one where a rule that concludes it names the other one in its condition, or where a linear
-//! function of it has a coefficient for the other one. A model in which outputs read others is evaluated in stages. The
+//! function or a formula of it names the other one. A model in which outputs read others is evaluated in stages. The
 //! first stage has the outputs that read none, each later stage has one output more. A stage is a model of its own whose
 //! inputs are those of the whole model and the outputs that it reads.
 
-use alloc::{borrow::Cow, format, string::String, vec, vec::Vec};
+use alloc::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+    format,
+    string::String,
+    vec,
+    vec::Vec,
+};
 use core::ops::Range;
 
-use super::{MembershipFunction, Model, Rule, Variable, document::Spans};
+use super::{Activation, Model, Rule, Variable, concludes, document::Spans};
 use crate::diagnostic::Diagnostic;
 
 /// That an output reads another one.
@@ -16,7 +23,7 @@ use crate::diagnostic::Diagnostic;
 pub(crate) struct Read {
     /// The index of the output that is read.
     pub(crate) output: usize,
-    /// The index of the first rule that reads it; `None` where only a linear function does.
+    /// The index of the first rule that reads it; `None` where only a linear function or a formula does.
     pub(crate) rule: Option<usize>,
     /// Where it is named.
     pub(crate) span: Range<usize>,
@@ -36,7 +43,7 @@ pub(crate) struct Stage<'m> {
 }
 
 impl Model {
-    /// The other outputs that an output reads: in the conditions of its rules, or in its linear functions.
+    /// The other outputs that an output reads: in the conditions of its rules, or in its linear functions and formulas.
     ///
     /// # Example: a comfort that the speed of a fan is decided by
     /// ```
@@ -80,17 +87,20 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
             reads.push(read);
         }
     };
-    for (number, Rule { rule, .. }) in model.rules.iter().enumerate() {
-        rule.condition.visit(&mut |proposition| {
+    let together = concluded_together(model);
+    for (number, rule) in model.rules.iter().enumerate() {
+        if !model.is_enabled(rule) {
+            continue;
+        }
+        let concluded = rule.rule.consequents.iter();
+        let mut concluded: Vec<usize> = concluded.filter_map(|c| index(&c.output.text)).collect();
+        concluded.extend(together.get(&rule.block).into_iter().flatten());
+        rule.rule.condition.visit(&mut |proposition| {
             let name = &proposition.variable;
             let Some(output) = index(&name.text) else {
                 return;
             };
-            for by in rule
-                .consequents
-                .iter()
-                .filter_map(|c| index(&c.output.text))
-            {
+            for &by in &concluded {
                 let span = name.span.clone();
                 let rule = Some(number);
                 add(by, Read { output, rule, span });
@@ -99,11 +109,11 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
     }
     for (by, output) in model.outputs.iter().enumerate() {
         for (term, written) in output.variable.terms.iter().enumerate() {
-            let MembershipFunction::Linear { coefficients, .. } = &written.membership_function
-            else {
+            // Of a fuzzy set, a formula names its own variable.
+            if !output.defuzzifier.takes_numbers() {
                 continue;
-            };
-            for (i, (name, _)) in coefficients.iter().enumerate() {
+            }
+            for (i, name) in written.membership_function.reads().into_iter().enumerate() {
                 let span = spans
                     .outputs
                     .get(by)
@@ -124,6 +134,28 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
         }
     }
     reads
+}
+
+/// The outputs that the rules of each block with an activation method conclude. Which of its rules fire depends on all of
+/// them, so that each of these outputs reads what any of the rules reads.
+fn concluded_together(model: &Model) -> BTreeMap<usize, Vec<usize>> {
+    let mut together: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for rule in model.rules.iter().filter(|rule| is_selected(model, rule)) {
+        let outputs = model.outputs.iter().enumerate();
+        let outputs = outputs.filter(|(_, output)| concludes(rule, output));
+        let outputs = outputs.map(|(index, _)| index);
+        together.entry(rule.block).or_default().extend(outputs);
+    }
+    for outputs in together.values_mut() {
+        outputs.sort_unstable();
+        outputs.dedup();
+    }
+    together
+}
+
+/// Whether an activation method decides with what strength a rule fires.
+fn is_selected(model: &Model, rule: &Rule) -> bool {
+    model.is_enabled(rule) && model.activation_of(rule) != Activation::General
 }
 
 /// The outputs in an order in which each one comes after those it reads; else the circles that make this impossible, each as
@@ -170,7 +202,15 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let step = |by: usize, output: usize| {
         let mut reads = reads.get(by)?.iter();
         let read = reads.find(|read| read.output == output)?;
-        let rule = read.rule.map(|rule| format!(" in rule {}", rule + 1));
+        let rule = read.rule.map(|rule| {
+            let mut place = format!(" in rule {}", rule + 1);
+            let rule = model.rules.get(rule);
+            // Its activation method asks all rules of the block.
+            if rule.is_some_and(|rule| !concludes(rule, &model.outputs[by])) {
+                place += " of its block";
+            }
+            place
+        });
         let rule = rule.unwrap_or_default();
         let text = format!("`{}` reads `{}`{rule}", name(by)?, name(output)?);
         Some((text, read.span.clone()))
@@ -235,13 +275,21 @@ fn stage(model: &Model, reads: Vec<usize>, outputs: Vec<usize>) -> Stage<'_> {
     let inputs: Vec<Variable> = model.inputs.iter().cloned().chain(handed_over).collect();
     let own = of(&outputs);
     let (mut numbers, mut rules) = (Vec::new(), Vec::new());
+    // Of these blocks all rules are needed to find those that fire.
+    let whole: BTreeSet<usize> = model
+        .rules
+        .iter()
+        .filter(|rule| is_selected(model, rule))
+        .filter(|rule| own.iter().any(|output| concludes(rule, output)))
+        .map(|rule| rule.block)
+        .collect();
     for (number, rule) in model.rules.iter().enumerate() {
         let mut rule = rule.clone();
         rule.rule.consequents.retain(|c| {
             own.iter()
                 .any(|output| output.variable.name == c.output.text)
         });
-        if !rule.rule.consequents.is_empty() {
+        if !rule.rule.consequents.is_empty() || whole.contains(&rule.block) {
             numbers.push(number);
             rules.push(rule);
         }
@@ -254,6 +302,9 @@ fn stage(model: &Model, reads: Vec<usize>, outputs: Vec<usize>) -> Stage<'_> {
             name: model.name.clone(),
             description: None,
             operators: model.operators,
+            activation: model.activation,
+            least_strength: model.least_strength,
+            blocks: model.blocks.clone(),
         }),
         reads,
         outputs,

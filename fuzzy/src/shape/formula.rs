@@ -1,8 +1,11 @@
 //! The formulas of membership functions, each with a number: all that a table in firmware knows of a shape.
 
-use libm::{cos, exp, fabs, pow, sqrt};
+use libm::{cos, fabs, pow, sqrt};
+
+use crate::formula::evaluate;
 
 use super::{
+    exponential::exp_of_minus,
     smooth::{gaussian, s_shape, sigmoid, z_shape},
     straight::{along, falling, indicator, into_unit, rising, trapezoid},
 };
@@ -37,8 +40,10 @@ impl Kind {
     pub const TRIANGLE: Kind = Kind(19);
     pub const ARC: Kind = Kind(20);
     pub const SEMI_ELLIPSE: Kind = Kind(21);
+    pub const FUNCTION: Kind = Kind(22);
 
-    /// The degree at `x` with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape.
+    /// The degree at `x` with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape, or the
+    /// code of a formula.
     pub(crate) fn membership(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
         if x.is_nan() {
             return 0.0;
@@ -70,7 +75,7 @@ impl Kind {
                 let turns = (x - a) / b;
                 0.5 * (1.0 + cos(2.0 * core::f64::consts::PI * turns))
             }
-            Kind::SPIKE => exp(-fabs(10.0 * (x - a) / b)),
+            Kind::SPIKE => exp_of_minus(fabs(10.0 * (x - a) / b)),
             Kind::CONCAVE => concave(x, a, b),
             Kind::ARC => arc(x, a, b),
             Kind::SEMI_ELLIPSE if a < x && x < b => {
@@ -78,6 +83,7 @@ impl Kind {
                 2.0 * sqrt(t * (1.0 - t))
             }
             Kind::CONSTANT => a,
+            Kind::FUNCTION => evaluate(points, |_| x),
             _ => 0.0,
         })
     }

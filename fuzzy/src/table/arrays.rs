@@ -1,8 +1,9 @@
 //! The list of a table's arrays, and access to them one at a time.
 
 use super::{
-    Action, Axis, Coefficient, Conjunction, Conjunctions, Consequent, Curve, Dimension,
-    Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step,
+    Action, Axis, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve, Dimension,
+    Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair,
+    Point, Program, Section, SetTerm, Sizes, Step, Strand,
 };
 
 /// Calls `$then!` with the given tokens and the arrays of a table, each as `name: Item,` with its documentation.
@@ -26,7 +27,7 @@ macro_rules! table_arrays {
             lines: Line,
             /// The terms of inputs that are curved or hedged.
             curves: Curve,
-            /// The corners of piecewise linear curves.
+            /// The corners of piecewise linear curves, and the code of formulas.
             points: Point,
             /// The hedges of curves.
             hedges: Hedge,
@@ -46,6 +47,8 @@ macro_rules! table_arrays {
             programs: Program,
             /// The steps of programs.
             steps: Step,
+            /// The rule blocks, where they have different operators or activation methods. Then all rules are programs.
+            blocks: Block,
             /// The outputs.
             outputs: Output,
             /// The closed forms of partitions.
@@ -56,6 +59,18 @@ macro_rules! table_arrays {
             consequents: Consequent,
             /// The coefficients of consequents.
             coefficients: Coefficient,
+            /// The prepared fuzzy sets.
+            sets: FuzzySet,
+            /// The terms of sets, one for each firing strength.
+            set_terms: SetTerm,
+            /// The parts of the ranges of sets.
+            sections: Section,
+            /// The terms on sections.
+            strands: Strand,
+            /// The flanks of the terms of sets.
+            flanks: Flank,
+            /// The tails of flanks.
+            knots: Knot,
         }
     };
 }
@@ -72,6 +87,8 @@ macro_rules! define {
             pub or: Disjunction,
             /// How the rules that are plain ANDs are found.
             pub conjunctions: Conjunctions,
+            /// A firing strength below it counts as 0.
+            pub least_strength: f64,
             /// The sizes of the scratch memory.
             pub sizes: Sizes,
             $($(#[$doc])* pub $array: &'a [$item],)*
@@ -83,6 +100,7 @@ macro_rules! define {
             fn and(&self) -> Conjunction;
             fn or(&self) -> Disjunction;
             fn conjunctions(&self) -> Conjunctions;
+            fn least_strength(&self) -> f64;
             $(fn $array(&self) -> &[$item];)*
         }
     };
@@ -104,6 +122,10 @@ macro_rules! arrays_from_fields {
             #[inline(always)]
             fn conjunctions(&self) -> $crate::table::Conjunctions {
                 self.conjunctions
+            }
+            #[inline(always)]
+            fn least_strength(&self) -> f64 {
+                self.least_strength
             }
             $(
                 #[inline(always)]

@@ -50,6 +50,7 @@ macro_rules! define {
                         stage.first_action,
                         stage.sums,
                     ])?,
+                    least_strength: self.least_strength,
                     sizes: stage.sizes,
                     $($array: self.$array.get(first.$array as usize..stage.ends.$array as usize)?,)*
                 })
@@ -231,9 +232,10 @@ impl<'a> Chain<'a> {
                 return;
             };
             let given = (inputs, &mut **read, &mut **own);
-            stage(place, given, outcomes, |inputs, own| {
+            let evaluate = |inputs: &[f64], own: &mut [Outcome]| {
                 table.evaluate(&mut scratch, inputs, own);
-            });
+            };
+            stage(place, given, outcomes, evaluate, &mut |_, _| {});
         }
     }
 
@@ -329,12 +331,14 @@ fn fitted<'s>(scratch: &'s mut Scratch<'_>, table: &Table<'_>) -> Option<Scratch
     })
 }
 
-/// Evaluates a stage: what it reads is handed over from the outcomes of all outputs, and its own ones are put there.
+/// Evaluates a stage: what it reads is handed over from the outcomes of all outputs, and its own ones are put there. `keep` may
+/// change them before others read them.
 pub(crate) fn stage(
     place: Place<'_>,
     (inputs, values, own): (&[f64], &mut [f64], &mut [Outcome]),
     outcomes: &mut [Outcome],
     evaluate: impl FnOnce(&[f64], &mut [Outcome]),
+    keep: &mut impl FnMut(usize, &mut Outcome),
 ) {
     let (mut unknown, mut clamped) = (None, false);
     for (value, given) in values.iter_mut().zip(inputs) {
@@ -372,6 +376,7 @@ pub(crate) fn stage(
                 clamped: own.clamped || clamped,
                 ..*own
             };
+            keep(*output as usize, outcome);
         }
     }
 }

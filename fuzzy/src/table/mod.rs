@@ -8,30 +8,39 @@
 
 use core::ops::DerefMut;
 
+mod activation;
 mod arrays;
+mod blocks;
 pub(crate) mod chain;
 mod check;
 mod closed;
 mod firing;
+pub(crate) mod flank;
 mod input;
+pub(crate) mod numeric;
 pub(crate) mod operators;
 mod outcome;
 mod raising;
 mod rules;
+pub(crate) mod set;
 
+pub use activation::{Activation, Comparison, LEAST_STRENGTH};
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
+pub use blocks::{Block, Method};
 pub use chain::{Chain, Ends, Sought, Stage, Values};
 pub use check::Damaged;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub(crate) use closed::{centroid, finite};
 pub use firing::{Partial, Strongest};
+pub use flank::{Flank, Knot};
 #[cfg(test)]
 pub(crate) use input::degrees;
 pub use input::{Curve, Input, Line, Point};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
 pub use rules::{Action, Axis, Dimension, Edge, Node, Op, Program, Step};
+pub use set::{FuzzySet, Section, SetDefuzzifier, SetTerm, Strand};
 
 pub use crate::shape::Kind;
 
@@ -96,6 +105,8 @@ pub struct Output {
     pub first_strength: u32,
     /// The end of that span.
     pub end_strength: u32,
+    /// 1 where a value outside the range is clamped to it, which only Takagi-Sugeno outputs can have; else 0.
+    pub clamps: u32,
 }
 
 /// The memory an evaluation works in, of the [`Sizes`] of the table: slices or vectors of numbers, partial conjunctions
@@ -124,6 +135,15 @@ pub struct Buffers<N, P, S> {
 pub type Scratch<'m> = Buffers<&'m mut [f64], &'m mut [Partial], &'m mut [Strongest]>;
 
 impl Output {
+    /// The value, clamped to the range where the author says so.
+    #[inline(always)]
+    fn clamped(&self, value: f64) -> f64 {
+        match self.clamps {
+            0 => value,
+            _ => larger(self.low, smaller(self.high, value)),
+        }
+    }
+
     /// The middle of the range. Moments are measured from there, against cancellation.
     #[inline(always)]
     pub(crate) fn origin(&self) -> f64 {
@@ -225,17 +245,12 @@ fn state<A: Arrays, N: DerefMut<Target = [f64]>, P, S>(
     index: usize,
     output: &Output,
     strongest: f64,
-    scratch: &mut Buffers<N, P, S>,
+    scratch: &Buffers<N, P, S>,
     integrate: &mut impl FnMut(usize, &[f64]) -> Option<f64>,
 ) -> State {
     if strongest > 0.0 {
         let range = output.first_strength as usize..output.end_strength as usize;
-        let strengths = &mut scratch.strengths[range];
-        if strongest < TINY && output.form.is_fuzzy() {
-            for strength in strengths.iter_mut() {
-                *strength *= FROM_TINY;
-            }
-        }
+        let strengths = &scratch.strengths[range];
         let value = match output.form {
             ClosedForm::NONE => integrate(index, strengths),
             _ => closed(table, output, strengths, &scratch.values),
@@ -250,9 +265,3 @@ fn state<A: Arrays, N: DerefMut<Target = [f64]>, P, S>(
         State::Default(output.default_value)
     }
 }
-
-/// Below this strength, areas lose digits to underflow. Where all strengths are below it, only their ratios count, because
-/// the slopes of sets cut so low are vertical to the last digit. So all strengths are multiplied by [`FROM_TINY`].
-pub(crate) const TINY: f64 = 1e-200;
-/// 2^500: multiplying by it does not round.
-pub(crate) const FROM_TINY: f64 = 3.273_390_607_896_142e150;

@@ -1,5 +1,7 @@
 //! The operators and hedges.
 
+use super::LEAST_STRENGTH;
+
 /// AND of two degrees: a t-norm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Conjunction {
@@ -16,7 +18,7 @@ pub enum Conjunction {
     Einstein,
     /// `a b / (a + b - a b)`, 0 where both are 0.
     Hamacher,
-    /// `min(a, b)` where `a + b > 1`, else 0.
+    /// `min(a, b)` where `a + b > 1` by more than rounding (1e-12) or one of them is 1, else 0.
     NilpotentMinimum,
 }
 
@@ -36,19 +38,13 @@ pub enum Disjunction {
     Einstein,
     /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
     Hamacher,
-    /// `max(a, b)` where `a + b < 1`, else 1.
+    /// `max(a, b)` where `a + b < 1` by more than rounding (1e-12) or one of them is 0, else 1.
     NilpotentMaximum,
 }
 
-/// How a firing strength `h` activates a consequent with membership `m`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Implication {
-    /// `min(h, m)` (Mamdani).
-    #[default]
-    Minimum,
-    /// `h m` (Larsen).
-    Product,
-}
+/// How a firing strength `h` activates a consequent with membership `m`: a t-norm, such as `min(h, m)` (Mamdani) or `h m`
+/// (Larsen).
+pub type Implication = Conjunction;
 
 /// How the activated consequents of an output are aggregated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -62,6 +58,14 @@ pub enum Aggregation {
     BoundedSum,
     /// `a + b`, unbounded.
     Sum,
+    /// `max(a, b)` where one of them is 0, else 1.
+    Drastic,
+    /// `(a + b) / (1 + a b)`.
+    Einstein,
+    /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
+    Hamacher,
+    /// `max(a, b)` where `a + b < 1`, else 1.
+    NilpotentMaximum,
 }
 
 /// A hedge: changes a membership `x`. Of several hedges the one nearest to the term applies first.
@@ -80,6 +84,32 @@ pub enum Hedge {
     Seldom,
     /// 1.
     Any,
+}
+
+impl Conjunction {
+    /// All conjunctions, in the order of their codes in exported data.
+    pub const ALL: [Conjunction; 7] = [
+        Conjunction::Minimum,
+        Conjunction::Product,
+        Conjunction::BoundedDifference,
+        Conjunction::Drastic,
+        Conjunction::Einstein,
+        Conjunction::Hamacher,
+        Conjunction::NilpotentMinimum,
+    ];
+}
+
+impl Disjunction {
+    /// All disjunctions, in the order of their codes in exported data.
+    pub const ALL: [Disjunction; 7] = [
+        Disjunction::Maximum,
+        Disjunction::ProbabilisticSum,
+        Disjunction::BoundedSum,
+        Disjunction::Drastic,
+        Disjunction::Einstein,
+        Disjunction::Hamacher,
+        Disjunction::NilpotentMaximum,
+    ];
 }
 
 impl Hedge {
@@ -153,9 +183,10 @@ impl Conjunction {
                 }
             }
             Conjunction::NilpotentMinimum => {
-                // `a + b > 1`, without rounding the sum.
-                if smaller(a, b) > 1.0 - larger(a, b) {
-                    smaller(a, b)
+                // `a + b` is 1 up to rounding where b is `1 - a`.
+                let (small, large) = (smaller(a, b), larger(a, b));
+                if large == 1.0 || small - (1.0 - large) > LEAST_STRENGTH {
+                    small
                 } else {
                     0.0
                 }
@@ -189,8 +220,9 @@ impl Disjunction {
                 }
             }
             Disjunction::NilpotentMaximum => {
-                if smaller(a, b) < 1.0 - larger(a, b) {
-                    larger(a, b)
+                let (small, large) = (smaller(a, b), larger(a, b));
+                if small == 0.0 || (1.0 - large) - small > LEAST_STRENGTH {
+                    large
                 } else {
                     1.0
                 }
@@ -205,17 +237,6 @@ pub(crate) fn probabilistic_sum(a: f64, b: f64) -> f64 {
     smaller(1.0, a + b * (1.0 - a))
 }
 
-impl Implication {
-    /// The activated membership.
-    #[inline(always)]
-    pub(crate) fn of(self, strength: f64, membership: f64) -> f64 {
-        match self {
-            Implication::Minimum => smaller(strength, membership),
-            Implication::Product => strength * membership,
-        }
-    }
-}
-
 impl Aggregation {
     /// The aggregated degree of two activated consequents.
     #[inline(always)]
@@ -225,6 +246,10 @@ impl Aggregation {
             Aggregation::ProbabilisticSum => probabilistic_sum(a, b),
             Aggregation::BoundedSum => smaller(1.0, a + b),
             Aggregation::Sum => a + b,
+            Aggregation::Drastic => Disjunction::Drastic.of(a, b),
+            Aggregation::Einstein => Disjunction::Einstein.of(a, b),
+            Aggregation::Hamacher => Disjunction::Hamacher.of(a, b),
+            Aggregation::NilpotentMaximum => Disjunction::NilpotentMaximum.of(a, b),
         }
     }
 }

@@ -3,7 +3,7 @@
 use core::ops::DerefMut;
 
 use super::closed::closed;
-use super::firing::{Act, Partial, Strongest, fire_into};
+use super::firing::{Act, Partial, Strongest, fire_into, fires};
 use super::{Action, Arrays, Buffers, ClosedForm, Output, Scratch, Table, clamp};
 
 impl Table<'_> {
@@ -96,6 +96,7 @@ where
         alone.map(&score)
     };
     let mut raising = Raising {
+        least: table.least_strength(),
         output: output as u32,
         score,
         most: None,
@@ -106,6 +107,7 @@ where
 
 /// Keeps the rule that raises an output most.
 struct Raising<F> {
+    least: f64,
     output: u32,
     /// The score of the value of the output where only one firing strength, of this index, is 1.
     score: F,
@@ -115,8 +117,14 @@ struct Raising<F> {
 
 impl<F: FnMut(u32) -> Option<f64>> Act for Raising<F> {
     fn act(&mut self, actions: &[Action], degree: f64) {
+        for action in actions {
+            let strength = fires(action.weight * degree, self.least);
+            self.act_with(core::slice::from_ref(action), strength);
+        }
+    }
+
+    fn act_with(&mut self, actions: &[Action], strength: f64) {
         for action in actions.iter().filter(|action| action.output == self.output) {
-            let strength = action.weight * degree;
             if strength > 0.0
                 && let Some(score) = (self.score)(action.strength)
             {

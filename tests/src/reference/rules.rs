@@ -4,14 +4,35 @@
 use std::{collections::BTreeMap, f64::consts::PI};
 
 use fuzzy::model::{
-    Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, Model,
-    NoRuleFires, Output, Term, Variable,
+    Activation, Aggregation, Comparison, Conjunction, Defuzzifier, Disjunction, MembershipFunction,
+    Model, NoRuleFires, Output, Rule, Term, Variable,
 };
 use fuzzy::rule::{Condition, Hedge, Proposition};
 
-/// The value of each output at a point; `None` where no rule fires and the author chose no value.
-/// `samples` are taken between every two places at which a shape has a parameter.
+/// The aggregated set of an output, for a function that makes a number of it.
+#[expect(missing_docs, reason = "each says what it is")]
+pub struct Set<'a> {
+    pub low: f64,
+    pub high: f64,
+    /// The ends of the range and all places at which a shape has a parameter.
+    pub cuts: Vec<f64>,
+    /// The places of singletons, where all terms are; the degrees between them count for nothing.
+    pub places: Vec<f64>,
+    pub defuzzifier: Defuzzifier,
+    pub degree: &'a dyn Fn(f64) -> f64,
+}
+
+/// Defuzzifies a [`Set`].
+pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> f64;
+
+/// The value of each output at a point; `None` where no rule fires and the author chose no value. The integrals are sums of so
+/// many samples between every two places at which a shape has a parameter.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
+    evaluate_with(model, point, &|set| sampled(set, samples))
+}
+
+/// [`evaluate`] with integrals of the caller.
+pub fn evaluate_with(model: &Model, point: &[f64], defuzzify: Defuzzify<'_>) -> Vec<Option<f64>> {
     let mut values = Values::new();
     for (variable, x) in model.inputs.iter().zip(point) {
         values.insert(
@@ -32,7 +53,7 @@ pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>
                 continue;
             }
             if reads.iter().all(|read| before[read].is_some()) {
-                *number = value(model, output, &before, samples);
+                *number = value(model, output, &before, defuzzify);
             }
             let clamped = number.map(|x: f64| (variable, x.clamp(variable.low, variable.high)));
             values.insert(&variable.name, clamped);
@@ -48,13 +69,16 @@ type Values<'m> = BTreeMap<&'m str, Option<(&'m Variable, f64)>>;
 /// The names in the conditions of the rules of an output, and in its linear functions.
 fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
     let mut names = Vec::new();
-    for rule in &model.rules {
-        if rule
-            .rule
-            .consequents
-            .iter()
-            .any(|c| c.output.text == output.variable.name)
-        {
+    let concludes = |rule: &&Rule| {
+        let mut consequents = rule.rule.consequents.iter();
+        consequents.any(|c| c.output.text == output.variable.name)
+    };
+    let of_output: Vec<&Rule> = model.rules.iter().filter(concludes).collect();
+    for rule in model.rules.iter().filter(|rule| model.is_enabled(rule)) {
+        // An activation method asks all rules of its block.
+        let asked = model.activation_of(rule) != Activation::General
+            && of_output.iter().any(|one| one.block == rule.block);
+        if asked || concludes(&rule) {
             rule.rule
                 .condition
                 .visit(&mut |proposition| names.push(&*proposition.variable.text));
@@ -68,30 +92,125 @@ fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
     names
 }
 
-fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) -> Option<f64> {
+fn value(
+    model: &Model,
+    output: &Output,
+    values: &Values<'_>,
+    defuzzify: Defuzzify<'_>,
+) -> Option<f64> {
     let mut fired: Vec<(f64, &Term)> = Vec::new();
-    for rule in &model.rules {
+    for (rule, strength) in model.rules.iter().zip(strengths(model, output, values)) {
+        if strength < model.least_strength {
+            continue;
+        }
         for consequent in &rule.rule.consequents {
             if consequent.output.text != output.variable.name {
                 continue;
             }
-            let degree = degree(model, values, &rule.rule.condition);
-            let strength = hedged(&consequent.hedges, rule.rule.weight * degree);
-            if strength > 0.0 {
-                fired.push((
-                    strength,
-                    term(&output.variable.terms, &consequent.term.text),
-                ));
-            }
+            fired.push((
+                hedged(&consequent.hedges, strength),
+                term(&output.variable.terms, &consequent.term.text),
+            ));
         }
     }
     if fired.is_empty() {
         return match output.when_no_rule_fires {
-            NoRuleFires::Value(value) => Some(value),
-            NoRuleFires::Undefined | NoRuleFires::Error => None,
+            NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => Some(value),
+            NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => None,
         };
     }
-    Some(number(model, output, &fired, values, samples))
+    let number = number(model, output, &fired, values, defuzzify);
+    Some(match output.clamp {
+        true => number.clamp(output.variable.low, output.variable.high),
+        false => number,
+    })
+}
+
+/// The strength with which each rule fires that has to do with an output: that concludes it, or stands in a block of which a
+/// rule does.
+fn strengths(model: &Model, output: &Output, values: &Values<'_>) -> Vec<f64> {
+    let concludes = |rule: &Rule| {
+        let mut consequents = rule.rule.consequents.iter();
+        consequents.any(|c| c.output.text == output.variable.name)
+    };
+    let in_its_blocks = |rule: &Rule| {
+        let mut rules = model.rules.iter();
+        rules.any(|other| other.block == rule.block && concludes(other))
+    };
+    let before: Vec<f64> = model
+        .rules
+        .iter()
+        .map(|rule| {
+            let selects = model.activation_of(rule) != Activation::General;
+            if model.is_enabled(rule) && (concludes(rule) || selects && in_its_blocks(rule)) {
+                rule.rule.weight * degree(model, rule, values, &rule.rule.condition)
+            } else {
+                0.0
+            }
+        })
+        .collect();
+    let after = |i: usize| {
+        let (rule, strength) = (&model.rules[i], before[i]);
+        let least = model.least_strength;
+        let others = || {
+            let all = model.rules.iter().zip(&before).enumerate();
+            let all = all.filter(|(_, (other, _))| other.block == rule.block);
+            all.map(|(j, (_, strength))| (j, *strength))
+        };
+        let fires = |strength: f64| strength >= least;
+        let at_least = |strength: f64, bound: f64| strength > bound || near(strength, bound, least);
+        // Whether fewer than so many rules come before this one.
+        let is_kept = |count: u32, before: &dyn Fn(usize, f64) -> bool| {
+            let ahead = others().filter(|(j, strength)| *j != i && before(*j, *strength));
+            fires(strength) && ahead.count() < count as usize
+        };
+        let kept = match model.activation_of(rule) {
+            Activation::General => true,
+            Activation::First {
+                rules,
+                at_least: bound,
+            } => {
+                let counts = |s: f64| fires(s) && at_least(s, bound);
+                counts(strength) && is_kept(rules, &|j, s| j < i && counts(s))
+            }
+            Activation::Last {
+                rules,
+                at_least: bound,
+            } => {
+                let counts = |s: f64| fires(s) && at_least(s, bound);
+                counts(strength) && is_kept(rules, &|j, s| j > i && counts(s))
+            }
+            Activation::Highest { rules } => {
+                is_kept(rules, &|j, s| s > strength || s == strength && j < i)
+            }
+            Activation::Lowest { rules } => is_kept(rules, &|j, s| {
+                fires(s) && (s < strength || s == strength && j < i)
+            }),
+            Activation::Proportional => {
+                return strength / others().map(|(_, strength)| strength).sum::<f64>();
+            }
+            Activation::Threshold {
+                comparison,
+                strength: bound,
+            } => {
+                let equal = near(strength, bound, least);
+                match comparison {
+                    Comparison::Below => strength < bound && !equal,
+                    Comparison::AtMost => strength < bound || equal,
+                    Comparison::Equal => equal,
+                    Comparison::NotEqual => !equal,
+                    Comparison::AtLeast => strength > bound || equal,
+                    Comparison::Above => strength > bound && !equal,
+                }
+            }
+        };
+        if kept { strength } else { 0.0 }
+    };
+    (0..before.len()).map(after).collect()
+}
+
+fn near(a: f64, b: f64, least: f64) -> bool {
+    (a - b).abs() < least
 }
 
 fn term<'m>(terms: &'m [Term], name: &str) -> &'m Term {
@@ -99,20 +218,19 @@ fn term<'m>(terms: &'m [Term], name: &str) -> &'m Term {
 }
 
 /// The degree of a condition.
-fn degree(model: &Model, values: &Values<'_>, condition: &Condition) -> f64 {
-    let of = |condition: &Condition| degree(model, values, condition);
+fn degree(model: &Model, rule: &Rule, values: &Values<'_>, condition: &Condition) -> f64 {
+    let of = |condition: &Condition| degree(model, rule, values, condition);
+    let operators = model.operators_of(rule);
     match condition {
         Condition::Is(proposition) => proposed(values, proposition),
         Condition::Not(inner) => 1.0 - of(inner),
         Condition::And(all) => {
             let degrees = all.iter().map(of);
-            degrees
-                .reduce(|a, b| and(model.operators.and, a, b))
-                .unwrap()
+            degrees.reduce(|a, b| and(operators.and, a, b)).unwrap()
         }
         Condition::Or(any) => {
             let degrees = any.iter().map(of);
-            degrees.reduce(|a, b| or(model.operators.or, a, b)).unwrap()
+            degrees.reduce(|a, b| or(operators.or, a, b)).unwrap()
         }
     }
 }
@@ -170,7 +288,7 @@ fn or(operator: Disjunction, a: f64, b: f64) -> f64 {
         Disjunction::Drastic if b == 0.0 => a,
         Disjunction::Drastic => 1.0,
         Disjunction::Einstein => (a + b) / (1.0 + a * b),
-        Disjunction::Hamacher if a * b == 1.0 => 1.0,
+        Disjunction::Hamacher if a == 1.0 || b == 1.0 => 1.0,
         Disjunction::Hamacher => (a + b - 2.0 * a * b) / (1.0 - a * b),
         Disjunction::NilpotentMaximum if a + b < 1.0 => a.max(b),
         Disjunction::NilpotentMaximum => 1.0,
@@ -182,7 +300,7 @@ fn number(
     output: &Output,
     fired: &[(f64, &Term)],
     values: &Values<'_>,
-    samples: usize,
+    defuzzify: Defuzzify<'_>,
 ) -> f64 {
     if let Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum = output.defuzzifier {
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
@@ -202,19 +320,34 @@ fn number(
             .map(|(weight, term)| weight * place(term, *weight, &output.variable));
         return sums.sum::<f64>() / total;
     }
+    let is_singleton = |term: &Term| {
+        matches!(
+            term.membership_function,
+            MembershipFunction::Singleton { .. }
+        )
+    };
+    let discrete = output.variable.terms.iter().all(is_singleton);
+    let places = fired.iter().filter(|_| discrete);
+    let mut places: Vec<f64> = places
+        .map(|(_, term)| consequent(&term.membership_function, values))
+        .collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    let operators = model.operators_of_output(output);
     let aggregated = |x: f64| {
         let mut y = 0.0;
         for (strength, term) in fired {
             let membership = term.height * membership(&term.membership_function, x);
-            let part = match model.operators.implication {
-                Implication::Minimum => strength.min(membership),
-                Implication::Product => strength * membership,
-            };
-            y = match model.operators.aggregation {
+            let part = and(operators.implication, *strength, membership);
+            y = match operators.aggregation {
                 Aggregation::Maximum => part.max(y),
                 Aggregation::ProbabilisticSum => y + part - y * part,
                 Aggregation::BoundedSum => (y + part).min(1.0),
                 Aggregation::Sum => y + part,
+                Aggregation::Drastic => or(Disjunction::Drastic, y, part),
+                Aggregation::Einstein => or(Disjunction::Einstein, y, part),
+                Aggregation::Hamacher => or(Disjunction::Hamacher, y, part),
+                Aggregation::NilpotentMaximum => or(Disjunction::NilpotentMaximum, y, part),
             };
         }
         y
@@ -229,19 +362,36 @@ fn number(
     cuts.extend([low, high]);
     cuts.sort_by(f64::total_cmp);
     cuts.dedup();
+    defuzzify(&Set {
+        low,
+        high,
+        cuts,
+        places,
+        defuzzifier: output.defuzzifier,
+        degree: &aggregated,
+    })
+}
+
+fn sampled(set: &Set<'_>, samples: usize) -> f64 {
+    let (high, cuts, aggregated, defuzzifier) = (set.high, &set.cuts, set.degree, set.defuzzifier);
+    let places = &set.places;
     // (place, width of the cell, degree)
     let mut set = Vec::new();
-    for ends in cuts.windows(2) {
-        let width = (ends[1] - ends[0]) / samples as f64;
-        for i in 0..samples {
-            let x = ends[0] + (i as f64 + 0.5) * width;
-            set.push((x, width, aggregated(x)));
+    if !places.is_empty() {
+        set.extend(places.iter().map(|x| (*x, 1.0, aggregated(*x))));
+    } else {
+        for ends in cuts.windows(2) {
+            let width = (ends[1] - ends[0]) / samples as f64;
+            for i in 0..samples {
+                let x = ends[0] + (i as f64 + 0.5) * width;
+                set.push((x, width, aggregated(x)));
+            }
         }
     }
     let area: f64 = set.iter().map(|(_, width, y)| width * y).sum();
     let highest = set.iter().fold(0.0, |most: f64, (_, _, y)| most.max(*y));
     let top = set.iter().filter(|(_, _, y)| *y >= highest * (1.0 - 1e-9));
-    match output.defuzzifier {
+    match defuzzifier {
         Defuzzifier::Centroid => set.iter().map(|(x, width, y)| x * width * y).sum::<f64>() / area,
         Defuzzifier::Bisector => {
             let mut sum = 0.0;
@@ -361,6 +511,7 @@ fn parameters(shape: &MembershipFunction) -> Vec<f64> {
             ..
         } => vec![left_inflection, right_inflection],
         MembershipFunction::Singleton { .. }
+        | MembershipFunction::Function { .. }
         | MembershipFunction::Constant { .. }
         | MembershipFunction::Linear { .. } => vec![],
     }
@@ -498,6 +649,14 @@ fn membership(shape: &MembershipFunction, x: f64) -> f64 {
             let (centre, radius) = ((left + right) / 2.0, (right - left) / 2.0);
             let away = (x - centre).abs().min(radius);
             (radius.powi(2) - away.powi(2)).sqrt() / radius
+        }
+        MembershipFunction::Function { ref formula } => {
+            let degree = formula.evaluate(|_| x);
+            if degree.is_nan() {
+                0.0
+            } else {
+                degree.clamp(0.0, 1.0)
+            }
         }
         MembershipFunction::Constant { value } => value,
         MembershipFunction::Linear { .. } => 0.0,
