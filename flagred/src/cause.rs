@@ -33,8 +33,6 @@ pub struct Cause {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Propositions<'a> {
     pub(crate) all: &'a [Proposition],
-    /// The index in the model of each rule; empty where rules have their places in the model.
-    pub(crate) rules: &'a [u32],
 }
 
 /// Which rule is asked for.
@@ -49,7 +47,7 @@ pub(crate) enum Asked {
 impl Propositions<'_> {
     /// The cause of a risk at values of the inputs, in the order of the profile. `ask` finds the rule of an output, and with it
     /// and the degrees of the literals the proposition that it is to give. Where that is about an output, the cause is that
-    /// of this output.
+    /// of this output. The rule of the cause is one of all stages.
     pub(crate) fn cause(
         &self,
         inputs: &[f64],
@@ -64,7 +62,6 @@ impl Propositions<'_> {
             let said = self.all.get(proposition)?;
             let (rule, input) = (said.rule as usize, said.input as usize);
             if let Some(value) = inputs.get(input) {
-                let rule = self.rules.get(rule).map_or(rule, |rule| *rule as usize);
                 return Some(Cause {
                     rule,
                     input,

@@ -48,8 +48,6 @@ struct Compiled {
     propositions: Vec<Proposition>,
     /// The same as the engine has them.
     said: Vec<Said>,
-    /// See [`Propositions`]; empty where no output reads another one.
-    rules: Vec<u32>,
     /// Of the other risks of the profile, each as if it were the only one.
     others: Vec<Estimator>,
 }
@@ -114,14 +112,6 @@ pub enum NoPlan {
         /// The output.
         output: String,
     },
-    /// An output reads another one.
-    #[error("output `{output}` reads output `{read}`, and what flies on board has no chains")]
-    Chained {
-        /// The output that reads.
-        output: String,
-        /// The output that is read.
-        read: String,
-    },
     /// The profile has several risks.
     #[error("the profile has the risks `{output}` and `{other}`, and what flies on board has one")]
     SeveralRisks {
@@ -141,7 +131,6 @@ impl NoPlan {
                  rises (a `partition`), with minimum and maximum; the centroid with `implication: product` and \
                  `aggregation: sum`, over any terms; the Takagi-Sugeno defuzzifiers. All of them without `samples`"
             }
-            NoPlan::Chained { .. } => "write rules whose conditions name inputs only",
             NoPlan::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor of each: the findings are the same"
             }
@@ -222,16 +211,8 @@ impl Estimator {
             },
             literal: said.literal as u32,
         });
-        let mut rules = Vec::new();
-        for said in said.iter().filter(|_| engine.table().is_none()) {
-            rules.resize(rules.len().max(said.place + 1), 0);
-            if let Some(rule) = rules.get_mut(said.place) {
-                *rule = said.rule as u32;
-            }
-        }
         Ok(Estimator(Arc::new(Compiled {
             propositions: propositions.collect(),
-            rules,
             said,
             others,
             profile: profile.clone(),
@@ -276,11 +257,10 @@ impl Estimator {
         let engine = &self.0.engine;
         let propositions = Propositions {
             all: &self.0.propositions,
-            rules: &self.0.rules,
         };
         let risk = (self.0.output, risk_pct);
         let outputs = engine.output_names().len();
-        propositions.cause(inputs, risk, outputs, |output, asked, pick| {
+        let cause = propositions.cause(inputs, risk, outputs, |output, asked, pick| {
             let rule = match asked {
                 Asked::Raises(value) => engine.raised_by(scratch, point, output, value),
                 Asked::Concludes(said) => {
@@ -288,7 +268,9 @@ impl Estimator {
                 }
             };
             pick(rule?, scratch.degrees())
-        })
+        })?;
+        let rule = self.0.said.get(cause.proposition)?.rule;
+        Some(Cause { rule, ..cause })
     }
 
     /// The input and the term, with its hedges, of each proposition of the rules, in the order of
@@ -331,7 +313,7 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// The output has no closed form, an output reads another one, or the profile has several risks.
+    /// The output, or one that is read for it, has no closed form, or the profile has several risks.
     pub fn plan(&self) -> Result<Plan<'_>, NoPlan> {
         if let Some(other) = self.0.profile.other_risks.first() {
             return Err(NoPlan::SeveralRisks {
@@ -339,18 +321,29 @@ impl Estimator {
                 other: other.output.clone(),
             });
         }
-        let Some(table) = self.0.engine.table() else {
-            return Err(self.chained());
+        let engine = &self.0.engine;
+        let chain = engine.chain();
+        let open = match (chain, engine.table()) {
+            (Some(chain), _) => chain.open(self.0.output).next(),
+            (None, Some(table)) => {
+                let is_open = |of: &fuzzy::table::Output| of.form == ClosedForm::NONE;
+                let of = table.outputs.get(self.0.output);
+                of.is_none_or(is_open).then_some(self.0.output)
+            }
+            (None, None) => Some(self.0.output),
         };
-        let open = |output: &fuzzy::table::Output| output.form == ClosedForm::NONE;
-        if table.outputs.get(self.0.output).is_none_or(open) {
+        let table = chain.map(|chain| chain.table).or(engine.table());
+        let (None, Some(table)) = (open, table) else {
+            let name = engine.output_names().nth(open.unwrap_or_default());
             return Err(NoPlan::NoClosedForm {
-                output: self.0.profile.output.clone(),
+                output: name.unwrap_or_default().into(),
             });
-        }
+        };
         Ok(Plan {
             name: &self.0.profile.name,
             table,
+            stages: chain.map_or(&[], |chain| chain.stages),
+            places: chain.map_or(&[], |chain| chain.places),
             output: self.0.output as u32,
             order: &self.0.order,
             channels: &self.0.channels,
@@ -366,19 +359,6 @@ impl Estimator {
     /// The values that fill gaps; empty where nothing is filled.
     pub(crate) fn filled(&self) -> &[f64] {
         self.0.filling.lend().map_or(&[], |knots| knots.values)
-    }
-
-    /// That an output reads another one, with the first such output.
-    fn chained(&self) -> NoPlan {
-        let model = self.model();
-        let names = model.outputs.iter().map(|output| &output.variable.name);
-        let mut reads =
-            names.flat_map(|by| model.reads(by).into_iter().map(move |read| (by, read)));
-        let (output, read) = reads.next().unzip();
-        NoPlan::Chained {
-            output: output.cloned().unwrap_or_default(),
-            read: read.unwrap_or_default().into(),
-        }
     }
 
     fn lookup(&self) -> Lookup<'_> {
@@ -459,7 +439,7 @@ mod tests {
 
     /// The risk of the paper through an output of its own, which the other one only passes on.
     #[test]
-    fn a_chain_is_assessed_and_makes_no_plan() {
+    fn a_chain_is_assessed_and_an_open_output_that_it_reads_makes_no_plan() {
         let profile = shipped::flagred_paper().profile().clone();
         let mut rules = shipped::flagred_paper_rules();
         let mut passed_on = rules.outputs[0].clone();
@@ -484,9 +464,13 @@ mod tests {
             let is_filled = risk.filled_from.is_some();
             assert!(is_filled || explained.outputs[1].value == Some(risk.risk_pct));
         }
+        assert_eq!(estimator.plan().unwrap().check(), Ok(()));
+        rules.outputs[0].defuzzifier = Defuzzifier::Bisector;
+        let estimator = Estimator::new(&profile, &rules).unwrap();
+        let output = "strain".into();
         assert_eq!(
-            estimator.plan().unwrap_err().to_string(),
-            "output `risk` reads output `strain`, and what flies on board has no chains"
+            estimator.plan().err(),
+            Some(NoPlan::NoClosedForm { output })
         );
     }
 }

@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4244 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122560 bytes of memory.
+// 4276 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122672 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -162,6 +162,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             flanks: &[],
             knots: &[],
         },
+        stages: &[],
+        places: &[],
         output: 0,
         order: &[0, 1, 2, 3, 4, 5],
         channels: &[

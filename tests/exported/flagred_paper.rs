@@ -1,5 +1,5 @@
 // The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 3700 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54624 bytes of memory.
+// 3732 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54736 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -125,6 +125,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             flanks: &[],
             knots: &[],
         },
+        stages: &[],
+        places: &[],
         output: 0,
         order: &[0, 1],
         channels: &[

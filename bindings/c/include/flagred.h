@@ -291,6 +291,20 @@ typedef struct flagred_proposition {
     uint32_t rule, input, literal;
 } flagred_proposition;
 
+/* A part of the rules that is evaluated at once, where outputs read others, and where it ends in each array. */
+typedef struct flagred_stage {
+    uint32_t conjunctions, actions_a_cell, first_action, sums;
+    struct {
+        uint32_t degrees, alive, partial, stack, strengths;
+    } sizes;
+    uint32_t reads, outputs, rules;
+    struct {
+        uint32_t inputs, cuts, starts, lines, curves, points, hedges, axes, dimensions, cells, nodes, edges,
+            actions, programs, steps, blocks, outputs, pairs, moments, consequents, coefficients, sets, set_terms,
+            sections, strands, flanks, knots;
+    } ends;
+} flagred_stage;
+
 typedef struct flagred_source {
     double number;
     uint32_t channel, statistic;
@@ -368,6 +382,8 @@ struct flagred_plan {
     FLAGRED_ARRAY(double, values);
     FLAGRED_ARRAY(double, distances);
     FLAGRED_ARRAY(flagred_proposition, propositions);
+    FLAGRED_ARRAY(flagred_stage, stages);
+    FLAGRED_ARRAY(uint32_t, places);            /* of each stage: the outputs that it reads, its outputs, its rules */
 };
 
 #undef FLAGRED_ARRAY

@@ -161,6 +161,7 @@ unsafe fn start(
         partials: block.fill(sizes.partials, Partial::NONE)?,
         strongest: block.fill(sizes.outputs, Strongest::NONE)?,
         outcomes: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
+        own: block.fill(sizes.outputs, Outcome::UNDEFINED)?,
         seen: block.repeat(sizes.channels, |_| Ok(Seen::IDLE))?,
         risks: block.place(Window::IDLE)?,
         motors: block.fill(motors, Motor::UNKNOWN)?,

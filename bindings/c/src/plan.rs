@@ -7,7 +7,7 @@ use flagred::{
         table::{
             self, Action, Axis, Block as RuleBlock, Coefficient, Conjunction, Conjunctions,
             Consequent, Curve, Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot,
-            Line, Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Step,
+            Line, Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Stage, Step,
             Strand, Table,
         },
     },
@@ -151,6 +151,8 @@ macro_rules! define {
             values: Array<f64>,
             distances: Array<f64>,
             propositions: Array<Proposition>,
+            stages: Array<Stage>,
+            places: Array<u32>,
         }
 
         impl Plan {
@@ -240,6 +242,8 @@ impl Plan {
             Ok(board::Plan {
                 name: "",
                 table: self.table()?,
+                stages: self.stages.read()?,
+                places: self.places.read()?,
                 output: self.output,
                 order: self.order.read()?,
                 channels,
@@ -256,16 +260,13 @@ impl Plan {
 
 impl Plan {
     fn conjunctions(&self) -> Result<Conjunctions, Status> {
-        Ok(match self.conjunctions {
-            0 => Conjunctions::Uniform {
-                actions_a_cell: self.actions_a_cell,
-                first_action: self.first_action,
-                sums: self.sums != 0,
-            },
-            1 => Conjunctions::Dense,
-            2 => Conjunctions::Trie,
-            _ => return Err(Status::DamagedPlan),
-        })
+        let code = [
+            self.conjunctions,
+            self.actions_a_cell,
+            self.first_action,
+            self.sums,
+        ];
+        Conjunctions::from_code(code).ok_or(Status::DamagedPlan)
     }
 }
 

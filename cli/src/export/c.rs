@@ -4,10 +4,7 @@ use std::fmt::Write;
 
 use super::Array;
 use flagred::{
-    board::{
-        Plan,
-        table::{Conjunctions, Hedge},
-    },
+    board::{Plan, table::Hedge},
     channel::{Channel, Input, Threshold},
     follower::Settings,
     gap::FilledKnots,
@@ -51,15 +48,7 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[Str
     let Arrays {
         mut out, fields, ..
     } = arrays;
-    let (conjunctions, actions_a_cell, first_action, sums) = match plan.table.conjunctions {
-        Conjunctions::Uniform {
-            actions_a_cell,
-            first_action,
-            sums,
-        } => (0, actions_a_cell, first_action, u32::from(sums)),
-        Conjunctions::Dense => (1, 0, 0, 0),
-        Conjunctions::Trie => (2, 0, 0, 0),
-    };
+    let [conjunctions, actions_a_cell, first_action, sums] = plan.table.conjunctions.code();
     let sizes = plan.table.sizes;
     line(
         &mut out,
@@ -154,6 +143,8 @@ impl Arrays {
         }
         let propositions = Array::new("propositions", "Proposition", plan.propositions);
         self.add_array("propositions", &propositions);
+        self.add_array("stages", &Array::new("stages", "Stage", plan.stages));
+        self.add_array("places", &Array::new("places", "u32", plan.places));
     }
 
     /// What the cause of a finding is called. The plan does not hold it.

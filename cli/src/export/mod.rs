@@ -166,7 +166,9 @@ fn bytes(plan: &Plan<'_>) -> usize {
     let profile = size_of_val(plan.order)
         + size_of_val(plan.channels)
         + size_of_val(plan.inputs)
-        + size_of_val(plan.propositions);
+        + size_of_val(plan.propositions)
+        + size_of_val(plan.stages)
+        + size_of_val(plan.places);
     size_of_val(plan) + table + profile + bytes_of_filling(plan)
 }
 

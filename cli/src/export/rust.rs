@@ -76,10 +76,12 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
     for array in super::arrays(&plan.table) {
         items(out, 3, array.field, &array.items);
     }
-    line_of(
-        out,
-        format_args!("        }},\n        output: {},", plan.output),
-    );
+    line_of(out, format_args!("        }},"));
+    let stages: Vec<String> = plan.stages.iter().map(|s| format!("{s:?}")).collect();
+    items(out, 2, "stages", &stages);
+    let places: Vec<String> = plan.places.iter().map(u32::to_string).collect();
+    items(out, 2, "places", &places);
+    line_of(out, format_args!("        output: {},", plan.output));
     let order: Vec<String> = plan.order.iter().map(u32::to_string).collect();
     items(out, 2, "order", &order);
     let channels: Vec<String> = plan.channels.iter().map(channel).collect();

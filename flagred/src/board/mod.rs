@@ -25,7 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use fuzzy::table::{Damaged, Outcome, Scratch, Table};
+use fuzzy::table::{Chain, Damaged, Outcome, Scratch, Sought, Stage, Table, Values};
 
 use crate::{
     cause::{Asked, Cause, Propositions},
@@ -54,8 +54,12 @@ pub use storage::{Memory, Sizes, Storage};
 pub struct Plan<'a> {
     /// The name of the profile.
     pub name: &'a str,
-    /// The rule set.
+    /// The rule set; where outputs read others, the arrays of all stages.
     pub table: Table<'a>,
+    /// The stages of a rule set in which outputs read others; else empty. See [`table::Chain`].
+    pub stages: &'a [Stage],
+    /// See [`table::Chain::places`].
+    pub places: &'a [u32],
     /// The index of the output that is the risk.
     pub output: u32,
     /// The index among the profile's inputs of each input of the rule set.
@@ -113,12 +117,15 @@ impl Plan<'_> {
     /// # Errors
     /// The first array with an index out of bounds, or with a window that has no length.
     pub fn check(&self) -> Result<(), Damaged> {
-        self.table.check()?;
+        match self.chain() {
+            None => self.table.check()?,
+            Some(chain) => chain.check(self.order.len())?,
+        }
         let require = |holds: bool, array| holds.then_some(()).ok_or(Damaged(array));
         let inputs = self.inputs.len();
         require((self.output as usize) < self.table.outputs.len(), "output")?;
         require(
-            self.order.len() == self.table.inputs.len()
+            (!self.stages.is_empty() || self.order.len() == self.table.inputs.len())
                 && self.order.iter().all(|input| (*input as usize) < inputs),
             "order",
         )?;
@@ -149,49 +156,88 @@ impl Plan<'_> {
         require(
             self.propositions
                 .iter()
-                .all(|said| (said.input as usize) < inputs),
+                .all(|said| (said.input as usize) < inputs.saturating_add(self.read_outputs())),
             "propositions",
         )?;
         require(
             self.filled
-                .is_none_or(|filled| filled.is_whole(self.table.inputs.len())),
+                .is_none_or(|filled| filled.is_whole(self.order.len())),
             "filled",
         )
+    }
+
+    /// The rule set, where outputs read others.
+    const fn chain(&self) -> Option<Chain<'_>> {
+        match self.stages {
+            [] => None,
+            stages => Some(Chain {
+                table: self.table,
+                stages,
+                places: self.places,
+            }),
+        }
+    }
+
+    /// The number of outputs that propositions can be about.
+    const fn read_outputs(&self) -> usize {
+        match self.stages {
+            [] => 0,
+            _ => self.table.outputs.len(),
+        }
     }
 
     fn estimate(
         &self,
         inputs: &[f64],
         point: &mut [f64],
-        (scratch, outcomes): (&mut Scratch<'_>, &mut [Outcome]),
+        (scratch, values, outcomes): (&mut Scratch<'_>, &mut Values<'_>, &mut [Outcome]),
     ) -> Option<Estimate> {
         self.lookup().estimate(inputs, point, |point| {
-            self.table.evaluate(scratch, point, outcomes);
+            match self.chain() {
+                None => self.table.evaluate(scratch, point, outcomes),
+                Some(chain) => chain.evaluate(scratch, values, point, outcomes),
+            }
             outcomes.get(self.output as usize).copied()
         })
     }
 
+    /// What raises the risk, after the outcomes at the same inputs.
     fn cause(
         &self,
         inputs: &[f64],
         risk_pct: f64,
         point: &mut [f64],
-        scratch: &mut Scratch<'_>,
+        (scratch, values, outcomes): (&mut Scratch<'_>, &mut Values<'_>, &[Outcome]),
     ) -> Option<Cause> {
         self.lookup().reorder(inputs, point)?;
         let propositions = Propositions {
             all: self.propositions,
-            rules: &[],
         };
         let risk = (self.output as usize, risk_pct);
         let outputs = self.table.outputs.len();
-        propositions.cause(inputs, risk, outputs, |output, asked, pick| match asked {
-            Asked::Raises(value) => {
-                let rule = self.table.raised_by(scratch, point, output, value)?;
-                pick(rule, scratch.degrees)
-            }
-            Asked::Concludes(_) => None,
-        })
+        let Some(chain) = self.chain() else {
+            return propositions.cause(inputs, risk, outputs, |output, asked, pick| match asked {
+                Asked::Raises(value) => {
+                    let rule = self.table.raised_by(scratch, point, output, value)?;
+                    pick(rule, scratch.degrees)
+                }
+                Asked::Concludes(_) => None,
+            });
+        };
+        let is_read = |said: &&Proposition| said.input as usize >= inputs.len();
+        let cause = propositions.cause(inputs, risk, outputs, |output, asked, pick| {
+            let sought = match asked {
+                Asked::Raises(value) => Sought::Raises(value),
+                Asked::Concludes(proposition) => {
+                    let before = self.propositions.get(..proposition)?;
+                    Sought::Concludes(before.iter().filter(is_read).count())
+                }
+            };
+            let given = (&*point, outcomes);
+            chain.rule_of(scratch, values, given, (output, sought), pick)
+        })?;
+        let rule = chain.rule(cause.rule)?;
+        Some(Cause { rule, ..cause })
     }
 
     fn lookup(&self) -> Lookup<'_> {
@@ -212,6 +258,8 @@ pub struct Monitor<'a> {
     plan: &'a Plan<'a>,
     follower: Follower,
     scratch: Scratch<'a>,
+    /// Of the stages.
+    values: Values<'a>,
     outcomes: &'a mut [Outcome],
     /// One for each input of the rule set.
     point: &'a mut [f64],
@@ -249,21 +297,24 @@ impl<'a> Monitor<'a> {
             mut partials,
             strongest,
             outcomes,
+            own,
             seen,
             risks,
             motors,
         } = memory;
         let sizes = plan.table.sizes;
-        let inputs = plan.table.inputs.len();
+        let inputs = plan.order.len();
+        let most_inputs = plan.most_inputs();
         let outputs = plan.table.outputs.len();
         let fits = strongest.len() == outputs
             && outcomes.len() == outputs
+            && own.len() == outputs
             && seen.len() == plan.channels.len();
         let monitor = Monitor {
             plan,
             follower: Follower::new(plan.settings),
             scratch: Scratch {
-                values: take(&mut numbers, inputs)?,
+                values: take(&mut numbers, most_inputs)?,
                 degrees: take(&mut numbers, sizes.degrees as usize)?,
                 stack: take(&mut numbers, sizes.stack as usize)?,
                 strengths: take(&mut numbers, sizes.strengths as usize)?,
@@ -271,6 +322,10 @@ impl<'a> Monitor<'a> {
                 partial: take(&mut partials, sizes.partial as usize)?,
                 next: take(&mut partials, sizes.partial as usize)?,
                 strongest,
+            },
+            values: Values {
+                inputs: take(&mut numbers, plan.stage_inputs())?,
+                own,
             },
             point: take(&mut numbers, inputs)?,
             inputs: take(&mut numbers, plan.inputs.len())?,
@@ -314,12 +369,14 @@ impl<'a> Monitor<'a> {
             inputs: self.inputs,
             motors: self.motors,
         };
-        let (point, rules) = (&mut *self.point, (&mut self.scratch, &mut *self.outcomes));
+        let point = &mut *self.point;
+        let rules = (&mut self.scratch, &mut self.values, &mut *self.outcomes);
         let estimate = |inputs: &[f64]| plan.estimate(inputs, point, rules);
         let channels = (plan.channels, plan.inputs);
         let update = self.follower.push(channels, &mut room, sample, estimate);
         self.follower.explain(channels, &update, |risk_pct| {
-            plan.cause(self.inputs, risk_pct, self.point, &mut self.scratch)
+            let rules = (&mut self.scratch, &mut self.values, &*self.outcomes);
+            plan.cause(self.inputs, risk_pct, self.point, rules)
         });
         update
     }
@@ -327,7 +384,7 @@ impl<'a> Monitor<'a> {
     /// The risk at values of the inputs, in the order of the profile, independent of the flight. `None` where no rule fires
     /// and nothing fills the gap, or where a value is not finite.
     pub fn at(&mut self, inputs: &[f64]) -> Option<Estimate> {
-        let rules = (&mut self.scratch, &mut *self.outcomes);
+        let rules = (&mut self.scratch, &mut self.values, &mut *self.outcomes);
         self.plan.estimate(inputs, self.point, rules)
     }
 
@@ -335,8 +392,8 @@ impl<'a> Monitor<'a> {
     /// rule does.
     pub fn cause_at(&mut self, inputs: &[f64]) -> Option<Cause> {
         let said = self.at(inputs).filter(|said| said.filled_from.is_none())?;
-        let scratch = &mut self.scratch;
-        self.plan.cause(inputs, said.risk_pct, self.point, scratch)
+        let rules = (&mut self.scratch, &mut self.values, &*self.outcomes);
+        self.plan.cause(inputs, said.risk_pct, self.point, rules)
     }
 
     /// The values of the inputs after the last sample, in the order of the profile; NaN is unknown.

@@ -35,6 +35,8 @@ pub struct Memory<'m> {
     pub strongest: &'m mut [Strongest],
     /// [`Sizes::outputs`].
     pub outcomes: &'m mut [Outcome],
+    /// [`Sizes::outputs`].
+    pub own: &'m mut [Outcome],
     /// [`Sizes::channels`].
     pub seen: &'m mut [Seen],
     /// The risks of the last seconds.
@@ -51,6 +53,7 @@ macro_rules! lent {
             partials: &mut $held.partials,
             strongest: &mut $held.strongest,
             outcomes: &mut $held.outcomes,
+            own: &mut $held.own,
             seen: &mut $held.seen,
             risks: &mut $held.risks,
             motors: &mut $held.motors,
@@ -59,16 +62,34 @@ macro_rules! lent {
 }
 
 impl Plan<'_> {
+    /// The most inputs of a stage: those of the rule set, and the outputs that it reads.
+    pub(super) const fn most_inputs(&self) -> usize {
+        let reads = match self.chain() {
+            None => 0,
+            Some(chain) => chain.most_reads(),
+        };
+        self.order.len().saturating_add(reads)
+    }
+
+    /// The numbers that are handed over between stages.
+    pub(super) const fn stage_inputs(&self) -> usize {
+        match self.stages {
+            [] => 0,
+            _ => self.most_inputs(),
+        }
+    }
+
     /// The size of its memory.
     pub const fn sizes(&self) -> Sizes {
-        let inputs = self.table.inputs.len();
         let sizes = self.table.sizes;
         // Saturating: a damaged plan asks for more memory than there is, and never for less than it uses.
         let rules = (sizes.degrees as usize)
             .saturating_add(sizes.stack as usize)
             .saturating_add(sizes.strengths as usize);
-        let numbers = inputs
-            .saturating_mul(2)
+        let numbers = self
+            .most_inputs()
+            .saturating_add(self.stage_inputs())
+            .saturating_add(self.order.len())
             .saturating_add(self.inputs.len())
             .saturating_add(rules);
         let partials = (sizes.partial as usize)
@@ -89,7 +110,7 @@ impl Plan<'_> {
         let sizes = self.sizes();
         let own = size_of::<Plan<'_>>() + size_of::<Monitor<'_>>() + size_of::<Window>();
         let channel = size_of::<Seen>() + size_of::<Channel>();
-        let output = size_of::<Strongest>() + size_of::<Outcome>();
+        let output = size_of::<Strongest>() + 2 * size_of::<Outcome>();
         let motor = size_of::<Motor>() + size_of::<Range>() + size_of::<f64>();
         let frame = 4 * size_of::<usize>() + 16 * ALIGNED;
         (own + frame + size_of_val(self.inputs))
@@ -129,6 +150,7 @@ pub struct Storage<
     partials: [Partial; PARTIALS],
     strongest: [Strongest; OUTPUTS],
     outcomes: [Outcome; OUTPUTS],
+    own: [Outcome; OUTPUTS],
     seen: [Seen; CHANNELS],
     risks: Window,
     motors: [Motor; MOTORS],
@@ -153,6 +175,7 @@ impl<
             partials: [Partial::NONE; PARTIALS],
             strongest: [Strongest::NONE; OUTPUTS],
             outcomes: [Outcome::UNDEFINED; OUTPUTS],
+            own: [Outcome::UNDEFINED; OUTPUTS],
             seen: [const { Seen::IDLE }; CHANNELS],
             risks: Window::IDLE,
             motors: [Motor::IDLE; MOTORS],
@@ -176,6 +199,7 @@ pub struct OwnedMemory {
     partials: Vec<Partial>,
     strongest: Vec<Strongest>,
     outcomes: Vec<Outcome>,
+    own: Vec<Outcome>,
     seen: Vec<Seen>,
     risks: Window,
     motors: Vec<Motor>,
@@ -191,6 +215,7 @@ impl OwnedMemory {
             partials: vec![Partial::NONE; sizes.partials],
             strongest: vec![Strongest::NONE; sizes.outputs],
             outcomes: vec![Outcome::UNDEFINED; sizes.outputs],
+            own: vec![Outcome::UNDEFINED; sizes.outputs],
             seen: vec![Seen::IDLE; sizes.channels],
             risks: Window::IDLE,
             motors: vec![Motor::UNKNOWN; motors],

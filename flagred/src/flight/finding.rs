@@ -171,13 +171,11 @@ rules:
         let estimator = Estimator::new(estimator().profile(), &rules).unwrap();
         let cause = |inputs: [f64; 2]| {
             let risk_pct = estimator.at(&inputs).unwrap().risk_pct;
-            let found = estimator.cause(&inputs, risk_pct, &mut Memory::of(&estimator));
-            let cause = verdict::Finding {
-                cause: found,
-                ..verdict::Finding::NONE
-            };
-            let cause = Finding::new(cause, &estimator).cause.unwrap();
-            format!("{cause} {}, rule {}", cause.value, cause.rule)
+            let plan = estimator.plan().unwrap();
+            let mut memory = OwnedMemory::new(&plan, 4);
+            let on_board = memory.monitor(&plan).unwrap().at(&inputs).unwrap();
+            assert_eq!(on_board.risk_pct.to_bits(), risk_pct.to_bits());
+            cause(&estimator, inputs).unwrap()
         };
         assert_eq!(cause([0.0, 0.9]), "shake violent 0.9, rule 4");
         assert_eq!(cause([0.9, 0.1]), "at_limit much 0.9, rule 0");

@@ -11,8 +11,8 @@ use crate::model::{
 };
 use crate::table::{
     Action, Axis, Block, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge,
-    Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair, Point, Program, Section,
-    SetTerm, Sizes, Step, Strand, Table, arrays, arrays_from_fields,
+    Ends, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair, Point, Program,
+    Section, SetTerm, Sizes, Step, Strand, Table, arrays, arrays_from_fields,
 };
 
 macro_rules! define {
@@ -29,6 +29,29 @@ macro_rules! define {
         }
 
         impl OwnedTable {
+            /// Adds the arrays of another stage after those that are there.
+            pub(super) fn append(&mut self, other: &OwnedTable) {
+                // All stages have the operators of the model.
+                (self.and, self.or) = (other.and, other.or);
+                self.least_strength = other.least_strength;
+                let (own, other_sizes) = (self.sizes, other.sizes);
+                self.sizes = Sizes {
+                    degrees: own.degrees.max(other_sizes.degrees),
+                    alive: own.alive.max(other_sizes.alive),
+                    partial: own.partial.max(other_sizes.partial),
+                    stack: own.stack.max(other_sizes.stack),
+                    strengths: own.strengths.max(other_sizes.strengths),
+                };
+                $(self.$array.extend_from_slice(&other.$array);)*
+            }
+
+            /// Where its arrays end.
+            pub(super) fn ends(&self) -> Ends {
+                Ends {
+                    $($array: self.$array.len() as u32,)*
+                }
+            }
+
             pub(super) fn table(&self) -> Table<'_> {
                 Table {
                     and: self.and,
@@ -110,7 +133,7 @@ impl OwnedTable {
         });
     }
 
-    fn curve(&mut self, index: u32, term: &Term, hedges: &[Hedge]) {
+    pub(super) fn curve(&mut self, index: u32, term: &Term, hedges: &[Hedge]) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
         let (kind, parameters) = term.membership_function.kind();
         match &term.membership_function {

@@ -2,8 +2,10 @@
 
 use alloc::vec::Vec;
 
-use super::{Engine, Outcome, Scratch, Stage, State};
+use super::arrays::OwnedTable;
+use super::{Engine, Outcome, Scratch, Stage};
 use crate::model::chain;
+use crate::table;
 
 /// How the stages of a model that chains fit together.
 #[derive(Debug, Clone)]
@@ -11,6 +13,10 @@ pub(super) struct Chain {
     /// Of the first stage.
     first: Place,
     later: Vec<Later>,
+    /// The same as plain arrays: a [`table::Chain`].
+    pub(super) flat: OwnedTable,
+    pub(super) stages: Vec<table::Stage>,
+    pub(super) places: Vec<u32>,
 }
 
 /// A stage after the first one.
@@ -24,33 +30,68 @@ pub(super) struct Later {
 #[derive(Debug, Clone)]
 struct Place {
     /// The outputs that it reads. Their values stand after those of the inputs.
-    reads: Vec<usize>,
+    reads: Vec<u32>,
     /// The index in the model of each of its outputs.
-    outputs: Vec<usize>,
+    outputs: Vec<u32>,
     /// The index in the model of each of its rules.
-    rules: Vec<usize>,
+    rules: Vec<u32>,
 }
 
 impl Place {
     fn of(stage: &chain::Stage<'_>) -> Self {
+        let indices = |all: &[usize]| all.iter().map(|index| *index as u32).collect();
         Place {
-            reads: stage.reads.clone(),
-            outputs: stage.outputs.clone(),
-            rules: stage.rules.clone(),
+            reads: indices(&stage.reads),
+            outputs: indices(&stage.outputs),
+            rules: indices(&stage.rules),
+        }
+    }
+
+    fn lend(&self) -> table::chain::Place<'_> {
+        table::chain::Place {
+            reads: &self.reads,
+            outputs: &self.outputs,
+            rules: &self.rules,
         }
     }
 }
 
 impl Chain {
-    pub(super) fn new(first: &chain::Stage<'_>, later: &[chain::Stage<'_>]) -> Self {
+    pub(super) fn new(first: (&chain::Stage<'_>, &Stage), later: &[chain::Stage<'_>]) -> Self {
+        let (place, first) = (Place::of(first.0), first.1);
         let later = later.iter().map(|stage| Later {
             place: Place::of(stage),
             stage: Stage::new(&stage.model),
         });
-        Chain {
-            first: Place::of(first),
+        let mut chain = Chain {
+            first: place,
             later: later.collect(),
+            flat: OwnedTable::default(),
+            stages: Vec::new(),
+            places: Vec::new(),
+        };
+        let (mut flat, mut stages, mut places) = (OwnedTable::default(), Vec::new(), Vec::new());
+        for (place, stage) in chain.stages(first) {
+            let [conjunctions, actions_a_cell, first_action, sums] =
+                stage.arrays.conjunctions.code();
+            flat.append(&stage.arrays);
+            stages.push(table::Stage {
+                conjunctions,
+                actions_a_cell,
+                first_action,
+                sums,
+                sizes: stage.arrays.sizes,
+                reads: place.reads.len() as u32,
+                outputs: place.outputs.len() as u32,
+                rules: place.rules.len() as u32,
+                ends: flat.ends(),
+            });
+            for indices in [&place.reads, &place.outputs, &place.rules] {
+                places.extend_from_slice(indices);
+            }
         }
+        (chain.flat, chain.stages, chain.places) = (flat, stages, places);
+        chain
     }
 
     pub(super) fn later(&self) -> &[Later] {
@@ -90,42 +131,28 @@ impl Engine {
             own,
             ..
         } = scratch;
-        values[..inputs.len()].copy_from_slice(inputs);
         let stages = chain.later.iter().zip(later);
         let stages = stages.map(|(later, scratch)| (&later.place, &later.stage, scratch));
         for (place, stage, scratch) in
             core::iter::once((&chain.first, &self.first, first)).chain(stages)
         {
-            let all = inputs.len() + place.reads.len();
-            let mut unknown = None;
-            let mut clamped = false;
-            for (value, read) in values[inputs.len()..].iter_mut().zip(&place.reads) {
-                let outcome = outcomes[*read];
-                clamped |= outcome.clamped;
-                match outcome.value() {
-                    Some(known) => *value = known,
-                    None => unknown = Some(outcome.state),
-                }
-            }
-            let own = &mut own[..place.outputs.len()];
-            match unknown {
-                None => stage.outcomes(scratch, &values[..all], own),
-                // Its default value is for inputs without a rule; here the inputs are not known.
-                Some(State::InputNotFinite) => own.fill(Outcome {
-                    state: State::InputNotFinite,
-                    ..Outcome::UNDEFINED
-                }),
-                Some(_) => own.fill(Outcome::UNDEFINED),
-            }
-            for (output, own) in place.outputs.iter().zip(own) {
-                outcomes[*output] = Outcome {
-                    dominant: own.dominant.map(|rule| place.rules[rule]),
-                    clamped: own.clamped || clamped,
-                    ..*own
-                };
-                keep(*output, &mut outcomes[*output]);
-            }
+            let given = (inputs, &mut values[..], &mut own[..]);
+            let evaluate = |inputs: &[f64], own: &mut [Outcome]| {
+                stage.outcomes(scratch, inputs, own);
+            };
+            table::chain::stage(place.lend(), given, outcomes, evaluate, &mut keep);
         }
+    }
+
+    /// The compiled arrays of a model in which an output [reads](crate::Model::reads) another one, to be evaluated without
+    /// this engine or written out; `None` of another one, which is a [`table`](Engine::table).
+    pub fn chain(&self) -> Option<table::Chain<'_>> {
+        let chain = self.chain.as_deref()?;
+        Some(table::Chain {
+            table: chain.flat.table(),
+            stages: &chain.stages,
+            places: &chain.places,
+        })
     }
 }
 
@@ -144,10 +171,10 @@ impl Engine {
         scratch.outcomes = outcomes;
         let mut rules = 0;
         for (number, (place, stage)) in chain.stages(&self.first).enumerate() {
-            if let Some(own) = place.outputs.iter().position(|own| *own == output) {
+            if let Some(own) = place.outputs.iter().position(|own| *own as usize == output) {
                 let reads = scratch.values.get_mut(inputs.len()..)?.iter_mut();
                 for (value, read) in reads.zip(&place.reads) {
-                    *value = scratch.outcomes.get(*read)?.value()?;
+                    *value = scratch.outcomes.get(*read as usize)?.value()?;
                 }
                 return Some((number, stage, own, rules));
             }

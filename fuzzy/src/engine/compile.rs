@@ -53,14 +53,23 @@ impl Engine {
             name: Arc::from(output.variable.name.as_str()),
             must_fire: output.when_no_rule_fires == NoRuleFires::Error,
         });
-        let chain = (!later.is_empty()).then(|| Box::new(Chain::new(&first, &later)));
-        Ok(Engine {
+        let of_first = Stage::new(&first.model);
+        let is_chain = !later.is_empty();
+        let chain = is_chain.then(|| Box::new(Chain::new((&first, &of_first), &later)));
+        let mut engine = Engine {
             inputs: inputs.collect(),
             outputs: outputs.collect(),
-            first: Stage::new(&first.model),
+            first: of_first,
             chain,
             model: Arc::new(model.clone()),
-        })
+        };
+        if is_chain {
+            let said = engine.propositions();
+            if let Some(chain) = &mut engine.chain {
+                chain.conclusions(&said);
+            }
+        }
+        Ok(engine)
     }
 }
 

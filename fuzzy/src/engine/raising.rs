@@ -2,11 +2,12 @@
 
 use alloc::{collections::BTreeMap, string::String, vec::Vec};
 
+use super::chain::Chain;
 use super::compile::Compiler;
 use super::literal::Literal;
 use super::{Engine, Scratch, Stage, StageScratch};
 use crate::model::{
-    Variable,
+    MembershipFunction, Term, Variable,
     chain::{self, stages},
 };
 use crate::rule::Proposition;
@@ -209,14 +210,35 @@ fn rule_of(
     }
 }
 
-/// The term of a proposition about a variable, with its hedges.
+/// The term of a proposition about a variable, with its hedges; of `any` alone, a term of the whole range.
 fn literal(variable: &Variable, proposition: &Proposition) -> Option<Literal> {
-    let name = &proposition.term.as_ref()?.text;
-    let term = variable.terms.iter().find(|term| term.name == *name)?;
+    let term = match &proposition.term {
+        Some(name) => {
+            let mut terms = variable.terms.iter();
+            terms.find(|term| term.name == name.text)?.clone()
+        }
+        None => Term {
+            name: String::new(),
+            membership_function: MembershipFunction::Rectangle {
+                left: variable.low,
+                right: variable.high,
+            },
+            height: 1.0,
+        },
+    };
     Some(Literal {
-        term: term.clone(),
+        term,
         hedges: proposition.hedges.iter().rev().copied().collect(),
     })
+}
+
+impl Chain {
+    /// Adds the terms that propositions about outputs name after the curves of all stages.
+    pub(super) fn conclusions(&mut self, said: &[Said]) {
+        for literal in said.iter().filter_map(|said| said.read.as_ref()) {
+            self.flat.curve(0, &literal.term, &literal.hedges);
+        }
+    }
 }
 
 impl Scratch {

@@ -119,7 +119,7 @@ pub(crate) fn degrees<A: Arrays>(
 impl Curve {
     // Takes arrays and not the table: passing the table would build it in memory for each evaluation.
     #[inline(always)]
-    fn degree(&self, points: &[Point], hedges: &[Hedge], x: f64) -> f64 {
+    pub(super) fn degree(&self, points: &[Point], hedges: &[Hedge], x: f64) -> f64 {
         let degree = self.height * self.kind.membership(&self.parameters, points, x);
         hedges.iter().fold(degree, |degree, hedge| hedge.of(degree))
     }

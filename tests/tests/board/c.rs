@@ -104,6 +104,13 @@ fn the_header_has_the_arrays_of_a_table() {
         .take(arrays.len())
         .collect();
     assert_eq!(arrays[..], listed);
+    // Where a stage ends in each.
+    macro_rules! names {
+        ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => { [$(stringify!($array)),*].join(", ") };
+    }
+    let header = header.split_whitespace().collect::<Vec<&str>>().join(" ");
+    let ends = format!("struct {{ uint32_t {}; }} ends;", table::arrays!(names!));
+    assert!(header.contains(&ends), "{ends}");
 }
 
 /// A geometry and a flight as input of `tests/c/follow.c`.

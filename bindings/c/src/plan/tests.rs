@@ -118,21 +118,14 @@ macro_rules! copy {
             let table = plan.table;
             let mut arrays = Arrays::default();
             let filled = plan.filled.unwrap_or(FilledKnots { coordinates: &[], starts: &[], values: &[], distances: &[] });
-            let (actions_a_cell, first_action, sums) = match table.conjunctions {
-                Conjunctions::Uniform { actions_a_cell, first_action, sums } => (actions_a_cell, first_action, sums.into()),
-                _ => (0, 0, 0),
-            };
+            let [conjunctions, actions_a_cell, first_action, sums] = table.conjunctions.code();
             let channels: Vec<CChannel> = plan.channels.iter().map(channel).collect();
             let sources: Vec<CSource> = plan.inputs.iter().map(source).collect();
             let mut plan = Box::new(Plan {
                 format: FORMAT,
                 and: (0..7).find(|code| conjunction(*code).ok() == Some(table.and)).unwrap(),
                 or: (0..7).find(|code| disjunction(*code).ok() == Some(table.or)).unwrap(),
-                conjunctions: match table.conjunctions {
-                    Conjunctions::Uniform { .. } => 0,
-                    Conjunctions::Dense => 1,
-                    Conjunctions::Trie => 2,
-                },
+                conjunctions,
                 actions_a_cell,
                 first_action,
                 sums,
@@ -151,6 +144,8 @@ macro_rules! copy {
                 values: arrays.keep(filled.values),
                 distances: arrays.keep(filled.distances),
                 propositions: arrays.keep(plan.propositions),
+                stages: arrays.keep(plan.stages),
+                places: arrays.keep(plan.places),
             });
             let counts = vec![
                 $(&raw mut plan.$array.count,)*
@@ -162,6 +157,8 @@ macro_rules! copy {
                 &raw mut plan.values.count,
                 &raw mut plan.distances.count,
                 &raw mut plan.propositions.count,
+                &raw mut plan.stages.count,
+                &raw mut plan.places.count,
             ];
             let Arrays { kept, mut pieces } = arrays;
             // Often enough: the numbers at the front.
@@ -269,6 +266,16 @@ fn estimators() -> Vec<Estimator> {
             estimators.push(Estimator::new(&profile, &rules.parse().unwrap()).unwrap());
         }
     }
+    const CHAIN: &str = "outputs:\n  risk: {range: [0, 100], partition: [low, high]}\n  mid: {range: [0, 1], partition: [low, high]}\n  \
+        end: {range: [0, 9], defuzzifier: weighted_average, terms: {far: {linear: {mid: 8, constant: 1}}}}\n\
+        operators: {and: product, or: maximum, implication: product, aggregation: sum}\n";
+    const READING: &str = "  - IF a IS low AND b IS low THEN mid IS low\n  - IF b IS high OR c IS low THEN mid IS high\n  \
+        - IF mid IS very high AND c IS high THEN risk IS high\n  - IF mid IS NOT high THEN risk IS low\n  - IF a IS high THEN end IS far\n";
+    let rules = format!("fuzzy: 1\nname: t\n{INPUTS}{CHAIN}rules:\n{READING}");
+    let profile = "flagred: 1\nname: t\nrules: t\nwindow_s: 0.5\nwarm_up_s: 0.2\nmin_samples: 2\ninputs:\n  \
+        a: {percentile: 90, of: {motor: 2, of: motor_margin}}\n  b: {mean: {difference: [wind, gust]}, time_constant_s: 1}\n  c: {rate: wind}\n";
+    let profile: Profile = profile.parse().unwrap();
+    estimators.push(Estimator::new(&profile, &rules.parse().unwrap()).unwrap());
     estimators
 }
 

@@ -34,6 +34,12 @@ impl Refused {
 
 /// The file.
 pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Refused> {
+    if !plan.stages.is_empty() {
+        return Err(Refused::new(
+            "a script on the autopilot cannot evaluate outputs that read other outputs".into(),
+            "write rules whose conditions name inputs only; `export --rust` and `export --c` carry chains",
+        ));
+    }
     let mut filling = Filling::default();
     let origin = super::origin(plan, &estimator.profile().rules, "--lua");
     filling.put("heading", vec![format!("-- {}", comment(&origin))]);

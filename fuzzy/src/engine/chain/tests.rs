@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    engine::EvaluateError,
+    engine::{EvaluateError, State},
     model::{
         Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, Model,
         NoRuleFires, Operators, Output, Variable,
@@ -302,6 +302,9 @@ proptest! {
         ]).unwrap().into_iter();
         for (x, y) in points {
             let outcomes = chained.evaluate(&[x, y]).unwrap();
+            if let Some(flat) = of_arrays(&chained, &[x, y]) {
+                prop_assert_eq!(&flat, &outcomes);
+            }
             let handed = first.evaluate(&[x, y]).unwrap()[0];
             let mut expected = match handed.value() {
                 Some(value) => second.evaluate(&[x, y, value]).unwrap()[0],
@@ -349,4 +352,49 @@ fn the_rule_that_raises_an_output_is_found_through_the_outputs_it_reads() {
     assert_eq!((place, why.rule, why.input, &*why.term), (1, 3, 0, "high"));
     assert_eq!(engine.concluded_by(&mut scratch, &[3.0], why), None);
     assert_eq!(engine.raised_by(&mut scratch, &[f64::NAN], 0, fan), None);
+}
+
+/// The outcomes of the plain arrays of a chain; `None` where an output has no closed form.
+fn of_arrays(engine: &Engine, inputs: &[f64]) -> Option<Vec<Outcome>> {
+    let chain = engine.chain()?;
+    assert_eq!(chain.check(inputs.len()), Ok(()));
+    let table = chain.table;
+    if table
+        .outputs
+        .iter()
+        .any(|output| output.form == table::ClosedForm::NONE)
+    {
+        return None;
+    }
+    let (sizes, outputs) = (table.sizes, table.outputs.len());
+    let most = inputs.len() + chain.most_reads();
+    let mut scratch = table::Scratch {
+        values: &mut vec![0.0; most],
+        degrees: &mut vec![0.0; sizes.degrees as usize],
+        alive: &mut vec![table::Partial::NONE; sizes.alive as usize],
+        partial: &mut vec![table::Partial::NONE; sizes.partial as usize],
+        next: &mut vec![table::Partial::NONE; sizes.partial as usize],
+        stack: &mut vec![0.0; sizes.stack as usize],
+        strengths: &mut vec![0.0; sizes.strengths as usize],
+        strongest: &mut vec![table::Strongest::NONE; outputs],
+    };
+    let mut outcomes = vec![Outcome::UNDEFINED; outputs];
+    let mut values = table::Values {
+        inputs: &mut vec![0.0; most],
+        own: &mut vec![Outcome::UNDEFINED; outputs],
+    };
+    chain.evaluate(&mut scratch, &mut values, inputs, &mut outcomes);
+    Some(outcomes)
+}
+
+#[test]
+fn plain_arrays_have_the_bits_of_the_engine() {
+    let engine = engine(FAN);
+    for i in -10..=110 {
+        let heat = f64::from(i) / 10.0;
+        let expected = engine.evaluate(&[heat]).unwrap();
+        assert_eq!(of_arrays(&engine, &[heat]).unwrap(), expected);
+    }
+    let unknown = of_arrays(&engine, &[f64::NAN]).unwrap();
+    assert_eq!(unknown, engine.evaluate(&[f64::NAN]).unwrap());
 }
