@@ -1,0 +1,7 @@
+//! FIS, MATLAB's Fuzzy Inference System: sections `[System]`, `[Input1]`, `[Output1]`, `[Rules]` of lines `Key=value`.
+
+pub(crate) use read::read;
+
+mod read;
+mod rules;
+mod term;

@@ -1,0 +1,212 @@
+//! Rules in words, as FLL and FCL write them: `if a is very x and (b is y or c is not z) then d is w with 0.5`.
+
+use fuzzy::rule::{Condition, Consequent, Hedge, Name, Proposition, Rule};
+
+use crate::draft::Draft;
+
+/// How deep brackets may be nested.
+const DEEPEST: usize = 100;
+
+/// A rule, read from a part of the text of `draft`; `None` with a finding where it cannot be read.
+pub(crate) fn read(draft: &mut Draft<'_>, rule: &str) -> Option<Rule> {
+    let tokens = tokens(rule);
+    let mut reader = Reader {
+        draft,
+        tokens: &tokens,
+        next: 0,
+        depth: 0,
+        end: &rule[rule.len()..],
+    };
+    reader.rule()
+}
+
+/// Words and brackets.
+fn tokens(text: &str) -> Vec<&str> {
+    let mut tokens = vec![];
+    let mut rest = text.trim_start();
+    while let Some(first) = rest.chars().next() {
+        let length = match first {
+            '(' | ')' | ',' => 1,
+            _ => rest
+                .find(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | ','))
+                .unwrap_or(rest.len()),
+        };
+        let (token, after) = rest.split_at(length);
+        tokens.push(token);
+        rest = after.trim_start();
+    }
+    tokens
+}
+
+struct Reader<'r, 't, 'd> {
+    draft: &'d mut Draft<'t>,
+    tokens: &'r [&'r str],
+    next: usize,
+    depth: usize,
+    /// The end of the rule, where something is missing.
+    end: &'r str,
+}
+
+impl<'r> Reader<'r, '_, '_> {
+    fn peek(&self) -> Option<&'r str> {
+        self.tokens.get(self.next).copied()
+    }
+
+    fn is(&self, keyword: &str) -> bool {
+        self.peek()
+            .is_some_and(|word| word.eq_ignore_ascii_case(keyword))
+    }
+
+    /// Steps over a keyword where it stands next.
+    fn take(&mut self, keyword: &str) -> bool {
+        let is = self.is(keyword);
+        self.next += usize::from(is);
+        is
+    }
+
+    fn expect(&mut self, keyword: &str) -> Option<()> {
+        if self.take(keyword) {
+            return Some(());
+        }
+        self.unexpected(&format!("`{keyword}`"))
+    }
+
+    fn unexpected<T>(&mut self, expected: &str) -> Option<T> {
+        let (part, found) = match self.peek() {
+            Some(word) => (word, format!("found `{word}`")),
+            None => (self.end, "the rule ends".into()),
+        };
+        let message = format!("expected {expected}, {found}");
+        let help = "a rule reads `if INPUT is TERM and INPUT is TERM then OUTPUT is TERM`";
+        self.draft.error("rule-syntax", part, message, help);
+        None
+    }
+
+    fn name(&mut self, what: &str) -> Option<Name> {
+        match self.peek() {
+            Some(word) if !is_keyword(word) => {
+                self.next += 1;
+                Some(Name {
+                    text: word.to_owned(),
+                    span: self.draft.span(word),
+                })
+            }
+            _ => self.unexpected(what),
+        }
+    }
+
+    fn rule(&mut self) -> Option<Rule> {
+        self.expect("if")?;
+        let condition = self.any_of()?;
+        self.expect("then")?;
+        let mut consequents = vec![];
+        loop {
+            let (output, hedges, term) = self.proposition("an output")?;
+            if let Some(hedge) = hedges.first() {
+                let message = format!("a hedge, `{}`, stands in a conclusion", hedge.word());
+                let help = "conclude a term of its own";
+                self.draft
+                    .loss("hedge-in-conclusion", self.end, message, help);
+            }
+            let Some(term) = term else {
+                return self.unexpected("a term");
+            };
+            consequents.push(Consequent { output, term });
+            if !self.take("and") && !self.take(",") {
+                break;
+            }
+        }
+        let mut weight = 1.0;
+        if self.take("with") {
+            let Some(word) = self.peek() else {
+                return self.unexpected("a weight");
+            };
+            weight = self.draft.number(word)?;
+            self.next += 1;
+        }
+        match self.peek() {
+            Some(_) => self.unexpected("the end of the rule"),
+            None => Some(Rule {
+                condition,
+                consequents,
+                weight,
+            }),
+        }
+    }
+
+    fn any_of(&mut self) -> Option<Condition> {
+        let mut parts = vec![self.all_of()?];
+        while self.take("or") {
+            parts.push(self.all_of()?);
+        }
+        Some(joined(parts, Condition::Or))
+    }
+
+    fn all_of(&mut self) -> Option<Condition> {
+        let mut parts = vec![self.condition()?];
+        while self.take("and") {
+            parts.push(self.condition()?);
+        }
+        Some(joined(parts, Condition::And))
+    }
+
+    fn condition(&mut self) -> Option<Condition> {
+        if self.depth > DEEPEST {
+            return self.unexpected(&format!("at most {DEEPEST} brackets"));
+        }
+        self.depth += 1;
+        let condition = if self.take("not") {
+            Condition::Not(Box::new(self.condition()?))
+        } else if self.take("(") {
+            let inner = self.any_of()?;
+            self.expect(")")?;
+            inner
+        } else {
+            let (variable, hedges, term) = self.proposition("an input")?;
+            Condition::Is(Proposition {
+                variable,
+                hedges,
+                term,
+            })
+        };
+        self.depth -= 1;
+        Some(condition)
+    }
+
+    /// `variable is hedge* term`. A hedge that no term follows is the term, but for `any`, which needs none.
+    fn proposition(&mut self, what: &str) -> Option<(Name, Vec<Hedge>, Option<Name>)> {
+        let variable = self.name(what)?;
+        self.expect("is")?;
+        let mut hedges = vec![];
+        while let Some(word) = self.peek() {
+            let hedge = Hedge::ALL
+                .into_iter()
+                .find(|hedge| hedge.word().eq_ignore_ascii_case(word));
+            let last = self.tokens.get(self.next + 1);
+            let ends = last.is_none_or(|word| is_keyword(word) || matches!(*word, ")" | ","));
+            match hedge {
+                Some(hedge) if !ends || hedge == Hedge::Any => hedges.push(hedge),
+                _ => break,
+            }
+            self.next += 1;
+            if hedge == Some(Hedge::Any) && ends {
+                return Some((variable, hedges, None));
+            }
+        }
+        let term = self.name("a term")?;
+        Some((variable, hedges, Some(term)))
+    }
+}
+
+fn is_keyword(word: &str) -> bool {
+    ["if", "is", "and", "or", "then", "with", "(", ")", ","]
+        .iter()
+        .any(|keyword| keyword.eq_ignore_ascii_case(word))
+}
+
+fn joined(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> Condition {
+    match parts.len() {
+        1 => parts.remove(0),
+        _ => join(parts),
+    }
+}

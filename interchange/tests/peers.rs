@@ -1,0 +1,165 @@
+//! The models of other programs give the values that those programs compute. They are not shipped: the tests look for them
+//! in the folder `data/models` of FLAGRED_SHARED.
+
+use std::{
+    fs,
+    io::Read,
+    path::{Path, PathBuf},
+};
+
+use fuzzy::{
+    Engine, Model,
+    model::{Defuzzifier, Sampling, SamplingRule},
+};
+use interchange::{Format, Losses};
+
+fn models() -> PathBuf {
+    let shared = std::env::var_os("FLAGRED_SHARED").expect("FLAGRED_SHARED names the folder");
+    Path::new(&shared).join("data/models")
+}
+
+/// Inputs and outputs of each row of `in:NAME,...,out:NAME,...`.
+fn points(path: &Path) -> Vec<(Vec<f64>, Vec<f64>)> {
+    let mut text = String::new();
+    flate2::read::GzDecoder::new(fs::File::open(path).unwrap())
+        .read_to_string(&mut text)
+        .unwrap();
+    let mut lines = text.lines();
+    let inputs = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .filter(|name| name.starts_with("in:"))
+        .count();
+    let number = |word: &str| word.parse().unwrap_or(f64::NAN);
+    let row = |line: &str| {
+        let numbers: Vec<f64> = line.split(',').map(number).collect();
+        (numbers[..inputs].to_vec(), numbers[inputs..].to_vec())
+    };
+    lines.map(row).collect()
+}
+
+/// The largest difference from the points, in shares of the output's range.
+fn largest_difference(model: &Model, points: &[(Vec<f64>, Vec<f64>)]) -> f64 {
+    let engine = Engine::new(model).unwrap_or_else(|findings| panic!("{findings}"));
+    assert!(points.len() > 100);
+    let mut largest = 0.0_f64;
+    for (inputs, expected) in points {
+        let found = engine.evaluate(inputs).unwrap();
+        for ((found, expected), output) in found.iter().zip(expected).zip(&model.outputs) {
+            let width = output.variable.high - output.variable.low;
+            let difference = match found.value() {
+                Some(value) => (value - expected).abs() / width,
+                None if expected.is_nan() => 0.0,
+                None => f64::INFINITY,
+            };
+            let difference = if difference.is_nan() {
+                f64::INFINITY
+            } else {
+                difference
+            };
+            if difference > largest {
+                largest = difference;
+                if std::env::var_os("SHOW").is_some() {
+                    println!(
+                        "    {inputs:?} {}: {:?} {expected}",
+                        output.variable.name,
+                        found.value()
+                    );
+                }
+            }
+        }
+    }
+    largest
+}
+
+/// Reads each model of a folder and compares it with its points; `change` is what the other program does in its own way.
+fn compare(
+    files: &[(String, PathBuf, PathBuf)],
+    largest: f64,
+    change: impl Fn(&str, &mut Model),
+) -> Vec<String> {
+    let mut failed = vec![];
+    for (name, file, expected) in files {
+        let text = fs::read_to_string(file).unwrap();
+        let format = Format::of(&text).expect("a known format");
+        assert_eq!(file.extension().unwrap(), format.ending());
+        let found = match interchange::read(&text, format, Losses::Refuse) {
+            Ok(mut document) => {
+                change(name, &mut document.model);
+                match Engine::new(&document.model) {
+                    Ok(_) if !expected.exists() => Ok(0.0),
+                    Ok(_) => Ok(largest_difference(&document.model, &points(expected))),
+                    Err(findings) => Err(findings),
+                }
+            }
+            Err(findings) => Err(findings),
+        };
+        match found {
+            Ok(difference) if difference <= largest => continue,
+            Ok(difference) => println!("{name}: {difference:e}"),
+            Err(findings) => println!("{name}: {findings}"),
+        }
+        failed.push(name.clone());
+    }
+    println!("{} of {} failed: {failed:?}", failed.len(), files.len());
+    failed
+}
+
+fn sorted(folder: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(models().join(folder)).unwrap();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap().to_string_lossy().into_owned()
+}
+
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn fll_models_equal_fuzzylite() {
+    let folders = sorted("fuzzylite").into_iter().filter(|path| path.is_dir());
+    let files: Vec<_> = folders
+        .map(|folder| {
+            (
+                name_of(&folder),
+                folder.join("model.fll"),
+                folder.join("points_own.csv.gz"),
+            )
+        })
+        .collect();
+    assert_eq!(files.len(), 26);
+    let failed = compare(&files, 1e-9, |_, _| ());
+    assert!(failed.is_empty());
+}
+
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn fis_models_equal_fuzzylite() {
+    let files = sorted("fis")
+        .into_iter()
+        .filter(|path| path.extension().unwrap() == "fis");
+    let files: Vec<_> = files
+        .map(|file| {
+            let points = file.with_file_name(format!("{}.points_1000.csv.gz", name_of(&file)));
+            (name_of(&file), file, points)
+        })
+        .collect();
+    assert_eq!(files.len(), 22);
+    assert!(compare(&files, 1e-3, |_, _| ()).is_empty());
+    let sampled = |_: &str, model: &mut Model| {
+        for output in &mut model.outputs {
+            let weighted = matches!(
+                output.defuzzifier,
+                Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
+            );
+            output.samples = (!weighted).then_some(Sampling {
+                samples: 1000,
+                rule: SamplingRule::Midpoint,
+            });
+        }
+    };
+    assert!(compare(&files, 1e-9, sampled).is_empty());
+}
