@@ -34,6 +34,7 @@
 use fuzzy::{Findings, format::Document};
 
 mod draft;
+mod fcl;
 mod fis;
 mod fll;
 mod rules;
@@ -119,6 +120,7 @@ pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Find
     match format {
         Format::Fis => fis::read(text, losses),
         Format::Fll => fll::read(text, losses),
-        Format::Fcl | Format::Fml => todo!(),
+        Format::Fcl => fcl::read(text, losses),
+        Format::Fml => todo!(),
     }
 }

@@ -7,22 +7,22 @@ use crate::draft::Draft;
 /// How deep brackets may be nested.
 const DEEPEST: usize = 100;
 
-/// A rule, read from a part of the text of `draft`; `None` with a finding where it cannot be read.
-pub(crate) fn read(draft: &mut Draft<'_>, rule: &str) -> Option<Rule> {
-    let tokens = tokens(rule);
+/// A rule of words and brackets, which are parts of the text of `draft`; `None` with a finding where it cannot be read.
+pub(crate) fn read(draft: &mut Draft<'_>, words: &[&str]) -> Option<Rule> {
+    let end = words.last().map_or("", |word| &word[word.len()..]);
     let mut reader = Reader {
         draft,
-        tokens: &tokens,
+        words,
         next: 0,
         depth: 0,
-        end: &rule[rule.len()..],
+        end,
     };
     reader.rule()
 }
 
 /// Words and brackets.
-fn tokens(text: &str) -> Vec<&str> {
-    let mut tokens = vec![];
+pub(crate) fn words(text: &str) -> Vec<&str> {
+    let mut words = vec![];
     let mut rest = text.trim_start();
     while let Some(first) = rest.chars().next() {
         let length = match first {
@@ -31,16 +31,16 @@ fn tokens(text: &str) -> Vec<&str> {
                 .find(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | ','))
                 .unwrap_or(rest.len()),
         };
-        let (token, after) = rest.split_at(length);
-        tokens.push(token);
+        let (word, after) = rest.split_at(length);
+        words.push(word);
         rest = after.trim_start();
     }
-    tokens
+    words
 }
 
 struct Reader<'r, 't, 'd> {
     draft: &'d mut Draft<'t>,
-    tokens: &'r [&'r str],
+    words: &'r [&'r str],
     next: usize,
     depth: usize,
     /// The end of the rule, where something is missing.
@@ -49,7 +49,7 @@ struct Reader<'r, 't, 'd> {
 
 impl<'r> Reader<'r, '_, '_> {
     fn peek(&self) -> Option<&'r str> {
-        self.tokens.get(self.next).copied()
+        self.words.get(self.next).copied()
     }
 
     fn is(&self, keyword: &str) -> bool {
@@ -182,7 +182,7 @@ impl<'r> Reader<'r, '_, '_> {
             let hedge = Hedge::ALL
                 .into_iter()
                 .find(|hedge| hedge.word().eq_ignore_ascii_case(word));
-            let last = self.tokens.get(self.next + 1);
+            let last = self.words.get(self.next + 1);
             let ends = last.is_none_or(|word| is_keyword(word) || matches!(*word, ")" | ","));
             match hedge {
                 Some(hedge) if !ends || hedge == Hedge::Any => hedges.push(hedge),

@@ -163,3 +163,47 @@ fn fis_models_equal_fuzzylite() {
     };
     assert!(compare(&files, 1e-9, sampled).is_empty());
 }
+
+/// The degrees of each term of the first input, in hundredths, over inputs in hundredths; and the values of the output.
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn fcl_models_equal_jfuzzylogic() {
+    let files = sorted("fcl")
+        .into_iter()
+        .filter(|path| path.extension().unwrap() == "fcl");
+    let mut read = 0;
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        assert_eq!(Format::of(&text), Some(Format::Fcl));
+        let document = interchange::read(&text, Format::Fcl, Losses::Refuse)
+            .unwrap_or_else(|findings| panic!("{}: {findings}", file.display()));
+        read += 1;
+        let Ok(table) = fs::read_to_string(file.with_extension("txt")) else {
+            continue;
+        };
+        let model = document.model;
+        let header: Vec<&str> = table.lines().next().unwrap().split_whitespace().collect();
+        let terms = &model.inputs[0].terms;
+        let engine = (!model.outputs.is_empty()).then(|| Engine::new(&model).unwrap());
+        println!("{} {header:?}", file.display());
+        if header.first() != Some(&"inVar") {
+            continue;
+        }
+        for line in table.lines().skip(1) {
+            let row: Vec<f64> = line
+                .split_whitespace()
+                .map(|word| word.parse().unwrap())
+                .collect();
+            let x = row[0] / 100.0;
+            for (term, expected) in terms.iter().zip(&row[1..]) {
+                let degree = (term.membership_function.membership(x) * 100.0).trunc();
+                if (degree - expected).abs() > 1.0 {
+                    println!("   {x} {} {degree} {expected}", term.name);
+                    break;
+                }
+            }
+        }
+        drop(engine);
+    }
+    assert_eq!(read, 15);
+}

@@ -10,7 +10,7 @@ use fuzzy::{
 };
 
 use super::{handover, term};
-use crate::{Format, Losses, draft::Draft, words};
+use crate::{Format, Losses, draft::Draft, rules, words};
 
 /// A section and its lines.
 struct Section<'t> {
@@ -365,7 +365,7 @@ fn blocks(draft: &mut Draft<'_>, blocks: &[&Section<'_>]) {
         };
         draft.model.operators = operators;
         for written in section.all("rule") {
-            let Some(rule) = crate::rules::read(draft, written) else {
+            let Some(rule) = rules::read(draft, &rules::words(written)) else {
                 continue;
             };
             let mut spans = RuleSpans::default();

@@ -1,0 +1,7 @@
+//! FCL, the Fuzzy Control Language of IEC 61131-7, as jFuzzyLogic and fuzzylite write it.
+
+pub(crate) use read::read;
+
+mod lex;
+mod read;
+mod term;
