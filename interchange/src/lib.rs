@@ -31,12 +31,16 @@
 //! # Ok::<(), fuzzy::Findings>(())
 //! ```
 
-use fuzzy::{Findings, format::Document};
+use fuzzy::{Findings, Model, format::Document};
 
+mod conditions;
 mod draft;
 mod fcl;
 mod fis;
 mod fll;
+mod fml;
+mod names;
+mod paper;
 mod rules;
 mod shapes;
 mod words;
@@ -121,6 +125,34 @@ pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Find
         Format::Fis => fis::read(text, losses),
         Format::Fll => fll::read(text, losses),
         Format::Fcl => fcl::read(text, losses),
-        Format::Fml => todo!(),
+        Format::Fml => fml::read(text, losses),
+    }
+}
+
+/// What [`write`] makes.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Written {
+    /// The rule set in the format.
+    pub text: String,
+    /// What the format says in another way, and what it cannot say where losses are accepted.
+    pub findings: Findings,
+}
+
+/// Writes a rule set for another program.
+///
+/// # Errors
+///
+/// What is wrong with the model, and what the format cannot say where losses are refused.
+pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, Findings> {
+    let invalid = fuzzy::validate(model, &fuzzy::format::Spans::default());
+    if !invalid.is_empty() {
+        return Err(Findings(invalid));
+    }
+    match format {
+        Format::Fis => fis::write(model, losses),
+        Format::Fll => fll::write(model, losses),
+        Format::Fcl => fcl::write(model, losses),
+        Format::Fml => fml::write(model, losses),
     }
 }

@@ -1,8 +1,11 @@
 //! Rules in words, as FLL and FCL write them: `if a is very x and (b is y or c is not z) then d is w with 0.5`.
 
-use fuzzy::rule::{Condition, Consequent, Hedge, Name, Proposition, Rule};
+use fuzzy::{
+    model::Operators,
+    rule::{Condition, Consequent, Hedge, Name, Proposition, Rule},
+};
 
-use crate::draft::Draft;
+use crate::{conditions, draft::Draft};
 
 /// How deep brackets may be nested.
 const DEEPEST: usize = 100;
@@ -208,5 +211,56 @@ fn joined(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> C
     match parts.len() {
         1 => parts.remove(0),
         _ => join(parts),
+    }
+}
+
+/// A rule in words that [`read`] reads. `None` where a NOT stands before brackets that it cannot be taken into.
+pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<String> {
+    let condition = conditions::without_not(&rule.condition, operators)?;
+    let mut text = String::from("if ");
+    push(&mut text, &condition, false);
+    text.push_str(" then ");
+    for (index, consequent) in rule.consequents.iter().enumerate() {
+        if index > 0 {
+            text.push_str(and);
+        }
+        let Consequent { output, term } = consequent;
+        text.push_str(&format!("{} is {}", output.text, term.text));
+    }
+    if rule.weight != 1.0 {
+        text.push_str(&format!(" with {}", rule.weight));
+    }
+    Some(text)
+}
+
+fn push(text: &mut String, condition: &Condition, inside: bool) {
+    let (parts, word) = match condition {
+        Condition::And(parts) => (parts, " and "),
+        Condition::Or(parts) => (parts, " or "),
+        Condition::Not(_) => return,
+        Condition::Is(proposition) => {
+            text.push_str(&format!("{} is", proposition.variable.text));
+            for hedge in &proposition.hedges {
+                text.push(' ');
+                text.push_str(&hedge.word().to_lowercase());
+            }
+            if let Some(term) = &proposition.term {
+                text.push(' ');
+                text.push_str(&term.text);
+            }
+            return;
+        }
+    };
+    if inside {
+        text.push('(');
+    }
+    for (index, part) in parts.iter().enumerate() {
+        if index > 0 {
+            text.push_str(word);
+        }
+        push(text, part, true);
+    }
+    if inside {
+        text.push(')');
     }
 }

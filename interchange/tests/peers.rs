@@ -207,3 +207,38 @@ fn fcl_models_equal_jfuzzylogic() {
     }
     assert_eq!(read, 15);
 }
+
+/// FuzzyLogic.jl's tipper, by hand.
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn the_fml_tipper_is_the_tipper() {
+    let text = fs::read_to_string(models().join("fml/tipper.xml")).unwrap();
+    let document = interchange::read(&text, Format::of(&text).unwrap(), Losses::Refuse).unwrap();
+    let tipper = "
+fuzzy: 1
+name: tipper
+inputs:
+  food:
+    range: [0, 10]
+    terms: {rancid: {left_shoulder: [0, 5.5]}, delicious: {right_shoulder: [5.5, 10]}}
+  service:
+    range: [0, 10]
+    terms:
+      poor: {gaussian2: {left_mean: 0, left_sd: 2, right_mean: 0, right_sd: 2}}
+      good: {gaussian: {mean: 5, sd: 2}}
+      excellent: {gaussian2: {left_mean: 10, left_sd: 2, right_mean: 10, right_sd: 2}}
+outputs:
+  tip:
+    range: [0, 20]
+    terms: {cheap: {triangle: [0, 5, 10]}, average: {triangle: [5, 10, 15]}, generous: {triangle: [10, 15, 20]}}
+    when_no_rule_fires: {value: 0}
+rules:
+  - IF food IS rancid OR service IS very poor THEN tip IS cheap
+  - IF service IS good THEN tip IS average
+  - IF service IS excellent OR food IS delicious THEN tip IS generous
+";
+    let tipper: Model = tipper
+        .parse()
+        .unwrap_or_else(|findings| panic!("{findings}"));
+    assert_eq!(document.model, tipper);
+}

@@ -10,7 +10,7 @@ use fuzzy::{
 };
 
 use super::{lex, term};
-use crate::{Format, Losses, draft::Draft, rules, words};
+use crate::{Format, Losses, conditions::dual, draft::Draft, rules, words};
 
 pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
     let words = lex::words(text);
@@ -472,19 +472,6 @@ fn is_section(word: &str) -> bool {
     ]
     .iter()
     .any(|section| section.eq_ignore_ascii_case(word))
-}
-
-/// The disjunction for which De Morgan's law holds.
-fn dual(and: Conjunction) -> Disjunction {
-    match and {
-        Conjunction::Minimum => Disjunction::Maximum,
-        Conjunction::Product => Disjunction::ProbabilisticSum,
-        Conjunction::BoundedDifference => Disjunction::BoundedSum,
-        Conjunction::Drastic => Disjunction::Drastic,
-        Conjunction::Einstein => Disjunction::Einstein,
-        Conjunction::Hamacher => Disjunction::Hamacher,
-        Conjunction::NilpotentMinimum => Disjunction::NilpotentMaximum,
-    }
 }
 
 /// Between where a membership function changes; flanks without an end are cut where they are below 0.0002.

@@ -1,7 +1,9 @@
 //! FLL, the FuzzyLite Language: sections of lines `key: value`.
 
 pub(crate) use read::read;
+pub(crate) use write::write;
 
 mod handover;
 mod read;
 mod term;
+mod write;

@@ -1,0 +1,180 @@
+//! From a model to FLL, as fuzzylite 7 writes it.
+
+use fuzzy::{
+    Findings, Model,
+    model::{Defuzzifier, MembershipFunction, NoRuleFires, Output, Term, Variable},
+};
+
+use crate::{
+    Format, Losses, Written,
+    names::{self, Allowed},
+    paper::{Paper, numbers, one_line},
+    rules, shapes, words,
+};
+
+const NAMES: Allowed = Allowed {
+    more: &['.'],
+    keywords: &[
+        "if",
+        "is",
+        "then",
+        "and",
+        "or",
+        "with",
+        "not",
+        "any",
+        "very",
+        "somewhat",
+        "seldom",
+        "extremely",
+    ],
+};
+
+/// The samples that stand for an exact integral.
+const SAMPLES: usize = 1000;
+
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
+    let mut paper = Paper::new(losses);
+    let model = names::plain(model, &NAMES, &mut paper);
+    paper.line(format!("Engine: {}", one_line(&model.name)));
+    description(&mut paper, model.description.as_deref());
+    for input in &model.inputs {
+        paper.line(format!("InputVariable: {}", input.name));
+        variable(&mut paper, input);
+        // A rule set takes values outside the range as the nearest inside.
+        paper.line("  lock-range: true");
+        for term in &input.terms {
+            self::term(&mut paper, term, &model);
+        }
+    }
+    for output in &model.outputs {
+        self::output(&mut paper, output, &model);
+    }
+    rule_block(&mut paper, &model);
+    paper.finish()
+}
+
+fn description(paper: &mut Paper, text: Option<&str>) {
+    if let Some(text) = text {
+        paper.line(format!("  description: {}", one_line(text)));
+    }
+}
+
+fn variable(paper: &mut Paper, variable: &Variable) {
+    description(paper, variable.description.as_deref());
+    paper.line("  enabled: true");
+    paper.line(format!("  range: {} {}", variable.low, variable.high));
+}
+
+fn output(paper: &mut Paper, output: &Output, model: &Model) {
+    paper.line(format!("OutputVariable: {}", output.variable.name));
+    variable(paper, &output.variable);
+    paper.line("  lock-range: false");
+    let weighted = matches!(
+        output.defuzzifier,
+        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
+    );
+    let aggregation = match weighted {
+        true => Some("none"),
+        false => words::word(
+            words::AGGREGATIONS,
+            Format::Fll,
+            model.operators.aggregation,
+        ),
+    };
+    paper.line(format!("  aggregation: {}", aggregation.unwrap_or("none")));
+    let word =
+        words::word(words::DEFUZZIFIERS, Format::Fll, output.defuzzifier).unwrap_or_default();
+    let detail = match (weighted, output.samples) {
+        (true, _) => "TakagiSugeno".to_owned(),
+        (false, Some(sampling)) => sampling.samples.to_string(),
+        (false, None) => {
+            let message = format!(
+                "fuzzylite samples the output `{}` at {SAMPLES} places",
+                output.variable.name
+            );
+            paper.note("sampled", message, "the rule set integrates exactly");
+            SAMPLES.to_string()
+        }
+    };
+    paper.line(format!("  defuzzifier: {word} {detail}"));
+    let default = match output.when_no_rule_fires {
+        NoRuleFires::Value(value) => value.to_string(),
+        NoRuleFires::Undefined => "nan".into(),
+        NoRuleFires::Error => {
+            let message = format!(
+                "the output `{}` is nan where no rule fires, not an error",
+                output.variable.name
+            );
+            paper.note("no-error", message, "fuzzylite has no such error");
+            "nan".into()
+        }
+    };
+    paper.line(format!("  default: {default}"));
+    paper.line("  lock-previous: false");
+    for term in &output.variable.terms {
+        self::term(paper, term, model);
+    }
+}
+
+fn term(paper: &mut Paper, term: &Term, model: &Model) {
+    use MembershipFunction as Of;
+    let written = match &term.membership_function {
+        Of::Piecewise { points } => {
+            let flat: Vec<f64> = points.iter().flat_map(|&(x, y)| [x, y]).collect();
+            Some(("Discrete", flat))
+        }
+        Of::Constant { value } => Some(("Constant", vec![*value])),
+        Of::Linear {
+            coefficients,
+            constant,
+        } => {
+            let of = |name: &str| coefficients.iter().find(|(input, _)| input == name);
+            let each = model
+                .inputs
+                .iter()
+                .map(|input| of(&input.name).map_or(0.0, |(_, c)| *c));
+            Some(("Linear", each.chain([*constant]).collect()))
+        }
+        other => shapes::write(Format::Fll, other),
+    };
+    let Some((shape, mut parameters)) = written else {
+        let message = format!(
+            "the term `{}` is a singleton, which fuzzylite has in weighted outputs only",
+            term.name
+        );
+        paper.loss("no-shape", message, "write a narrow triangle");
+        return;
+    };
+    if term.height != 1.0 {
+        parameters.push(term.height);
+    }
+    paper.line(format!(
+        "  term: {} {shape} {}",
+        term.name,
+        numbers(&parameters)
+    ));
+}
+
+fn rule_block(paper: &mut Paper, model: &Model) {
+    let operators = model.operators;
+    paper.line("RuleBlock: rules");
+    paper.line("  enabled: true");
+    let and = words::word(words::CONJUNCTIONS, Format::Fll, operators.and).unwrap_or("none");
+    let or = words::word(words::DISJUNCTIONS, Format::Fll, operators.or).unwrap_or("none");
+    let implication =
+        words::word(words::IMPLICATIONS, Format::Fll, operators.implication).unwrap_or("none");
+    paper.line(format!("  conjunction: {and}"));
+    paper.line(format!("  disjunction: {or}"));
+    paper.line(format!("  implication: {implication}"));
+    paper.line("  activation: General");
+    for (index, rule) in model.rules.iter().enumerate() {
+        match rules::write(&rule.rule, operators, " and ") {
+            Some(text) => paper.line(format!("  rule: {text}")),
+            None => {
+                let message = format!("rule {} has a NOT before brackets", index + 1);
+                paper.loss("not", message, "fuzzylite has `not` before a term only");
+            }
+        }
+    }
+}
