@@ -1,3 +1,199 @@
-pub(crate) fn write(_: &fuzzy::Model, _: crate::Losses) -> Result<crate::Written, fuzzy::Findings> {
-    todo!()
+//! From a model to FCL: points and numbers as IEC 61131-7 has them, curves as jFuzzyLogic names them.
+
+use fuzzy::{
+    Findings, Model,
+    model::{Defuzzifier, MembershipFunction, NoRuleFires, Term, Variable},
+};
+
+use crate::{
+    Format, Losses, Written,
+    names::{self, Allowed},
+    paper::{Paper, numbers, one_line},
+    rules, shapes, words,
+};
+
+const NAMES: Allowed = Allowed {
+    more: &[],
+    keywords: &[
+        "if",
+        "is",
+        "then",
+        "and",
+        "or",
+        "with",
+        "not",
+        "any",
+        "very",
+        "somewhat",
+        "seldom",
+        "extremely",
+        "real",
+        "term",
+        "rule",
+        "range",
+        "method",
+        "default",
+        "act",
+        "accu",
+        "nc",
+    ],
+};
+
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
+    let mut paper = Paper::new(losses);
+    let model = names::plain(model, &NAMES, &mut paper);
+    let name: String = model
+        .name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
+        .collect();
+    if let Some(description) = &model.description {
+        paper.line(format!(
+            "(* {} *)",
+            one_line(&description.replace("*)", ""))
+        ));
+    }
+    paper.line(format!("FUNCTION_BLOCK {name}\n\nVAR_INPUT"));
+    for input in &model.inputs {
+        paper.line(format!("  {} : REAL;", input.name));
+    }
+    paper.line("END_VAR\n\nVAR_OUTPUT");
+    for output in &model.outputs {
+        paper.line(format!("  {} : REAL;", output.variable.name));
+    }
+    paper.line("END_VAR");
+    for input in &model.inputs {
+        paper.line(format!("\nFUZZIFY {}", input.name));
+        terms(&mut paper, input);
+        paper.line("END_FUZZIFY");
+    }
+    let weighted = |d| matches!(d, Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum);
+    for output in &model.outputs {
+        let name = &output.variable.name;
+        paper.line(format!("\nDEFUZZIFY {name}"));
+        terms(&mut paper, &output.variable);
+        let word =
+            words::word(words::DEFUZZIFIERS, Format::Fcl, output.defuzzifier).unwrap_or_default();
+        paper.line(format!("  METHOD : {word};"));
+        if !weighted(output.defuzzifier) {
+            let word = words::word(
+                words::AGGREGATIONS,
+                Format::Fcl,
+                model.operators.aggregation,
+            );
+            paper.line(format!("  ACCU : {};", word.unwrap_or_default()));
+        }
+        if let NoRuleFires::Value(value) = output.when_no_rule_fires {
+            paper.line(format!("  DEFAULT := {value};"));
+        }
+        paper.line("END_DEFUZZIFY");
+        if output.samples.is_some() {
+            let message = format!("the output `{name}` is sampled, which FCL does not say");
+            paper.note("sampled", message, "each program samples in its own way");
+        }
+    }
+    rule_block(&mut paper, &model);
+    paper.line("\nEND_FUNCTION_BLOCK");
+    paper.finish()
+}
+
+fn terms(paper: &mut Paper, variable: &Variable) {
+    paper.line(format!(
+        "  RANGE := ({} .. {});",
+        variable.low, variable.high
+    ));
+    for term in &variable.terms {
+        if let Some(shape) = shape(paper, term) {
+            paper.line(format!("  TERM {} := {shape};", term.name));
+        }
+    }
+}
+
+fn shape(paper: &mut Paper, term: &Term) -> Option<String> {
+    use MembershipFunction as Of;
+    let height = term.height;
+    let points = |points: &[(f64, f64)]| {
+        let written = points
+            .iter()
+            .map(|&(x, y)| format!("({x}, {})", y * height));
+        Some(written.collect::<Vec<_>>().join(" "))
+    };
+    match term.membership_function {
+        Of::Triangle { left, peak, right } => {
+            points(&edges(&[(left, 0.0), (peak, 1.0), (right, 0.0)]))
+        }
+        Of::Trapezoid {
+            left,
+            left_top,
+            right_top,
+            right,
+        } => points(&edges(&[
+            (left, 0.0),
+            (left_top, 1.0),
+            (right_top, 1.0),
+            (right, 0.0),
+        ])),
+        Of::LeftShoulder { top, foot } => points(&[(top, 1.0), (foot, 0.0)]),
+        Of::RightShoulder { foot, top } => points(&[(foot, 0.0), (top, 1.0)]),
+        Of::Rectangle { left, right } => {
+            points(&[(left, 0.0), (left, 1.0), (right, 1.0), (right, 0.0)])
+        }
+        Of::Piecewise { points: ref all } => points(all),
+        Of::Singleton { at } | Of::Constant { value: at } if height == 1.0 => Some(at.to_string()),
+        ref other => {
+            let name = &term.name;
+            let written = shapes::write(Format::Fcl, other).or_else(|| {
+                let written = shapes::write(Format::Fll, other)?;
+                let message = format!(
+                    "only fuzzylite reads the shape `{}`, of the term `{name}`",
+                    written.0
+                );
+                paper.note("not-in-iec", message, "write it as points: `piecewise`");
+                Some(written)
+            });
+            if written.is_none() || height != 1.0 {
+                let message = format!("the term `{name}` has a shape or a height that FCL has not");
+                paper.loss("no-shape", message, "write it as points: `piecewise`");
+            }
+            written.map(|(shape, parameters)| format!("{shape} {}", numbers(&parameters)))
+        }
+    }
+}
+
+/// The points without a second one at the same place and height, as the shoulder of a triangle has.
+fn edges(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut points = points.to_vec();
+    points.dedup();
+    points
+}
+
+fn rule_block(paper: &mut Paper, model: &Model) {
+    let operators = model.operators;
+    let and = words::word(words::CONJUNCTIONS, Format::Fcl, operators.and).unwrap_or_default();
+    let or = words::word(words::DISJUNCTIONS, Format::Fcl, operators.or).unwrap_or_default();
+    let implication =
+        words::word(words::IMPLICATIONS, Format::Fcl, operators.implication).unwrap_or_default();
+    paper.line(format!(
+        "\nRULEBLOCK rules\n  AND : {and};\n  OR : {or};\n  ACT : {implication};"
+    ));
+    for (index, rule) in model.rules.iter().enumerate() {
+        let number = index + 1;
+        match rules::write(&rule.rule, operators, ", ") {
+            Some(text) => paper.line(format!("  RULE {number} : {};", keywords(&text))),
+            None => {
+                let message = format!("rule {number} has a NOT before brackets");
+                paper.loss("not", message, "write NOT before the terms");
+            }
+        }
+    }
+    paper.line("END_RULEBLOCK");
+}
+
+/// The keywords in capitals, as IEC 61131-7 writes them.
+fn keywords(rule: &str) -> String {
+    let words = rule.split(' ').map(|word| match word {
+        "if" | "is" | "and" | "or" | "then" | "with" | "not" => word.to_uppercase(),
+        _ => word.to_owned(),
+    });
+    words.collect::<Vec<_>>().join(" ")
 }

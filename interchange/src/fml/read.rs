@@ -15,10 +15,10 @@ use super::term;
 use crate::{Format, Losses, draft::Draft, words};
 
 /// The namespace of the standard's schema.
-const NAMESPACE: &str = "http://www.ieee1855.org";
+pub(super) const NAMESPACE: &str = "http://www.ieee1855.org";
 
 /// FML's hedges that mean what a rule set's do.
-const HEDGES: [(&str, Hedge); 6] = [
+pub(super) const HEDGES: [(&str, Hedge); 6] = [
     ("not", Hedge::Not),
     ("very", Hedge::Very),
     ("somewhat", Hedge::Somewhat),
