@@ -83,33 +83,55 @@ impl Format {
         }
     }
 
-    /// The format of a text, told by its content; `None` where it is none of them.
+    /// Its name: `FIS`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Fis => "FIS",
+            Format::Fll => "FLL",
+            Format::Fcl => "FCL",
+            Format::Fml => "FML",
+        }
+    }
+
+    /// The format of a text, told by what it begins with behind comments; `None` where it is none of them.
     #[must_use]
     pub fn of(text: &str) -> Option<Format> {
-        let text = text.trim_start_matches('\u{feff}').trim_start();
-        if text.starts_with('<') {
-            let known = ["fuzzySystem", "fuzzyController", "FuzzyController"];
-            return known
-                .iter()
-                .any(|root| text.contains(root))
-                .then_some(Format::Fml);
+        let text = behind_comments(text);
+        let starts = |word: &str| {
+            text.get(..word.len())
+                .is_some_and(|start| start.eq_ignore_ascii_case(word))
+        };
+        let roots = ["fuzzySystem", "fuzzyController"];
+        if starts("<") && roots.iter().any(|root| text.contains(root)) {
+            Some(Format::Fml)
+        } else if starts("[System]") {
+            Some(Format::Fis)
+        } else if starts("FUNCTION_BLOCK") || starts("VAR_INPUT") {
+            Some(Format::Fcl)
+        } else if starts("Engine:") || starts("InputVariable:") {
+            Some(Format::Fll)
+        } else {
+            None
         }
-        let mut lines = text.lines().map(str::trim);
-        lines.find_map(|line| {
-            let starts = |word: &str| {
-                line.get(..word.len())
-                    .is_some_and(|start| start.eq_ignore_ascii_case(word))
-            };
-            if starts("[System]") {
-                Some(Format::Fis)
-            } else if starts("FUNCTION_BLOCK") || starts("VAR_INPUT") {
-                Some(Format::Fcl)
-            } else if starts("Engine:") || starts("InputVariable:") {
-                Some(Format::Fll)
-            } else {
-                None
-            }
-        })
+    }
+}
+
+/// A text behind the comments that it begins with: lines of `#`, `%` or `//`, and `/* ... */` or `(* ... *)`.
+fn behind_comments(text: &str) -> &str {
+    let mut rest = text;
+    loop {
+        rest = rest.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
+        let end = if ["#", "%", "//"].iter().any(|mark| rest.starts_with(mark)) {
+            rest.find('\n')
+        } else if rest.starts_with("/*") {
+            rest.find("*/").map(|at| at + 2)
+        } else if rest.starts_with("(*") {
+            rest.find("*)").map(|at| at + 2)
+        } else {
+            return rest;
+        };
+        rest = end.and_then(|end| rest.get(end..)).unwrap_or_default();
     }
 }
 
