@@ -1,5 +1,7 @@
 //! The attitude error of a flight, and the risk that rules are learned from.
 
+use crate::channel::short_way_deg;
+
 /// The critical error of the paper in degrees: a risk of 100 %.
 pub const CRITICAL_ERROR_DEG: f64 = 5.0;
 
@@ -48,11 +50,6 @@ impl Attitude {
 fn tilt_deg(roll_deg: f64, pitch_deg: f64) -> f64 {
     let up = libm::cos(roll_deg.to_radians()) * libm::cos(pitch_deg.to_radians());
     libm::acos(up.clamp(-1.0, 1.0)).to_degrees()
-}
-
-/// A difference of angles in [-180, 180].
-fn short_way_deg(difference_deg: f64) -> f64 {
-    libm::remainder(difference_deg, 360.0)
 }
 
 /// The root mean square of the attitude error over any number of samples.

@@ -1,6 +1,6 @@
 //! Why a level was raised: the rule that raises the risk most, and the input that its antecedent is about.
 
-use crate::channel::{Channel, Input, Observed};
+use crate::channel::{Channel, Input, Motors, Observed};
 
 /// A proposition of a rule, as plain data: which input it is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,15 +56,25 @@ pub(crate) fn cause(
     })
 }
 
-/// Whether an input tells how near motors are to a limit.
-pub(crate) fn is_of_limits((channels, inputs): (&[Channel], &[Input]), input: usize) -> bool {
+/// Whether an input tells how near a motor is to a limit.
+pub(crate) fn is_of_limits(
+    (channels, inputs): (&[Channel], &[Input]),
+    input: usize,
+    motor: usize,
+) -> bool {
     let channel = inputs
         .get(input)
         .and_then(|input| channels.get(input.channel));
     channel.is_some_and(|channel| {
-        matches!(
-            channel.observed,
-            Observed::Margin | Observed::LowSide | Observed::HighSide
-        )
+        let is_meant = match channel.motors {
+            Motors::One(one) => one as usize == motor,
+            _ => true,
+        };
+        let of = channel.observed;
+        is_meant
+            && matches!(
+                of,
+                Observed::Margin | Observed::LowSide | Observed::HighSide
+            )
     })
 }

@@ -18,7 +18,7 @@ use fuzzy::{
 use crate::{
     estimator::{Estimator, EstimatorError},
     profile::{Profile, ProfileInput},
-    source::{Motors, Signal, Source, Statistic},
+    source::{Motors, Signal, Source, Statistic, is_angle},
     verdict::{LevelSettings, Threshold},
 };
 
@@ -262,29 +262,61 @@ fn signal(
 ) -> Option<Diagnostic> {
     let place = at.of(&["inputs", &input.name]);
     let variable = model.inputs.iter().find(|v| v.name == input.name)?;
-    if let Signal::Named(name) = &input.source.signal {
-        let Some((_, unit)) = known.iter().find(|(known, _)| known == name) else {
-            // Logs in CSV name their signals as they like; only a near miss is a mistake.
-            let logged = known.iter().map(|(name, _)| *name);
-            let meant = nearest(name, logged).or_else(|| nearest(name, Signal::names()))?;
-            let message = format!("no log format has a signal `{name}`");
-            return Some(
-                Diagnostic::warning("unknown-signal", place, message)
-                    .help(format!("did you mean `{meant}`?")),
-            );
+    let unit_of = |name: &str| {
+        let unit = known.iter().find(|(known, _)| *known == name);
+        unit.map(|(_, unit)| *unit)
+    };
+    if let Signal::Difference { a, b } = &input.source.signal {
+        let message = match (unit_of(a), unit_of(b)) {
+            (Some(of_a), Some(of_b)) if normal(of_a) != normal(of_b) => {
+                Some(format!("`{a}` is in `{of_a}`, but `{b}` is in `{of_b}`"))
+            }
+            _ if is_angle(a) != is_angle(b) => {
+                let (angle, other) = if is_angle(a) { (a, b) } else { (b, a) };
+                Some(format!("`{angle}` is in degrees, and `{other}` is not"))
+            }
+            _ => None,
         };
+        if let Some(message) = message {
+            let help = "a difference is of two signals of one unit; the names of angles in degrees end in `_deg`";
+            return Some(Diagnostic::error("unit", place, message).help(help));
+        }
+    }
+    let mut carried = input.source.signal.carried();
+    if let Some(name) = carried.find(|name| unit_of(name).is_none())
+        // Logs in CSV name their signals as they like; only a near miss is a mistake.
+        && let Some(meant) = nearest(name, known.iter().map(|(name, _)| *name))
+            .or_else(|| nearest(name, Signal::names()))
+    {
+        let message = format!("no log format has a signal `{name}`");
+        return Some(
+            Diagnostic::warning("unknown-signal", place, message)
+                .help(format!("did you mean `{meant}`?")),
+        );
+    }
+    let first = input.source.signal.carried().next();
+    let first = first.and_then(|name| Some((name, unit_of(name)?)));
+    if let (Some((name, unit)), Some(wanted)) = (first, variable.unit.as_deref()) {
         let is_share = matches!(
             input.source.statistic,
             Statistic::ShareBelow(_) | Statistic::ShareAbove(_)
         );
-        let unit = if is_share { "1" } else { unit };
-        let wanted = variable.unit.as_deref().map(normal)?;
-        let is_unit = known.iter().any(|(_, unit)| normal(unit) == wanted);
-        if is_unit && !unit.is_empty() && wanted != normal(unit) {
+        let is_rate = input.source.statistic == Statistic::Rate;
+        let unit = match unit {
+            _ if is_share => "1".into(),
+            "" => String::new(),
+            _ if is_rate => format!("{unit}/s").replace("/s/s", "/s2"),
+            _ => unit.to_owned(),
+        };
+        let is_known = |(_, unit): &(&str, &str)| {
+            let unit = normal(unit);
+            normal(wanted) == unit || normal(wanted) == unit + "/s"
+        };
+        if known.iter().any(is_known) && !unit.is_empty() && normal(wanted) != normal(&unit) {
             let message = format!(
-                "input `{}` of the rule set is in `{}`, but `{name}` is in `{unit}`",
+                "input `{}` of the rule set is in `{wanted}`, but {}`{name}` is in `{unit}`",
                 input.name,
-                variable.unit.as_deref().unwrap_or_default()
+                if is_rate { "the rate of " } else { "" }
             );
             let help = "take a signal of that unit, or write the terms of the input in the unit of the signal";
             return Some(Diagnostic::warning("unit", place, message).help(help));
@@ -322,15 +354,19 @@ fn range(source: &Source) -> Option<(f64, f64)> {
     let width = high - low;
     let (low, high) = match source.motors {
         Motors::Std => (0.0, width / 2.0),
-        Motors::Pooled | Motors::Mean | Motors::Min | Motors::Max => (low, high),
+        Motors::Pooled | Motors::Mean | Motors::Min | Motors::Max | Motors::One(_) => (low, high),
     };
     let (low, high) = match source.statistic {
         Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => (0.0, 1.0),
         Statistic::Std | Statistic::StdLessNoise => (0.0, (high - low) / 2.0),
         Statistic::Noise => (0.0, high - low),
-        Statistic::Mean | Statistic::Rms | Statistic::Min | Statistic::Max | Statistic::Last => {
-            (low, high)
-        }
+        Statistic::Rate => return None,
+        Statistic::Mean
+        | Statistic::Rms
+        | Statistic::Min
+        | Statistic::Max
+        | Statistic::Last
+        | Statistic::Percentile(_) => (low, high),
     };
     high.is_finite().then_some((low, high))
 }

@@ -103,7 +103,7 @@ impl Follower {
 
     fn take(
         &mut self,
-        (channels, inputs): (&[Channel], &[Input]),
+        plan: (&[Channel], &[Input]),
         room: &mut Room<'_>,
         sample: &Sample<'_>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
@@ -143,13 +143,13 @@ impl Follower {
             together,
             named: sample.signals,
         };
-        push(channels, room.seen, (t_s, held_s), &now);
+        push(plan.0, room.seen, (t_s, held_s), &now);
         self.settle(t_s, in_air_since_s, room);
         if self.settled {
             self.notices
                 .push((t_s, held_s), together.noise, room.motors);
         }
-        let said = match self.estimate(inputs, room, estimate) {
+        let said = match self.estimate(plan, room, estimate) {
             Ok(said) => said,
             Err(reason) => {
                 let known_s = self.last_known_s.unwrap_or(t_s);
@@ -214,8 +214,9 @@ impl Follower {
         }
         let by_rules = update.risk.ok().filter(|said| said.filled_from.is_none());
         let cause = by_rules.and_then(|said| cause(said.risk_pct));
-        let is_of_limits = cause.is_some_and(|cause| is_of_limits(plan, cause.input));
-        self.alert.explain(cause, is_of_limits);
+        self.alert.explain(cause, |motor| {
+            cause.is_some_and(|cause| is_of_limits(plan, cause.input, motor))
+        });
     }
 
     /// Ends the flight: the findings that were still open.
@@ -274,13 +275,13 @@ impl Follower {
 
     fn estimate(
         &self,
-        inputs: &[Input],
+        plan: (&[Channel], &[Input]),
         room: &mut Room<'_>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Result<Estimate, Unknown> {
         let mut reason = None;
         for (input, kept) in room.inputs.iter_mut().enumerate() {
-            let value = reading(inputs, room.seen, &self.settings.sampling, input);
+            let value = reading(plan, room.seen, &self.settings.sampling, input);
             *kept = value.unwrap_or_else(|unknown| {
                 reason.get_or_insert(unknown);
                 f64::NAN
@@ -334,12 +335,12 @@ impl Follower {
 
 /// The value of an input, where enough is known of its window.
 pub(crate) fn reading(
-    inputs: &[Input],
+    plan: (&[Channel], &[Input]),
     seen: &[Seen],
     sampling: &Sampling,
     input: usize,
 ) -> Result<f64, Unknown> {
-    let observation = value(inputs, seen, input).ok_or(Unknown::NoValue { input })?;
+    let observation = value(plan, seen, input).ok_or(Unknown::NoValue { input })?;
     // A window that is full to a sample's time or so is full.
     let needed_s = sampling.warm_up_s.min(observation.window_s) * 0.99;
     match observation.samples {

@@ -44,6 +44,7 @@ mod effort;
 pub mod estimator;
 #[cfg(feature = "std")]
 pub mod evaluation;
+mod exponential;
 #[cfg(feature = "std")]
 pub mod flight;
 #[doc(hidden)] // Its data is part of exported plans and of the memory that `board` borrows.

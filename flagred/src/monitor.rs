@@ -3,7 +3,7 @@
 use alloc::{format, string::String, vec, vec::Vec};
 
 use crate::{
-    channel::{Channel, Input, Seen},
+    channel::{Channel, Input, Seen, motors_needed, restart},
     estimator::{Estimator, Memory},
     follower::{Follower, Room, reading},
     motor::{Motor, set_geometry},
@@ -67,6 +67,14 @@ pub enum MonitorError {
     /// There is no motor to watch.
     #[error("the flight has no motors")]
     NoMotors,
+    /// The profile names a motor that the flight does not have.
+    #[error("the profile needs motor {motor}, and the flight has {motors} motors")]
+    FewMotors {
+        /// The motor, counted from 1.
+        motor: usize,
+        /// How many there are.
+        motors: usize,
+    },
 }
 
 /// Follows one flight, sample by sample.
@@ -113,7 +121,7 @@ impl Monitor {
     ///
     /// # Errors
     ///
-    /// The profile needs a signal that samples do not carry, or the craft has no motor.
+    /// The profile needs a signal that samples do not carry, or a motor that the craft does not have.
     pub fn new(estimator: &Estimator, craft: Craft<'_>) -> Result<Monitor, MonitorError> {
         if craft.motors == 0 {
             return Err(MonitorError::NoMotors);
@@ -128,18 +136,25 @@ impl Monitor {
             motors: Motors::Pooled,
             signal,
             window_s: profile.window_s,
+            exponential: false,
         });
         let sources = profile.inputs.iter().map(|input| &input.source);
         let (channels, inputs) = channels(sources.chain(&always), craft.signals)
             .map_err(|signal| MonitorError::NoSignal { signal })?;
-        let seen = channels.iter().map(|channel| Seen::new(channel.window_s));
+        let motor = motors_needed(&channels);
+        if motor > craft.motors {
+            let motors = craft.motors;
+            return Err(MonitorError::FewMotors { motor, motors });
+        }
         let mut motors = vec![Motor::UNKNOWN; craft.motors];
         set_geometry(&mut motors, craft.geometry);
+        let mut seen = vec![Seen::IDLE; channels.len()];
+        restart(&channels, &mut seen);
         Ok(Monitor {
             memory: Memory::of(estimator),
             room: OwnRoom {
                 risks: Window::new(profile.elevated_risk.window_s),
-                seen: seen.collect(),
+                seen,
                 inputs: vec![f64::NAN; profile.inputs.len()],
                 motors,
             },
@@ -209,7 +224,13 @@ impl Monitor {
 
     fn reading(&self, input: usize) -> Option<f64> {
         let sampling = &self.follower.settings().sampling;
-        reading(&self.inputs, &self.room.seen, sampling, input).ok()
+        reading(
+            (&self.channels, &self.inputs),
+            &self.room.seen,
+            sampling,
+            input,
+        )
+        .ok()
     }
 }
 

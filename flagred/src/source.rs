@@ -4,7 +4,7 @@ use alloc::{string::String, vec, vec::Vec};
 
 pub use crate::channel::{Motors, Observation, Statistic};
 use crate::{
-    channel::{Channel, Input, Now, Observed, Seen, Threshold, push, value},
+    channel::{Channel, Input, Now, Observed, Seen, Threshold, push, restart, value},
     craft::Craft,
     motor::{Bin, Motor, clear, set_geometry, take},
 };
@@ -37,6 +37,13 @@ pub enum Signal {
     CommandNoise,
     /// A signal that the flight carries beside the motors, by name: `battery_v`.
     Named(String),
+    /// One such signal less another one. Where both names end in `_deg`, the short way around, in [-180, 180).
+    Difference {
+        /// The signal.
+        a: String,
+        /// What is taken from it.
+        b: String,
+    },
 }
 
 /// The signals with a value for each motor, by the names profiles use.
@@ -78,6 +85,16 @@ impl Signal {
             .map_or_else(|| Signal::Named(name.into()), |(_, signal)| signal)
     }
 
+    /// The names of the signals that samples have to carry for it.
+    pub fn carried(&self) -> impl Iterator<Item = &str> {
+        let (first, second) = match self {
+            Signal::Named(name) => (Some(name), None),
+            Signal::Difference { a, b } => (Some(a), Some(b)),
+            _ => (None, None),
+        };
+        first.into_iter().chain(second).map(String::as_str)
+    }
+
     /// Whether the signal has one value for each motor.
     pub fn is_of_motors(&self) -> bool {
         OF_MOTORS.iter().any(|(_, signal)| signal == self)
@@ -100,6 +117,7 @@ impl Signal {
 ///     motors: Motors::Min,
 ///     signal: Signal::MotorMargin,
 ///     window_s: 5.0,
+///     exponential: false,
 /// };
 /// assert_eq!(text.parse::<Profile>()?.inputs[0].source, lowest);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -112,8 +130,10 @@ pub struct Source {
     pub motors: Motors,
     /// What is observed.
     pub signal: Signal,
-    /// Over how many seconds.
+    /// Over how many seconds; of an exponential window its time constant.
     pub window_s: f64,
+    /// Whether all values count with weights that fall by their age, `exp(-age / window_s)`, and not alike for `window_s`.
+    pub exponential: bool,
 }
 
 /// The windows that a number of sources need, each window shared by those that look at the same thing.
@@ -128,6 +148,7 @@ pub struct Source {
 ///     motors: Motors::Pooled,
 ///     signal: Signal::named("motor_margin"),
 ///     window_s: 1.0,
+///     exponential: false,
 /// };
 /// let mut observer = Observer::new([&margin], Craft::new(2))?;
 /// for i in 1..=20 {
@@ -158,11 +179,12 @@ impl Observer {
         craft: Craft<'_>,
     ) -> Result<Observer, String> {
         let (channels, inputs) = channels(sources, craft.signals)?;
-        let seen = channels.iter().map(|channel| Seen::new(channel.window_s));
+        let mut seen = vec![Seen::IDLE; channels.len()];
+        restart(&channels, &mut seen);
         let mut motors = vec![Motor::UNKNOWN; craft.motors];
         set_geometry(&mut motors, craft.geometry);
         Ok(Observer {
-            seen: seen.collect(),
+            seen,
             inputs,
             channels,
             motors,
@@ -194,8 +216,13 @@ impl Observer {
 
     /// The value of a source, by its index; `None` where nothing is known.
     pub fn value(&self, input: usize) -> Option<Observation> {
-        value(&self.inputs, &self.seen, input)
+        value((&self.channels, &self.inputs), &self.seen, input)
     }
+}
+
+/// Whether a signal is an angle in degrees, by its name.
+pub(crate) fn is_angle(name: &str) -> bool {
+    name.ends_with("_deg")
 }
 
 /// The channels that sources need, each shared by those that look at the same thing, and which of them each source is
@@ -206,6 +233,10 @@ pub(crate) fn channels<'a>(
 ) -> Result<(Vec<Channel>, Vec<Input>), String> {
     let mut channels: Vec<Channel> = vec![];
     let mut inputs = vec![];
+    let place = |name: &String| {
+        let place = names.iter().position(|known| known == name);
+        place.ok_or_else(|| name.clone())
+    };
     for source in sources {
         let observed = match &source.signal {
             Signal::MotorCommand => Observed::Command,
@@ -218,12 +249,12 @@ pub(crate) fn channels<'a>(
             Signal::YawEffort => Observed::Effort(2),
             Signal::ThrustEffort => Observed::Effort(3),
             Signal::CommandNoise => Observed::CommandNoise,
-            Signal::Named(name) => Observed::Named(
-                names
-                    .iter()
-                    .position(|known| known == name)
-                    .ok_or_else(|| name.clone())?,
-            ),
+            Signal::Named(name) => Observed::Named(place(name)?),
+            Signal::Difference { a, b } => Observed::Difference {
+                circular: is_angle(a) && is_angle(b),
+                a: place(a)?,
+                b: place(b)?,
+            },
         };
         let channel = Channel {
             observed,
@@ -235,6 +266,7 @@ pub(crate) fn channels<'a>(
             },
             in_bins: source.statistic.is_of_bins(),
             window_s: source.window_s,
+            exponential: source.exponential,
         };
         let same = channels.iter().position(|known| *known == channel);
         inputs.push(Input {
@@ -262,6 +294,7 @@ mod tests {
             motors,
             signal: Signal::named(signal),
             window_s: 1.0,
+            exponential: false,
         }
     }
 
@@ -291,6 +324,14 @@ mod tests {
             (Statistic::Mean, Motors::Min, "motor_margin", 0.1),
             (Statistic::Mean, Motors::Min, "motor_margin_low_side", 0.3),
             (Statistic::Mean, Motors::Min, "motor_margin_high_side", 0.2),
+            (Statistic::Mean, Motors::One(0), "motor_command", 0.3),
+            (Statistic::Max, Motors::One(1), "motor_margin", 0.4),
+            (
+                Statistic::ShareAbove(0.3),
+                Motors::One(0),
+                "motor_command",
+                0.5,
+            ),
             (Statistic::Min, Motors::Pooled, "motor_margin", 0.0),
             (Statistic::Max, Motors::Mean, "motor_command", 0.7),
             (Statistic::Mean, Motors::Std, "motor_command", 0.25),
@@ -341,9 +382,45 @@ mod tests {
             source(Statistic::Last, Motors::Min, "motor_command"),
             // The geometry is unknown.
             source(Statistic::Mean, Motors::Pooled, "motor_command_less_yaw"),
+            source(Statistic::Mean, Motors::One(1), "motor_command"),
+            // There are two motors.
+            source(Statistic::Mean, Motors::One(2), "motor_command"),
         ];
         let found = observe(&sources, &[[0.2, f64::NAN], [f64::NAN; 2]]);
-        assert_eq!(found, [Some(0.2), None, Some(0.2)]);
+        assert_eq!(found, [Some(0.2), None, Some(0.2), None, None]);
+    }
+
+    #[test]
+    fn a_difference_of_angles_goes_the_short_way_around() {
+        let names = ["yaw_des_deg", "yaw_deg", "ekf_wind_m_s", "wind_m_s"];
+        let difference = |a: usize, b: usize| Source {
+            signal: Signal::Difference {
+                a: names[a].into(),
+                b: names[b].into(),
+            },
+            ..source(Statistic::Last, Motors::Pooled, "")
+        };
+        let sources = [difference(0, 1), difference(2, 3)];
+        for (a, b, angle, plain) in [
+            (10.0, 4.0, 6.0, 6.0),
+            (179.0, -179.0, -2.0, 358.0),
+            (-179.0, 179.0, 2.0, -358.0),
+            (350.0, 5.0, -15.0, 345.0),
+            (90.0, -90.0, -180.0, 180.0),
+            (-90.0, 90.0, -180.0, -180.0),
+            (725.0, 0.0, 5.0, 725.0),
+        ] {
+            let mut observer = Observer::new(&sources, craft(&names)).unwrap();
+            observer.push(1.0, 0.1, &[], &[a, b, a, b]);
+            let found = [0, 1].map(|i| observer.value(i).map(|o| o.value));
+            assert_eq!(found, [Some(angle), Some(plain)], "{a} - {b}");
+            observer.push(1.1, 0.1, &[], &[f64::NAN, b, a, f64::NAN]);
+            assert_eq!(observer.value(0), None);
+        }
+        assert_eq!(
+            Observer::new(&sources, craft(&names[..3])).unwrap_err(),
+            "wind_m_s"
+        );
     }
 
     #[test]

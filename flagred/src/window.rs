@@ -6,6 +6,8 @@
 
 use crate::moments::Moments;
 
+mod slots;
+
 /// Over how many slots the samples of a window are spread. See [`Window`].
 const SLOTS: usize = 128;
 
@@ -29,7 +31,7 @@ const TIME_RESOLUTION_S: f64 = 1e-6;
 /// ```
 /// use flagred::{monitor::Craft, source::{Motors, Observer, Signal, Source, Statistic}};
 ///
-/// let margin = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorMargin, window_s: 1.0 };
+/// let margin = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorMargin, window_s: 1.0, exponential: false };
 /// let mut observer = Observer::new([&margin], Craft::new(1))?;
 /// for i in 1..=50 {
 ///     observer.push(f64::from(i) * 0.04, 0.04, &[0.3], &[]);

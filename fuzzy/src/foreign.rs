@@ -24,7 +24,7 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("piecemf", &["piecewise"]),
     ("discrete", &["piecewise"]),
     ("points", &["piecewise"]),
-    ("binary", &["rectangle"]),
+    ("binary", &["right_shoulder", "left_shoulder"]),
     ("spikemf", &["spike"]),
     // Operators.
     ("fmin", &["minimum"]),

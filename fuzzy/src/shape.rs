@@ -11,6 +11,7 @@ mod form;
 mod formula;
 #[cfg(feature = "alloc")]
 mod outline;
+mod place;
 mod smooth;
 mod straight;
 #[cfg(test)]
@@ -104,14 +105,15 @@ pub enum MembershipFunction {
         /// The standard deviation, over 0.
         sd: f64,
     },
-    /// Gaussian flanks around a plateau of 1 from `left_mean` to `right_mean`.
-    /// MATLAB's `gauss2mf`.
+    /// The product of two halves: a gaussian up to `left_mean` and 1 beyond it, and 1 up to `right_mean` and a gaussian
+    /// beyond it. From `left_mean` to `right_mean` it is 1; where `left_mean` is the greater one it stays below 1.
+    /// MATLAB's `gauss2mf`, fuzzylite's `GaussianProduct`.
     Gaussian2 {
-        /// Where the plateau begins.
+        /// Up to here the left half is a gaussian.
         left_mean: f64,
         /// The standard deviation of the left flank.
         left_sd: f64,
-        /// Where the plateau ends.
+        /// From here on the right half is a gaussian.
         right_mean: f64,
         /// The standard deviation of the right flank.
         right_sd: f64,
@@ -211,6 +213,23 @@ pub enum MembershipFunction {
         /// Where it reaches 1.
         end: f64,
     },
+    /// `sqrt(t (2 - t))` with `t = (x - start) / (end - start)`, a quarter of an ellipse: 0 up to `start`, 1 from `end` on;
+    /// mirrored where `end` is left.
+    /// fuzzylite's `Arc`.
+    Arc {
+        /// Where it leaves 0.
+        start: f64,
+        /// Where it reaches 1.
+        end: f64,
+    },
+    /// `2 sqrt(t (1 - t))` with `t = (x - left) / (right - left)`, the upper half of an ellipse, else 0.
+    /// fuzzylite's `SemiEllipse`.
+    SemiEllipse {
+        /// Where it leaves 0.
+        left: f64,
+        /// Where it is 0 again.
+        right: f64,
+    },
     /// The same degree everywhere; in a Takagi-Sugeno output, the constant `z` itself.
     Constant {
         /// The degree, or `z`.
@@ -243,8 +262,8 @@ form::forms! {
         "1 at one value alone";
     Gaussian "gaussian" GAUSSIAN [mean: Ascending, sd: Positive]
         "exp(-(x - mean)^2 / (2 sd^2))";
-    Gaussian2 "gaussian2" GAUSSIAN2 [left_mean: Ascending, left_sd: Positive, right_mean: Ascending, right_sd: Positive]
-        "Gaussian flanks around 1 from left_mean to right_mean";
+    Gaussian2 "gaussian2" GAUSSIAN2 [left_mean: Number, left_sd: Positive, right_mean: Number, right_sd: Positive]
+        "Gaussian flanks around 1 from left_mean to right_mean; the product of both halves";
     Bell "bell" BELL [center: Ascending, width: Positive, slope: Positive]
         "1 / (1 + |(x - center) / width|^(2 slope))";
     Sigmoid "sigmoid" SIGMOID [inflection: Number, slope: Number]
@@ -265,6 +284,10 @@ form::forms! {
         "exp(-|10 (x - center) / width|)";
     Concave "concave" CONCAVE [inflection: Number, end: Number]
         "(end - inflection) / (2 end - inflection - x) up to end, 1 beyond it";
+    Arc "arc" ARC [start: Number, end: Number]
+        "A quarter of an ellipse from 0 at start to 1 at end";
+    SemiEllipse "semi_ellipse" SEMI_ELLIPSE [left: Ascending, right: Ascending]
+        "The upper half of an ellipse from left to right";
     Constant "constant" CONSTANT [value: Ascending]
         "The same degree everywhere; in a Takagi-Sugeno output, the value itself";
 }

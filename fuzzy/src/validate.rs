@@ -15,7 +15,7 @@ use crate::{
     defuzzify::Defuzzify,
     diagnostic::{Diagnostic, duplicate, nearest, suggest},
     model::{
-        MembershipFunction, Model, NoRuleFires, Output, Rule, Variable,
+        Defuzzifier, MembershipFunction, Model, NoRuleFires, Output, Rule, Variable,
         chain::circles,
         document::{RuleSpans, Spans, TermSpans, VariableSpans},
     },
@@ -32,6 +32,9 @@ const MOST_TERMS_IN_ALL: usize = 10_000;
 const MOST_RULES: usize = 100_000;
 /// Errors that are told of a model; what follows is not looked at.
 const MOST_FINDINGS: usize = 1000;
+
+/// Products of degrees and distances within a narrower range lose their digits.
+const NARROWEST_RANGE: f64 = 1e-250;
 
 /// More samples than this add no accuracy and make an evaluation hang.
 const MOST_SAMPLES: usize = 10_000_000;
@@ -263,6 +266,10 @@ impl<'m> Validator<'m> {
                 message,
                 "write the values that can occur",
             );
+        } else if high - low < NARROWEST_RANGE {
+            let message = format!("the range of {what} is too narrow");
+            let help = "write it in a smaller unit";
+            self.error("wrong-range", here, message, help);
         }
     }
 
@@ -321,7 +328,8 @@ impl<'m> Validator<'m> {
     /// A Takagi-Sugeno output has numbers and linear functions as terms, a Mamdani output has fuzzy sets.
     fn consequents_fit(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         const WEIGHTED: &str = "it needs `defuzzifier: weighted_average` or `weighted_sum`";
-        let weighted = output.defuzzifier.is_weighted();
+        let weighted = output.defuzzifier.takes_numbers();
+        let tsukamoto = output.defuzzifier == Defuzzifier::Tsukamoto;
         let no_spans = TermSpans::default();
         for (i, term) in output.variable.terms.iter().enumerate() {
             let spans = spans.terms.get(i).unwrap_or(&no_spans);
@@ -336,15 +344,24 @@ impl<'m> Validator<'m> {
                     }
                     self.coefficients(&what, coefficients, spans);
                 }
+                shape if tsukamoto && !shape.is_monotone() => {
+                    let message = format!("{what} does not rise or fall all along");
+                    let help = "with `tsukamoto` each degree has one place: write `right_shoulder`, `left_shoulder`, `s_shape`, `z_shape`, `sigmoid`, `concave`, `arc` or a monotone `piecewise`";
+                    self.error("wrong-term", here, message, help);
+                }
                 MembershipFunction::Singleton { .. } if !weighted => {
                     let message = format!("{what} is a singleton, which has no area");
                     self.error("wrong-term", here, message, WEIGHTED);
                 }
                 MembershipFunction::Constant { .. } | MembershipFunction::Singleton { .. } => {}
-                _ if weighted => {
+                shape if weighted => {
                     let message =
                         format!("{what} is a fuzzy set, but the output is a weighted one");
-                    let help = "write `{constant: 5}` or `{linear: {input: 2, constant: 1}}`, or `defuzzifier: centroid`";
+                    let help = if shape.is_monotone() {
+                        "write `defuzzifier: tsukamoto`, or numbers: `{constant: 5}` or `{linear: {input: 2, constant: 1}}`"
+                    } else {
+                        "write `{constant: 5}` or `{linear: {input: 2, constant: 1}}`, or `defuzzifier: centroid`"
+                    };
                     self.error("wrong-term", here, message, help);
                 }
                 _ => {}
@@ -410,6 +427,12 @@ impl<'m> Validator<'m> {
         for consequent in &rule.consequents {
             if let Some(output) = self.known_output(&consequent.output) {
                 self.known_term("output", output, &consequent.term);
+            }
+            let mut hedges = consequent.hedges.iter();
+            if let Some(hedge) = hedges.find(|hedge| !hedge.may_conclude()) {
+                let message = format!("`{}` cannot stand after `THEN`", hedge.word());
+                let help = "it belongs in the condition";
+                self.error("rule-syntax", &spans.whole, message, help);
             }
         }
         if !is_degree(rule.weight) {
@@ -503,7 +526,7 @@ impl<'m> Validator<'m> {
 
     fn is_weighted(&self, variable: &Variable) -> bool {
         let mut outputs = self.model.outputs.iter();
-        outputs.any(|o| o.variable.name == variable.name && o.defuzzifier.is_weighted())
+        outputs.any(|o| o.variable.name == variable.name && o.defuzzifier.takes_numbers())
     }
 
     /// Suggests an output only where the name is nearly that of one.

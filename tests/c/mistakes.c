@@ -95,19 +95,22 @@ int main(void) {
 
     flagred_channel channels[16];
     CHECK(plan->channels_count > 0 && plan->channels_count <= 16);
-    for (int mistake = 0; mistake < 8; mistake++) {
+    for (int mistake = 0; mistake < 11; mistake++) {
         memcpy(channels, plan->channels, plan->channels_count * sizeof *channels);
         damaged = *plan;
         damaged.channels = channels;
         switch (mistake) {
-        case 0: channels[0].observed = 6; channels[0].signal = 4; break; /* the efforts are 0 to 3 */
-        case 1: channels[0].observed = 8; break;
-        case 2: channels[0].observed = 4; channels[0].signal = plan->signals; break;
+        case 0: channels[0].observed = 6; channels[0].indices[0] = 4; break; /* the efforts are 0 to 3 */
+        case 1: channels[0].observed = 10; break;
+        case 2: channels[0].observed = 4; channels[0].indices[0] = plan->signals; break;
         case 3: channels[0].in_bins = !channels[0].in_bins; break;
         case 4: channels[0].window_s = 0; break;
         case 5: channels[0].window_s = NAN; break;
         case 6: channels[0].window_s = INFINITY; break;
-        case 7: damaged.settings.risk_window_s = -1; break;
+        case 7: channels[0].observed = 8; channels[0].indices[1] = plan->signals; break;
+        case 8: channels[0].exponential = 1; break; /* a statistic that is not one of weights, or with bins */
+        case 9: channels[0].threshold = 3; break;
+        case 10: damaged.settings.risk_window_s = -1; break;
         }
         CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     }

@@ -91,3 +91,40 @@ fn no_evaluation_allocates() {
         }
     }
 }
+
+/// 5000 rules with 200 ANDs each have a million edges in their trie; the nodes that wait at once are few.
+#[test]
+fn many_long_rules_need_little_memory() {
+    use fuzzy::model::{Output, Variable};
+    use fuzzy::rule::{Condition, Rule};
+
+    const TERMS: [&str; 5] = ["a", "b", "c", "d", "e"];
+    let names: Vec<String> = (0..200).map(|i| format!("x{i}")).collect();
+    let mut builder =
+        Model::builder("many").output(Output::new(Variable::new("y", 0.0, 1.0).partition(TERMS)));
+    for name in &names {
+        builder = builder.input(Variable::new(name, 0.0, 1.0).partition(TERMS));
+    }
+    let mut random = 1u64;
+    for _ in 0..5000 {
+        let mut term = || {
+            random = random.wrapping_mul(6364136223846793005).wrapping_add(1);
+            TERMS[(random >> 33) as usize % TERMS.len()]
+        };
+        let all = names.iter().map(|name| Condition::is(name, term()));
+        let condition = Condition::And(all.collect());
+        builder = builder.rule(Rule::new(condition, "y", term()));
+    }
+    let engine = Engine::new(&builder.build()).unwrap();
+    let mut scratch = None;
+    let counted = allocation_counter::measure(|| scratch = Some(engine.scratch()));
+    assert!(counted.bytes_max < 64 << 10, "{} bytes", counted.bytes_max);
+    let mut outcomes = [Outcome::default()];
+    let counted = allocation_counter::measure(|| {
+        let point = vec![0.5; names.len()];
+        engine
+            .evaluate_with(scratch.as_mut().unwrap(), &point, &mut outcomes)
+            .unwrap();
+    });
+    assert_eq!(counted.count_total, 1, "the point itself");
+}

@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_PLAN_FORMAT 4
+#define FLAGRED_PLAN_FORMAT 5
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -33,7 +33,7 @@ typedef enum flagred_status {
     FLAGRED_NULL_POINTER = 1,   /* a required pointer is NULL */
     FLAGRED_OTHER_FORMAT = 2,   /* another version exported the plan: export it again */
     FLAGRED_DAMAGED_PLAN = 3,   /* an index in the plan is out of bounds, or a window has no length */
-    FLAGRED_NO_MOTORS = 4,
+    FLAGRED_NO_MOTORS = 4,      /* the number of motors is 0, or the profile names a motor that there is not */
     FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size returns, or not aligned to 16 bytes */
     FLAGRED_BAD_LIMITS = 6,     /* the lower limit of a motor is not below its upper limit */
     FLAGRED_BAD_GEOMETRY = 7    /* the geometry does not tell roll, pitch, yaw and thrust of all motors apart */
@@ -216,7 +216,8 @@ typedef struct flagred_action {
 } flagred_action;
 
 typedef struct flagred_program {
-    uint32_t first_step, end_step, first_action, end_action;
+    double weight;
+    uint32_t first_step, end_step, first_action, end_action, first_hedge, end_hedge;
 } flagred_program;
 
 typedef struct flagred_step {
@@ -248,7 +249,7 @@ typedef struct flagred_coefficient {
 
 typedef struct flagred_channel {
     double window_s, limit;
-    uint32_t observed, signal, motors, threshold, in_bins;
+    uint32_t observed, indices[2], motors, threshold, in_bins, exponential;
 } flagred_channel;
 
 /* Which input a rule is about. */
@@ -257,6 +258,7 @@ typedef struct flagred_proposition {
 } flagred_proposition;
 
 typedef struct flagred_source {
+    double number;
     uint32_t channel, statistic;
 } flagred_source;
 

@@ -12,7 +12,7 @@ use core::ffi::{CStr, c_char};
 
 use flagred::{
     board::{
-        Factors, Memory, Monitor,
+        Factors, Memory, Monitor, Refused,
         table::{Outcome, Partial, Strongest},
     },
     channel::Seen,
@@ -166,7 +166,10 @@ unsafe fn start(
         motors: block.fill(motors, Motor::UNKNOWN)?,
     };
     let monitor = CMonitor {
-        monitor: Monitor::new(plan, memory).map_err(|_| Status::DamagedPlan)?,
+        monitor: Monitor::new(plan, memory).map_err(|refused| match refused {
+            Refused::NoMotors => Status::NoMotors,
+            _ => Status::DamagedPlan,
+        })?,
         limits: ranges,
         effective: block.fill(motors, f64::NAN)?,
     };

@@ -23,7 +23,7 @@ use crate::{memory::Block, status::Status};
 mod tests;
 
 /// The version of the data that this library reads.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// An array of C and its length.
 #[derive(Debug, Clone, Copy)]
@@ -62,15 +62,17 @@ struct CChannel {
     window_s: f64,
     limit: f64,
     observed: u32,
-    signal: u32,
+    indices: [u32; 2],
     motors: u32,
     threshold: u32,
     in_bins: u32,
+    exponential: u32,
 }
 
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 struct CSource {
+    number: f64,
     channel: u32,
     statistic: u32,
 }
@@ -207,7 +209,7 @@ impl Plan {
         let get = |i: usize| channels.get(i).ok_or(Status::DamagedPlan);
         let channels = block.repeat(channels.len(), |i| get(i)?.read())?;
         let get = |i: usize| sources.get(i).ok_or(Status::DamagedPlan);
-        let inputs = block.repeat(sources.len(), |i| get(i)?.read(channels))?;
+        let inputs = block.repeat(sources.len(), |i| get(i)?.read())?;
         // SAFETY: the caller's promise.
         unsafe { self.whole(channels, inputs) }
     }
@@ -301,61 +303,26 @@ fn disjunction(code: u32) -> Result<Disjunction, Status> {
 
 impl CChannel {
     fn read(&self) -> Result<Channel, Status> {
-        Ok(Channel {
-            observed: match self.observed {
-                0 => Observed::Command,
-                1 => Observed::Margin,
-                2 => Observed::LowSide,
-                3 => Observed::HighSide,
-                4 => Observed::Named(self.signal as usize),
-                5 => Observed::CommandLessYaw,
-                6 => Observed::Effort(self.signal as usize),
-                7 => Observed::CommandNoise,
-                _ => return Err(Status::DamagedPlan),
-            },
-            motors: match self.motors {
-                0 => Motors::Pooled,
-                1 => Motors::Mean,
-                2 => Motors::Std,
-                3 => Motors::Min,
-                4 => Motors::Max,
-                _ => return Err(Status::DamagedPlan),
-            },
-            threshold: match self.threshold {
-                0 => None,
-                1 => Some(channel::Threshold::Below(self.limit)),
-                2 => Some(channel::Threshold::Above(self.limit)),
-                _ => return Err(Status::DamagedPlan),
-            },
-            in_bins: self.in_bins != 0,
-            window_s: self.window_s,
-        })
+        let known = || {
+            Some(Channel {
+                observed: Observed::from_code(self.observed, self.indices)?,
+                motors: Motors::from_code(self.motors),
+                threshold: channel::Threshold::from_code(self.threshold, self.limit)?,
+                in_bins: self.in_bins != 0,
+                window_s: self.window_s,
+                exponential: self.exponential != 0,
+            })
+        };
+        known().ok_or(Status::DamagedPlan)
     }
 }
 
 impl CSource {
-    /// A share of time has the limit of its channel.
-    fn read(&self, channels: &[Channel]) -> Result<channel::Input, Status> {
-        let channel = channels.get(self.channel as usize);
-        let limit = match channel.and_then(|channel| channel.threshold) {
-            Some(channel::Threshold::Below(limit) | channel::Threshold::Above(limit)) => limit,
-            None => f64::NAN,
-        };
+    fn read(&self) -> Result<channel::Input, Status> {
+        let statistic = Statistic::from_code(self.statistic, self.number);
         Ok(channel::Input {
             channel: self.channel as usize,
-            statistic: match self.statistic {
-                0 => Statistic::Mean,
-                1 => Statistic::Std,
-                2 => Statistic::Rms,
-                3 => Statistic::Min,
-                4 => Statistic::Max,
-                5 => Statistic::Last,
-                6 => Statistic::ShareBelow(limit),
-                7 => Statistic::ShareAbove(limit),
-                8 => Statistic::StdLessNoise,
-                9 => Statistic::Noise,
-                _ => return Err(Status::DamagedPlan),
-            },
+            statistic: statistic.ok_or(Status::DamagedPlan)?,
         })
     }
 }

@@ -166,6 +166,7 @@ fn with_margin_and_spread(mut profile: Profile) -> Profile {
                 motors: Motors::Pooled,
                 signal,
                 window_s: profile.window_s,
+                exponential: false,
             };
             let name = name.to_owned();
             let input = flagred::profile::ProfileInput { name, source };

@@ -1,6 +1,6 @@
 //! Who is compared: the profiles, and the baselines that need no rules.
 
-use flagred::{estimator::Estimator, evaluation::Baseline, shipped, source::Signal};
+use flagred::{estimator::Estimator, evaluation::Baseline, shipped};
 
 use crate::{failure::Failure, profile};
 
@@ -55,17 +55,14 @@ impl Estimators {
         let profiles = self.profiles.iter();
         let mut names: Vec<&str> = profiles
             .flat_map(|profile| profile.estimator.profile().signals())
-            .chain(self.baselines.iter().filter_map(named))
+            .chain(
+                self.baselines
+                    .iter()
+                    .flat_map(|b| b.source.signal.carried()),
+            )
             .collect();
         names.sort_unstable();
         names.dedup();
         names
-    }
-}
-
-fn named(baseline: &Baseline) -> Option<&str> {
-    match &baseline.source.signal {
-        Signal::Named(name) => Some(name),
-        _ => None,
     }
 }

@@ -8,7 +8,7 @@ use flagred::{
         Plan,
         table::{Conjunctions, Hedge},
     },
-    channel::{Channel, Input, Motors, Observed, Statistic, Threshold},
+    channel::{Channel, Input, Threshold},
     follower::Settings,
     gap::FilledKnots,
     verdict::{self, LevelSettings},
@@ -193,50 +193,21 @@ fn value(word: &str) -> String {
 }
 
 fn channel(channel: &Channel) -> String {
-    let (observed, signal) = match channel.observed {
-        Observed::Command => (0, 0),
-        Observed::Margin => (1, 0),
-        Observed::LowSide => (2, 0),
-        Observed::HighSide => (3, 0),
-        Observed::Named(signal) => (4, signal as u32),
-        Observed::CommandLessYaw => (5, 0),
-        Observed::Effort(axis) => (6, axis as u32),
-        Observed::CommandNoise => (7, 0),
-    };
-    let motors = match channel.motors {
-        Motors::Pooled => 0,
-        Motors::Mean => 1,
-        Motors::Std => 2,
-        Motors::Min => 3,
-        Motors::Max => 4,
-    };
-    let (threshold, limit) = match channel.threshold {
-        None => (0, 0.0),
-        Some(Threshold::Below(limit)) => (1, limit),
-        Some(Threshold::Above(limit)) => (2, limit),
-    };
+    let (observed, [first, second]) = channel.observed.code();
+    let (threshold, limit) = Threshold::code(channel.threshold);
     format!(
-        "{{{}, {}, {observed}, {signal}, {motors}, {threshold}, {}}}",
+        "{{{}, {}, {observed}, {{{first}, {second}}}, {}, {threshold}, {}, {}}}",
         number(channel.window_s),
         number(limit),
-        u32::from(channel.in_bins)
+        channel.motors.code(),
+        u32::from(channel.in_bins),
+        u32::from(channel.exponential)
     )
 }
 
 fn source(input: &Input) -> String {
-    let statistic = match input.statistic {
-        Statistic::Mean => 0,
-        Statistic::Std => 1,
-        Statistic::Rms => 2,
-        Statistic::Min => 3,
-        Statistic::Max => 4,
-        Statistic::Last => 5,
-        Statistic::ShareBelow(_) => 6,
-        Statistic::ShareAbove(_) => 7,
-        Statistic::StdLessNoise => 8,
-        Statistic::Noise => 9,
-    };
-    format!("{{{}, {statistic}}}", input.channel)
+    let (statistic, parameter) = input.statistic.code();
+    format!("{{{}, {}, {statistic}}}", number(parameter), input.channel)
 }
 
 fn settings(settings: &Settings) -> String {

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use flagred::{
     board::Plan,
-    channel::{Channel, Input, Observed, Statistic, Threshold},
+    channel::{Channel, Input, Statistic, Threshold},
 };
 
 /// The file.
@@ -113,20 +113,17 @@ fn channel(channel: &Channel) -> String {
         threshold,
         in_bins,
         window_s,
+        exponential,
     } = channel;
-    let observed = match observed {
-        Observed::Named(signal) => format!("Named({signal})"),
-        Observed::Effort(axis) => format!("Effort({axis})"),
-        observed => format!("{observed:?}"),
-    };
     let threshold = match threshold {
         None => "None".to_owned(),
         Some(Threshold::Below(limit)) => format!("Some(channel::Threshold::Below({limit:?}))"),
         Some(Threshold::Above(limit)) => format!("Some(channel::Threshold::Above({limit:?}))"),
     };
     format!(
-        "channel::Channel {{ observed: channel::Observed::{observed}, motors: channel::Motors::{motors:?}, \
-         threshold: {threshold}, in_bins: {in_bins}, window_s: {window_s:?} }}"
+        "channel::Channel {{ observed: channel::Observed::{observed:?}, motors: channel::Motors::{motors:?}, \
+         threshold: {threshold}, in_bins: {in_bins}, window_s: {window_s:?}, \
+         exponential: {exponential} }}"
     )
 }
 

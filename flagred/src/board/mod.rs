@@ -29,7 +29,7 @@ use fuzzy::table::{Damaged, Outcome, Scratch, Table};
 
 use crate::{
     cause::{Cause, cause},
-    channel::{Channel, Input, Observed, Seen},
+    channel::{Channel, Input, Observed, Seen, motors_needed, restart},
     effort::ROLL_PITCH_YAW_THRUST,
     follower::{Follower, Room, Settings},
     gap::FilledKnots,
@@ -82,7 +82,7 @@ pub struct Plan<'a> {
 pub enum Refused {
     /// The memory does not have the sizes of the plan.
     Memory,
-    /// The number of motors is 0.
+    /// The number of motors is 0, or the profile names a motor that there is not.
     NoMotors,
     /// The plan is damaged.
     Plan(Damaged),
@@ -94,7 +94,9 @@ impl core::fmt::Display for Refused {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Refused::Memory => f.write_str("the memory does not have the sizes of the plan"),
-            Refused::NoMotors => f.write_str("the number of motors is 0"),
+            Refused::NoMotors => f.write_str(
+                "the number of motors is 0, or the profile names a motor that there is not",
+            ),
             Refused::Plan(damaged) => damaged.fmt(f),
             Refused::Geometry => f.write_str(
                 "the geometry does not tell roll, pitch, yaw and thrust of all motors apart",
@@ -123,14 +125,19 @@ impl Plan<'_> {
         require(
             self.inputs.iter().all(|input| {
                 let channel = self.channels.get(input.channel);
-                channel.is_some_and(|channel| channel.in_bins == input.statistic.is_of_bins())
+                channel.is_some_and(|channel| {
+                    channel.in_bins == input.statistic.is_of_bins()
+                        && (!channel.exponential || input.statistic.is_of_weights())
+                })
             }),
             "inputs of the profile",
         )?;
         require(
             self.channels.iter().all(|channel| {
+                let is_signal = |signal: usize| signal < self.signals as usize;
                 let is_known = match channel.observed {
-                    Observed::Named(signal) => signal < self.signals as usize,
+                    Observed::Named(signal) => is_signal(signal),
+                    Observed::Difference { a, b, .. } => is_signal(a) && is_signal(b),
                     Observed::Effort(axis) => axis < ROLL_PITCH_YAW_THRUST,
                     _ => true,
                 };
@@ -209,17 +216,15 @@ impl<'a> Monitor<'a> {
     /// A monitor of a new flight, with as many motors as the memory holds.
     ///
     /// # Errors
-    /// The memory does not have the sizes of the plan, the number of motors is 0, or the plan is damaged.
+    /// The memory does not have the sizes of the plan, motors are missing, or the plan is damaged.
     #[doc(hidden)] // For the C interface. Rust uses `Storage::monitor` or `OwnedMemory::monitor`.
     pub fn new(plan: &'a Plan<'a>, memory: Memory<'a>) -> Result<Monitor<'a>, Refused> {
         plan.check().map_err(Refused::Plan)?;
-        if memory.motors.is_empty() {
+        if memory.motors.len() < motors_needed(plan.channels) {
             return Err(Refused::NoMotors);
         }
         let monitor = Monitor::divide(plan, memory).ok_or(Refused::Memory)?;
-        for (seen, channel) in monitor.seen.iter_mut().zip(plan.channels) {
-            seen.restart(channel.window_s);
-        }
+        restart(plan.channels, monitor.seen);
         let window_s = plan.settings.elevated_risk.window_s;
         monitor.risks.restart(window_s);
         monitor.motors.fill(Motor::UNKNOWN);

@@ -26,7 +26,12 @@ verdict:
   fail: {risk: 80}
 ";
 
-const SIGNALS: [(&str, &str); 2] = [("battery_v", "V"), ("battery_remaining_pct", "%")];
+const SIGNALS: [(&str, &str); 4] = [
+    ("battery_v", "V"),
+    ("battery_remaining_pct", "%"),
+    ("roll_des_deg", "deg"),
+    ("roll_deg", "deg"),
+];
 
 fn rules(text: &str) -> Model {
     fuzzy::yaml::parse(text).unwrap().model
@@ -89,6 +94,30 @@ fn what_does_not_fit_is_told_at_its_place() {
         ("battery_remaining_pct", "battery_v"),
         ("battery_remaining_pct", "baterry_v"),
         ("battery_remaining_pct", "coffee_level"),
+        (
+            "{last: battery_remaining_pct}",
+            "{last: {difference: [battery_remaining_pct, battery_v]}}",
+        ),
+        (
+            "{last: battery_remaining_pct}",
+            "{last: {difference: [tilt_deg, tilt]}}",
+        ),
+        (
+            "{last: battery_remaining_pct}",
+            "{last: {difference: [roll_des_deg, roll_deg]}}",
+        ),
+        (
+            "{last: battery_remaining_pct}",
+            "{last: {difference: [roll_des_deg, roll_degs]}}",
+        ),
+        (
+            "{last: battery_remaining_pct}",
+            "{share_above: 5, of: {difference: [roll_des_deg, roll_deg]}}",
+        ),
+        (
+            "{last: battery_remaining_pct}",
+            "{rate: battery_remaining_pct}",
+        ),
         ("range: [0, 0.5]", "range: [0, 50]"),
     ];
     let shown: Vec<String> = cases

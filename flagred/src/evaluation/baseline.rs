@@ -62,6 +62,7 @@ impl Baseline {
             motors,
             signal,
             window_s,
+            exponential: false,
         };
         let of_motors = |statistic, motors, signal| over(WINDOW_S, statistic, motors, signal);
         let of_each = |statistic, signal| over(SHORT_WINDOW_S, statistic, Motors::Pooled, signal);
@@ -183,10 +184,8 @@ impl<'a> BaselineObserver<'a> {
         let places = baselines
             .iter()
             .map(|baseline| {
-                let is_there = match &baseline.source.signal {
-                    Signal::Named(name) => names.contains(&name.as_str()),
-                    _ => true,
-                };
+                let mut carried = baseline.source.signal.carried();
+                let is_there = carried.all(|name| names.contains(&name));
                 let sources = match baseline.per_motor {
                     Some(_) => &mut apart,
                     None => &mut pooled,

@@ -154,7 +154,7 @@ inputs:
     fn only_limits_of_motors_are_about_a_motor() {
         let estimator = shipped::flagred();
         let plan = estimator.plan().unwrap();
-        let about = (0..6).map(|input| is_of_limits((plan.channels, plan.inputs), input));
+        let about = (0..6).map(|input| is_of_limits((plan.channels, plan.inputs), input, 0));
         assert_eq!(
             about.collect::<Vec<_>>(),
             [false, false, false, false, false, true]

@@ -7,6 +7,7 @@ use fuzzy::{
 use super::*;
 use crate::{
     accumulator::AccumulatorSettings,
+    board::{OwnedMemory, Refused},
     gap::GapSettings,
     profile::{ProfileInput, Sampling},
     source::{Motors, Signal, Source, Statistic},
@@ -65,6 +66,7 @@ fn profile() -> Profile {
         motors: Motors::Pooled,
         signal: Signal::named(signal),
         window_s: 2.0,
+        exponential: false,
     };
     Profile {
         name: "test".into(),
@@ -326,4 +328,25 @@ fn what_a_flight_lacks_is_told_when_the_monitor_is_made() {
         )
         .is_ok()
     );
+}
+
+#[test]
+fn a_motor_that_a_craft_does_not_have_is_told_when_the_monitor_is_made() {
+    let mut profile = profile();
+    profile.inputs[0].source.motors = Motors::One(4);
+    let estimator = Estimator::new(&profile, &rules(false)).unwrap();
+    let refused = Monitor::new(&estimator, Craft::new(4)).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the profile needs motor 5, and the flight has 4 motors"
+    );
+    assert!(Monitor::new(&estimator, Craft::new(5)).is_ok());
+
+    let plan = estimator.plan().unwrap();
+    let on_board = |motors| {
+        let mut memory = OwnedMemory::new(&plan, motors);
+        memory.monitor(&plan).map(|_| ())
+    };
+    assert_eq!(on_board(4), Err(Refused::NoMotors));
+    assert_eq!(on_board(5), Ok(()));
 }

@@ -71,7 +71,7 @@ pub struct Profile {
 /// use flagred::source::{Motors, Signal, Source, Statistic};
 ///
 /// let text = "flagred: 1\nname: windy\nrules: my.yaml\ninputs: {wind: {last: wind_m_s}}";
-/// let source = Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 2.0 };
+/// let source = Source { statistic: Statistic::Last, motors: Motors::Pooled, signal: Signal::named("wind_m_s"), window_s: 2.0, exponential: false };
 /// assert_eq!(text.parse::<Profile>()?.inputs, [ProfileInput { name: "wind".into(), source }]);
 /// # Ok::<(), fuzzy::diagnostic::Findings>(())
 /// ```
@@ -85,14 +85,13 @@ pub struct ProfileInput {
 
 impl Profile {
     /// The names of the signals beside the motors that it needs, each once.
-    ///
     pub fn signals(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         for input in &self.inputs {
-            if let crate::source::Signal::Named(name) = &input.source.signal
-                && !names.contains(&name.as_str())
-            {
-                names.push(name);
+            for name in input.source.signal.carried() {
+                if !names.contains(&name) {
+                    names.push(name);
+                }
             }
         }
         names

@@ -67,11 +67,11 @@ impl Alert {
     }
 
     /// Sets the cause of the finding; a motor is named only where motors near a limit are the cause.
-    pub(crate) fn explain(&mut self, cause: Option<Cause>, is_of_limits: bool) {
+    pub(crate) fn explain(&mut self, cause: Option<Cause>, is_of_limits: impl Fn(usize) -> bool) {
         self.asks_why = false;
         if let Some(finding) = &mut self.finding {
             finding.cause = cause;
-            finding.motor = finding.motor.filter(|_| is_of_limits);
+            finding.motor = finding.motor.filter(|found| is_of_limits(found.motor));
         }
     }
 

@@ -15,7 +15,7 @@ const STRENGTHS: [f64; 7] = [1.0, 0.9, 0.75, 0.5, 0.25, 0.1, 0.01];
 ///
 /// Where terms are a partition, several consequents together lie between these values. In general they can go a
 /// little beyond. The value where no rule fires counts too. `None` where the model does not compile, has no such output or
-/// no rule for it, and where values have no bound of this kind: of linear terms, and of the weighted sum.
+/// no rule for it, and where values have no bound of this kind: of linear terms, of the weighted sum, and of Tsukamoto's places.
 ///
 /// # Example: the centroid of the last term is not the end of the range
 /// ```
@@ -35,7 +35,7 @@ const STRENGTHS: [f64; 7] = [1.0, 0.9, 0.75, 0.5, 0.25, 0.1, 0.01];
 #[must_use]
 pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
     let found = model.outputs.iter().find(|o| o.variable.name == output)?;
-    if found.defuzzifier == Defuzzifier::WeightedSum {
+    if let Defuzzifier::WeightedSum | Defuzzifier::Tsukamoto = found.defuzzifier {
         return None;
     }
     let concluded = |term: &str| {

@@ -21,7 +21,7 @@ use crate::{
         Model, NoRuleFires, Variable,
         document::{Spans, VariableSpans},
     },
-    rule::{Condition, Consequent, Name, Rule},
+    rule::{Condition, Consequent, Rule},
 };
 
 /// The most boxes that are listed; the others are counted.
@@ -472,10 +472,7 @@ fn missing_rule(antecedents: &[super::Antecedent], output: &str) -> String {
             Condition::And(parts)
         }
     };
-    let consequent = Consequent {
-        output: Name::from(output),
-        term: Name::from("?"),
-    };
+    let consequent = Consequent::is_hedged(output, &[], "?");
     let rule = Rule {
         condition,
         consequents: Vec::from([consequent]),

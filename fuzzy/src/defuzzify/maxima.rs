@@ -1,4 +1,4 @@
-//! The maxima of an aggregated set.
+//! The maxima of an aggregated set, from its pieces.
 
 use super::piece::{Piece, root};
 use crate::model::Defuzzifier;
@@ -13,8 +13,12 @@ pub(crate) struct Highest(pub(crate) f64);
 
 impl Highest {
     pub(crate) fn see(&mut self, piece: &Piece<'_>) {
-        let inner = peak(piece).map_or(0.0, |(_, degree)| degree);
-        self.0 = self.0.max(piece.left).max(piece.right).max(inner);
+        self.0 = self.0.max(piece.left).max(piece.right);
+        let mut highest = self.0;
+        peaks(piece, self.0, &mut |_, degree| {
+            highest = highest.max(degree)
+        });
+        self.0 = highest;
     }
 }
 
@@ -24,10 +28,23 @@ pub(crate) struct Maxima {
     least_degree: f64,
     smallest: Option<f64>,
     largest: f64,
+    /// The length of all plateaus, and the mean of the values on them.
     length: f64,
-    moment: f64,
+    mean_of_plateaus: f64,
+    /// The number of all points, and their mean.
     points: f64,
-    sum: f64,
+    mean_of_points: f64,
+    /// The end of the piece before.
+    before: End,
+}
+
+/// The end of a piece.
+#[derive(Debug, Default, Clone, Copy)]
+struct End {
+    x: f64,
+    degree: f64,
+    /// Whether the piece rises towards it.
+    rises: bool,
 }
 
 impl Maxima {
@@ -39,68 +56,155 @@ impl Maxima {
     }
 
     pub(crate) fn see(&mut self, piece: &Piece<'_>) {
-        let least = self.least_degree;
-        let high = |degree: f64| degree >= least;
-        let middle = 0.5 * (piece.from + piece.to);
-        let flat = piece.curve.is_none_or(|curve| high(curve(0.5)));
+        let high = |degree: f64| degree >= self.least_degree;
         let (left, right) = (high(piece.left), high(piece.right));
-        if left && right && flat {
-            let width = piece.to - piece.from;
-            self.point(piece.from);
+        let flat = piece
+            .curve
+            .is_none_or(|curve| [0.25, 0.5, 0.75].into_iter().all(|part| high(curve(part))));
+        let is_plateau = left && right && flat;
+        let (mut rises_first, mut rises_last) =
+            (piece.left < piece.right, piece.left < piece.right);
+        let mut inside: Option<(f64, f64, f64)> = None;
+        if !is_plateau {
+            let least = self.least_degree;
+            let ends = peaks(piece, least, &mut |x, degree| {
+                if degree >= least {
+                    let (first, last, count) = inside.unwrap_or((x, x, 0.0));
+                    inside = Some((first.min(x), last.max(x), count + 1.0));
+                }
+            });
+            (rises_first, rises_last) = ends.unwrap_or((rises_first, rises_last));
+        }
+        // Between two pieces that meet is a maximum where the set rises to it and falls from it; at a step, on the higher side.
+        let before = self.before;
+        let meet = before.x == piece.from;
+        let falls = !is_plateau && !rises_first;
+        let step = libm::fabs(before.degree - piece.left) > PLATEAU * before.degree;
+        if meet && !step {
+            if before.rises && falls && left {
+                self.point(piece.from);
+            }
+        } else {
+            self.close(meet && before.degree < piece.left);
+            if falls && left && (!meet || before.degree < piece.left) {
+                self.point(piece.from);
+            }
+        }
+        let width = piece.to - piece.from;
+        if is_plateau && width > 0.0 {
+            self.smallest = self.smallest.or(Some(piece.from));
             self.largest = piece.to;
             self.length += width;
-            self.moment += width * middle;
-            return;
+            // Sums of lengths times values are no numbers where the range is very wide or narrow.
+            let middle = piece.from + 0.5 * width;
+            self.mean_of_plateaus += (middle - self.mean_of_plateaus) * (width / self.length);
         }
-        if left {
-            self.point(piece.from);
+        if let Some((first, last, count)) = inside {
+            self.point(first);
+            if count > 1.0 {
+                self.point(last);
+            }
         }
-        if let Some((x, degree)) = peak(piece)
-            && high(degree)
-        {
-            self.point(x);
+        self.before = End {
+            x: piece.to,
+            degree: piece.right,
+            rises: !is_plateau && rises_last && right,
+        };
+    }
+
+    /// Counts the end of the piece before, unless the set goes on higher there.
+    fn close(&mut self, goes_on_higher: bool) {
+        if self.before.rises && !goes_on_higher {
+            self.point(self.before.x);
         }
-        if right {
-            self.point(piece.to);
-        }
+        self.before.rises = false;
     }
 
     fn point(&mut self, x: f64) {
-        if self.smallest.is_some() && x == self.largest {
-            return;
-        }
         self.smallest = self.smallest.or(Some(x));
         self.largest = x;
         self.points += 1.0;
-        self.sum += x;
+        self.mean_of_points += (x - self.mean_of_points) / self.points;
     }
 
     /// The value; `None` of a set that is 0 everywhere.
-    pub(crate) fn value(&self, defuzzifier: Defuzzifier) -> Option<f64> {
+    pub(crate) fn value(mut self, defuzzifier: Defuzzifier) -> Option<f64> {
+        self.close(false);
         let smallest = self.smallest?;
         Some(match defuzzifier {
             Defuzzifier::SmallestOfMaxima => smallest,
             Defuzzifier::LargestOfMaxima => self.largest,
-            _ if self.length > 0.0 => self.moment / self.length,
-            _ => self.sum / self.points,
+            _ if self.length > 0.0 => self.mean_of_plateaus,
+            _ => self.mean_of_points,
         })
     }
 }
 
-/// The maximum inside a curve that rises from its beginning and falls to its end, with its degree.
-fn peak(piece: &Piece<'_>) -> Option<(f64, f64)> {
+/// The windows of a piece in which its slope is looked at.
+const WINDOWS: usize = 8;
+
+/// Calls `visit` with each maximum inside a curve, and its degree; parts of the curve far below `above` are left out. Returns
+/// whether the curve rises at its beginning and towards its end; `None` of a straight piece.
+fn peaks(piece: &Piece<'_>, above: f64, visit: &mut dyn FnMut(f64, f64)) -> Option<(bool, bool)> {
     let curve = piece.curve?;
-    // The derivative by central differences of sixth order.
-    let step = 0.02;
-    let derivative = |part: f64| {
-        let difference = |k: f64| curve(part + k * step) - curve(part - k * step);
-        45.0 * difference(1.0) - 9.0 * difference(2.0) + difference(3.0)
+    let mut found = |part: f64| {
+        visit(piece.from + (piece.to - piece.from) * part, curve(part));
     };
-    let (a, b) = (3.0 * step, 1.0 - 3.0 * step);
-    if derivative(a) > 0.0 && derivative(b) < 0.0 {
-        let part = root(a, b, derivative);
-        Some((piece.from + (piece.to - piece.from) * part, curve(part)))
-    } else {
-        None
+    let half = 0.5 / WINDOWS as f64;
+    let (mut first, mut last) = (0.0, 0.0);
+    for window in 0..WINDOWS {
+        let middle = (2 * window + 1) as f64 * half;
+        let slopes = Slopes::new(|t| curve(middle + half * t));
+        let (left, right) = (slopes.at(-1.0), slopes.at(1.0));
+        if window == 0 {
+            first = left;
+        } else if last > 0.0 && left <= 0.0 {
+            found(middle - half);
+        }
+        if left > 0.0 && right < 0.0 && slopes.highest > 0.9 * above {
+            found(middle + half * root(-1.0, 1.0, |t| slopes.at(t)));
+        }
+        last = right;
+    }
+    Some((first > 0.0, last > 0.0))
+}
+
+/// The slope of a smooth function on [-1, 1]: that of its interpolation at Chebyshev's nodes.
+struct Slopes {
+    nodes: [f64; Slopes::NODES],
+    /// Newton's divided differences.
+    differences: [f64; Slopes::NODES],
+    highest: f64,
+}
+
+impl Slopes {
+    const NODES: usize = 9;
+
+    fn new(f: impl Fn(f64) -> f64) -> Self {
+        let step = core::f64::consts::PI / (Self::NODES - 1) as f64;
+        let nodes = core::array::from_fn(|i| -libm::cos(i as f64 * step));
+        let mut differences = nodes.map(f);
+        let highest = differences.iter().fold(0.0, |most: f64, y| most.max(*y));
+        for order in 1..Self::NODES {
+            for i in (order..Self::NODES).rev() {
+                differences[i] =
+                    (differences[i] - differences[i - 1]) / (nodes[i] - nodes[i - order]);
+            }
+        }
+        Slopes {
+            nodes,
+            differences,
+            highest,
+        }
+    }
+
+    /// The derivative at `t`, by Horner's rule for Newton's form.
+    fn at(&self, t: f64) -> f64 {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for (node, difference) in self.nodes.iter().zip(&self.differences).rev() {
+            slope = value + slope * (t - node);
+            value = difference + value * (t - node);
+        }
+        slope
     }
 }

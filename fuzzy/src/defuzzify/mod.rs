@@ -2,13 +2,13 @@
 
 use alloc::vec::Vec;
 
-use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Sampling};
+use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Sampling, Term};
 use crate::table::Moment;
 use crate::table::operators::{larger, smaller};
 use curves::Curves;
 use maxima::{Highest, Maxima};
 pub(crate) use partition::Partition;
-use piece::{Integrals, Piece};
+use piece::{Integrals, Piece, unit};
 use polyline::{Polylines, Workspace};
 use weighted::Consequents;
 
@@ -77,14 +77,16 @@ pub(crate) enum Method {
     Moments(Vec<Moment>),
     /// Takagi-Sugeno.
     Weighted(Consequents),
+    /// Tsukamoto, with monotone terms.
+    Places(Vec<Term>),
 }
 
 impl Merging {
     pub(crate) fn of(defuzzifier: Defuzzifier, operators: Operators) -> Self {
         use Aggregation::{BoundedSum, Maximum, Sum};
-        let weighted = defuzzifier.is_weighted();
         match (operators.aggregation, operators.implication) {
-            _ if weighted => Merging::Sum,
+            _ if defuzzifier.takes_numbers() => Merging::Sum,
+            _ if defuzzifier == Defuzzifier::Tsukamoto => Merging::Apart,
             (Maximum, _) => Merging::Largest,
             (Sum | BoundedSum, Implication::Product) => Merging::Sum,
             _ => Merging::Apart,
@@ -93,12 +95,17 @@ impl Merging {
 }
 
 impl Defuzzifier {
-    /// Whether it takes Takagi-Sugeno consequents rather than fuzzy sets.
-    pub(crate) fn is_weighted(self) -> bool {
+    /// Whether its terms are numbers and functions, as Takagi-Sugeno consequents are, rather than fuzzy sets.
+    pub(crate) fn takes_numbers(self) -> bool {
         matches!(
             self,
             Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
         )
+    }
+
+    /// Whether it weighs numbers, one for each rule: Takagi-Sugeno or Tsukamoto.
+    pub(crate) fn is_weighted(self) -> bool {
+        self.takes_numbers() || self == Defuzzifier::Tsukamoto
     }
 }
 
@@ -134,7 +141,13 @@ impl Defuzzify {
                     Some(Method::Moments(compiled.moments(terms)))
                 }
                 (Method::Lines(lines), Implication::Minimum, Aggregation::Maximum) => {
-                    Partition::new(lines, terms, compiled.middle()).map(Method::Partition)
+                    Partition::new(
+                        lines,
+                        terms,
+                        compiled.middle(),
+                        unit(compiled.high - compiled.low),
+                    )
+                    .map(Method::Partition)
                 }
                 _ => None,
             };
@@ -143,12 +156,8 @@ impl Defuzzify {
         compiled
     }
 
-    /// Compiles a Takagi-Sugeno output.
-    pub(crate) fn weighted(
-        output: &Output,
-        operators: Operators,
-        consequents: Consequents,
-    ) -> Self {
+    /// Compiles a Takagi-Sugeno or Tsukamoto output.
+    pub(crate) fn weighted(output: &Output, operators: Operators, method: Method) -> Self {
         Defuzzify {
             low: output.variable.low,
             high: output.variable.high,
@@ -157,7 +166,7 @@ impl Defuzzify {
                 implication: operators.implication,
                 aggregation: operators.aggregation,
             },
-            method: Method::Weighted(consequents),
+            method,
         }
     }
 
@@ -212,7 +221,7 @@ impl Defuzzify {
             Method::Curves(curves) | Method::Sampled(_, curves) => curves.is_empty(term),
             Method::Partition(partition) => partition.is_empty(term),
             Method::Moments(moments) => moments.get(term).is_none_or(|m| m.area <= 0.0),
-            Method::Weighted(_) => false,
+            Method::Weighted(_) | Method::Places(_) => false,
         }
     }
 
@@ -227,7 +236,9 @@ impl Defuzzify {
                 })
             }
             Method::Lines(_) | Method::Curves(_) => self.exact(strengths, workspace),
-            Method::Partition(_) | Method::Moments(_) | Method::Weighted(_) => None,
+            Method::Partition(_) | Method::Moments(_) | Method::Weighted(_) | Method::Places(_) => {
+                None
+            }
         }?;
         Some(larger(self.low, smaller(self.high, value)))
     }
@@ -246,7 +257,8 @@ impl Defuzzify {
             Defuzzifier::Bisector => {
                 let mut whole = self.integrals();
                 self.pieces(strengths, workspace, &mut |piece| whole.add(piece));
-                let half = 0.5 * whole.area;
+                let unit = unit(self.high - self.low);
+                let half = 0.5 * whole.area * unit;
                 let mut sum = 0.0;
                 let mut bisector = None;
                 self.pieces(strengths, workspace, &mut |piece| {
@@ -274,7 +286,7 @@ impl Defuzzify {
     }
 
     fn integrals(&self) -> Integrals {
-        Integrals::about(self.middle())
+        Integrals::about(self.middle(), unit(self.high - self.low))
     }
 
     fn pieces(
@@ -289,7 +301,11 @@ impl Defuzzify {
             Method::Partition(_)
             | Method::Sampled(..)
             | Method::Moments(_)
-            | Method::Weighted(_) => {}
+            | Method::Weighted(_)
+            | Method::Places(_) => {}
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

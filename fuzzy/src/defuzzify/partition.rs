@@ -17,7 +17,7 @@ pub(crate) struct Partition {
 
 impl Partition {
     /// `None` where the terms are no partition.
-    pub(crate) fn new(lines: &Polylines, terms: usize, origin: f64) -> Option<Self> {
+    pub(crate) fn new(lines: &Polylines, terms: usize, origin: f64, unit: f64) -> Option<Self> {
         // A term that is 0 all over the range comes last.
         let mut middles = vec![f64::INFINITY; terms];
         for (from, to, alive) in lines.intervals() {
@@ -43,7 +43,8 @@ impl Partition {
             ranks,
         };
         for (from, to, alive) in lines.intervals() {
-            let (w, m) = (to - from, from + 0.5 * (to - from) - origin);
+            let (length, m) = (to - from, from + 0.5 * (to - from) - origin);
+            let w = length / unit;
             let (mut falling, mut rising) = (None, None);
             for line in alive {
                 let rank = partition.ranks[line.term];
@@ -68,8 +69,8 @@ impl Partition {
                 area[0][lane] += w;
                 area[1][lane] -= 0.5 * w;
                 moment[0][lane] += m * w;
-                moment[1][lane] += w * (0.25 * side * w - 0.5 * m);
-                moment[2][lane] -= side * w * w / 6.0;
+                moment[1][lane] += w * (0.25 * side * length - 0.5 * m);
+                moment[2][lane] -= side * length * w / 6.0;
             }
             match (falling, rising, alive.len()) {
                 (Some(left), Some(right), 2) if right == left + 1 => {
@@ -205,7 +206,7 @@ mod tests {
             let count = variable.terms.len();
             let origin = 0.5 * (variable.low + variable.high);
             let strengths = &strengths[..count];
-            let partition = Partition::new(&lines, count, origin).unwrap();
+            let partition = Partition::new(&lines, count, origin, 1.0).unwrap();
             let mut ranked = vec![0.0; partition.strengths()];
             for (strength, rank) in strengths.iter().zip(partition.ranks()) {
                 ranked[*rank] = *strength;
@@ -213,7 +214,7 @@ mod tests {
             let fast = Pair::integrals(partition.pairs(), &ranked);
             let fast = centroid(fast.area, fast.moment, origin);
             let offsets: Vec<usize> = (0..=count).collect();
-            let mut slow = Integrals::about(origin);
+            let mut slow = Integrals::about(origin, 1.0);
             let joint = Joint {
                 implication: Implication::Minimum,
                 aggregation: Aggregation::Maximum,

@@ -24,14 +24,26 @@ pub(crate) struct Integrals {
     pub(crate) moment: f64,
     /// The origin of the moment: the middle of the range, against cancellation.
     pub(crate) origin: f64,
+    /// Area and moment are in this unit of length, see [`unit`].
+    unit: f64,
+}
+
+/// The unit of length of areas over a range of this width. The area times a moment's arm is a width squared, which is no
+/// number where a range is very wide or narrow. The unit is a power of two, so that it changes no digit, and 1 elsewhere.
+pub(crate) fn unit(width: f64) -> f64 {
+    if (1e-100..1e100).contains(&width) {
+        return 1.0;
+    }
+    f64::from_bits(width.to_bits() & f64::INFINITY.to_bits())
 }
 
 impl Integrals {
-    pub(crate) fn about(origin: f64) -> Self {
+    pub(crate) fn about(origin: f64, unit: f64) -> Self {
         Integrals {
             area: 0.0,
             moment: 0.0,
             origin,
+            unit,
         }
     }
 
@@ -39,18 +51,19 @@ impl Integrals {
     /// `moment = d (x0 (ya + yb) / 2 + d (ya + 2 yb) / 6)`; a curve is integrated to the last digits.
     pub(crate) fn add(&mut self, piece: &Piece<'_>) {
         let width = piece.to - piece.from;
+        let units = width / self.unit;
         if let Some(curve) = piece.curve {
-            let known = if width > 0.0 { self.area / width } else { 0.0 };
+            let known = if units > 0.0 { self.area / units } else { 0.0 };
             let (mean, moment) = integrate(curve, 1.0, known);
-            self.area += width * mean;
-            self.moment += width * ((piece.from - self.origin) * mean + width * moment);
+            self.area += units * mean;
+            self.moment += units * ((piece.from - self.origin) * mean + width * moment);
             return;
         }
         let (left, right) = (piece.left, piece.right);
         let mean = 0.5 * (left + right);
-        self.area += width * mean;
+        self.area += units * mean;
         self.moment +=
-            width * ((piece.from - self.origin) * mean + width * (left + 2.0 * right) / 6.0);
+            units * ((piece.from - self.origin) * mean + width * (left + 2.0 * right) / 6.0);
     }
 
     /// The centroid; `None` where there is no area.
@@ -205,7 +218,7 @@ mod tests {
             curve: None,
             ..curve(1.0, 4.0, &f)
         };
-        let (mut straight, mut curved) = (Integrals::about(2.0), Integrals::about(2.0));
+        let (mut straight, mut curved) = (Integrals::about(2.0, 1.0), Integrals::about(2.0, 1.0));
         straight.add(&line);
         curved.add(&curve(1.0, 4.0, &f));
         assert!((straight.area - curved.area).abs() < 1e-15);
@@ -223,7 +236,7 @@ mod tests {
     #[test]
     fn smooth_curves_kinks_and_steps() {
         let area = |f: &dyn Fn(f64) -> f64| {
-            let mut integrals = Integrals::about(0.5);
+            let mut integrals = Integrals::about(0.5, 1.0);
             integrals.add(&curve(0.0, 1.0, f));
             (integrals.area, integrals.centroid().unwrap())
         };

@@ -40,7 +40,7 @@ pub fn variables_svg(model: &Model, curves: &[Slice]) -> String {
     for (i, output) in model.outputs.iter().enumerate() {
         let frame = frame(model.inputs.len() + i, FRAME);
         title(&mut sheet, &frame, &heading(&output.variable));
-        if output.defuzzifier.is_weighted() {
+        if output.defuzzifier.takes_numbers() {
             let numbers: Vec<Number> = numbers(output);
             sticks(&mut sheet, &frame, &output.variable, &numbers);
         } else {

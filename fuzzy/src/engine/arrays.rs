@@ -2,12 +2,12 @@
 
 use alloc::vec::Vec;
 
-use super::literal::{Literal, Literals};
+use super::literal::Literals;
 use super::rules::Draft;
 use super::{CompiledOutput, Input as Range};
 use crate::defuzzify::Method;
 use crate::model::{
-    Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires, Operators,
+    Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires, Operators, Term,
 };
 use crate::table::{
     Action, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge, Hedge,
@@ -89,7 +89,7 @@ impl OwnedTable {
         self.starts.extend(starts.map(|start| first_line + start));
         self.lines.extend(&literals.lines);
         for (index, literal) in &literals.curved {
-            self.curve(*index, literal);
+            self.curve(*index, &literal.term, &literal.hedges);
         }
         self.inputs.push(Input {
             low,
@@ -103,16 +103,16 @@ impl OwnedTable {
         });
     }
 
-    fn curve(&mut self, index: u32, literal: &Literal) {
+    fn curve(&mut self, index: u32, term: &Term, hedges: &[Hedge]) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
-        let (kind, parameters) = literal.term.membership_function.kind();
-        if let MembershipFunction::Piecewise { points } = &literal.term.membership_function {
+        let (kind, parameters) = term.membership_function.kind();
+        if let MembershipFunction::Piecewise { points } = &term.membership_function {
             self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
         }
-        self.hedges.extend(&literal.hedges);
+        self.hedges.extend(hedges);
         self.curves.push(Curve {
             parameters,
-            height: literal.term.height,
+            height: term.height,
             kind,
             literal: index,
             first_point,
@@ -133,6 +133,16 @@ impl OwnedTable {
                 extend(&mut self.pairs, partition.pairs()),
             ),
             Method::Moments(moments) => (ClosedForm::MOMENTS, extend(&mut self.moments, moments)),
+            Method::Places(terms) => {
+                let first = self.curves.len() as u32;
+                let counts = output.offsets.iter().zip(output.offsets.iter().skip(1));
+                for (term, (start, end)) in terms.iter().zip(counts) {
+                    for _ in *start..*end {
+                        self.curve(0, term, &[]);
+                    }
+                }
+                (ClosedForm::TSUKAMOTO, (first, self.curves.len() as u32))
+            }
             Method::Weighted(weighted) => {
                 let (first, _) = extend(&mut self.coefficients, &weighted.coefficients);
                 let mut consequents = weighted.consequents.clone();

@@ -9,10 +9,11 @@ use super::literal::{Literal, Literals};
 use super::rules::Draft;
 use super::{CompiledOutput, Engine, Input, NamedOutput, Stage};
 use crate::defuzzify::weighted::Consequents;
-use crate::defuzzify::{Defuzzify, Merging};
+use crate::defuzzify::{Defuzzify, Merging, Method};
 use crate::diagnostic::Findings;
 use crate::model::{
-    MembershipFunction, Model, NoRuleFires, Output, Term, Variable, chain::stages, document::Spans,
+    Defuzzifier, MembershipFunction, Model, NoRuleFires, Output, Term, Variable, chain::stages,
+    document::Spans,
 };
 use crate::rule::{Condition, Hedge, Proposition};
 use crate::table::{Action, Op, Step};
@@ -140,7 +141,8 @@ impl Compiler<'_> {
             let rule = &rule.rule;
             let mut steps = Vec::new();
             self.condition(&rule.condition, &mut steps);
-            let mut actions = Vec::new();
+            // Consequents with the same hedges share a draft.
+            let mut by_hedges: BTreeMap<Vec<Hedge>, Vec<Action>> = BTreeMap::new();
             for consequent in &rule.consequents {
                 let name = &consequent.output.text;
                 let outputs = model.outputs.iter();
@@ -149,19 +151,27 @@ impl Compiler<'_> {
                     continue;
                 };
                 let term = position(&output.variable.terms, &consequent.term.text);
+                let hedges: Vec<Hedge> = consequent.hedges.iter().rev().copied().collect();
+                let is_plain = hedges.is_empty();
+                let actions = by_hedges.entry(hedges).or_default();
                 actions.extend(term.map(|term| Action {
-                    weight: rule.weight,
+                    weight: if is_plain { rule.weight } else { 1.0 },
                     strength: term as u32,
                     output: number,
                     rule: index as u32,
                     sums: 0,
                 }));
             }
-            drafts.push(Draft {
-                literals: plain(&steps, &inputs_of),
-                steps,
-                actions,
-            });
+            for (hedges, actions) in by_hedges {
+                let is_plain = hedges.is_empty();
+                drafts.push(Draft {
+                    literals: plain(&steps, &inputs_of).filter(|_| is_plain),
+                    steps: steps.clone(),
+                    weight: if is_plain { 1.0 } else { rule.weight },
+                    hedges,
+                    actions,
+                });
+            }
         }
         let content = |draft: &Draft| {
             let actions = draft.actions.iter();
@@ -170,7 +180,13 @@ impl Compiler<'_> {
                 .collect::<Vec<_>>()
         };
         drafts.sort_by_cached_key(|draft| {
-            (draft.literals.clone(), draft.steps.clone(), content(draft))
+            let hedged = (draft.hedges.clone(), draft.weight.to_bits());
+            (
+                draft.literals.clone(),
+                draft.steps.clone(),
+                hedged,
+                content(draft),
+            )
         });
         drafts
     }
@@ -319,12 +335,16 @@ impl Compiler<'_> {
         if !output.defuzzifier.is_weighted() {
             return Defuzzify::fuzzy(output, operators);
         }
+        if output.defuzzifier == Defuzzifier::Tsukamoto {
+            let terms = output.variable.terms.clone();
+            return Defuzzify::weighted(output, operators, Method::Places(terms));
+        }
         let input = |name: &str| self.model.inputs.iter().position(|v| v.name == name);
         let mut consequents = Consequents::default();
         for term in &output.variable.terms {
             consequents.push(&term.membership_function, input);
         }
-        Defuzzify::weighted(output, operators, consequents)
+        Defuzzify::weighted(output, operators, Method::Weighted(consequents))
     }
 }
 

@@ -10,8 +10,11 @@ use super::{
     Engine, EvaluateError, Outcome, State,
     operators::{larger, smaller},
 };
-use crate::model::{Aggregation, MembershipFunction, Model, Operators, Output, Term, Variable};
+use crate::model::{
+    Aggregation, Defuzzifier, MembershipFunction, Model, Operators, Output, Term, Variable,
+};
 use crate::rule::{Condition, Proposition};
+use crate::table;
 
 /// Why an evaluation gives its values.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +70,7 @@ pub struct FiredRule {
     pub text: String,
     /// The degree of its condition.
     pub degree: f64,
-    /// The degree times the weight.
+    /// The degree times the weight; hedges of its consequents change it in [`Share::strength`].
     pub strength: f64,
 }
 
@@ -90,7 +93,7 @@ pub struct ExplainedOutput {
     pub rules: Vec<Share>,
     /// The degree of the value in each term; empty for Takagi-Sugeno outputs.
     pub terms: Vec<Degree>,
-    /// The aggregated set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno outputs.
+    /// The aggregated set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno and Tsukamoto outputs.
     pub set: Vec<(f64, f64)>,
 }
 
@@ -110,12 +113,13 @@ pub struct Share {
     /// Its firing strength.
     pub strength: f64,
     /// Its share of the result, in [0, 1]. With the maximum as aggregation, the part of the aggregated set's area where
-    /// this rule is the highest; with sums, its part of the area of all sets; in a Takagi-Sugeno output, its part of the
-    /// weights.
+    /// this rule is the highest; with sums, its part of the area of all sets; in a Takagi-Sugeno or Tsukamoto output, its
+    /// part of the weights.
     pub share: f64,
-    /// In a Takagi-Sugeno output the number that its consequent gives at these inputs.
+    /// In a Takagi-Sugeno or Tsukamoto output the number that its consequent gives at these inputs.
     pub value: Option<f64>,
-    /// The implied set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno outputs. Not serialised.
+    /// The implied set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno and
+    /// Tsukamoto outputs. Not serialised.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub implied: Vec<(f64, f64)>,
 }
@@ -335,7 +339,7 @@ fn explain_output(
                 active.push(Active {
                     rule: rule.rule,
                     term,
-                    strength: rule.strength,
+                    strength: consequent.hedged(rule.strength),
                     part: 0.0,
                 });
             }
@@ -366,7 +370,7 @@ fn explain_output(
             term: one.term.name.clone(),
             strength: one.strength,
             share: if whole > 0.0 { one.part / whole } else { 0.0 },
-            value: weighted.then(|| number(one.term, known)).flatten(),
+            value: weighted.then(|| number(output, one, known)).flatten(),
             implied: if weighted {
                 Vec::new()
             } else {
@@ -378,6 +382,7 @@ fn explain_output(
         .collect();
     rules.sort_by(|a, b| b.share.total_cmp(&a.share));
     let value = outcome.value();
+    let numbers = output.defuzzifier.takes_numbers();
     let sets = variable
         .terms
         .iter()
@@ -394,15 +399,22 @@ fn explain_output(
             .collect(),
         rules,
         terms: match value {
-            Some(value) if sets && !weighted => degrees(&variable.terms, value),
+            Some(value) if sets && !numbers => degrees(&variable.terms, value),
             _ => Vec::new(),
         },
         set,
     }
 }
 
-/// The number that a term of a Takagi-Sugeno output gives at the values of the inputs.
-fn number(term: &Term, known: &Known<'_>) -> Option<f64> {
+/// The number that a rule gives to a Takagi-Sugeno or Tsukamoto output at the values of the inputs.
+fn number(output: &Output, active: &Active<'_>, known: &Known<'_>) -> Option<f64> {
+    let (variable, term) = (&output.variable, active.term);
+    if output.defuzzifier == Defuzzifier::Tsukamoto {
+        let place = term
+            .membership_function
+            .place(smaller(1.0, active.strength / term.height));
+        return Some(table::finite(place, variable.low, variable.high));
+    }
     match &term.membership_function {
         MembershipFunction::Constant { value } => Some(*value),
         MembershipFunction::Singleton { at } => Some(*at),

@@ -4,14 +4,20 @@ use alloc::{vec, vec::Vec};
 
 use super::arrays::OwnedTable;
 use super::literal::Literals;
-use crate::table::{Action, Axis, Conjunctions, Dimension, Edge, Line, Node, Op, Program, Step};
+use crate::table::{
+    Action, Axis, Conjunctions, Dimension, Edge, Hedge, Line, Node, Op, Program, Step,
+};
 
 /// A rule with indices in place of names.
 #[derive(Debug, Clone)]
 pub(super) struct Draft {
-    /// The literals of a plain AND, ascending, each of another input; `None` of another antecedent.
+    /// The literals of a plain AND, ascending, each of another input; `None` of another antecedent, and where there are hedges.
     pub(super) literals: Option<Vec<u32>>,
     pub(super) steps: Vec<Step>,
+    /// The hedges of its consequents, in the order in which they apply.
+    pub(super) hedges: Vec<Hedge>,
+    /// What multiplies the degree before the hedges.
+    pub(super) weight: f64,
     pub(super) actions: Vec<Action>,
 }
 
@@ -31,13 +37,18 @@ impl OwnedTable {
     pub(super) fn rules(&mut self, drafts: &[Draft], inputs: &[Literals], unused: u32) {
         for draft in drafts.iter().filter(|draft| draft.literals.is_none()) {
             let (first_step, first_action) = (self.steps.len(), self.actions.len());
+            let first_hedge = self.hedges.len();
             self.steps.extend(&draft.steps);
             self.actions.extend(&draft.actions);
+            self.hedges.extend(&draft.hedges);
             self.programs.push(Program {
+                weight: draft.weight,
                 first_step: first_step as u32,
                 end_step: self.steps.len() as u32,
                 first_action: first_action as u32,
                 end_action: self.actions.len() as u32,
+                first_hedge: first_hedge as u32,
+                end_hedge: self.hedges.len() as u32,
             });
             let pushes = draft.steps.iter().filter(|step| step.op == Op::PUSH);
             self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
@@ -51,9 +62,9 @@ impl OwnedTable {
         } else {
             let mut sorted = plain;
             sorted.sort_by_key(|(literals, _)| *literals);
-            self.node(&sorted, 0);
+            let (_, most_open) = self.node(&sorted, 0);
             self.conjunctions = Conjunctions::Trie;
-            self.sizes.partial = self.edges.len() as u32 + 1;
+            self.sizes.partial = most_open.max(1);
         }
     }
 
@@ -169,8 +180,9 @@ impl OwnedTable {
         Some(())
     }
 
-    /// Adds the node of a trie for rules that share their first `depth` literals, and returns its index.
-    fn node(&mut self, rules: &[Plain<'_>], depth: usize) -> u32 {
+    /// Adds the node of a trie for rules that share their first `depth` literals. Returns its index, and the most nodes that
+    /// wait at once while it is walked: its children, of which the last is walked first, or fewer of them and those below.
+    fn node(&mut self, rules: &[Plain<'_>], depth: usize) -> (u32, u32) {
         let node = self.nodes.len();
         self.nodes.push(Node::default());
         let ended = rules
@@ -185,9 +197,11 @@ impl OwnedTable {
         let end_action = self.actions.len() as u32;
         let next = |rule: &Plain<'_>| rule.0.get(depth).copied();
         let mut children = Vec::new();
+        let mut most_open = 0;
         for group in further.chunk_by(|a, b| next(a) == next(b)) {
             if let Some(literal) = group.first().and_then(next) {
-                let node = self.node(group, depth + 1);
+                let (node, below) = self.node(group, depth + 1);
+                most_open = most_open.max(children.len() as u32 + below.max(1));
                 children.push(Edge { literal, node });
             }
         }
@@ -199,6 +213,6 @@ impl OwnedTable {
             first_action,
             end_action,
         };
-        node as u32
+        (node as u32, most_open)
     }
 }

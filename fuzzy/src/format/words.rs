@@ -40,7 +40,7 @@ pub(super) const AGGREGATIONS: [(&str, Aggregation); 4] = [
     ("sum", Aggregation::Sum),
 ];
 
-pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); 7] = [
+pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); 8] = [
     ("centroid", Defuzzifier::Centroid),
     ("bisector", Defuzzifier::Bisector),
     ("smallest_of_maxima", Defuzzifier::SmallestOfMaxima),
@@ -48,6 +48,7 @@ pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); 7] = [
     ("largest_of_maxima", Defuzzifier::LargestOfMaxima),
     ("weighted_average", Defuzzifier::WeightedAverage),
     ("weighted_sum", Defuzzifier::WeightedSum),
+    ("tsukamoto", Defuzzifier::Tsukamoto),
 ];
 
 /// The word for a value; every value has one.

@@ -5,7 +5,7 @@ use alloc::{boxed::Box, collections::BTreeMap, format, string::String, vec, vec:
 use super::{Cell, Learned, Learner, Resolution, Votes, antecedent, highest, monotone};
 use crate::{
     model::{Beaten, Rule, Variable},
-    rule::{Consequent, Name},
+    rule::Consequent,
 };
 
 /// The most antecedents that are completed or made monotone.
@@ -175,10 +175,7 @@ fn rule(
     Some(Rule {
         rule: crate::rule::Rule {
             condition: antecedent(learner, terms)?,
-            consequents: vec![Consequent {
-                output: Name::from(output.name.as_str()),
-                term: Name::from(word.as_str()),
-            }],
+            consequents: vec![Consequent::is_hedged(&output.name, &[], word)],
             weight: 1.0,
         },
         confidence: decision.confidence,

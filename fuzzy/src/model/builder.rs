@@ -234,21 +234,22 @@ impl rule::Rule {
     pub fn new(condition: Condition, output: &str, term: &str) -> Self {
         rule::Rule {
             condition,
-            consequents: Vec::from([Consequent {
-                output: output.into(),
-                term: term.into(),
-            }]),
+            consequents: Vec::from([Consequent::is_hedged(output, &[], term)]),
             weight: 1.0,
         }
     }
 
     /// Adds `AND output IS term` behind THEN.
     #[must_use]
-    pub fn then(mut self, output: &str, term: &str) -> Self {
-        self.consequents.push(Consequent {
-            output: output.into(),
-            term: term.into(),
-        });
+    pub fn then(self, output: &str, term: &str) -> Self {
+        self.then_hedged(output, &[], term)
+    }
+
+    /// Adds `AND output IS hedge* term` behind THEN.
+    #[must_use]
+    pub fn then_hedged(mut self, output: &str, hedges: &[rule::Hedge], term: &str) -> Self {
+        self.consequents
+            .push(Consequent::is_hedged(output, hedges, term));
         self
     }
 
@@ -257,6 +258,17 @@ impl rule::Rule {
     pub fn with(mut self, weight: f64) -> Self {
         self.weight = weight;
         self
+    }
+}
+
+impl Consequent {
+    /// `output IS hedge* term`.
+    pub fn is_hedged(output: &str, hedges: &[rule::Hedge], term: &str) -> Self {
+        Consequent {
+            output: output.into(),
+            hedges: hedges.to_vec(),
+            term: term.into(),
+        }
     }
 }
 

@@ -127,6 +127,8 @@ pub enum Defuzzifier {
     WeightedAverage,
     /// Takagi-Sugeno: `sum(w z)` over the rules.
     WeightedSum,
+    /// Tsukamoto: `sum(w z) / sum(w)` over the rules, with `z` the place where the monotone term of the rule has the degree `w`.
+    Tsukamoto,
 }
 
 /// Sampled integration, for parity with other programs only.

@@ -27,7 +27,7 @@ pub(super) enum Wrong<'a> {
     Name(&'static str),
     /// A hedge before the input.
     HedgeBeforeInput,
-    /// A hedge behind THEN.
+    /// A hedge behind THEN that does not belong there.
     HedgeInConsequent,
     /// A term, and a second word behind it.
     TwoWords(&'a str),
@@ -114,7 +114,7 @@ impl Mistake<'_> {
                 ))
             }
             Wrong::HedgeInConsequent => syntax(format!("`{found}` cannot stand after `THEN`"))
-                .help("hedges and `NOT` belong in the condition; here name one term of the output"),
+                .help("`NOT` and `any` belong in the condition; here name one term of the output, such as `IS low` or `IS very low`"),
             Wrong::TwoWords(second) => two_words(span, found, second),
             Wrong::OpenQuote => syntax(String::from("the quoted name is never closed"))
                 .help("add the closing quote"),

@@ -47,7 +47,7 @@ impl From<&str> for Name {
 /// use fuzzy::rule::{Consequent, Rule};
 ///
 /// let rule: Rule = "IF heat IS high THEN speed IS fast AND lamp IS on WITH 0.5".parse()?;
-/// let Consequent { output, term } = &rule.consequents[1];
+/// let Consequent { output, term, .. } = &rule.consequents[1];
 /// assert_eq!((output.text.as_str(), term.text.as_str()), ("lamp", "on"));
 /// assert_eq!(rule.weight, 0.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -86,11 +86,15 @@ pub struct Proposition {
     pub term: Option<Name>,
 }
 
-/// `output IS term` behind THEN.
+/// `output IS hedge* term` behind THEN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Consequent {
     /// The output.
     pub output: Name,
+    /// The hedges in the order written; the one nearest the term applies first. They change the firing strength: with the
+    /// degree `d` of the antecedent, the weight `w` and the hedge `h`, the term is activated with `h(w d)`. `NOT` and `any`
+    /// are none of them.
+    pub hedges: Vec<Hedge>,
     /// The term of that output.
     pub term: Name,
 }
@@ -105,6 +109,14 @@ impl Rule {
             .into_iter()
             .chain(hedges)
             .any(|keyword| keyword.eq_ignore_ascii_case(word))
+    }
+}
+
+impl Consequent {
+    /// Its firing strength, from the degree of the antecedent times the weight.
+    pub(crate) fn hedged(&self, strength: f64) -> f64 {
+        let hedges = self.hedges.iter().rev();
+        hedges.fold(strength, |strength, hedge| hedge.of(strength))
     }
 }
 

@@ -5,7 +5,7 @@
 //! any-of      = all-of { OR all-of }
 //! all-of      = condition { AND condition }
 //! condition   = NOT condition | "(" any-of ")" | name IS { hedge } name
-//! consequent  = name IS name
+//! consequent  = name IS { hedge } name
 //! ```
 //!
 //! Keywords are read in any case. `#` starts a comment that ends with its line. A name is letters, digits, `_`, `.`,
@@ -222,11 +222,21 @@ impl<'a> Source<'a> {
         let Some(rest) = keyword(rest, "IS") else {
             return wrong(rest, Wrong::NoIs("output", start));
         };
-        if hedge(rest).is_some() {
-            return wrong(rest, Wrong::HedgeInConsequent);
+        let (mut rest, mut hedges) = (rest, Vec::new());
+        while let Some((after, hedge)) = hedge(rest) {
+            if !hedge.may_conclude() {
+                return wrong(rest, Wrong::HedgeInConsequent);
+            }
+            hedges.push(hedge);
+            rest = after;
         }
         let (rest, term) = self.name(rest, "a term of the output")?;
-        Ok((rest, Consequent { output, term }))
+        let consequent = Consequent {
+            output,
+            hedges,
+            term,
+        };
+        Ok((rest, consequent))
     }
 
     fn name(&self, rest: &'a str, what: &'static str) -> Step<'a, Name> {

@@ -57,7 +57,11 @@ impl Display for Proposition {
 
 impl Display for Consequent {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "{} IS {}", self.output, self.term)
+        write!(f, "{} IS ", self.output)?;
+        for hedge in &self.hedges {
+            write!(f, "{} ", hedge.word())?;
+        }
+        self.term.fmt(f)
     }
 }
 

@@ -194,9 +194,9 @@ fn every_mistake_says_where_and_what_to_do() {
             "between the quotes",
         ),
         (
-            "IF margin IS low THEN r IS very h",
-            "very",
-            "`very` cannot stand after `THEN`",
+            "IF margin IS low THEN r IS any h",
+            "any",
+            "`any` cannot stand after `THEN`",
             "belong in the condition",
         ),
         (
@@ -335,8 +335,14 @@ pub(crate) fn any_rule() -> impl Strategy<Value = Rule> {
                 several.prop_map(Condition::Or),
             ]
         });
+    let hedge = proptest::sample::select(&Hedge::ALL[..]).prop_filter("", |h| h.may_conclude());
+    let hedges = proptest::collection::vec(hedge, 0..3);
     let consequent =
-        (any_name(), any_name()).prop_map(|(output, term)| Consequent { output, term });
+        (any_name(), hedges, any_name()).prop_map(|(output, hedges, term)| Consequent {
+            output,
+            hedges,
+            term,
+        });
     let consequents = proptest::collection::vec(consequent, 1..3);
     let weight = prop_oneof![Just(1.0), 0.0..=1.0];
     (condition, consequents, weight).prop_map(|(condition, consequents, weight)| Rule {

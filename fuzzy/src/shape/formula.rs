@@ -1,6 +1,6 @@
 //! The formulas of membership functions, each with a number: all that a table in firmware knows of a shape.
 
-use libm::{cos, exp, fabs, pow};
+use libm::{cos, exp, fabs, pow, sqrt};
 
 use super::{
     smooth::{gaussian, s_shape, sigmoid, z_shape},
@@ -35,6 +35,8 @@ impl Kind {
     pub const CONCAVE: Kind = Kind(17);
     pub const CONSTANT: Kind = Kind(18);
     pub const TRIANGLE: Kind = Kind(19);
+    pub const ARC: Kind = Kind(20);
+    pub const SEMI_ELLIPSE: Kind = Kind(21);
 
     /// The degree at `x` with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape.
     pub(crate) fn membership(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
@@ -51,9 +53,11 @@ impl Kind {
             Kind::SINGLETON => indicator(x == a),
             Kind::PIECEWISE => along(points.iter().map(|[x, y]| (*x, *y)), x),
             Kind::GAUSSIAN => gaussian(x, a, b),
-            Kind::GAUSSIAN2 if x < a => gaussian(x, a, b),
-            Kind::GAUSSIAN2 if x > c => gaussian(x, c, d),
-            Kind::GAUSSIAN2 => 1.0,
+            Kind::GAUSSIAN2 => {
+                let left = if x < a { gaussian(x, a, b) } else { 1.0 };
+                let right = if x > c { gaussian(x, c, d) } else { 1.0 };
+                left * right
+            }
             Kind::BELL => 1.0 / (1.0 + pow(fabs((x - a) / b), 2.0 * c)),
             Kind::SIGMOID => sigmoid(x, a, b),
             Kind::SIGMOID_DIFFERENCE => fabs(sigmoid(x, a, b) - sigmoid(x, c, d)),
@@ -68,6 +72,11 @@ impl Kind {
             }
             Kind::SPIKE => exp(-fabs(10.0 * (x - a) / b)),
             Kind::CONCAVE => concave(x, a, b),
+            Kind::ARC => arc(x, a, b),
+            Kind::SEMI_ELLIPSE if a < x && x < b => {
+                let t = (x - a) / (b - a);
+                2.0 * sqrt(t * (1.0 - t))
+            }
             Kind::CONSTANT => a,
             _ => 0.0,
         })
@@ -86,4 +95,13 @@ fn concave(x: f64, inflection: f64, end: f64) -> f64 {
     } else {
         1.0
     }
+}
+
+fn arc(x: f64, start: f64, end: f64) -> f64 {
+    let t = if start <= end {
+        rising(x, start, end)
+    } else {
+        falling(x, end, start)
+    };
+    sqrt(t * (2.0 - t))
 }

@@ -70,8 +70,9 @@ impl MembershipFunction {
                 slope,
             } => {
                 let reach = |level: f64| pow((1.0 - level) / level, 0.5 / slope);
-                // Closer to the middle as well: |t|^(2 slope) is rough there where the slope is low.
-                let near = (1..40).map(|halvings| width * libm::exp2(-f64::from(halvings)));
+                // Closer to the middle as well where |t|^(2 slope) has an edge there.
+                let edge = if slope < 0.75 { 40 } else { 0 };
+                let near = (1..edge).map(|halvings| width * libm::exp2(-f64::from(halvings)));
                 Smooth(
                     [
                         flank(center, -width, reach),
@@ -137,6 +138,10 @@ impl MembershipFunction {
                 end - 5.0 * (end - inflection),
                 end - 25.0 * (end - inflection),
             ]),
+            MembershipFunction::Arc { start, end } => Smooth(vec![start, end]),
+            MembershipFunction::SemiEllipse { left, right } => {
+                Smooth(vec![left, 0.5 * (left + right), right])
+            }
             MembershipFunction::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
             MembershipFunction::Linear { .. } => Smooth(vec![]),
         }

@@ -222,6 +222,71 @@ fn gaussians() {
             (INFINITY, 0.0),
         ],
     );
+    // Crossing means: the product of both halves, one deviation from each mean in the middle.
+    table(
+        MembershipFunction::Gaussian2 {
+            left_mean: 2.0,
+            left_sd: 0.5,
+            right_mean: 1.0,
+            right_sd: 0.5,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (1.0, at_two_sd),
+            (1.5, at_one_sd * at_one_sd),
+            (2.0, at_two_sd),
+            (INFINITY, 0.0),
+        ],
+    );
+}
+
+#[test]
+fn parts_of_ellipses() {
+    // By Pythagoras: 3, 4 and 5.
+    table(
+        MembershipFunction::SemiEllipse {
+            left: -5.0,
+            right: 5.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (-5.0, 0.0),
+            (-4.0, 0.6),
+            (-3.0, 0.8),
+            (0.0, 1.0),
+            (3.0, 0.8),
+            (5.0, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
+    table(
+        MembershipFunction::Arc {
+            start: 0.0,
+            end: 5.0,
+        },
+        &[
+            (NEG_INFINITY, 0.0),
+            (0.0, 0.0),
+            (1.0, 0.6),
+            (2.0, 0.8),
+            (5.0, 1.0),
+            (INFINITY, 1.0),
+        ],
+    );
+    table(
+        MembershipFunction::Arc {
+            start: 5.0,
+            end: 0.0,
+        },
+        &[
+            (NEG_INFINITY, 1.0),
+            (0.0, 1.0),
+            (3.0, 0.8),
+            (4.0, 0.6),
+            (5.0, 0.0),
+            (INFINITY, 0.0),
+        ],
+    );
 }
 
 #[test]

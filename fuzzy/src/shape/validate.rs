@@ -81,6 +81,12 @@ impl MembershipFunction {
             MembershipFunction::Concave { inflection, end } if inflection == end => {
                 Some(format!("`inflection` and `end` are both {end}"))
             }
+            MembershipFunction::Arc { start, end } if start == end => {
+                Some(format!("`start` and `end` are both {start}"))
+            }
+            MembershipFunction::SemiEllipse { left, right } if left == right => {
+                Some(format!("`left` and `right` are both {left}"))
+            }
             _ => None,
         }
     }

@@ -81,6 +81,7 @@ impl Table<'_> {
             require(
                 within(program.first_step, program.end_step, self.steps.len())
                     && within(program.first_action, program.end_action, self.actions.len())
+                    && within(program.first_hedge, program.end_hedge, self.hedges.len())
                     && self.fits_stack(program.first_step as usize..program.end_step as usize),
                 "programs",
             )?;
@@ -96,6 +97,7 @@ impl Table<'_> {
                 ClosedForm::PARTITION => self.pairs.len(),
                 ClosedForm::MOMENTS => self.moments.len(),
                 ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => self.consequents.len(),
+                ClosedForm::TSUKAMOTO => self.curves.len(),
                 _ => 0,
             };
             let of_all = self.sizes.strengths as usize;
@@ -193,10 +195,7 @@ impl Table<'_> {
                 )?;
             }
         }
-        require(
-            !self.nodes.is_empty() && self.sizes.partial as usize > self.edges.len(),
-            "nodes",
-        )
+        require(!self.nodes.is_empty() && self.sizes.partial > 0, "nodes")
     }
 
     /// The bounds in `lines` of the intervals of an input.

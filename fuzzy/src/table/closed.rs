@@ -1,7 +1,7 @@
 //! Defuzzifiers with a closed form: from firing strengths to a number by a few sums.
 
 use super::operators::smaller;
-use super::{Arrays, Output};
+use super::{Arrays, Curve, Output, Point};
 
 /// The closed form of a defuzzifier.
 #[doc(hidden)] // Exported data.
@@ -21,11 +21,14 @@ impl ClosedForm {
     /// Takagi-Sugeno, `sum(w z)`: [`Consequent`]s.
     pub const WEIGHTED_SUM: ClosedForm = ClosedForm(4);
 
-    /// Whether the consequents are fuzzy sets. Then only the ratios of firing strengths count where all are tiny.
+    /// Tsukamoto, `sum(w z) / sum(w)` with `z` where a term has the degree `w`: [`Curve`]s, one for each firing strength.
+    pub const TSUKAMOTO: ClosedForm = ClosedForm(5);
+
+    /// Whether the consequents are cut fuzzy sets. Then only the ratios of firing strengths count where all are tiny.
     pub(crate) fn is_fuzzy(self) -> bool {
         !matches!(
             self,
-            ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM
+            ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM | ClosedForm::TSUKAMOTO
         )
     }
 }
@@ -147,6 +150,10 @@ pub(super) fn closed<A: Arrays>(
             }
             sum
         }
+        ClosedForm::TSUKAMOTO => {
+            let curves = &table.curves()[range];
+            return tsukamoto(output, curves, table.points(), strengths);
+        }
         // Not clamped to the range: consequents are numbers that the author chose.
         form => {
             let consequents = &table.consequents()[range];
@@ -155,6 +162,37 @@ pub(super) fn closed<A: Arrays>(
     };
     let value = centroid(area, moment, output.origin())?;
     Some(super::larger(output.low, smaller(output.high, value)))
+}
+
+/// A place, or the end of the range on the side where it lies at infinity.
+pub(crate) fn finite(place: f64, low: f64, high: f64) -> f64 {
+    if place.is_finite() {
+        place
+    } else if place > 0.0 {
+        high
+    } else {
+        low
+    }
+}
+
+/// `sum(w z) / sum(w)` with firing strengths w; `None` where none is over 0. Not clamped to the range.
+fn tsukamoto(
+    output: &Output,
+    curves: &[Curve],
+    points: &[Point],
+    strengths: &[f64],
+) -> Option<f64> {
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (curve, &strength) in curves.iter().zip(strengths) {
+        if strength > 0.0 {
+            let points = &points[curve.first_point as usize..curve.end_point as usize];
+            let part = smaller(1.0, strength / curve.height);
+            let place = curve.kind.place(&curve.parameters, points, part);
+            sum += strength * finite(place, output.low, output.high);
+            total += strength;
+        }
+    }
+    (total > 0.0).then(|| sum / total)
 }
 
 /// `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; `None` where none is over 0.

@@ -240,11 +240,15 @@ fn fire_with<A: Arrays>(
         let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
         let degree = run(steps, degrees, table.and(), table.or(), stack);
         if degree > 0.0 {
+            let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
+            let strength = program.weight * degree;
+            let strength = hedges.iter().fold(strength, |x, hedge| hedge.of(x));
             let range = program.first_action as usize..program.end_action as usize;
-            firing.act(&table.actions()[range], degree);
+            firing.act(&table.actions()[range], strength);
         }
     }
 }
+
 #[inline(always)]
 fn fire_uniform<A: Arrays>(
     table: &A,
@@ -392,8 +396,11 @@ fn fire_trie<A: Arrays>(
         firing.act(&table.actions()[range], degree);
         for edge in &table.edges()[node.first_edge as usize..node.end_edge as usize] {
             let both = and(degree, degrees[edge.literal as usize]);
-            if both > 0.0 {
-                path[open] = Partial {
+            // In a damaged table there may be no room.
+            if both > 0.0
+                && let Some(next) = path.get_mut(open)
+            {
+                *next = Partial {
                     degree: both,
                     at: edge.node,
                 };

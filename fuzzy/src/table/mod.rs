@@ -21,8 +21,8 @@ mod rules;
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
 pub use check::Damaged;
-pub(crate) use closed::centroid;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
+pub(crate) use closed::{centroid, finite};
 pub use firing::{Partial, Strongest};
 #[cfg(test)]
 pub(crate) use input::degrees;

@@ -93,6 +93,13 @@ impl Hedge {
         Hedge::Any,
     ];
 
+    /// Whether it may stand in a conclusion: it leaves a strength of 0 at 0, so that a rule that does not fire concludes
+    /// nothing.
+    #[must_use]
+    pub fn may_conclude(self) -> bool {
+        !matches!(self, Hedge::Not | Hedge::Any)
+    }
+
     /// Its word in the rule language.
     #[must_use]
     pub fn word(self) -> &'static str {

@@ -90,11 +90,14 @@ pub struct Edge {
     pub node: u32,
 }
 
-/// A rule whose antecedent is not a plain AND.
+/// A rule whose antecedent is not a plain AND, or whose conclusion has hedges. The degree of its antecedent times `weight`,
+/// then changed by the hedges, is the degree that its actions take.
 #[doc(hidden)] // Exported data.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Program {
+    /// What multiplies the degree before the hedges; 1 where there are none, because actions have weights of their own.
+    pub weight: f64,
     /// Its span of steps.
     pub first_step: u32,
     /// The end of that span.
@@ -103,6 +106,10 @@ pub struct Program {
     pub first_action: u32,
     /// The end of that span.
     pub end_action: u32,
+    /// Its span of hedges, in the order in which they apply.
+    pub first_hedge: u32,
+    /// The end of that span.
+    pub end_hedge: u32,
 }
 
 /// A step of an antecedent, on a stack of degrees.

@@ -75,7 +75,8 @@ fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) ->
             if consequent.output.text != output.variable.name {
                 continue;
             }
-            let strength = rule.rule.weight * degree(model, values, &rule.rule.condition);
+            let degree = degree(model, values, &rule.rule.condition);
+            let strength = hedged(&consequent.hedges, rule.rule.weight * degree);
             if strength > 0.0 {
                 fired.push((
                     strength,
@@ -118,14 +119,18 @@ fn degree(model: &Model, values: &Values<'_>, condition: &Condition) -> f64 {
 
 fn proposed(values: &Values<'_>, proposition: &Proposition) -> f64 {
     let (variable, value) = values[&*proposition.variable.text].unwrap();
-    let mut x = match &proposition.term {
+    let x = match &proposition.term {
         Some(name) => {
             let term = term(&variable.terms, &name.text);
             term.height * membership(&term.membership_function, value)
         }
         None => 1.0,
     };
-    for hedge in proposition.hedges.iter().rev() {
+    hedged(&proposition.hedges, x)
+}
+
+fn hedged(hedges: &[Hedge], mut x: f64) -> f64 {
+    for hedge in hedges.iter().rev() {
         x = match hedge {
             Hedge::Not => 1.0 - x,
             Hedge::Very => x.powi(2),
@@ -190,6 +195,13 @@ fn number(
             _ => sum / total,
         };
     }
+    if output.defuzzifier == Defuzzifier::Tsukamoto {
+        let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
+        let sums = fired
+            .iter()
+            .map(|(weight, term)| weight * place(term, *weight, &output.variable));
+        return sums.sum::<f64>() / total;
+    }
     let aggregated = |x: f64| {
         let mut y = 0.0;
         for (strength, term) in fired {
@@ -252,6 +264,33 @@ fn number(
     }
 }
 
+/// Where a monotone term has a degree, by bisection; the end of the range where that is farther away than 1e6 ranges.
+fn place(term: &Term, degree: f64, variable: &Variable) -> f64 {
+    let of = |x: f64| term.height * membership(&term.membership_function, x);
+    let far = 1e6 * (variable.high - variable.low);
+    let (mut left, mut right) = (variable.low - far, variable.high + far);
+    let rises = of(left) < of(right);
+    let degree = degree.min(of(left).max(of(right)));
+    for _ in 0..200 {
+        let middle = 0.5 * (left + right);
+        // On a plateau towards the slope: a rising term first has a degree from the left, a falling one last.
+        if (of(middle) >= degree) == rises {
+            right = middle;
+        } else {
+            left = middle;
+        }
+    }
+    let place = 0.5 * (left + right);
+    if (place - variable.low).abs() > 0.9 * far {
+        return if place > variable.low {
+            variable.high
+        } else {
+            variable.low
+        };
+    }
+    place
+}
+
 fn consequent(shape: &MembershipFunction, values: &Values<'_>) -> f64 {
     match shape {
         MembershipFunction::Constant { value } | MembershipFunction::Singleton { at: value } => {
@@ -308,6 +347,8 @@ fn parameters(shape: &MembershipFunction) -> Vec<f64> {
             vec![center - width / 2.0, center, center + width / 2.0]
         }
         MembershipFunction::Concave { end, .. } => vec![end],
+        MembershipFunction::Arc { start, end } => vec![start, end],
+        MembershipFunction::SemiEllipse { left, right } => vec![left, right],
         MembershipFunction::Sigmoid { inflection, .. } => vec![inflection],
         MembershipFunction::SigmoidDifference {
             left_inflection,
@@ -390,14 +431,20 @@ fn membership(shape: &MembershipFunction, x: f64) -> f64 {
         }
         MembershipFunction::Gaussian { mean, sd } => gaussian(mean, sd),
         MembershipFunction::Gaussian2 {
-            left_mean, left_sd, ..
-        } if x < left_mean => gaussian(left_mean, left_sd),
-        MembershipFunction::Gaussian2 {
+            left_mean,
+            left_sd,
             right_mean,
             right_sd,
-            ..
-        } if x > right_mean => gaussian(right_mean, right_sd),
-        MembershipFunction::Gaussian2 { .. } => 1.0,
+        } => {
+            let mut product = 1.0;
+            if x < left_mean {
+                product *= gaussian(left_mean, left_sd);
+            }
+            if x > right_mean {
+                product *= gaussian(right_mean, right_sd);
+            }
+            product
+        }
         MembershipFunction::Bell {
             center,
             width,
@@ -436,6 +483,22 @@ fn membership(shape: &MembershipFunction, x: f64) -> f64 {
             (inflection - end) / (inflection - 2.0 * end + x)
         }
         MembershipFunction::Concave { .. } => 1.0,
+        MembershipFunction::Arc { start, end } => {
+            // The height of a circle of radius |end - start| around `end`, divided by the radius.
+            let radius = (end - start).abs();
+            let passed = (x - end) * (end - start) >= 0.0;
+            let away = if passed {
+                0.0
+            } else {
+                (x - end).abs().min(radius)
+            };
+            (radius.powi(2) - away.powi(2)).sqrt() / radius
+        }
+        MembershipFunction::SemiEllipse { left, right } => {
+            let (centre, radius) = ((left + right) / 2.0, (right - left) / 2.0);
+            let away = (x - centre).abs().min(radius);
+            (radius.powi(2) - away.powi(2)).sqrt() / radius
+        }
         MembershipFunction::Constant { value } => value,
         MembershipFunction::Linear { .. } => 0.0,
     }

@@ -183,46 +183,24 @@ macro_rules! copy {
 table::arrays!(copy!);
 
 fn channel(channel: &Channel) -> CChannel {
-    let (observed, signal) = match channel.observed {
-        Observed::Command => (0, 0),
-        Observed::Margin => (1, 0),
-        Observed::LowSide => (2, 0),
-        Observed::HighSide => (3, 0),
-        Observed::Named(signal) => (4, signal),
-        Observed::CommandLessYaw => (5, 0),
-        Observed::Effort(axis) => (6, axis),
-        Observed::CommandNoise => (7, 0),
-    };
-    let (threshold, limit) = match channel.threshold {
-        None => (0, f64::NAN),
-        Some(channel::Threshold::Below(limit)) => (1, limit),
-        Some(channel::Threshold::Above(limit)) => (2, limit),
-    };
+    let (observed, indices) = channel.observed.code();
+    let (threshold, limit) = channel::Threshold::code(channel.threshold);
     CChannel {
         window_s: channel.window_s,
         limit,
         observed,
-        signal: signal as u32,
-        motors: channel.motors as u32,
+        indices,
+        motors: channel.motors.code(),
         threshold,
         in_bins: channel.in_bins.into(),
+        exponential: channel.exponential.into(),
     }
 }
 
 fn source(input: &channel::Input) -> CSource {
-    let statistic = match input.statistic {
-        Statistic::Mean => 0,
-        Statistic::Std => 1,
-        Statistic::Rms => 2,
-        Statistic::Min => 3,
-        Statistic::Max => 4,
-        Statistic::Last => 5,
-        Statistic::ShareBelow(_) => 6,
-        Statistic::ShareAbove(_) => 7,
-        Statistic::StdLessNoise => 8,
-        Statistic::Noise => 9,
-    };
+    let (statistic, number) = input.statistic.code();
     CSource {
+        number,
         channel: input.channel as u32,
         statistic,
     }

@@ -30,6 +30,7 @@ enum Source {
     Effort,
     Noise,
     Signal(usize),
+    Difference(usize, usize),
 }
 
 /// A window of the script: channels that bring values at the same times share it.
@@ -56,6 +57,7 @@ pub(super) fn fill(
         let Some(channel) = plan.channels.get(*channel) else {
             continue;
         };
+        carried(channel, *statistic)?;
         let (x, within) = script.value(channel, *statistic, &signals);
         let index = input + 1;
         let name = names.get(input).map_or("", String::as_str);
@@ -140,10 +142,27 @@ fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
         Statistic::Noise => ("mean", format!("sqrt({read} / 2)")),
         Statistic::Min => ("lowest", read),
         Statistic::Max => ("highest", read),
-        Statistic::Mean | Statistic::Last | Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => {
-            ("mean", read)
-        }
+        Statistic::Mean
+        | Statistic::Last
+        | Statistic::ShareBelow(_)
+        | Statistic::ShareAbove(_)
+        | Statistic::Rate
+        | Statistic::Percentile(_) => ("mean", read),
     }
+}
+
+/// Refuses what a script has no time for, to go through all slots of a window at every call, and what it does not have.
+fn carried(channel: &Channel, statistic: Statistic) -> Result<(), Refused> {
+    let what = match statistic {
+        Statistic::Rate => "the statistic `rate`",
+        Statistic::Percentile(_) => "the statistics `median` and `percentile`",
+        _ if channel.exponential => "windows with a `time_constant_s`",
+        _ => return Ok(()),
+    };
+    Err(Refused::new(
+        format!("a script on the autopilot cannot compute {what}"),
+        "`export --rust` and `export --c` carry them",
+    ))
 }
 
 /// How the script reads each signal of a profile.
@@ -169,6 +188,7 @@ impl Window {
                 Observed::Effort(_) => Source::Effort,
                 Observed::CommandNoise => Source::Noise,
                 Observed::Named(signal) => Source::Signal(signal),
+                Observed::Difference { a, b, .. } => Source::Difference(a, b),
                 Observed::Command
                 | Observed::CommandLessYaw
                 | Observed::Margin
@@ -221,9 +241,14 @@ impl Script {
         signals: &[&'static str],
     ) -> (String, Option<String>) {
         let one = match channel.observed {
-            Observed::Named(signal) => {
-                let read = signals.get(signal).copied().unwrap_or("nil");
-                Some(self.computed(format!("signal_{}", signal + 1), read.to_owned()))
+            Observed::Named(signal) => Some(self.signal(signal, signals)),
+            Observed::Difference { a, b, circular } => {
+                let [a, b] = [a, b].map(|signal| self.signal(signal, signals));
+                let less = match circular {
+                    true => format!("({a} - {b} + 180) % 360 - 180"),
+                    false => format!("{a} - {b}"),
+                };
+                Some(self.computed(format!("{a}_less_{b}"), format!("{a} and {b} and {less}")))
             }
             Observed::Effort(axis) => {
                 if !self.efforts.contains(&axis) {
@@ -255,12 +280,18 @@ impl Script {
         if !self.lists.contains(&list) {
             self.lists.push(list);
         }
+        if let Motors::One(motor) = channel.motors {
+            let motor = u64::from(motor) + 1;
+            let name = format!("{list}_of_motor_{motor}");
+            let value = self.computed(name, format!("sum and {list}[{motor}]"));
+            return (counted(&value, channel.threshold, squared), None);
+        }
         if channel.motors != Motors::Pooled {
             let function = match channel.motors {
                 Motors::Std => "deviation_of",
                 Motors::Min => "lowest_of",
                 Motors::Max => "highest_of",
-                Motors::Mean | Motors::Pooled => "mean_of",
+                Motors::Mean | Motors::Pooled | Motors::One(_) => "mean_of",
             };
             let value = self.of_list(function, list, None);
             return (counted(&value, channel.threshold, squared), None);
@@ -285,6 +316,12 @@ impl Script {
             }
             _ => (self.of_list("mean_of", list, None), None),
         }
+    }
+
+    /// A signal of the autopilot; nil where it is unknown.
+    fn signal(&mut self, signal: usize, signals: &[&'static str]) -> String {
+        let read = signals.get(signal).copied().unwrap_or("nil");
+        self.computed(format!("signal_{}", signal + 1), read.to_owned())
     }
 
     /// A value that all motors have together; nil where the commands are unknown.

@@ -63,6 +63,10 @@ pub(super) fn fill(
                 1.0 => degree,
                 weight => format!("{} * {degree}", number(weight)),
             };
+            let weighted = match consequent.hedges.as_slice() {
+                [] => weighted,
+                hedges => script.hedged(hedges, format!("({weighted})")),
+            };
             lines.push(format!("  fire({i}, {term_index}, {weighted})"));
             let (told, is_motor) = about(estimator, &rule.rule.condition);
             motor_cause |= is_motor;
@@ -295,7 +299,7 @@ impl Script<'_> {
     }
 
     fn proposition(&mut self, proposition: &Proposition) -> String {
-        let mut degree = match &proposition.term {
+        let degree = match &proposition.term {
             None => "1.0".to_owned(),
             Some(term) => {
                 let input = self
@@ -318,7 +322,11 @@ impl Script<'_> {
                 format!("d[{}]", index + 1)
             }
         };
-        for hedge in proposition.hedges.iter().rev() {
+        self.hedged(&proposition.hedges, degree)
+    }
+
+    fn hedged(&mut self, hedges: &[Hedge], mut degree: String) -> String {
+        for hedge in hedges.iter().rev() {
             degree = match hedge {
                 Hedge::Not => format!("(1 - {degree})"),
                 Hedge::Very => format!("{degree} ^ 2"),
@@ -335,7 +343,7 @@ impl Script<'_> {
             };
         }
         // The power binds more than a product, and not more than another power.
-        match proposition.hedges.len() {
+        match hedges.len() {
             0 | 1 => degree,
             _ => format!("({degree})"),
         }

@@ -13,7 +13,7 @@ use crate::{
     source::{Motors, Signal, Source, Statistic},
 };
 
-const STATISTICS: [(&str, Statistic); 8] = [
+const STATISTICS: [(&str, Statistic); 10] = [
     ("mean", Statistic::Mean),
     ("std", Statistic::Std),
     ("rms", Statistic::Rms),
@@ -22,13 +22,17 @@ const STATISTICS: [(&str, Statistic); 8] = [
     ("last", Statistic::Last),
     ("std_less_noise", Statistic::StdLessNoise),
     ("noise", Statistic::Noise),
+    ("rate", Statistic::Rate),
+    ("median", Statistic::Percentile(50.0)),
 ];
 
-type Share = fn(f64) -> Statistic;
+type OfNumber = fn(f64) -> Statistic;
 
-const SHARES: [(&str, Share); 2] = [
+/// The statistics with a number, `{share_below: 0.1, of: SIGNAL}`.
+const WITH_NUMBER: [(&str, OfNumber); 3] = [
     ("share_below", Statistic::ShareBelow),
     ("share_above", Statistic::ShareAbove),
+    ("percentile", Statistic::Percentile),
 ];
 
 const MOTORS: [(&str, Motors); 4] = [
@@ -59,16 +63,16 @@ pub(super) fn inputs(fields: &Fields, window_s: f64, found: &mut Found) -> Vec<P
 fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
     let what = format!("input `{}`", entry.key);
     let statistics = STATISTICS.iter().map(|(name, _)| *name);
-    let shares = SHARES.iter().map(|(name, _)| *name);
+    let with_number = WITH_NUMBER.iter().map(|(name, _)| *name);
     let keys: Vec<&str> = statistics
         .clone()
-        .chain(shares.clone())
-        .chain(["of", "window_s"])
+        .chain(with_number.clone())
+        .chain(["of", "window_s", "time_constant_s"])
         .collect();
     let before = found.len();
     let fields = entry.value.fields(&what, &keys, found)?;
     let given: Vec<&str> = statistics
-        .chain(shares)
+        .chain(with_number)
         .filter(|k| fields.get(k).is_some())
         .collect();
     let [key] = given.as_slice() else {
@@ -88,8 +92,9 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
     let (statistic, observed) = match plain {
         Some((_, statistic)) => {
             if let Some(stray) = fields.entry("of") {
-                let message =
-                    format!("`of` goes with `share_below` and `share_above`, not with `{key}`");
+                let message = format!(
+                    "`of` goes with `share_below`, `share_above` and `percentile`, not with `{key}`"
+                );
                 found.push(
                     Diagnostic::error("statistic", stray.key_span.clone(), message)
                         .help(format!("write the signal behind `{key}` alone")),
@@ -98,18 +103,50 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
             (*statistic, behind)
         }
         None => {
-            let limit = behind.finite(&format!("`{key}`"), found)?;
-            let (_, share) = SHARES.iter().find(|(name, _)| name == key)?;
-            let help = format!("name the signal: `{{{key}: {limit}, of: motor_margin}}`");
-            (share(limit), fields.require("of", &help, found)?)
+            let number = behind.finite(&format!("`{key}`"), found)?;
+            let (_, of_number) = WITH_NUMBER.iter().find(|(name, _)| name == key)?;
+            let help = format!("name the signal: `{{{key}: {number}, of: battery_v}}`");
+            let observed = fields.require("of", &help, found)?;
+            let statistic = of_number(number);
+            if matches!(statistic, Statistic::Percentile(_)) && !(0.0..=100.0).contains(&number) {
+                let message = format!("`percentile` is {number}");
+                found.push(
+                    Diagnostic::error("out-of-range", behind.span.clone(), message)
+                        .help("write a number from 0 to 100"),
+                );
+                return None;
+            }
+            (statistic, observed)
         }
     };
     let (motors, signal) = signal(observed, &what, found)?;
-    if statistic.is_of_bins() && motors == Motors::Pooled && signal.is_of_motors() {
+    let exponential = fields.entry("time_constant_s");
+    if let Some(entry) = exponential {
+        let mistake = if fields.get("window_s").is_some() {
+            Some("either `window_s` or `time_constant_s`, not both".into())
+        } else if !statistic.is_of_weights() {
+            Some(format!("`time_constant_s` does not go with `{key}`"))
+        } else {
+            None
+        };
+        if let Some(mistake) = mistake {
+            let help = "all values count in `mean`, `std`, `rms` and shares of time, with weights that fall by their age: \
+                        `{mean: motor_command, time_constant_s: 5}`";
+            found.push(Diagnostic::error("window", entry.key_span.clone(), mistake).help(help));
+            return None;
+        }
+    }
+    let needs_one = statistic.is_of_bins() || statistic.is_of_slots();
+    if needs_one && motors == Motors::Pooled && signal.is_of_motors() {
         let message = format!("`{key}` needs one value for all motors");
+        let over = if statistic.is_of_bins() {
+            "std"
+        } else {
+            "mean"
+        };
         found.push(
             Diagnostic::error("statistic", behind.span.clone(), message).help(format!(
-                "write for example `{{{key}: {{std: motor_command}}}}`"
+                "write for example `{{{key}: {{{over}: motor_command}}}}`"
             )),
         );
         return None;
@@ -118,32 +155,55 @@ fn source(entry: &Entry, window_s: f64, found: &mut Found) -> Option<Source> {
         statistic,
         motors,
         signal,
-        window_s,
+        window_s: number(&fields, "time_constant_s", window_s, Least::Above0, found),
+        exponential: exponential.is_some(),
     })
 }
 
-/// `motor_margin` or `{min: motor_margin}`.
+/// `motor_margin`, `{min: motor_margin}`, `{motor: 3, of: motor_margin}` or `{difference: [yaw_des_deg, yaw_deg]}`.
 fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)> {
     if !matches!(node.value, Value::Mapping(_)) {
         let name = node.words(&format!("the signal of {what}"), found)?;
         return Some((Motors::Pooled, Signal::named(&name.text)));
     }
-    let keys = MOTORS.map(|(name, _)| name);
+    let statistics = MOTORS.iter().map(|(name, _)| *name);
+    let keys: Vec<&str> = statistics.chain(["motor", "of", "difference"]).collect();
     let over = format!("the statistic over motors of {what}");
     let before = found.len();
     let fields = node.fields(&over, &keys, found)?;
-    let mut given = MOTORS.iter().filter(|(name, _)| fields.get(name).is_some());
-    let (Some((key, motors)), None) = (given.next(), given.next()) else {
-        if found.len() == before {
-            let message = format!("{over} is one of `mean`, `std`, `min` and `max`");
-            found.push(
-                Diagnostic::error("statistic", node.span.clone(), message)
-                    .help("write for example `{min: motor_margin}`"),
-            );
-        }
-        return None;
+    let given: Vec<&str> = keys
+        .into_iter()
+        .filter(|key| fields.get(key).is_some())
+        .collect();
+    let over_motors = match given.as_slice() {
+        [key] => MOTORS.iter().find(|(name, _)| name == key),
+        _ => None,
     };
-    let node = fields.get(key)?;
+    let (motors, node) = match (over_motors, given.as_slice()) {
+        (Some((key, motors)), _) => (*motors, fields.get(key)?),
+        (None, ["motor", "of"]) => {
+            let number = fields.get("motor")?.whole("the motor", 1, found)?;
+            let motor = u32::try_from(number - 1).unwrap_or(u32::MAX);
+            (Motors::One(motor), fields.get("of")?)
+        }
+        (None, ["difference"]) => {
+            let signal = difference(fields.get("difference")?, found)?;
+            return Some((Motors::Pooled, signal));
+        }
+        _ => {
+            if found.len() == before {
+                let message = format!(
+                    "{over} is one of `mean`, `std`, `min`, `max`, `motor` and `difference`"
+                );
+                found.push(
+                    Diagnostic::error("statistic", node.span.clone(), message).help(
+                        "write for example `{min: motor_margin}` or `{motor: 1, of: motor_margin}`",
+                    ),
+                );
+            }
+            return None;
+        }
+    };
     let name = &node.words(&format!("the signal of {what}"), found)?.text;
     let signal = Signal::named(name);
     if !signal.is_of_motors() {
@@ -159,5 +219,31 @@ fn signal(node: &Node, what: &str, found: &mut Found) -> Option<(Motors, Signal)
         );
         return None;
     }
-    Some((*motors, signal))
+    Some((motors, signal))
+}
+
+/// `[yaw_des_deg, yaw_deg]`.
+fn difference(node: &Node, found: &mut Found) -> Option<Signal> {
+    let [a, b] = node.items("`difference`", found)? else {
+        let message = "`difference` takes two signals, the second from the first";
+        found.push(
+            Diagnostic::error("signal", node.span.clone(), message)
+                .help("write for example `{difference: [yaw_des_deg, yaw_deg]}`"),
+        );
+        return None;
+    };
+    let mut name = |node: &Node| {
+        let name = &node.words("a signal of `difference`", found)?.text;
+        if Signal::names().any(|known| known == name) {
+            let message = format!("`difference` takes signals of the vehicle, not `{name}`");
+            found.push(
+                Diagnostic::error("signal", node.span.clone(), message)
+                    .help("write the names of two signals of the log"),
+            );
+            return None;
+        }
+        Some(name.clone())
+    };
+    let (a, b) = (name(a), name(b));
+    Some(Signal::Difference { a: a?, b: b? })
 }

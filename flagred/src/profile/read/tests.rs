@@ -40,6 +40,12 @@ inputs:
   f: {std_less_noise: {std: motor_command_less_yaw}}
   g: {noise: roll_effort}
   h: {mean: command_noise}
+  i: {mean: {motor: 3, of: motor_margin}}
+  j: {rms: {difference: [yaw_des_deg, yaw_deg]}}
+  k: {rate: battery_v}
+  l: {percentile: 90, of: {max: motor_command}}
+  m: {median: battery_v, window_s: 8}
+  n: {mean: battery_v, time_constant_s: 7}
 gap: {method: {inverse_distance: {power: 3, neighbours: 4}}, coverage_below: 0.25}
 elevated_risk: {window_s: 5, high: 80, low: 20, rise_per_s: 30, fall_per_s: 3}
 verdict:
@@ -74,6 +80,7 @@ verdict:
         motors,
         signal: Signal::named(signal),
         window_s,
+        exponential: false,
     };
     let sources: Vec<&Source> = profile.inputs.iter().map(|i| &i.source).collect();
     assert_eq!(
@@ -102,6 +109,31 @@ verdict:
             ),
             &source(Statistic::Noise, Motors::Pooled, "roll_effort", 3.0),
             &source(Statistic::Mean, Motors::Pooled, "command_noise", 3.0),
+            &source(Statistic::Mean, Motors::One(2), "motor_margin", 3.0),
+            &Source {
+                signal: Signal::Difference {
+                    a: "yaw_des_deg".into(),
+                    b: "yaw_deg".into(),
+                },
+                ..source(Statistic::Rms, Motors::Pooled, "", 3.0)
+            },
+            &source(Statistic::Rate, Motors::Pooled, "battery_v", 3.0),
+            &source(
+                Statistic::Percentile(90.0),
+                Motors::Max,
+                "motor_command",
+                3.0
+            ),
+            &source(
+                Statistic::Percentile(50.0),
+                Motors::Pooled,
+                "battery_v",
+                8.0
+            ),
+            &Source {
+                exponential: true,
+                ..source(Statistic::Mean, Motors::Pooled, "battery_v", 7.0)
+            },
         ]
     );
     assert_eq!(
@@ -187,6 +219,30 @@ verdict:
   noise: 0.04
   reserve: {above: 0.1}
   imbalance: {above: 0.25, after_s: -3}
+";
+    let findings = text.parse::<Profile>().unwrap_err();
+    insta::assert_snapshot!(findings);
+}
+
+#[test]
+fn mistakes_in_signals_are_told() {
+    let text = "flagred: 1
+name: wrong
+rules: flagred
+inputs:
+  zero: {mean: {motor: 0, of: motor_margin}}
+  alone: {mean: {motor: 2}}
+  one: {mean: {motor: 1, of: battery_v}}
+  both: {mean: {motor: 1, min: motor_margin}}
+  three: {mean: {difference: [roll_deg, pitch_deg, yaw_deg]}}
+  motors: {mean: {difference: [motor_command, motor_margin]}}
+  pooled: {rate: motor_command}
+  most: {percentile: 101, of: battery_v}
+  whose: {percentile: 90}
+  medians: {median: motor_margin}
+  two: {mean: battery_v, window_s: 1, time_constant_s: 5}
+  weightless: {max: battery_v, time_constant_s: 5}
+  constant: {mean: battery_v, time_constant_s: 0}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);

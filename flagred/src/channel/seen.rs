@@ -1,0 +1,325 @@
+//! What channels see of a flight, in memory that is lent.
+
+use super::{Channel, Input, Motors, Observed, Statistic, Threshold, short_way_deg};
+use crate::{
+    exponential::Exponential,
+    margin::margin,
+    moments::Moments,
+    motor::{BIN_S, Motor, Together, bin_of},
+    window::Window,
+};
+
+/// What a channel has seen.
+#[derive(Debug, Clone)]
+pub struct Seen {
+    window: Window,
+    /// In place of the window.
+    exponential: Exponential,
+    /// The latest value; over motors, their mean.
+    last: Option<f64>,
+    bin: Bin,
+}
+
+/// The values of the latest bin.
+#[derive(Debug, Clone, Copy)]
+struct Bin {
+    index: f64,
+    samples: u32,
+    sum: f64,
+    held_s: f64,
+    end_s: f64,
+    /// The mean of the bin before; NaN is unknown.
+    before: f64,
+}
+
+impl Bin {
+    const IDLE: Bin = Bin {
+        index: 0.0,
+        samples: 0,
+        sum: 0.0,
+        held_s: 0.0,
+        end_s: 0.0,
+        before: 0.0,
+    };
+
+    const EMPTY: Bin = Bin {
+        before: f64::NAN,
+        ..Bin::IDLE
+    };
+
+    fn moments(&self) -> Moments {
+        if self.samples == 0 || self.held_s <= 0.0 {
+            return Moments::EMPTY;
+        }
+        let mean = self.mean();
+        match self.before.is_finite() {
+            true => Moments::after(self.before, mean, self.held_s),
+            false => Moments::of(mean, self.held_s),
+        }
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / f64::from(self.samples)
+    }
+}
+
+impl Seen {
+    /// Memory for what a channel sees, all zeros; see [`Window::IDLE`].
+    pub const IDLE: Seen = Seen {
+        window: Window::IDLE,
+        exponential: Exponential::IDLE,
+        last: None,
+        bin: Bin::IDLE,
+    };
+
+    /// Nothing yet, over a window of so many seconds, where it is.
+    fn restart(&mut self, window_s: f64) {
+        self.window.restart(window_s);
+        self.exponential = Exponential::new(window_s);
+        self.clear_latest();
+    }
+
+    /// Forgets everything.
+    pub(crate) fn clear(&mut self) {
+        self.window.clear();
+        self.exponential.clear();
+        self.clear_latest();
+    }
+
+    fn clear_latest(&mut self) {
+        self.last = None;
+        self.bin = Bin::EMPTY;
+    }
+
+    /// Drops what was before a time from a window that is longer than `short_s`.
+    pub(crate) fn forget_before(&mut self, t_s: f64, short_s: f64) {
+        if self.window.length_s() > short_s {
+            self.window.forget_before(t_s);
+        }
+    }
+
+    fn push_into_bin(&mut self, index: f64, (t_s, held_s): (f64, f64), value: Option<f64>) {
+        if self.bin.samples > 0 && self.bin.index != index {
+            let before = self.bin.mean();
+            self.window
+                .push(self.bin.end_s, self.bin.held_s, &self.bin.moments());
+            self.bin = Bin {
+                before,
+                ..Bin::IDLE
+            };
+        }
+        self.window.advance(t_s);
+        if let Some(value) = value {
+            self.bin.index = index;
+            self.bin.samples += 1;
+            self.bin.sum += value;
+            self.bin.held_s += held_s;
+            self.bin.end_s = t_s;
+        }
+    }
+}
+
+/// Nothing seen yet by any channel, whatever the memory held.
+pub(crate) fn restart(channels: &[Channel], seen: &mut [Seen]) {
+    for (channel, seen) in channels.iter().zip(seen) {
+        seen.restart(channel.window_s);
+    }
+}
+
+/// What is observed at one time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Now<'a> {
+    pub(crate) motors: &'a [Motor],
+    pub(crate) together: Together,
+    /// The signals that samples carry; NaN is unknown.
+    pub(crate) named: &'a [f64],
+}
+
+impl Now<'_> {
+    /// A signal that samples carry; NaN is unknown.
+    fn signal(&self, index: usize) -> f64 {
+        self.named.get(index).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// Adds a sample, of a time and the seconds before it that it stands for, to all channels.
+pub(crate) fn push(
+    channels: &[Channel],
+    seen: &mut [Seen],
+    (t_s, held_s): (f64, f64),
+    observed: &Now<'_>,
+) {
+    let bin = bin_of(t_s);
+    let mut before: Option<(&Channel, Moments)> = None;
+    for (channel, seen) in channels.iter().zip(seen) {
+        // Neighbours often differ in their windows alone.
+        let now = match before {
+            Some((same, now)) if same.sees_as(channel) => now,
+            _ => channel.reduce(observed),
+        };
+        before = Some((channel, now));
+        seen.last = now.mean();
+        // A noise is known once in a bin, and stands for all of it.
+        let held_s = match channel.observed {
+            Observed::CommandNoise => held_s.max(BIN_S),
+            _ => held_s,
+        };
+        if channel.exponential {
+            seen.exponential.push(t_s, held_s, &now);
+        } else if channel.in_bins {
+            seen.push_into_bin(bin, (t_s, held_s), now.mean());
+        } else if now.weight() > 0.0 {
+            // A sample weighs its time, however many motors it knows.
+            let moments = now.scaled(held_s / now.weight());
+            seen.window.push(t_s, held_s, &moments);
+        } else {
+            seen.window.advance(t_s);
+        }
+    }
+}
+
+/// The value of an input, and how much of its window is behind it; `None` where nothing is known.
+pub(crate) fn value(
+    (channels, inputs): (&[Channel], &[Input]),
+    seen: &[Seen],
+    input: usize,
+) -> Option<Observation> {
+    let Input { channel, statistic } = *inputs.get(input)?;
+    let Seen {
+        window,
+        exponential,
+        last,
+        bin,
+    } = seen.get(channel)?;
+    let is_exponential = channels.get(channel)?.exponential;
+    let (mut total, mut samples) = match is_exponential {
+        true => (exponential.total(), exponential.samples()),
+        false => (window.total(), window.samples()),
+    };
+    if statistic.is_of_bins() {
+        let latest = bin.moments();
+        samples += u32::from(latest.weight() > 0.0);
+        total.merge(&latest);
+    }
+    let value = match statistic {
+        Statistic::Mean | Statistic::ShareBelow(_) | Statistic::ShareAbove(_) => total.mean(),
+        Statistic::Std => total.std(),
+        Statistic::Rms => total.rms(),
+        Statistic::Min => total.min(),
+        Statistic::Max => total.max(),
+        Statistic::Last => *last,
+        Statistic::StdLessNoise => total.std_less_noise(),
+        Statistic::Noise => total.noise(),
+        Statistic::Rate => window.rate(),
+        Statistic::Percentile(percent) => window.percentile(percent),
+    };
+    Some(Observation {
+        value: value?,
+        samples: match statistic {
+            Statistic::Last => None,
+            _ => Some(samples),
+        },
+        covered_s: match is_exponential {
+            true => exponential.covered_s(),
+            false => total.weight(),
+        },
+        window_s: window.length_s(),
+    })
+}
+
+/// The value of an input, and what is behind it.
+///
+/// # Example: a second of a window of five
+/// ```
+/// use flagred::{monitor::Craft, source::{Motors, Observation, Observer, Signal, Source, Statistic}};
+///
+/// let load = Source { statistic: Statistic::Mean, motors: Motors::Pooled, signal: Signal::MotorCommand, window_s: 5.0, exponential: false };
+/// let mut observer = Observer::new([&load], Craft::new(4))?;
+/// for i in 1..=4 {
+///     observer.push(f64::from(i) * 0.25, 0.25, &[0.5; 4], &[]);
+/// }
+/// let observed = Observation { value: 0.5, samples: Some(4), covered_s: 1.0, window_s: 5.0 };
+/// assert_eq!(observer.value(0), Some(observed));
+/// # Ok::<(), String>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// The value.
+    pub value: f64,
+    /// The samples in the window; `None` for a statistic that needs but one.
+    pub samples: Option<u32>,
+    /// How much time of the window they cover, in seconds.
+    pub covered_s: f64,
+    /// The length of the window in seconds.
+    pub window_s: f64,
+}
+
+impl Channel {
+    /// Whether another channel makes the same of a sample, over whatever window.
+    fn sees_as(&self, other: &Channel) -> bool {
+        let window_s = self.window_s;
+        *self == Channel { window_s, ..*other }
+    }
+
+    /// The values of one sample, each motor known with weight 1.
+    fn reduce(&self, now: &Now<'_>) -> Moments {
+        let commands = now.motors.iter().map(|motor| motor.command);
+        match self.observed {
+            Observed::Named(index) => self.threshold(now.signal(index)),
+            Observed::Difference { a, b, circular } => {
+                let difference = now.signal(a) - now.signal(b);
+                self.threshold(match circular {
+                    true => short_way_deg(difference),
+                    false => difference,
+                })
+            }
+            Observed::Effort(axis) => {
+                let effort = now.together.efforts.get(axis).copied();
+                self.threshold(effort.unwrap_or(f64::NAN))
+            }
+            Observed::CommandNoise => self.threshold(now.together.noise),
+            Observed::CommandLessYaw => self.over(now.motors.iter().map(|motor| motor.less_yaw)),
+            Observed::Command | Observed::LowSide => self.over(commands),
+            Observed::Margin => self.over(commands.map(margin)),
+            Observed::HighSide => self.over(commands.map(|e| 1.0 - e)),
+        }
+    }
+
+    /// The values of the motors, NaN where one is unknown.
+    fn over(&self, mut motors: impl Iterator<Item = f64> + Clone) -> Moments {
+        if let Motors::One(motor) = self.motors {
+            let one = motors.nth(motor as usize);
+            return self.threshold(one.unwrap_or(f64::NAN));
+        }
+        let known = motors.filter(|value| value.is_finite());
+        if self.motors == Motors::Pooled {
+            return Moments::alike(known.map(|value| self.counted(value)));
+        }
+        let all = Moments::alike(known);
+        let one = match self.motors {
+            Motors::Pooled | Motors::Mean | Motors::One(_) => all.mean(),
+            Motors::Std => all.std(),
+            Motors::Min => all.min(),
+            Motors::Max => all.max(),
+        };
+        self.threshold(one.unwrap_or(f64::NAN))
+    }
+
+    /// One value, NaN where it is unknown.
+    fn threshold(&self, value: f64) -> Moments {
+        if value.is_finite() {
+            Moments::of(self.counted(value), 1.0)
+        } else {
+            Moments::EMPTY
+        }
+    }
+
+    /// The value itself, or for a share whether it is beyond the threshold.
+    fn counted(&self, value: f64) -> f64 {
+        match self.threshold {
+            None => value,
+            Some(Threshold::Below(limit)) => f64::from(u8::from(value < limit)),
+            Some(Threshold::Above(limit)) => f64::from(u8::from(value > limit)),
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Where a monotone membership function has a degree, for Tsukamoto's consequents.
+
+#[cfg(feature = "alloc")]
+use alloc::vec::Vec;
+
+use libm::{log, sqrt};
+
+use super::Kind;
+#[cfg(feature = "alloc")]
+use super::MembershipFunction;
+use crate::table::operators::larger;
+
+impl Kind {
+    /// The place where a monotone membership function has this degree in [0, 1]: the inverse of its formula, on a plateau the
+    /// end of the slope. A sigmoid comes to 0 and 1 at infinity, a concave to 0. Of a shape that is not monotone it is NaN.
+    pub(crate) fn place(self, parameters: &[f64; 4], points: &[[f64; 2]], degree: f64) -> f64 {
+        let [a, b, ..] = *parameters;
+        let along = |foot: f64, top: f64, part: f64| foot + (top - foot) * part;
+        match self {
+            Kind::RIGHT_SHOULDER => along(a, b, degree),
+            Kind::LEFT_SHOULDER => along(b, a, degree),
+            Kind::S_SHAPE => smooth(a, b, degree),
+            Kind::Z_SHAPE => smooth(b, a, degree),
+            Kind::SIGMOID if b != 0.0 => a + log(degree / (1.0 - degree)) / b,
+            Kind::CONCAVE => 2.0 * b - a - (b - a) / degree,
+            // From sqrt(t (2 - t)), without cancellation.
+            Kind::ARC => along(a, b, degree * degree / (1.0 + sqrt(1.0 - degree * degree))),
+            Kind::PIECEWISE => piecewise(points, degree),
+            _ => f64::NAN,
+        }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl MembershipFunction {
+    /// The place where a monotone membership function has this degree: [`Kind::place`].
+    pub(crate) fn place(&self, degree: f64) -> f64 {
+        let (kind, parameters) = self.kind();
+        match self {
+            MembershipFunction::Piecewise { points } => {
+                let points: Vec<[f64; 2]> = points.iter().map(|(x, y)| [*x, *y]).collect();
+                kind.place(&parameters, &points, degree)
+            }
+            _ => kind.place(&parameters, &[], degree),
+        }
+    }
+
+    /// Whether it only rises or only falls over all values and is no constant, so that each degree has one place.
+    pub(crate) fn is_monotone(&self) -> bool {
+        match self {
+            MembershipFunction::Piecewise { points } => {
+                let degrees = || points.iter().map(|point| point.1);
+                degrees().next() != degrees().next_back()
+                    && (degrees().is_sorted() || degrees().is_sorted_by(|a, b| a >= b))
+            }
+            _ => !self.place(0.5).is_nan(),
+        }
+    }
+}
+
+/// On two parabolas from 0 at `foot` to 1 at `top`, which may be left of it.
+fn smooth(foot: f64, top: f64, degree: f64) -> f64 {
+    let width = top - foot;
+    if degree <= 0.5 {
+        foot + width * sqrt(0.5 * degree)
+    } else {
+        top - width * sqrt(0.5 * (1.0 - degree))
+    }
+}
+
+/// On straight lines between points whose degrees only rise, or only fall: going up, the first place that has the degree. A
+/// degree below all of them is where the slope begins, one above all of them where it ends.
+fn piecewise(points: &[[f64; 2]], degree: f64) -> f64 {
+    match (points.first(), points.last()) {
+        (Some([_, first]), Some([_, last])) if first > last => {
+            going_up(points.iter().rev(), degree)
+        }
+        _ => going_up(points.iter(), degree),
+    }
+}
+
+fn going_up<'a>(points: impl Iterator<Item = &'a [f64; 2]>, degree: f64) -> f64 {
+    let mut before: Option<[f64; 2]> = None;
+    let mut top = f64::NAN;
+    for &[x, y] in points {
+        if let Some([left, low]) = before
+            && y > low
+        {
+            if degree <= y {
+                let part = larger(0.0, (degree - low) / (y - low));
+                return left + (x - left) * part;
+            }
+            top = x;
+        }
+        before = Some([x, y]);
+    }
+    top
+}

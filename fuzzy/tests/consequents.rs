@@ -1,0 +1,157 @@
+//! What conclusions can say: Tsukamoto's places, hedges. Each value against the definition, computed here a second time.
+
+#![allow(
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail by panics"
+)]
+
+use fuzzy::{Engine, Model};
+
+/// A rule set with one input `x` in [0, 1], whose degree in `high` is its value.
+fn model(outputs: &str, rules: &str) -> Model {
+    let text = format!(
+        "fuzzy: 1\nname: t\ninputs: {{x: {{range: [0, 1], terms: {{low: {{left_shoulder: [0, 1]}}, high: {{right_shoulder: [0, 1]}}}}}}}}\noutputs: {outputs}\nrules: {rules}"
+    );
+    text.parse()
+        .unwrap_or_else(|found| panic!("{text}\n{found}"))
+}
+
+fn value(engine: &Engine, x: f64) -> f64 {
+    engine.evaluate(&[x]).unwrap()[0].value().unwrap()
+}
+
+/// The values of a term with this function at degrees over 0, and what its membership is there.
+fn places(shape: &str, range: &str, height: f64) -> Vec<(f64, f64, f64)> {
+    let output = format!(
+        "{{y: {{range: {range}, defuzzifier: tsukamoto, terms: {{t: {{{shape}, height: {height}}}}}}}}}"
+    );
+    let model = model(&output, "[IF x IS high THEN y IS t]");
+    let engine = Engine::new(&model).unwrap();
+    let term = &model.outputs[0].variable.terms[0];
+    let degrees = [0.001, 0.1, 0.25, 0.4999, 0.5, 0.7, 0.9, 0.9999];
+    let place = |w| (w, value(&engine, w), term.membership(value(&engine, w)));
+    degrees.map(place).to_vec()
+}
+
+#[test]
+fn a_place_is_where_the_term_has_the_degree() {
+    for shape in [
+        "right_shoulder: [2, 8]",
+        "left_shoulder: [2, 8]",
+        "s_shape: [2, 8]",
+        "z_shape: [2, 8]",
+        "sigmoid: {inflection: 5, slope: 1.5}",
+        "sigmoid: {inflection: 5, slope: -1.5}",
+        "concave: {inflection: 4, end: 6}",
+        "concave: {inflection: 6, end: 4}",
+        "arc: {start: 2, end: 8}",
+        "arc: {start: 8, end: 2}",
+        "piecewise: [[1, 0], [3, 0.3], [5, 0.4], [9, 1]]",
+        "piecewise: [[1, 1], [3, 0.6], [5, 0.55], [9, 0]]",
+    ] {
+        for (w, z, there) in places(shape, "[0, 10]", 1.0) {
+            assert!((there - w).abs() < 1e-12, "{shape}: {w} at {z} is {there}");
+        }
+        for (w, z, there) in places(shape, "[0, 10]", 0.8) {
+            // What the term does not reach is at the end of its slope, which a sigmoid does not have.
+            if w < 0.8 || !shape.starts_with("sigmoid") {
+                let found = (there - w.min(0.8)).abs();
+                assert!(found < 1e-12, "{shape}: {w} at {z} is {there}");
+            }
+        }
+    }
+}
+
+#[test]
+fn plateaus_steps_and_infinity() {
+    let at = |shape: &str, w: f64| {
+        let output =
+            format!("{{y: {{range: [0, 10], defuzzifier: tsukamoto, terms: {{t: {{{shape}}}}}}}}}");
+        let model = model(&output, "[IF x IS high THEN y IS t]");
+        // `w z / w` rounds.
+        (value(&Engine::new(&model).unwrap(), w) * 1e12).round() / 1e12
+    };
+    // The end of the slope, not the middle of the plateau.
+    assert_eq!(at("right_shoulder: [2, 8]", 1.0), 8.0);
+    assert_eq!(at("left_shoulder: [2, 8]", 1.0), 2.0);
+    let steps = "piecewise: [[1, 0.2], [2, 0.2], [4, 0.6], [6, 0.6], [6, 0.8], [9, 0.8]]";
+    assert_eq!(at(steps, 0.1), 2.0);
+    assert_eq!(at(steps, 0.2), 2.0);
+    assert_eq!(at(steps, 0.4), 3.0);
+    assert_eq!(at(steps, 0.6), 4.0);
+    assert_eq!(at(steps, 0.7), 6.0);
+    assert_eq!(at(steps, 0.9), 6.0);
+    // A sigmoid is 1 nowhere: the end of the range. Near 1 it may lie beyond it.
+    assert_eq!(at("sigmoid: {inflection: 5, slope: 1}", 1.0), 10.0);
+    assert_eq!(at("sigmoid: {inflection: 5, slope: -1}", 1.0), 0.0);
+    assert!(at("sigmoid: {inflection: 5, slope: 1}", 0.9999) > 14.0);
+}
+
+#[test]
+fn places_are_weighed_rule_by_rule() {
+    let output = "{y: {range: [0, 10], defuzzifier: tsukamoto, terms: {up: {right_shoulder: [2, 8]}, down: {left_shoulder: [1, 5]}}}}";
+    let rules = "[IF x IS high THEN y IS up, IF x IS low THEN y IS up WITH 0.5, IF x IS low THEN y IS down]";
+    let engine = Engine::new(&model(output, rules)).unwrap();
+    for x in [0.1, 0.3, 0.5, 0.77] {
+        let weights = [x, 0.5 * (1.0 - x), 1.0 - x];
+        let places = [
+            2.0 + 6.0 * weights[0],
+            2.0 + 6.0 * weights[1],
+            5.0 - 4.0 * weights[2],
+        ];
+        let sum: f64 = weights.iter().zip(places).map(|(w, z)| w * z).sum();
+        let expected = sum / weights.iter().sum::<f64>();
+        assert!((value(&engine, x) - expected).abs() < 1e-14, "at {x}");
+        let explained = engine.explain(&[x]).unwrap();
+        let up = explained.outputs[0].rules.iter().find(|r| r.rule == 0);
+        assert!((up.unwrap().value.unwrap() - places[0]).abs() < 1e-14);
+        assert_eq!(explained.outputs[0].value, Some(value(&engine, x)));
+    }
+    // However weakly a rule fires, its place counts.
+    assert_eq!(value(&engine, 1.0), 8.0);
+    let only = Engine::new(&model(output, "[IF x IS high THEN y IS up]")).unwrap();
+    assert!((value(&only, 1e-250) - 2.0).abs() < 1e-15);
+}
+
+#[test]
+fn a_hedge_in_a_conclusion_changes_the_strength_of_that_conclusion() {
+    let output = "{y: {range: [0, 10], defuzzifier: weighted_average, terms: {a: {constant: 2}, b: {constant: 8}}}, z: {range: [0, 10], defuzzifier: weighted_sum, terms: {a: {constant: 1}}}}";
+    let rules = "[IF x IS high THEN y IS very a AND z IS somewhat very a WITH 0.5, IF x IS low THEN y IS b AND z IS a]";
+    let model = model(output, rules);
+    assert_eq!(
+        model.rules[0].rule.to_string(),
+        "IF x IS high THEN y IS very a AND z IS somewhat very a WITH 0.5"
+    );
+    let again: Model = fuzzy::yaml::to_string(&model).parse().unwrap();
+    assert_eq!(again, model);
+    let engine = Engine::new(&model).unwrap();
+    for x in [0.0_f64, 0.2, 0.6, 1.0] {
+        // The weight comes before the hedges, the hedge nearest the term before the others.
+        let very = (0.5 * x).powi(2);
+        let expected = (very * 2.0 + (1.0 - x) * 8.0) / (very + 1.0 - x);
+        assert!((value(&engine, x) - expected).abs() < 1e-14, "at {x}");
+        let outcome = engine.evaluate(&[x]).unwrap()[1];
+        let expected = very.sqrt() + 1.0 - x;
+        assert!((outcome.value().unwrap() - expected).abs() < 1e-14);
+        assert!((outcome.coverage - very.sqrt().max(1.0 - x)).abs() < 1e-15);
+    }
+    let explained = engine.explain(&[0.6]).unwrap();
+    let strength = |output: usize| {
+        let mut rules = explained.outputs[output].rules.iter();
+        rules.find(|share| share.rule == 0).unwrap().strength
+    };
+    assert_eq!((strength(0), strength(1)), (0.3 * 0.3, 0.3));
+}
+
+#[test]
+fn batches_have_the_bits_of_single_calls() {
+    let output = "{y: {range: [0, 10], defuzzifier: tsukamoto, terms: {up: {sigmoid: {inflection: 3, slope: 2}}, down: {z_shape: [1, 5]}}}, z: {range: [0, 10], partition: [small, large]}}";
+    let rules = "[IF x IS high THEN y IS very up AND z IS seldom small, IF x IS low THEN y IS down AND z IS extremely large WITH 0.7]";
+    let engine = Engine::new(&model(output, rules)).unwrap();
+    let points: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
+    let outcomes = engine.evaluate_batch(&[&points]).unwrap();
+    for (x, batch) in points.iter().zip(outcomes.chunks(2)) {
+        assert_eq!(engine.evaluate(&[*x]).unwrap(), batch, "at {x}");
+    }
+}
