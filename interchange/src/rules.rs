@@ -102,19 +102,19 @@ impl<'r> Reader<'r, '_, '_> {
         self.expect("if")?;
         let condition = self.any_of()?;
         self.expect("then")?;
-        let mut consequents = vec![];
+        let (mut consequents, mut hedges) = (vec![], vec![]);
         loop {
-            let (output, hedges, term) = self.proposition("an output")?;
-            if let Some(hedge) = hedges.first() {
-                let message = format!("a hedge, `{}`, stands in a conclusion", hedge.word());
-                let help = "conclude a term of its own";
-                self.draft
-                    .loss("hedge-in-conclusion", self.end, message, help);
-            }
+            let (output, own, term) = self.proposition("an output")?;
             let Some(term) = term else {
                 return self.unexpected("a term");
             };
-            consequents.push(Consequent { output, term });
+            // fuzzylite hands a hedged strength on to the conclusions behind.
+            hedges.splice(0..0, own);
+            consequents.push(Consequent {
+                output,
+                hedges: hedges.clone(),
+                term,
+            });
             if !self.take("and") && !self.take(",") {
                 break;
             }
@@ -214,23 +214,42 @@ fn joined(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> C
     }
 }
 
-/// A rule in words that [`read`] reads. `None` where a NOT stands before brackets that it cannot be taken into.
-pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<String> {
+/// A rule in words that [`read`] reads, or several of the same condition where conclusions have hedges of their own. `None`
+/// where a NOT stands before brackets that it cannot be taken into.
+pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<Vec<String>> {
     let condition = conditions::without_not(&rule.condition, operators)?;
-    let mut text = String::from("if ");
-    push(&mut text, &condition, false);
-    text.push_str(" then ");
-    for (index, consequent) in rule.consequents.iter().enumerate() {
-        if index > 0 {
-            text.push_str(and);
-        }
-        let Consequent { output, term } = consequent;
-        text.push_str(&format!("{} is {}", output.text, term.text));
+    let mut start = String::from("if ");
+    push(&mut start, &condition, false);
+    let weight = match rule.weight == 1.0 {
+        true => String::new(),
+        false => format!(" with {}", rule.weight),
+    };
+    let (plain, hedged): (Vec<_>, Vec<_>) =
+        rule.consequents.iter().partition(|c| c.hedges.is_empty());
+    let plain: Vec<String> = plain.into_iter().map(conclusion).collect();
+    let conclusions = (!plain.is_empty()).then(|| plain.join(and));
+    let conclusions = conclusions
+        .into_iter()
+        .chain(hedged.into_iter().map(conclusion));
+    Some(
+        conclusions
+            .map(|conclusion| format!("{start} then {conclusion}{weight}"))
+            .collect(),
+    )
+}
+
+fn conclusion(consequent: &Consequent) -> String {
+    let mut text = format!("{} is", consequent.output.text);
+    push_term(&mut text, &consequent.hedges, Some(&consequent.term));
+    text
+}
+
+fn push_term(text: &mut String, hedges: &[Hedge], term: Option<&Name>) {
+    let hedges = hedges.iter().map(|hedge| hedge.word().to_lowercase());
+    for word in hedges.chain(term.map(|term| term.text.clone())) {
+        text.push(' ');
+        text.push_str(&word);
     }
-    if rule.weight != 1.0 {
-        text.push_str(&format!(" with {}", rule.weight));
-    }
-    Some(text)
 }
 
 fn push(text: &mut String, condition: &Condition, inside: bool) {
@@ -240,14 +259,7 @@ fn push(text: &mut String, condition: &Condition, inside: bool) {
         Condition::Not(_) => return,
         Condition::Is(proposition) => {
             text.push_str(&format!("{} is", proposition.variable.text));
-            for hedge in &proposition.hedges {
-                text.push(' ');
-                text.push_str(&hedge.word().to_lowercase());
-            }
-            if let Some(term) = &proposition.term {
-                text.push(' ');
-                text.push_str(&term.text);
-            }
+            push_term(text, &proposition.hedges, proposition.term.as_ref());
             return;
         }
     };

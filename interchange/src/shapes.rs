@@ -1,6 +1,6 @@
 //! The spellings of membership functions whose parameters are a fixed number of numbers.
 
-use fuzzy::model::MembershipFunction;
+use fuzzy::model::{MembershipFunction, Term};
 
 use crate::Format;
 
@@ -31,6 +31,8 @@ pub(crate) enum Shape {
     HalfCosine,
     Spike,
     Concave,
+    Arc,
+    SemiEllipse,
 }
 
 /// A shape, its names, and for each parameter of FIS and FCL the index of that of FLL.
@@ -104,6 +106,8 @@ const SPELLINGS: &[Spelling] = &{
         same(HalfCosine, 2, ["", "", "COSINE"]),
         same(Spike, 2, ["spikemf", "Spike", ""]),
         same(Concave, 2, ["concavemf", "Concave", ""]),
+        same(Arc, 2, ["", "Arc", ""]),
+        same(SemiEllipse, 2, ["", "SemiEllipse", ""]),
     ]
 };
 
@@ -120,6 +124,14 @@ impl Spelling {
             Format::Fll | Format::Fml => IN_ORDER.get(..self.fis.len()).unwrap_or(&[]),
         }
     }
+}
+
+/// Whether a term is a number that is computed from the inputs, and no fuzzy set.
+pub(crate) fn is_computed(term: &Term) -> bool {
+    matches!(
+        term.membership_function,
+        MembershipFunction::Constant { .. } | MembershipFunction::Linear { .. }
+    )
 }
 
 /// The shape of a name in a format, and how many parameters it has there.
@@ -228,6 +240,8 @@ pub(crate) fn read(format: Format, shape: Shape, written: &[f64]) -> Option<Memb
         },
         (Shape::Spike, [center, width, ..]) => To::Spike { center, width },
         (Shape::Concave, [inflection, end, ..]) => To::Concave { inflection, end },
+        (Shape::Arc, [start, end, ..]) => To::Arc { start, end },
+        (Shape::SemiEllipse, [left, right, ..]) => To::SemiEllipse { left, right },
     })
 }
 
@@ -296,6 +310,8 @@ pub(crate) fn write(
         From::Cosine { center, width } => (Shape::Cosine, [center, width, 0.0, 0.0]),
         From::Spike { center, width } => (Shape::Spike, [center, width, 0.0, 0.0]),
         From::Concave { inflection, end } => (Shape::Concave, [inflection, end, 0.0, 0.0]),
+        From::Arc { start, end } => (Shape::Arc, [start, end, 0.0, 0.0]),
+        From::SemiEllipse { left, right } => (Shape::SemiEllipse, [left, right, 0.0, 0.0]),
         _ => return None,
     };
     let spelling = SPELLINGS.iter().find(|known| known.shape == shape)?;

@@ -139,7 +139,17 @@ pub(crate) const DEFUZZIFIERS: &Words<Defuzzifier> = &[
         Defuzzifier::WeightedSum,
         ["wtsum", "WeightedSum", "COGSS", ""],
     ),
+    // fuzzylite tells it from the terms.
+    (Defuzzifier::Tsukamoto, ["", "WeightedAverage", "", ""]),
 ];
+
+/// Whether the defuzzifier weighs a number for each rule.
+pub(crate) fn is_weighted(defuzzifier: Defuzzifier) -> bool {
+    matches!(
+        defuzzifier,
+        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum | Defuzzifier::Tsukamoto
+    )
+}
 
 /// The value that a word of a format stands for; case does not count.
 pub(crate) fn value<T: Copy>(words: &Words<T>, format: Format, word: &str) -> Option<T> {

@@ -4,8 +4,8 @@ use fuzzy::{
     diagnostic::nearest,
     format::{Document, RuleSpans, VariableSpans},
     model::{
-        Aggregation, Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires,
-        Output, Rule, Variable,
+        Aggregation, Conjunction, Disjunction, MembershipFunction, NoRuleFires, Output, Rule,
+        Variable,
     },
 };
 
@@ -229,10 +229,7 @@ impl<'r, 't> Reader<'r, 't> {
                 return self.skip("DEFUZZIFY");
             }
         }
-        let weighted = matches!(
-            output.defuzzifier,
-            Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
-        );
+        let weighted = words::is_weighted(output.defuzzifier);
         if weighted {
             // The places of singletons are values here.
             for term in &mut output.variable.terms {

@@ -2,7 +2,7 @@
 
 use fuzzy::{
     Findings, Model,
-    model::{Defuzzifier, MembershipFunction, NoRuleFires, Term, Variable},
+    model::{MembershipFunction, NoRuleFires, Term, Variable},
 };
 
 use crate::{
@@ -67,7 +67,6 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         terms(&mut paper, input);
         paper.line("END_FUZZIFY");
     }
-    let weighted = |d| matches!(d, Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum);
     for output in &model.outputs {
         let name = &output.variable.name;
         paper.line(format!("\nDEFUZZIFY {name}"));
@@ -75,7 +74,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         let word =
             words::word(words::DEFUZZIFIERS, Format::Fcl, output.defuzzifier).unwrap_or_default();
         paper.line(format!("  METHOD : {word};"));
-        if !weighted(output.defuzzifier) {
+        if !words::is_weighted(output.defuzzifier) {
             let word = words::word(
                 words::AGGREGATIONS,
                 Format::Fcl,
@@ -176,12 +175,17 @@ fn rule_block(paper: &mut Paper, model: &Model) {
     paper.line(format!(
         "\nRULEBLOCK rules\n  AND : {and};\n  OR : {or};\n  ACT : {implication};"
     ));
+    let mut number = 0;
     for (index, rule) in model.rules.iter().enumerate() {
-        let number = index + 1;
         match rules::write(&rule.rule, operators, ", ") {
-            Some(text) => paper.line(format!("  RULE {number} : {};", keywords(&text))),
+            Some(rules) => {
+                for rule in rules {
+                    number += 1;
+                    paper.line(format!("  RULE {number} : {};", keywords(&rule)));
+                }
+            }
             None => {
-                let message = format!("rule {number} has a NOT before brackets");
+                let message = format!("rule {} has a NOT before brackets", index + 1);
                 paper.loss("not", message, "write NOT before the terms");
             }
         }

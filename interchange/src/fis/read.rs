@@ -7,7 +7,7 @@ use fuzzy::{
 };
 
 use super::{rules, term};
-use crate::{Format, Losses, draft::Draft, words};
+use crate::{Format, Losses, draft::Draft, shapes, words};
 
 /// `[Name]` and its lines.
 pub(super) struct Section<'t> {
@@ -76,6 +76,11 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let defuzzifier = defuzzifier(&mut draft, system, weighted);
     for section in Section::numbered(&sections, "Output") {
         if let Some((variable, spans)) = variable(&mut draft, section, &names, weighted) {
+            // fuzzylite writes Tsukamoto's kind in this way.
+            let defuzzifier = match variable.terms.iter().any(shapes::is_computed) {
+                false if defuzzifier == Defuzzifier::WeightedAverage => Defuzzifier::Tsukamoto,
+                _ => defuzzifier,
+            };
             draft
                 .model
                 .outputs
@@ -247,10 +252,7 @@ fn defuzzifier(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) -> D
     let Some(value) = word(draft, system, "DefuzzMethod", words::DEFUZZIFIERS) else {
         return fallback;
     };
-    let is_weighted = matches!(
-        value,
-        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
-    );
+    let is_weighted = words::is_weighted(value);
     if is_weighted != weighted {
         let written = system.get("DefuzzMethod").unwrap_or(system.name);
         let message = format!("`DefuzzMethod={written}` does not fit the type of the system");
@@ -291,7 +293,7 @@ fn variable(
         if number.is_none_or(|(_, index)| index.parse::<usize>().is_err()) {
             continue;
         }
-        if let Some((mut term, term_spans)) = term::read(draft, entry.value, inputs, weighted) {
+        if let Some((mut term, term_spans)) = term::read(draft, entry.value, inputs) {
             term.name = distinct(draft, &variable, term.name, &term_spans);
             variable.terms.push(term);
             spans.terms.push(term_spans);

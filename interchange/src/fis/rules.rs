@@ -59,6 +59,7 @@ pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
                 }
                 consequents.push(Consequent {
                     output: variable,
+                    hedges: vec![],
                     term,
                 });
             }

@@ -15,7 +15,6 @@ pub(super) fn read(
     draft: &mut Draft<'_>,
     written: &str,
     inputs: &[&str],
-    weighted: bool,
 ) -> Option<(Term, TermSpans)> {
     let parts = written
         .split_once(':')
@@ -65,20 +64,6 @@ pub(super) fn read(
             )
         }
     };
-    if weighted
-        && !matches!(
-            function,
-            MembershipFunction::Constant { .. } | MembershipFunction::Linear { .. }
-        )
-    {
-        let message = format!("`{shape}` stands in the output of a Sugeno system");
-        draft.error(
-            "wrong-shape",
-            shape,
-            message,
-            "write `constant` or `linear`",
-        );
-    }
     if numbers.len() < count {
         let message = format!("`{shape}` has {count} parameters, found {}", numbers.len());
         draft.error("parameter-count", shape, message, "count the numbers");

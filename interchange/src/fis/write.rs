@@ -55,7 +55,6 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
 }
 
 fn system(paper: &mut Paper, model: &Model) {
-    let is_weighted = |d| matches!(d, Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum);
     let first = model
         .outputs
         .first()
@@ -72,7 +71,7 @@ fn system(paper: &mut Paper, model: &Model) {
             "write a rule set for each output",
         );
     }
-    let weighted = is_weighted(first);
+    let weighted = words::is_weighted(first);
     let operators = model.operators;
     let method = |word: Option<&'static str>| word.unwrap_or_default();
     let quoted = |text: &str| format!("'{}'", one_line(&text.replace('\'', "")));

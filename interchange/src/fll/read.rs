@@ -10,7 +10,7 @@ use fuzzy::{
 };
 
 use super::{handover, term};
-use crate::{Format, Losses, draft::Draft, rules, words};
+use crate::{Format, Losses, draft::Draft, rules, shapes, words};
 
 /// A section and its lines.
 struct Section<'t> {
@@ -298,11 +298,17 @@ fn defuzzifier(draft: &mut Draft<'_>, written: &str, output: &mut Output) {
         return;
     };
     output.defuzzifier = known;
-    let weighted = matches!(
-        known,
-        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
-    );
-    let Some(part) = parts.next().filter(|_| !weighted) else {
+    let weighted = words::is_weighted(known);
+    if weighted {
+        // fuzzylite tells Tsukamoto's kind from the terms.
+        if known == Defuzzifier::WeightedAverage
+            && !output.variable.terms.iter().any(shapes::is_computed)
+        {
+            output.defuzzifier = Defuzzifier::Tsukamoto;
+        }
+        return;
+    }
+    let Some(part) = parts.next() else {
         return;
     };
     match part.parse() {
@@ -381,11 +387,7 @@ fn merged(draft: &mut Draft<'_>, outputs: &[&Section<'_>]) {
     let mut first: Option<(&str, Aggregation)> = None;
     for section in outputs {
         let weighted = draft.model.outputs.iter().any(|output| {
-            output.variable.name == section.name
-                && matches!(
-                    output.defuzzifier,
-                    Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
-                )
+            output.variable.name == section.name && words::is_weighted(output.defuzzifier)
         });
         if weighted {
             continue;

@@ -70,13 +70,14 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
     paper.line(format!("OutputVariable: {}", output.variable.name));
     variable(paper, &output.variable);
     paper.line("  lock-range: false");
-    let weighted = matches!(
-        output.defuzzifier,
-        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
-    );
-    let aggregation = match weighted {
-        true => Some("none"),
-        false => words::word(
+    let computed = match output.defuzzifier {
+        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => Some("TakagiSugeno"),
+        Defuzzifier::Tsukamoto => Some("Tsukamoto"),
+        _ => None,
+    };
+    let aggregation = match computed {
+        Some(_) => Some("none"),
+        None => words::word(
             words::AGGREGATIONS,
             Format::Fll,
             model.operators.aggregation,
@@ -85,10 +86,10 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
     paper.line(format!("  aggregation: {}", aggregation.unwrap_or("none")));
     let word =
         words::word(words::DEFUZZIFIERS, Format::Fll, output.defuzzifier).unwrap_or_default();
-    let detail = match (weighted, output.samples) {
-        (true, _) => "TakagiSugeno".to_owned(),
-        (false, Some(sampling)) => sampling.samples.to_string(),
-        (false, None) => {
+    let detail = match (computed, output.samples) {
+        (Some(kind), _) => kind.to_owned(),
+        (None, Some(sampling)) => sampling.samples.to_string(),
+        (None, None) => {
             let message = format!(
                 "fuzzylite samples the output `{}` at {SAMPLES} places",
                 output.variable.name
@@ -170,7 +171,9 @@ fn rule_block(paper: &mut Paper, model: &Model) {
     paper.line("  activation: General");
     for (index, rule) in model.rules.iter().enumerate() {
         match rules::write(&rule.rule, operators, " and ") {
-            Some(text) => paper.line(format!("  rule: {text}")),
+            Some(rules) => rules
+                .iter()
+                .for_each(|rule| paper.line(format!("  rule: {rule}"))),
             None => {
                 let message = format!("rule {} has a NOT before brackets", index + 1);
                 paper.loss("not", message, "fuzzylite has `not` before a term only");

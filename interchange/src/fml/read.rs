@@ -340,6 +340,7 @@ impl Reader<'_> {
                 }
                 consequents.push(Consequent {
                     output: variable,
+                    hedges: vec![],
                     term: term?,
                 });
             }

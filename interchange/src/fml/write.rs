@@ -83,12 +83,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     for output in &model.outputs {
         base.push(self::output(&mut paper, output, model));
     }
-    let is_weighted = |output: &Output| {
-        matches!(
-            output.defuzzifier,
-            Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
-        )
-    };
+    let is_weighted = |output: &Output| words::is_weighted(output.defuzzifier);
     let weighted = model.outputs.iter().any(is_weighted);
     if weighted && !model.outputs.iter().all(is_weighted) {
         let message = "some outputs are weighted, others are not".into();
