@@ -7,7 +7,7 @@ use fuzzy::{
     format::{Document, Spans},
 };
 
-use crate::Losses;
+use crate::{Losses, comments};
 
 /// A model that is being read from a text.
 pub(crate) struct Draft<'t> {
@@ -73,7 +73,7 @@ impl<'t> Draft<'t> {
                 "not-a-number",
                 word,
                 message,
-                "write it out in digits: 0.7854 for pi/4",
+                "write it out in digits: 0.7853981633974483 for pi/4",
             );
         }
         number
@@ -106,7 +106,8 @@ impl<'t> Draft<'t> {
     }
 
     /// The model, or what keeps the text from being read.
-    pub(crate) fn finish(self) -> Result<Document, Findings> {
+    pub(crate) fn finish(mut self) -> Result<Document, Findings> {
+        comments::keep(self.text, &mut self.model, &self.spans);
         let findings = Findings::locate(self.findings, self.text);
         if findings.has_errors() {
             return Err(findings);

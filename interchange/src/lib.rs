@@ -28,11 +28,12 @@
 //! let document = interchange::read(text, Format::Fll, Losses::Refuse)?;
 //! let engine = fuzzy::Engine::new(&document.model)?;
 //! assert!(engine.evaluate(&[28.0])?[0].value() > Some(6.0));
-//! # Ok::<(), fuzzy::Findings>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use fuzzy::{Findings, Model, format::Document};
 
+mod comments;
 mod conditions;
 mod draft;
 mod fcl;
@@ -97,7 +98,7 @@ impl Format {
     /// The format of a text, told by what it begins with behind comments; `None` where it is none of them.
     #[must_use]
     pub fn of(text: &str) -> Option<Format> {
-        let text = behind_comments(text);
+        let text = comments::behind(text);
         let starts = |word: &str| {
             text.get(..word.len())
                 .is_some_and(|start| start.eq_ignore_ascii_case(word))
@@ -114,24 +115,6 @@ impl Format {
         } else {
             None
         }
-    }
-}
-
-/// A text behind the comments that it begins with: lines of `#`, `%` or `//`, and `/* ... */` or `(* ... *)`.
-fn behind_comments(text: &str) -> &str {
-    let mut rest = text;
-    loop {
-        rest = rest.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
-        let end = if ["#", "%", "//"].iter().any(|mark| rest.starts_with(mark)) {
-            rest.find('\n')
-        } else if rest.starts_with("/*") {
-            rest.find("*/").map(|at| at + 2)
-        } else if rest.starts_with("(*") {
-            rest.find("*)").map(|at| at + 2)
-        } else {
-            return rest;
-        };
-        rest = end.and_then(|end| rest.get(end..)).unwrap_or_default();
     }
 }
 

@@ -88,9 +88,9 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
             draft.spans.outputs.push(spans);
         }
     }
-    counts(&mut draft, system, names.len());
     // Rules name terms by number, so the variables must all be there.
     if !draft.has_errors() {
+        counts(&mut draft, system, names.len());
         let section = sections
             .iter()
             .find(|s| s.name.eq_ignore_ascii_case("Rules"));
@@ -339,7 +339,7 @@ fn counts(draft: &mut Draft<'_>, system: &Section<'_>, inputs: usize) {
         };
         if written.parse() != Ok(found) {
             let message = format!("`{key}` is {written}, but the file has {found}");
-            let help = "numbers of variables that are left out are missing in the rules";
+            let help = "the rules are read with the variables that the file has";
             draft.warning("wrong-count", written, message, help);
         }
     }
