@@ -1,6 +1,8 @@
 //! The systems that are timed here and in `benches/peers`, made in code.
 
-use fuzzy::model::{MembershipFunction, Model, Output, Variable};
+use fuzzy::model::{
+    Defuzzifier, Implication, MembershipFunction, Model, ModelBuilder, Output, Variable,
+};
 use fuzzy::rule::{Condition, Rule};
 
 fn triangle(left: f64, peak: f64, right: f64) -> MembershipFunction {
@@ -137,6 +139,59 @@ pub fn four_inputs() -> Model {
         }
     }
     model
+}
+
+/// The published rules with the product as implication.
+pub fn larsen() -> Model {
+    let mut model = published(true);
+    model.operators.implication = Implication::Product;
+    model
+}
+
+/// The published rules with output terms so wide that four overlap.
+pub fn overlapping() -> Model {
+    let mut model = published(true);
+    for output in &mut model.outputs {
+        for (term, peak) in output
+            .variable
+            .terms
+            .iter_mut()
+            .zip([0.0, 25.0, 50.0, 75.0, 100.0])
+        {
+            term.membership_function = triangle(peak - 60.0, peak, peak + 60.0);
+        }
+    }
+    model
+}
+
+/// Takagi-Sugeno: 2 inputs of 3 terms, 9 rules that conclude linear functions of the inputs.
+pub fn takagi_sugeno() -> Model {
+    let names = ["low", "medium", "high"];
+    let mut power = Variable::new("power", 0.0, 100.0);
+    let mut rules = Vec::new();
+    for (i, heat) in (0u8..).zip(names) {
+        for (j, damp) in (0u8..).zip(names) {
+            let term = format!("{heat}_{damp}");
+            let (i, j) = (f64::from(i), f64::from(j));
+            power = power.term(
+                &*term,
+                MembershipFunction::Linear {
+                    coefficients: vec![
+                        ("heat".into(), 1.0 + 0.5 * i),
+                        ("damp".into(), 0.25 * j - 0.3),
+                    ],
+                    constant: 10.0 * i - 4.0 * j,
+                },
+            );
+            let condition = Condition::is("heat", heat).and(Condition::is("damp", damp));
+            rules.push(Rule::new(condition, "power", &term));
+        }
+    }
+    let builder = Model::builder("takagi sugeno")
+        .input(Variable::new("heat", 0.0, 40.0).partition(names))
+        .input(Variable::new("damp", 0.0, 100.0).partition(names))
+        .output(Output::new(power).defuzzifier(Defuzzifier::WeightedAverage));
+    rules.into_iter().fold(builder, ModelBuilder::rule).build()
 }
 
 /// Points spread over the inputs' ranges, the same on every machine: a Weyl sequence.

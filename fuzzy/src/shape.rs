@@ -1,11 +1,12 @@
 //! The shapes of membership functions. A shape is a variant of [`MembershipFunction`] and a line in the table of spellings,
 //! both here; a formula, in `formula`; and an outline, in `outline`.
 //!
-//! Formulas that several shapes share are in `straight` and `smooth`.
+//! Formulas that several shapes share are in `straight`, `smooth` and `exponential`.
 
 #[cfg(feature = "alloc")]
 use alloc::{string::String, vec, vec::Vec};
 
+mod exponential;
 #[cfg(feature = "alloc")]
 mod form;
 mod formula;

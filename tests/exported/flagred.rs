@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4012 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122640 bytes of memory.
+// 4108 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123168 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -169,12 +169,12 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         output: 0,
         order: &[0, 1, 2, 3, 4, 5],
         channels: &[
-            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: true, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: true, window_s: 20.0 },
-            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Mean, threshold: None, in_bins: true, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: false, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: Some(channel::Threshold::Below(0.006)), in_bins: false, window_s: 2.0 },
+            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: true, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: true, window_s: 20.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Mean, threshold: None, in_bins: true, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::CommandLessYaw, motors: channel::Motors::Std, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: Some(channel::Threshold::Below(0.006)), in_bins: false, window_s: 2.0, exponential: false },
         ],
         inputs: &[
             channel::Input { channel: 0, statistic: channel::Statistic::StdLessNoise },

@@ -1,5 +1,5 @@
 // The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 9084 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72008 bytes of memory.
+// 9132 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72272 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// Memory for a monitor of so many motors.
@@ -145,9 +145,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         output: 0,
         order: &[0, 1, 2],
         channels: &[
-            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Named(0), motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
+            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Named(0), motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
         ],
         inputs: &[
             channel::Input { channel: 0, statistic: channel::Statistic::Mean },

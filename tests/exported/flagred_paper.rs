@@ -1,5 +1,5 @@
 // The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 3548 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54328 bytes of memory.
+// 3580 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54504 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -120,8 +120,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         output: 0,
         order: &[0, 1],
         channels: &[
-            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
-            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0 },
+            channel::Channel { observed: channel::Observed::Margin, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
+            channel::Channel { observed: channel::Observed::Command, motors: channel::Motors::Pooled, threshold: None, in_bins: false, window_s: 2.0, exponential: false },
         ],
         inputs: &[
             channel::Input { channel: 0, statistic: channel::Statistic::Mean },

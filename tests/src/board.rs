@@ -148,11 +148,11 @@ pub fn moments(log: &std::path::Path, signals: &[&str]) -> Vec<Moment> {
                 *motor = odd[i as usize % odd.len()];
             }
         }
-        for signal in &mut moment.signals {
+        for (n, signal) in moment.signals.iter_mut().enumerate() {
             *signal = if i % 60 == 0 {
                 f64::NAN
             } else {
-                f64::from(i) / 15.0
+                f64::from(i) / 15.0 * (n + 1) as f64
             };
         }
         moments.push(moment);

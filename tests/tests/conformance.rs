@@ -11,7 +11,7 @@ use flagred_tests::reference;
 use fuzzy::Engine;
 use fuzzy::engine::Outcome;
 use fuzzy::map::{DecisionMap, Grid};
-use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, Model};
+use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Model};
 
 /// How far from the value the engine may be, and the plain integration with few samples, as a part of the
 /// output's range. Maxima are as good as the samples of the integration are dense.
@@ -78,11 +78,7 @@ fn case(model: &Model, line: &str, place: String) -> Case {
             "and" => operators.and = conjunction(value),
             "or" => operators.or = disjunction(value),
             "implication" => {
-                operators.implication = match value {
-                    "minimum" => Implication::Minimum,
-                    "product" => Implication::Product,
-                    other => panic!("{other}"),
-                }
+                operators.implication = conjunction(value);
             }
             "aggregation" => {
                 operators.aggregation = match value {
@@ -90,6 +86,10 @@ fn case(model: &Model, line: &str, place: String) -> Case {
                     "probabilistic_sum" => Aggregation::ProbabilisticSum,
                     "bounded_sum" => Aggregation::BoundedSum,
                     "sum" => Aggregation::Sum,
+                    "drastic" => Aggregation::Drastic,
+                    "einstein" => Aggregation::Einstein,
+                    "hamacher" => Aggregation::Hamacher,
+                    "nilpotent_maximum" => Aggregation::NilpotentMaximum,
                     other => panic!("{other}"),
                 }
             }

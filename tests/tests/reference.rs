@@ -85,6 +85,7 @@ fn eventful(rate_hz: f64, length_s: f64, late_s: f64) -> Vec<Sample> {
         samples.push(Sample {
             t_s,
             commands,
+            signals: vec![],
             in_air,
         });
     }
@@ -110,16 +111,113 @@ fn an_eventful_flight_is_what_the_documents_say() {
         let estimator = Estimator::new(&profile, shipped::flagred().model()).unwrap();
         let craft = Craft::new(8).with_geometry(&factors);
         let mut assessor = Assessor::new(&estimator, craft, Some(0.0)).unwrap();
-        for sample in &samples {
-            assessor.push(&sample::Sample {
-                t_s: sample.t_s,
-                motors: &sample.commands,
-                in_air: sample.in_air,
-                signals: &[],
-            });
-        }
+        push_all(&mut assessor, &samples);
         let troubles = compare(&estimator, &assessor.finish(), &samples, &factors);
         assert_eq!(troubles.len(), findings, "{rate_hz} Hz: {troubles:?}");
+    }
+}
+
+fn push_all(assessor: &mut Assessor, samples: &[Sample]) {
+    for sample in samples {
+        assessor.push(&sample::Sample {
+            t_s: sample.t_s,
+            motors: &sample.commands,
+            in_air: sample.in_air,
+            signals: &sample.signals,
+        });
+    }
+}
+
+/// Statistics of signals: the end of the range of the input in the rule set, and its source.
+const SOURCES: [(f64, &str); 20] = [
+    (0.5, "{mean: {motor: 3, of: motor_margin}}"),
+    (0.2, "{std: {motor: 8, of: motor_command_less_yaw}}"),
+    (1.0, "{mean: {min: motor_command}}"),
+    (0.1, "{noise: {std: motor_command}}"),
+    (180.0, "{mean: {difference: [yaw_des_deg, yaw_deg]}}"),
+    (
+        180.0,
+        "{rms: {difference: [yaw_des_deg, yaw_deg]}, window_s: 6}",
+    ),
+    (
+        1.0,
+        "{share_above: 5, of: {difference: [yaw_des_deg, yaw_deg]}}",
+    ),
+    (5.0, "{max: {difference: [battery_v, cells_v]}}"),
+    (20.0, "{min: battery_v, window_s: 5}"),
+    (20.0, "{last: battery_v}"),
+    (2.0, "{rate: battery_v, window_s: 9}"),
+    (1.0, "{rate: {mean: motor_command}}"),
+    (
+        90.0,
+        "{rate: {difference: [yaw_des_deg, yaw_deg]}, window_s: 1.5}",
+    ),
+    (1.0, "{median: {max: motor_command}, window_s: 7}"),
+    (
+        180.0,
+        "{percentile: 90, of: {difference: [yaw_des_deg, yaw_deg]}, window_s: 12}",
+    ),
+    (1.0, "{percentile: 2.5, of: {motor: 1, of: motor_command}}"),
+    (
+        0.2,
+        "{mean: {std: motor_command_less_yaw}, time_constant_s: 4}",
+    ),
+    (0.4, "{std: motor_command, time_constant_s: 6}"),
+    (
+        180.0,
+        "{rms: {difference: [yaw_des_deg, yaw_deg]}, time_constant_s: 1.5}",
+    ),
+    (
+        1.0,
+        "{share_below: 0.45, of: motor_margin, time_constant_s: 30}",
+    ),
+];
+
+/// A profile with each source, and a rule set that takes each into account.
+fn of_sources() -> Estimator {
+    let (mut inputs, mut sources, mut rules) = (String::new(), String::new(), String::new());
+    for (i, (end, source)) in SOURCES.iter().enumerate() {
+        inputs += &format!("  x{i}: {{range: [-{end}, {end}], partition: [low, high]}}\n");
+        sources += &format!("  x{i}: {source}\n");
+        rules += &format!(
+            "  - IF x{i} IS low THEN risk IS low\n  - IF x{i} IS high THEN risk IS high\n"
+        );
+    }
+    let rules = format!(
+        "fuzzy: 1\nname: sources\ninputs:\n{inputs}outputs:\n  risk: {{range: [0, 100], terms: \
+         {{low: {{triangle: [20, 25, 30]}}, high: {{triangle: [70, 75, 80]}}}}}}\n\
+         operators: {{and: product, or: maximum, implication: product, aggregation: sum}}\nrules:\n{rules}"
+    );
+    let profile = format!(
+        "flagred: 1\nname: sources\nrules: sources\ntake_off_s: 3\ninputs:\n{sources}\
+         verdict: {{warn: {{risk: 60}}, fail: {{risk: 70}}}}\n"
+    );
+    let model = fuzzy::yaml::parse(&rules).unwrap().model;
+    Estimator::new(&profile.parse().unwrap(), &model).unwrap()
+}
+
+#[test]
+fn every_statistic_of_every_source_is_what_the_documents_say() {
+    let estimator = of_sources();
+    let names = estimator.profile().signals();
+    assert_eq!(names, ["yaw_des_deg", "yaw_deg", "battery_v", "cells_v"]);
+    for (rate_hz, length_s) in [(5.0, 80.0), (12.0, 60.0), (150.0, 14.0)] {
+        let mut samples = eventful(rate_hz, length_s, 1.1);
+        for sample in &mut samples {
+            let t_s = sample.t_s;
+            let wanted_deg = 200.0 * (0.4 * t_s).sin();
+            let is_at = (wanted_deg - 9.0 * (1.3 * t_s).cos() + 360.0) % 360.0;
+            let battery_v = 16.0 - 0.02 * t_s + 0.3 * (0.9 * t_s).sin();
+            // The voltage is unknown for a while.
+            let is_lost = (46.0..46.9).contains(&t_s);
+            let battery_v = if is_lost { f64::NAN } else { battery_v };
+            sample.signals = vec![wanted_deg, is_at, battery_v, 15.0 - 0.01 * t_s];
+        }
+        let factors = octa();
+        let craft = Craft::new(8).with_geometry(&factors).with_signals(&names);
+        let mut assessor = Assessor::new(&estimator, craft, Some(0.0)).unwrap();
+        push_all(&mut assessor, &samples);
+        compare(&estimator, &assessor.finish(), &samples, &factors);
     }
 }
 

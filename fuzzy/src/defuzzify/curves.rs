@@ -103,9 +103,9 @@ impl Curves {
         }
     }
 
-    /// Adds a cut where, between two cuts, a term meets one of its plateaus, two terms cross (maximum) or the sum reaches 1
-    /// (bounded sum). A kink may be missed, because curves meet twice between two cuts or because memory is short. Then the
-    /// integration takes longer, and is as exact.
+    /// Adds a cut where, between two cuts, the set has a kink or a step: a term passes a level of its implication, two terms
+    /// cross, or the sum of two reaches 1. A kink may be missed, because curves meet twice between two cuts or because memory
+    /// is short. Then the integration takes longer, and is as exact.
     fn kinks(
         &self,
         strengths: Strengths<'_>,
@@ -121,35 +121,57 @@ impl Curves {
                 cuts.push(root(a, b, f));
             }
         };
-        if joint.implication == Implication::Minimum {
-            for (index, term) in self.terms.iter().enumerate() {
-                for &strength in strengths.of(index) {
-                    if strength > 0.0 {
-                        cut_at_sign_change(&|x| term.membership(x) - strength);
-                    }
+        let Joint {
+            implication,
+            aggregation,
+        } = joint;
+        let fired = |index: usize| strengths.of(index).iter().filter(|h| **h > 0.0).copied();
+        let terms = || self.terms.iter().enumerate();
+        for (index, term) in terms() {
+            for strength in fired(index) {
+                for level in levels(implication, strength).into_iter().flatten() {
+                    cut_at_sign_change(&|x| term.membership(x) - level);
                 }
             }
         }
-        if joint.aggregation == Aggregation::Maximum {
+        if let Aggregation::Maximum | Aggregation::NilpotentMaximum = aggregation {
             let activated = |index: usize, term: &Term, x: f64| {
                 let membership = term.membership(x);
-                let strengths = strengths.of(index).iter();
-                strengths.fold(0.0, |most: f64, h| {
-                    most.max(joint.implication.of(*h, membership))
-                })
+                fired(index).fold(0.0, |most: f64, h| most.max(implication.of(h, membership)))
             };
-            for (i, first) in self.terms.iter().enumerate() {
-                for (j, second) in self.terms.iter().enumerate().skip(i + 1) {
+            for (i, first) in terms() {
+                for (j, second) in terms().skip(i + 1) {
                     cut_at_sign_change(&|x| activated(i, first, x) - activated(j, second, x));
                 }
             }
         }
-        if joint.aggregation == Aggregation::BoundedSum {
+        if aggregation == Aggregation::NilpotentMaximum {
+            let all = || terms().flat_map(|(i, term)| fired(i).map(move |h| (term, h)));
+            for (i, (first, g)) in all().enumerate() {
+                for (second, h) in all().skip(i + 1) {
+                    cut_at_sign_change(&|x| {
+                        let one = implication.of(g, first.membership(x));
+                        one + implication.of(h, second.membership(x)) - 1.0
+                    });
+                }
+            }
+        }
+        if aggregation == Aggregation::BoundedSum {
             let unbounded = Joint {
                 aggregation: Aggregation::Sum,
                 ..joint
             };
             cut_at_sign_change(&|x| self.degree(strengths, unbounded, x) - 1.0);
         }
+    }
+}
+
+/// The degrees of membership at which an activated term has a kink or a step.
+fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2] {
+    match implication {
+        Implication::Minimum => [Some(strength), None],
+        Implication::BoundedDifference => [Some(1.0 - strength), None],
+        Implication::NilpotentMinimum => [Some(strength), Some(1.0 - strength)],
+        _ => [None, None],
     }
 }

@@ -114,20 +114,22 @@ impl Defuzzify {
     pub(crate) fn fuzzy(output: &Output, operators: Operators) -> Self {
         let variable = &output.variable;
         let (low, high) = (variable.low, variable.high);
+        let joint = Joint {
+            implication: operators.implication,
+            aggregation: operators.aggregation,
+        };
         let curves = || Curves::new(&variable.terms, low, high);
         let method = match output.samples {
             Some(sampling) => Method::Sampled(sampling, curves()),
             None => Polylines::new(&variable.terms, low, high)
+                .filter(|_| Polylines::can(joint))
                 .map_or_else(|| Method::Curves(curves()), Method::Lines),
         };
         let mut compiled = Defuzzify {
             low,
             high,
             defuzzifier: output.defuzzifier,
-            joint: Joint {
-                implication: operators.implication,
-                aggregation: operators.aggregation,
-            },
+            joint,
             method,
         };
         if output.defuzzifier == Defuzzifier::Centroid && output.samples.is_none() {

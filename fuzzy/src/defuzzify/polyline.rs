@@ -80,6 +80,18 @@ impl Clone for Workspace {
 }
 
 impl Polylines {
+    /// Whether activated lines are lines, and their aggregate is smooth but for corners that are found. With other operators
+    /// terms made of straight lines are curves.
+    pub(super) fn can(joint: Joint) -> bool {
+        matches!(
+            joint.implication,
+            Implication::Minimum | Implication::Product
+        ) && !matches!(
+            joint.aggregation,
+            Aggregation::Drastic | Aggregation::NilpotentMaximum
+        )
+    }
+
     /// Cuts `[low, high]` at every corner of every term; `None` where a term is curved.
     pub(crate) fn new(terms: &[Term], low: f64, high: f64) -> Option<Self> {
         let corners = terms
@@ -263,7 +275,7 @@ fn join(
                 visit(&straight(stretch, t, 1.0, 1.0, smaller(1.0, sum.right)));
             }
         }
-        Aggregation::ProbabilisticSum => {
+        _ => {
             let degree = |t: f64| {
                 segments.iter().fold(0.0, |sum, segment| {
                     let line = segment.left + (segment.right - segment.left) * t;

@@ -30,12 +30,40 @@ const MOST_CELLS_A_RULE: usize = 32;
 /// More axes would visit more than 64 cells, of which most have a degree of 0.
 const MOST_AXES: usize = 6;
 const MOST_ACTIONS_A_CELL: usize = 2;
+/// Up to this number of steps, computing all rules takes less time than finding those that fire.
+const MOST_STEPS_OF_FEW_RULES: usize = 64;
 
 impl OwnedTable {
     /// Adds the rules. The order of `drafts` does not depend on the order of the model's rules. `unused` is the index of the
     /// firing strength of no output.
     pub(super) fn rules(&mut self, drafts: &[Draft], inputs: &[Literals], unused: u32) {
-        for draft in drafts.iter().filter(|draft| draft.literals.is_none()) {
+        let plain: Vec<Plain<'_>> = drafts
+            .iter()
+            .filter_map(|draft| Some((draft.literals.as_deref()?, &*draft.actions)))
+            .collect();
+        let steps: usize = drafts.iter().map(|draft| draft.steps.len()).sum();
+        let is_short = steps <= MOST_STEPS_OF_FEW_RULES;
+        // Programs read all degrees, so that others may read them too.
+        let is_plain = plain.len() == drafts.len();
+        let has_table = (is_plain || !is_short) && self.dense(&plain, inputs).is_some();
+        let is_uniform = has_table && self.uniform(inputs, unused).is_some();
+        let all_programs = is_short && !is_uniform;
+        if all_programs {
+            self.dimensions.clear();
+            self.cells.clear();
+            self.actions.clear();
+        }
+        if all_programs || !has_table {
+            let mut sorted = if all_programs { Vec::new() } else { plain };
+            sorted.sort_by_key(|(literals, _)| *literals);
+            let (_, most_open) = self.node(&sorted, 0);
+            self.conjunctions = Conjunctions::Trie;
+            self.sizes.partial = most_open.max(1);
+        }
+        for draft in drafts
+            .iter()
+            .filter(|draft| all_programs || draft.literals.is_none())
+        {
             let (first_step, first_action) = (self.steps.len(), self.actions.len());
             let first_hedge = self.hedges.len();
             self.steps.extend(&draft.steps);
@@ -52,19 +80,6 @@ impl OwnedTable {
             });
             let pushes = draft.steps.iter().filter(|step| step.op == Op::PUSH);
             self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
-        }
-        let plain: Vec<Plain<'_>> = drafts
-            .iter()
-            .filter_map(|draft| Some((draft.literals.as_deref()?, &*draft.actions)))
-            .collect();
-        if self.dense(&plain, inputs).is_some() {
-            self.uniform(inputs, unused);
-        } else {
-            let mut sorted = plain;
-            sorted.sort_by_key(|(literals, _)| *literals);
-            let (_, most_open) = self.node(&sorted, 0);
-            self.conjunctions = Conjunctions::Trie;
-            self.sizes.partial = most_open.max(1);
         }
     }
 

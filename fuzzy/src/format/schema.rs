@@ -8,7 +8,7 @@ use alloc::{format, string::String, vec::Vec};
 use super::{
     VERSION, rules,
     variables::{INPUT_KEYS, OUTPUT_KEYS},
-    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, IMPLICATIONS},
+    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS},
 };
 use crate::{
     model::{Form, MembershipFunction, Role},
@@ -344,7 +344,7 @@ fn operators() -> Node {
             "implication",
             words(
                 "How a firing strength cuts or scales a term; minimum where absent",
-                &IMPLICATIONS,
+                &CONJUNCTIONS,
             ),
         ),
         (

@@ -118,7 +118,7 @@ fn any_finite() -> impl Strategy<Value = f64> {
 fn any_operators() -> impl Strategy<Value = Operators> {
     let and = select(&words::CONJUNCTIONS[..]);
     let or = select(&words::DISJUNCTIONS[..]);
-    let implication = select(&words::IMPLICATIONS[..]);
+    let implication = select(&words::CONJUNCTIONS[..]);
     let aggregation = select(&words::AGGREGATIONS[..]);
     (and, or, implication, aggregation).prop_map(|words| Operators {
         and: words.0.1,

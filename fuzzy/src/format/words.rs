@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use crate::{
     diagnostic::Diagnostic,
-    model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, Operators},
+    model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Operators},
     tree::Node,
 };
 
@@ -28,16 +28,15 @@ pub(super) const DISJUNCTIONS: [(&str, Disjunction); 7] = [
     ("nilpotent_maximum", Disjunction::NilpotentMaximum),
 ];
 
-pub(super) const IMPLICATIONS: [(&str, Implication); 2] = [
-    ("minimum", Implication::Minimum),
-    ("product", Implication::Product),
-];
-
-pub(super) const AGGREGATIONS: [(&str, Aggregation); 4] = [
+pub(super) const AGGREGATIONS: [(&str, Aggregation); 8] = [
     ("maximum", Aggregation::Maximum),
     ("probabilistic_sum", Aggregation::ProbabilisticSum),
     ("bounded_sum", Aggregation::BoundedSum),
     ("sum", Aggregation::Sum),
+    ("drastic", Aggregation::Drastic),
+    ("einstein", Aggregation::Einstein),
+    ("hamacher", Aggregation::Hamacher),
+    ("nilpotent_maximum", Aggregation::NilpotentMaximum),
 ];
 
 pub(super) const DEFUZZIFIERS: [(&str, Defuzzifier); 8] = [
@@ -72,7 +71,7 @@ pub(super) fn operators(node: &Node, findings: &mut Vec<Diagnostic>) -> Option<O
         operators.or = word.unwrap_or(operators.or);
     }
     if let Some(node) = fields.get("implication") {
-        let word = node.choice("the operator `implication`", &IMPLICATIONS, findings);
+        let word = node.choice("the operator `implication`", &CONJUNCTIONS, findings);
         operators.implication = word.unwrap_or(operators.implication);
     }
     if let Some(node) = fields.get("aggregation") {

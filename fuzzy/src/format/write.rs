@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::{
     VERSION, rules, shapes,
-    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, IMPLICATIONS, word_of},
+    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, word_of},
 };
 use crate::{
     model::{
@@ -44,7 +44,7 @@ fn operators(operators: &Operators) -> Node {
         ("or", Node::text(word_of(&DISJUNCTIONS, operators.or))),
         (
             "implication",
-            Node::text(word_of(&IMPLICATIONS, operators.implication)),
+            Node::text(word_of(&CONJUNCTIONS, operators.implication)),
         ),
         (
             "aggregation",

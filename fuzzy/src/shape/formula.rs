@@ -1,8 +1,9 @@
 //! The formulas of membership functions, each with a number: all that a table in firmware knows of a shape.
 
-use libm::{cos, exp, fabs, pow, sqrt};
+use libm::{cos, fabs, pow, sqrt};
 
 use super::{
+    exponential::exp_of_minus,
     smooth::{gaussian, s_shape, sigmoid, z_shape},
     straight::{along, falling, indicator, into_unit, rising, trapezoid},
 };
@@ -70,7 +71,7 @@ impl Kind {
                 let turns = (x - a) / b;
                 0.5 * (1.0 + cos(2.0 * core::f64::consts::PI * turns))
             }
-            Kind::SPIKE => exp(-fabs(10.0 * (x - a) / b)),
+            Kind::SPIKE => exp_of_minus(fabs(10.0 * (x - a) / b)),
             Kind::CONCAVE => concave(x, a, b),
             Kind::ARC => arc(x, a, b),
             Kind::SEMI_ELLIPSE if a < x && x < b => {

@@ -3,22 +3,26 @@
 #[cfg(feature = "alloc")]
 use alloc::{vec, vec::Vec};
 
-use libm::exp;
 #[cfg(feature = "alloc")]
 use libm::{log, sqrt};
 
+use super::exponential::exp_of_minus;
 use super::straight::{falling, rising};
 
+#[inline(always)]
 pub(super) fn gaussian(x: f64, mean: f64, sd: f64) -> f64 {
     let z = (x - mean) / sd;
-    exp(-0.5 * z * z)
+    exp_of_minus(0.5 * z * z)
 }
 
 pub(super) fn sigmoid(x: f64, inflection: f64, slope: f64) -> f64 {
     if slope == 0.0 {
         return 0.5;
     }
-    1.0 / (1.0 + exp(-slope * (x - inflection)))
+    // Of the falling side, so that no exponential is above 1.
+    let t = slope * (x - inflection);
+    let e = exp_of_minus(libm::fabs(t));
+    (if t >= 0.0 { 1.0 } else { e }) / (1.0 + e)
 }
 
 /// 0 up to `foot`, `2 t^2` to the middle, `1 - 2 (1 - t)^2` to `top`, with `t = (x - foot) / (top - foot)`.

@@ -196,10 +196,22 @@ pub(super) fn fire_into<A: Arrays>(table: &A, finding: Finding<'_>, firing: &mut
         }
     }
     // The common operators, so that the loops do not branch on the operator.
-    match table.and() {
-        Conjunction::Minimum => fire_with(table, smaller, finding, firing),
-        Conjunction::Product => fire_with(table, |a, b| a * b, finding, firing),
-        and => fire_with(table, |a, b| and.of(a, b), finding, firing),
+    match (table.and(), table.or()) {
+        (Conjunction::Minimum, Disjunction::Maximum) => {
+            fire_with(table, smaller, larger, finding, firing);
+        }
+        (Conjunction::Product, or) => {
+            fire_with(table, |a, b| a * b, |a, b| or.of(a, b), finding, firing);
+        }
+        (and, or) => {
+            fire_with(
+                table,
+                |a, b| and.of(a, b),
+                |a, b| or.of(a, b),
+                finding,
+                firing,
+            );
+        }
     }
 }
 
@@ -207,6 +219,7 @@ pub(super) fn fire_into<A: Arrays>(table: &A, finding: Finding<'_>, firing: &mut
 fn fire_with<A: Arrays>(
     table: &A,
     and: impl Fn(f64, f64) -> f64,
+    or: impl Fn(f64, f64) -> f64,
     finding: Finding<'_>,
     firing: &mut impl Act,
 ) {
@@ -229,16 +242,16 @@ fn fire_with<A: Arrays>(
                 actions_a_cell: actions_a_cell as usize,
                 sums,
             };
-            fire_uniform(table, &cells, values, partial, and, firing);
+            fire_uniform(table, &cells, values, partial, &and, firing);
         }
         Conjunctions::Dense => {
-            fire_dense(table, values, (alive, partial, next), and, firing);
+            fire_dense(table, values, (alive, partial, next), &and, firing);
         }
-        Conjunctions::Trie => fire_trie(table, degrees, partial, and, firing),
+        Conjunctions::Trie => fire_trie(table, degrees, partial, &and, firing),
     }
     for program in table.programs() {
         let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
-        let degree = run(steps, degrees, table.and(), table.or(), stack);
+        let degree = run(steps, degrees, &and, &or, stack);
         if degree > 0.0 {
             let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
             let strength = program.weight * degree;
@@ -426,11 +439,12 @@ impl Cells<'_> {
 }
 
 /// The degree of an antecedent. `stack` holds at least the depth of the program.
+#[inline(always)]
 fn run(
     steps: &[Step],
     degrees: &[f64],
-    and: Conjunction,
-    or: Disjunction,
+    and: impl Fn(f64, f64) -> f64,
+    or: impl Fn(f64, f64) -> f64,
     stack: &mut [f64],
 ) -> f64 {
     let mut depth = 0;
@@ -443,15 +457,15 @@ fn run(
                 depth += 1;
                 degree()
             }
-            Op::AND_LITERAL => and.of(top, degree()),
-            Op::OR_LITERAL => or.of(top, degree()),
+            Op::AND_LITERAL => and(top, degree()),
+            Op::OR_LITERAL => or(top, degree()),
             Op::AND => {
                 depth -= 1;
-                and.of(stack[depth], top)
+                and(stack[depth], top)
             }
             Op::OR => {
                 depth -= 1;
-                or.of(stack[depth], top)
+                or(stack[depth], top)
             }
             _ => 1.0 - top,
         };

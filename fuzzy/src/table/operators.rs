@@ -40,15 +40,9 @@ pub enum Disjunction {
     NilpotentMaximum,
 }
 
-/// How a firing strength `h` activates a consequent with membership `m`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Implication {
-    /// `min(h, m)` (Mamdani).
-    #[default]
-    Minimum,
-    /// `h m` (Larsen).
-    Product,
-}
+/// How a firing strength `h` activates a consequent with membership `m`: a t-norm, such as `min(h, m)` (Mamdani) or `h m`
+/// (Larsen).
+pub type Implication = Conjunction;
 
 /// How the activated consequents of an output are aggregated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -62,6 +56,14 @@ pub enum Aggregation {
     BoundedSum,
     /// `a + b`, unbounded.
     Sum,
+    /// `max(a, b)` where one of them is 0, else 1.
+    Drastic,
+    /// `(a + b) / (1 + a b)`.
+    Einstein,
+    /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
+    Hamacher,
+    /// `max(a, b)` where `a + b < 1`, else 1.
+    NilpotentMaximum,
 }
 
 /// A hedge: changes a membership `x`. Of several hedges the one nearest to the term applies first.
@@ -205,17 +207,6 @@ pub(crate) fn probabilistic_sum(a: f64, b: f64) -> f64 {
     smaller(1.0, a + b * (1.0 - a))
 }
 
-impl Implication {
-    /// The activated membership.
-    #[inline(always)]
-    pub(crate) fn of(self, strength: f64, membership: f64) -> f64 {
-        match self {
-            Implication::Minimum => smaller(strength, membership),
-            Implication::Product => strength * membership,
-        }
-    }
-}
-
 impl Aggregation {
     /// The aggregated degree of two activated consequents.
     #[inline(always)]
@@ -225,6 +216,10 @@ impl Aggregation {
             Aggregation::ProbabilisticSum => probabilistic_sum(a, b),
             Aggregation::BoundedSum => smaller(1.0, a + b),
             Aggregation::Sum => a + b,
+            Aggregation::Drastic => Disjunction::Drastic.of(a, b),
+            Aggregation::Einstein => Disjunction::Einstein.of(a, b),
+            Aggregation::Hamacher => Disjunction::Hamacher.of(a, b),
+            Aggregation::NilpotentMaximum => Disjunction::NilpotentMaximum.of(a, b),
         }
     }
 }

@@ -5,7 +5,7 @@ use fuzzy::Model;
 
 use super::{
     elevated::{self, Stretch},
-    inputs::{self, Observed},
+    inputs::{self, Now, Observed},
     levels::{self, Moment, Trouble},
     rules,
     yaw::less_yaw,
@@ -22,6 +22,8 @@ pub struct Sample {
     pub t_s: f64,
     /// The effective command of each motor; NaN is unknown.
     pub commands: Vec<f64>,
+    /// The signals, in the order of the profile; NaN is unknown.
+    pub signals: Vec<f64>,
     /// Whether the log says that the vehicle is in the air.
     pub in_air: bool,
 }
@@ -38,12 +40,13 @@ pub struct Row {
     pub elevated: Option<f64>,
 }
 
-/// The samples of a log.
+/// The samples of a log, without signals.
 pub fn samples(flight: &flightlog::Flight) -> Vec<Sample> {
     let effective = |raw: &f64| flight.effective_command(*raw).unwrap_or(f64::NAN);
     let rows = flight.commands.rows().map(|(t_s, raw)| Sample {
         t_s,
         commands: raw.iter().map(effective).collect(),
+        signals: Vec::new(),
         in_air: flight.is_in_air(t_s) == Some(true),
     });
     rows.collect()
@@ -184,10 +187,14 @@ impl Air {
         let Sample {
             t_s, ref commands, ..
         } = *sample;
-        let less_yaw = less_yaw(commands, factors);
+        let now = Now {
+            commands,
+            less_yaw: &less_yaw(commands, factors),
+            signals: &sample.signals,
+        };
         let span = (t_s - held_s, t_s);
         for (input, observed) in profile.inputs.iter().zip(&mut self.observed) {
-            observed.push(Observed::new(&input.source, span, commands, &less_yaw));
+            observed.push(Observed::new(profile, &input.source, span, &now));
         }
         self.settle(t_s, profile);
         let inputs = inputs::values(profile, &self.observed, t_s, self.since_s);

@@ -25,34 +25,59 @@ pub struct Observed {
     step: f64,
 }
 
+/// What is known of a vehicle at one time.
+pub struct Now<'a> {
+    /// The effective commands of the motors.
+    pub commands: &'a [f64],
+    /// The same without yaw.
+    pub less_yaw: &'a [f64],
+    /// The signals, in the order of the profile.
+    pub signals: &'a [f64],
+}
+
 impl Observed {
-    /// What a source observes in a sample: the effective commands of the motors, and the same without yaw.
-    pub fn new(source: &Source, span: (f64, f64), commands: &[f64], less_yaw: &[f64]) -> Observed {
+    /// What a source observes in a sample.
+    pub fn new(profile: &Profile, source: &Source, span: (f64, f64), now: &Now<'_>) -> Observed {
+        let names = profile.signals();
+        let signal = |name: &str| {
+            let place = names.iter().position(|known| *known == name);
+            place.map_or(f64::NAN, |place| now.signals[place])
+        };
+        let (from_s, to_s) = span;
+        let of = |values: Vec<f64>| Observed {
+            from_s,
+            to_s,
+            values,
+            step: 0.0,
+        };
+        let one = |value: f64| of(Some(value).into_iter().filter(|x| x.is_finite()).collect());
         let of_motors: Vec<f64> = match &source.signal {
-            Signal::MotorCommand => commands.to_vec(),
-            Signal::MotorCommandLessYaw => less_yaw.to_vec(),
-            Signal::MotorMargin => commands.iter().map(|e| e.min(1.0 - e)).collect(),
+            Signal::MotorCommand => now.commands.to_vec(),
+            Signal::MotorCommandLessYaw => now.less_yaw.to_vec(),
+            Signal::MotorMargin => now.commands.iter().map(|e| e.min(1.0 - e)).collect(),
+            Signal::Named(name) => return one(signal(name)),
+            Signal::Difference { a, b } if a.ends_with("_deg") => {
+                let (sin, cos) = (signal(a) - signal(b)).to_radians().sin_cos();
+                return one(sin.atan2(cos).to_degrees());
+            }
+            Signal::Difference { a, b } => return one(signal(a) - signal(b)),
             other => panic!("{other:?} has no reference"),
         };
+        if let Motors::One(motor) = source.motors {
+            return one(of_motors.get(motor as usize).copied().unwrap_or(f64::NAN));
+        }
         let known: Vec<f64> = of_motors.into_iter().filter(|e| e.is_finite()).collect();
         let mean = mean(known.iter().map(|e| (1.0, *e)));
         let squares = known.iter().map(|e| (1.0, (e - mean).powi(2)));
         let std = super::window::mean(squares).sqrt();
-        let values = match source.motors {
+        of(match source.motors {
             _ if known.is_empty() => vec![],
-            Motors::Pooled => known,
             Motors::Mean => vec![mean],
             Motors::Std => vec![std],
-            other => panic!("{other:?} has no reference"),
-        };
-        let (from_s, to_s) = span;
-        let step = 0.0;
-        Observed {
-            from_s,
-            to_s,
-            values,
-            step,
-        }
+            Motors::Min => known.into_iter().reduce(f64::min).into_iter().collect(),
+            Motors::Max => known.into_iter().reduce(f64::max).into_iter().collect(),
+            Motors::Pooled | Motors::One(_) => known,
+        })
     }
 }
 
@@ -73,9 +98,132 @@ pub fn values(
             now_s,
             since_s: if is_long { since_s } else { f64::NEG_INFINITY },
         };
-        value(profile, &source.statistic, &window, observed)
+        match source.exponential {
+            true => exponential(profile, source, now_s, observed),
+            false => value(profile, &source.statistic, &window, observed),
+        }
     });
     values.collect()
+}
+
+/// All values so far, with the weight `exp(-age / T)` integrated over their times.
+fn exponential(
+    profile: &Profile,
+    source: &Source,
+    now_s: f64,
+    observed: &[Observed],
+) -> Option<f64> {
+    let constant_s = source.window_s;
+    let falls = |at_s: f64| ((at_s - now_s) / constant_s).exp();
+    let known = observed
+        .iter()
+        .filter(|o| !o.values.is_empty() && o.to_s > o.from_s);
+    let inside: Vec<(f64, &Observed)> = known
+        .map(|o| (constant_s * (falls(o.to_s) - falls(o.from_s)), o))
+        .collect();
+    let sampling = &profile.sampling;
+    let weight: f64 = inside.iter().map(|(weight, _)| weight).sum();
+    let needed_s = 0.99 * sampling.warm_up_s.min(constant_s);
+    let needed = constant_s * (1.0 - (-needed_s / constant_s).exp());
+    let samples: f64 = inside.iter().map(|(_, o)| falls(o.to_s)).sum();
+    if weight < needed || samples.round() < f64::from(sampling.min_samples) {
+        return None;
+    }
+    Some(of_weights(&source.statistic, &inside))
+}
+
+/// A statistic of weighted values; those of one sample share its weight.
+fn of_weights(statistic: &Statistic, inside: &[(f64, &Observed)]) -> f64 {
+    let mean_of = |f: &dyn Fn(f64) -> f64| {
+        let values = inside.iter().flat_map(|(weight, observed)| {
+            let weight = weight / observed.values.len() as f64;
+            observed.values.iter().map(move |value| (weight, f(*value)))
+        });
+        mean(values)
+    };
+    let average = mean_of(&|x| x);
+    let variance = mean_of(&|x| (x - average).powi(2));
+    let all = || inside.iter().flat_map(|(_, observed)| &observed.values);
+    match *statistic {
+        Statistic::Mean => average,
+        Statistic::Std => variance.sqrt(),
+        Statistic::Rms => mean_of(&|x| x * x).sqrt(),
+        Statistic::Min => all().copied().fold(f64::INFINITY, f64::min),
+        Statistic::Max => all().copied().fold(f64::NEG_INFINITY, f64::max),
+        Statistic::ShareBelow(limit) => mean_of(&|x| f64::from(x < limit)),
+        Statistic::ShareAbove(limit) => mean_of(&|x| f64::from(x > limit)),
+        Statistic::StdLessNoise | Statistic::Noise => {
+            let squares = inside
+                .iter()
+                .map(|(weight, bin)| (*weight, bin.step.powi(2)));
+            let noise = (mean(squares) / 2.0).sqrt();
+            match statistic {
+                Statistic::Noise => noise,
+                _ => (variance - noise.powi(2)).max(0.0).sqrt(),
+            }
+        }
+        ref other => panic!("{other:?} is not of weights"),
+    }
+}
+
+/// The mean of the values of a slot: the middle of its time from now, its weight, its value.
+struct Slot {
+    t_s: f64,
+    weight: f64,
+    value: f64,
+}
+
+fn slots(window: &Window, spans: &[(f64, f64)], inside: &[(f64, &Observed)]) -> Vec<Slot> {
+    let mut slots = Vec::new();
+    let mut rest = inside;
+    for spans in window.slots(spans) {
+        let (own, later) = rest.split_at(spans.len());
+        rest = later;
+        let weight = own.iter().map(|(weight, _)| weight).sum();
+        if weight > 0.0 {
+            slots.push(Slot {
+                t_s: (spans[0].0 + spans[spans.len() - 1].1) / 2.0 - window.now_s,
+                weight,
+                value: of_weights(&Statistic::Mean, own),
+            });
+        }
+    }
+    slots
+}
+
+/// The slope of the least-squares line, by the sums of its normal equations.
+fn rate(slots: &[Slot]) -> Option<f64> {
+    let sum =
+        |f: &dyn Fn(&Slot) -> f64| slots.iter().map(|slot| slot.weight * f(slot)).sum::<f64>();
+    let (weight, t, x) = (sum(&|_| 1.0), sum(&|s| s.t_s), sum(&|s| s.value));
+    let (tx, tt) = (sum(&|s| s.t_s * s.value), sum(&|s| s.t_s * s.t_s));
+    (slots.len() > 1).then(|| (weight * tx - t * x) / (weight * tt - t * t))
+}
+
+/// Where the line through (percentile, mean) passes the percentile that is asked for.
+fn percentile(mut slots: Vec<Slot>, percent: f64) -> Option<f64> {
+    slots.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let all: f64 = slots.iter().map(|slot| slot.weight).sum();
+    let mut below = 0.0;
+    let points: Vec<(f64, f64)> = slots
+        .iter()
+        .map(|slot| {
+            below += slot.weight;
+            (100.0 * (below - slot.weight / 2.0) / all, slot.value)
+        })
+        .collect();
+    let (first, last) = (points.first()?, points.last()?);
+    let between = points
+        .windows(2)
+        .find(|pair| (pair[0].0..pair[1].0).contains(&percent));
+    Some(match between {
+        Some([a, b]) => {
+            let share = (percent - a.0) / (b.0 - a.0);
+            a.1 * (1.0 - share) + b.1 * share
+        }
+        _ if percent < first.0 => first.1,
+        _ => last.1,
+    })
 }
 
 fn value(
@@ -90,9 +238,14 @@ fn value(
         .iter()
         .filter(|observed| !observed.values.is_empty());
     let mut all: Vec<&Observed> = known.collect();
+    if *statistic == Statistic::Last {
+        let latest = observed.last()?;
+        let count = latest.values.len() as f64;
+        return (count > 0.0).then(|| latest.values.iter().sum::<f64>() / count);
+    }
     let mut latest = None;
     let of_bins;
-    if *statistic == Statistic::StdLessNoise {
+    if matches!(statistic, Statistic::StdLessNoise | Statistic::Noise) {
         of_bins = bins(&all);
         all = of_bins.iter().collect();
         latest = all.pop_if(|bin| bin_of(bin.to_s) == bin_of(window.now_s));
@@ -101,6 +254,7 @@ fn value(
     all.retain(has_time);
     let spans: Vec<(f64, f64)> = all.iter().map(|o| (o.from_s, o.to_s)).collect();
     let mut inside: Vec<(f64, &Observed)> = window.weights(&spans).into_iter().zip(all).collect();
+    let slots = slots(window, &spans, &inside);
     inside.retain(|(weight, _)| *weight > 0.0);
     // The bin that the latest sample is in counts in full.
     inside.extend(
@@ -115,28 +269,11 @@ fn value(
     if covered_s < needed_s || inside.len() < sampling.min_samples as usize {
         return None;
     }
-    let mean_of = |f: &dyn Fn(f64) -> f64| {
-        let values = inside.iter().flat_map(|(weight, observed)| {
-            let weight = weight / observed.values.len() as f64;
-            observed.values.iter().map(move |value| (weight, f(*value)))
-        });
-        mean(values)
-    };
-    let average = mean_of(&|x| x);
-    let variance = mean_of(&|x| (x - average).powi(2));
-    Some(match *statistic {
-        Statistic::Mean => average,
-        Statistic::Std => variance.sqrt(),
-        Statistic::ShareBelow(limit) => mean_of(&|x| f64::from(x < limit)),
-        Statistic::StdLessNoise => {
-            let squares = inside
-                .iter()
-                .map(|(weight, bin)| (*weight, bin.step.powi(2)));
-            let noise = (mean(squares) / 2.0).sqrt();
-            (variance - noise.powi(2)).max(0.0).sqrt()
-        }
-        ref other => panic!("{other:?} has no reference"),
-    })
+    match *statistic {
+        Statistic::Rate => rate(&slots),
+        Statistic::Percentile(percent) => percentile(slots, percent),
+        ref statistic => Some(of_weights(statistic, &inside)),
+    }
 }
 
 fn bin_of(t_s: f64) -> f64 {

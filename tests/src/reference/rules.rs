@@ -4,8 +4,8 @@
 use std::{collections::BTreeMap, f64::consts::PI};
 
 use fuzzy::model::{
-    Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, Model,
-    NoRuleFires, Output, Term, Variable,
+    Aggregation, Conjunction, Defuzzifier, Disjunction, MembershipFunction, Model, NoRuleFires,
+    Output, Term, Variable,
 };
 use fuzzy::rule::{Condition, Hedge, Proposition};
 
@@ -206,15 +206,16 @@ fn number(
         let mut y = 0.0;
         for (strength, term) in fired {
             let membership = term.height * membership(&term.membership_function, x);
-            let part = match model.operators.implication {
-                Implication::Minimum => strength.min(membership),
-                Implication::Product => strength * membership,
-            };
+            let part = and(model.operators.implication, *strength, membership);
             y = match model.operators.aggregation {
                 Aggregation::Maximum => part.max(y),
                 Aggregation::ProbabilisticSum => y + part - y * part,
                 Aggregation::BoundedSum => (y + part).min(1.0),
                 Aggregation::Sum => y + part,
+                Aggregation::Drastic => or(Disjunction::Drastic, y, part),
+                Aggregation::Einstein => or(Disjunction::Einstein, y, part),
+                Aggregation::Hamacher => or(Disjunction::Hamacher, y, part),
+                Aggregation::NilpotentMaximum => or(Disjunction::NilpotentMaximum, y, part),
             };
         }
         y

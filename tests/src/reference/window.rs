@@ -15,12 +15,21 @@ pub struct Window {
 }
 
 impl Window {
-    /// The weight in seconds of each value, which stands for the time from the first to the second moment. Values that end
-    /// in one slot of 1/128 of the window count together: by the share of their time that is inside.
+    /// Values that end in one slot of 1/128 of the window are together.
+    pub fn slots<'s>(
+        &self,
+        spans: &'s [(f64, f64)],
+    ) -> impl Iterator<Item = &'s [(f64, f64)]> + use<'s> {
+        let length_s = self.length_s;
+        let slot = move |(_, to_s): &(f64, f64)| (to_s * SLOTS / length_s).floor();
+        spans.chunk_by(move |a, b| slot(a) == slot(b))
+    }
+
+    /// The weight in seconds of each value, which stands for the time from the first to the second moment. Those of a slot
+    /// count by the share of their time that is inside.
     pub fn weights(&self, spans: &[(f64, f64)]) -> Vec<f64> {
         let begin_s = self.now_s - self.length_s;
-        let slot = |(_, to_s): &(f64, f64)| (to_s * SLOTS / self.length_s).floor();
-        let together = spans.chunk_by(|a, b| slot(a) == slot(b));
+        let together = self.slots(spans);
         let weights = together.flat_map(|spans| {
             let (from_s, to_s) = (spans[0].0, spans[spans.len() - 1].1);
             let share = match to_s - begin_s.max(self.since_s) > RESOLUTION_S {

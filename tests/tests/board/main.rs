@@ -206,9 +206,9 @@ fn an_action_on_a_strength_of_no_output_raises_nothing() {
     assert_eq!(high, None);
 }
 
-/// A profile with every signal of motors, every statistic and every notice, and the file of it.
+/// A profile with every signal of motors, every statistic that a script has, and every notice, and the file of it.
 pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
-    const SOURCES: [&str; 12] = [
+    const SOURCES: [&str; 13] = [
         "{std_less_noise: {std: motor_command_less_yaw}}",
         "{std_less_noise: {mean: motor_command_less_yaw}, window_s: 9}",
         "{noise: {max: motor_command}}",
@@ -221,9 +221,33 @@ pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
         "{min: {min: motor_margin_low_side}}",
         "{share_above: 0.02, of: command_noise, window_s: 9}",
         "{share_below: 0.5, of: {max: motor_margin_high_side}}",
+        "{mean: {motor: 2, of: motor_margin}}",
     ];
+    profile_of(folder, &SOURCES)
+}
+
+/// A profile with every statistic that only plans have.
+fn profile_of_every_statistic(folder: &Folder) -> (Estimator, String) {
+    const SOURCES: [&str; 12] = [
+        "{rate: {max: motor_command}}",
+        "{rate: {difference: [yaw_des_deg, yaw_deg]}, window_s: 9}",
+        "{rms: {difference: [yaw_des_deg, yaw_deg]}}",
+        "{last: {difference: [yaw_des_deg, yaw_deg]}}",
+        "{std: {difference: [ground_speed_m_s, ekf_wind_m_s]}}",
+        "{median: {motor: 4, of: motor_command_less_yaw}}",
+        "{median: command_noise, window_s: 9}",
+        "{percentile: 90, of: {min: motor_margin}, window_s: 5}",
+        "{percentile: 2.5, of: roll_effort}",
+        "{mean: motor_command, time_constant_s: 3}",
+        "{std: {motor: 1, of: motor_command}, time_constant_s: 8}",
+        "{share_above: 5, of: {difference: [ground_speed_m_s, ekf_wind_m_s]}, time_constant_s: 0.5}",
+    ];
+    profile_of(folder, &SOURCES)
+}
+
+fn profile_of(folder: &Folder, of: &[&str]) -> (Estimator, String) {
     let (mut inputs, mut sources, mut rules) = (String::new(), String::new(), String::new());
-    for (i, source) in SOURCES.iter().enumerate() {
+    for (i, source) in of.iter().enumerate() {
         let width = if source.contains("mean") || source.contains("noise") {
             0.05
         } else {
@@ -252,14 +276,36 @@ pub(crate) fn profile_of_every_signal(folder: &Folder) -> (Estimator, String) {
 }
 
 #[test]
-fn every_signal_statistic_and_notice_is_the_same_lent_and_in_c() {
+fn every_signal_and_notice_is_the_same_lent_and_in_c() {
     let folder = Folder::new();
-    let (estimator, file) = profile_of_every_signal(&folder);
+    let measures = same_lent_and_in_c(profile_of_every_signal(&folder));
+    let expected = [
+        "command noise",
+        "imbalance",
+        "pair imbalance",
+        "reserve",
+        "risk",
+    ];
+    assert!(
+        measures.iter().map(String::as_str).eq(expected),
+        "{measures:?}"
+    );
+}
+
+#[test]
+fn every_statistic_is_the_same_lent_and_in_c() {
+    let folder = Folder::new();
+    same_lent_and_in_c(profile_of_every_statistic(&folder));
+}
+
+/// Holds the bits of a plan and of its export to C against those of the monitor; gives what was found of the flights.
+fn same_lent_and_in_c((estimator, file): (Estimator, String)) -> BTreeSet<String> {
+    let signals = estimator.profile().signals();
     let plan = estimator.plan().unwrap();
     let (_, built) = c::program("tests/c/follow.c", "every-signal", (&file, "every_signal"));
     let (mut known, mut measures) = (0, BTreeSet::new());
     for log in logs() {
-        let flight = moments(&log, &[]);
+        let flight = moments(&log, &signals);
         let geometry = geometry(&log);
         let expected = by_the_monitor(&estimator, &geometry, &flight);
         let what = format!("every signal, {}", log.display());
@@ -267,7 +313,9 @@ fn every_signal_statistic_and_notice_is_the_same_lent_and_in_c() {
         with_monitor(&plan, geometry.len(), |monitor| {
             let mut whole = Monitor::new(
                 &estimator,
-                Craft::new(geometry.len()).with_geometry(&geometry),
+                Craft::new(geometry.len())
+                    .with_signals(&signals)
+                    .with_geometry(&geometry),
             )
             .unwrap();
             monitor.set_geometry(&geometry).unwrap();
@@ -289,17 +337,7 @@ fn every_signal_statistic_and_notice_is_the_same_lent_and_in_c() {
         assert_same(&expected, &found, &format!("{what} in C"));
     }
     assert!(known > 1000, "{known}");
-    let expected = [
-        "command noise",
-        "imbalance",
-        "pair imbalance",
-        "reserve",
-        "risk",
-    ];
-    assert!(
-        measures.iter().map(String::as_str).eq(expected),
-        "{measures:?}"
-    );
+    measures
 }
 
 #[test]
