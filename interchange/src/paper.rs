@@ -2,19 +2,24 @@
 
 use fuzzy::{Diagnostic, Findings};
 
-use crate::{Losses, Written};
+use crate::{
+    Format, Losses, Written,
+    words::{self, Words},
+};
 
 /// A text that is being written.
 pub(crate) struct Paper {
     pub(crate) text: String,
+    format: Format,
     losses: Losses,
     findings: Vec<Diagnostic>,
 }
 
 impl Paper {
-    pub(crate) fn new(losses: Losses) -> Self {
+    pub(crate) fn new(format: Format, losses: Losses) -> Self {
         Paper {
             text: String::new(),
+            format,
             losses,
             findings: vec![],
         }
@@ -38,6 +43,23 @@ impl Paper {
     pub(crate) fn note(&mut self, code: &'static str, message: String, help: &str) {
         self.findings
             .push(Diagnostic::note(code, 0..0, message).help(help));
+    }
+
+    /// The word of the format for an operator or a defuzzifier, which `what` names.
+    pub(crate) fn word<T: Copy + PartialEq>(
+        &mut self,
+        words: &Words<T>,
+        value: T,
+        what: &str,
+    ) -> &'static str {
+        words::word(words, self.format, value).unwrap_or_else(|| {
+            let message = format!("{} has no word for {what}", self.format.name());
+            self.loss("no-word", message, "take another one");
+            words::all(words, self.format)
+                .first()
+                .copied()
+                .unwrap_or_default()
+        })
     }
 
     pub(crate) fn finish(self) -> Result<Written, Findings> {

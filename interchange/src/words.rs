@@ -1,12 +1,13 @@
 //! The words of each format for operators and defuzzifiers.
 
-use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction, Implication};
+use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Disjunction};
 
 use crate::Format;
 
 /// A value, and its words in FIS, FLL, FCL and FML. Of several words, divided by `|`, the first is written and all are read.
 pub(crate) type Words<T> = [(T, [&'static str; 4])];
 
+/// Conjunctions, which are the implications too.
 pub(crate) const CONJUNCTIONS: &Words<Conjunction> = &[
     (Conjunction::Minimum, ["min", "Minimum", "MIN", "MIN"]),
     (
@@ -83,14 +84,6 @@ pub(crate) const DISJUNCTIONS: &Words<Disjunction> = &[
     ),
 ];
 
-pub(crate) const IMPLICATIONS: &Words<Implication> = &[
-    (Implication::Minimum, ["min", "Minimum", "MIN", "MIN"]),
-    (
-        Implication::Product,
-        ["prod|algebraic_product", "AlgebraicProduct", "PROD", "PROD"],
-    ),
-];
-
 pub(crate) const AGGREGATIONS: &Words<Aggregation> = &[
     (Aggregation::Maximum, ["max", "Maximum", "MAX", "MAX"]),
     (
@@ -104,9 +97,30 @@ pub(crate) const AGGREGATIONS: &Words<Aggregation> = &[
     ),
     (
         Aggregation::BoundedSum,
-        ["bounded_sum", "BoundedSum", "BSUM", "BSUM"],
+        ["bounded_sum", "BoundedSum|NormalizedSum", "BSUM", "BSUM"],
     ),
-    (Aggregation::Sum, ["sum", "UnboundedSum", "SUM", ""]),
+    (Aggregation::Sum, ["sum", "UnboundedSum", "SUM|NSUM", ""]),
+    (
+        Aggregation::Drastic,
+        ["drastic_sum", "DrasticSum", "DMAX|DSUM", "DRS"],
+    ),
+    (
+        Aggregation::Einstein,
+        ["einstein_sum", "EinsteinSum", "ESUM", "ESUM"],
+    ),
+    (
+        Aggregation::Hamacher,
+        ["hamacher_sum", "HamacherSum", "HSUM", "HSUM"],
+    ),
+    (
+        Aggregation::NilpotentMaximum,
+        [
+            "nilpotent_maximum",
+            "NilpotentMaximum",
+            "NMAX|NIPMAX",
+            "NILMAX",
+        ],
+    ),
 ];
 
 /// FCL's `COGS` and fuzzylite's `WeightedAverage` are of singletons and constants.

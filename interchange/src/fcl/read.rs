@@ -380,7 +380,7 @@ impl<'r, 't> Reader<'r, 't> {
             } else if self.take("OR") {
                 self.or = self.setting("OR", words::DISJUNCTIONS).or(self.or);
             } else if self.take("ACT") {
-                if let Some(implication) = self.setting("ACT", words::IMPLICATIONS) {
+                if let Some(implication) = self.setting("ACT", words::CONJUNCTIONS) {
                     self.draft.model.operators.implication = implication;
                 }
             } else if self.take("ACCU") {

@@ -40,7 +40,7 @@ const NAMES: Allowed = Allowed {
 };
 
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(losses);
+    let mut paper = Paper::new(Format::Fcl, losses);
     let model = names::plain(model, &NAMES, &mut paper);
     let name: String = model
         .name
@@ -71,16 +71,15 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         let name = &output.variable.name;
         paper.line(format!("\nDEFUZZIFY {name}"));
         terms(&mut paper, &output.variable);
-        let word =
-            words::word(words::DEFUZZIFIERS, Format::Fcl, output.defuzzifier).unwrap_or_default();
+        let word = paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
         paper.line(format!("  METHOD : {word};"));
         if !words::is_weighted(output.defuzzifier) {
-            let word = words::word(
+            let word = paper.word(
                 words::AGGREGATIONS,
-                Format::Fcl,
                 model.operators.aggregation,
+                "the aggregation",
             );
-            paper.line(format!("  ACCU : {};", word.unwrap_or_default()));
+            paper.line(format!("  ACCU : {};", word));
         }
         if let NoRuleFires::Value(value) = output.when_no_rule_fires {
             paper.line(format!("  DEFAULT := {value};"));
@@ -168,10 +167,13 @@ fn edges(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 
 fn rule_block(paper: &mut Paper, model: &Model) {
     let operators = model.operators;
-    let and = words::word(words::CONJUNCTIONS, Format::Fcl, operators.and).unwrap_or_default();
-    let or = words::word(words::DISJUNCTIONS, Format::Fcl, operators.or).unwrap_or_default();
-    let implication =
-        words::word(words::IMPLICATIONS, Format::Fcl, operators.implication).unwrap_or_default();
+    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
+    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
+    let implication = paper.word(
+        words::CONJUNCTIONS,
+        operators.implication,
+        "the implication",
+    );
     paper.line(format!(
         "\nRULEBLOCK rules\n  AND : {and};\n  OR : {or};\n  ACT : {implication};"
     ));

@@ -205,7 +205,7 @@ fn operators(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) {
         }
         return;
     }
-    if let Some(implication) = word(draft, system, "ImpMethod", words::IMPLICATIONS) {
+    if let Some(implication) = word(draft, system, "ImpMethod", words::CONJUNCTIONS) {
         draft.model.operators.implication = implication;
     }
     if let Some(aggregation) = word(draft, system, "AggMethod", words::AGGREGATIONS) {

@@ -13,7 +13,7 @@ use crate::{
 };
 
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(losses);
+    let mut paper = Paper::new(Format::Fis, losses);
     system(&mut paper, model);
     for (index, input) in model.inputs.iter().enumerate() {
         paper.line(format!("\n[Input{}]", index + 1));
@@ -73,7 +73,6 @@ fn system(paper: &mut Paper, model: &Model) {
     }
     let weighted = words::is_weighted(first);
     let operators = model.operators;
-    let method = |word: Option<&'static str>| word.unwrap_or_default();
     let quoted = |text: &str| format!("'{}'", one_line(&text.replace('\'', "")));
     paper.line("[System]");
     paper.line(format!("Name={}", quoted(&model.name)));
@@ -85,18 +84,18 @@ fn system(paper: &mut Paper, model: &Model) {
     paper.line(format!("NumInputs={}", model.inputs.len()));
     paper.line(format!("NumOutputs={}", model.outputs.len()));
     paper.line(format!("NumRules={}", model.rules.len()));
-    let and = method(words::word(words::CONJUNCTIONS, Format::Fis, operators.and));
-    let or = method(words::word(words::DISJUNCTIONS, Format::Fis, operators.or));
-    let implication = method(words::word(
-        words::IMPLICATIONS,
-        Format::Fis,
+    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
+    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
+    let implication = paper.word(
+        words::CONJUNCTIONS,
         operators.implication,
-    ));
-    let aggregation = method(words::word(
+        "the implication",
+    );
+    let aggregation = paper.word(
         words::AGGREGATIONS,
-        Format::Fis,
         operators.aggregation,
-    ));
+        "the aggregation",
+    );
     paper.line(format!("AndMethod='{and}'"));
     paper.line(format!("OrMethod='{or}'"));
     paper.line(format!(
@@ -107,7 +106,7 @@ fn system(paper: &mut Paper, model: &Model) {
         "AggMethod='{}'",
         if weighted { "sum" } else { aggregation }
     ));
-    let defuzzifier = method(words::word(words::DEFUZZIFIERS, Format::Fis, first));
+    let defuzzifier = paper.word(words::DEFUZZIFIERS, first, "the defuzzifier");
     paper.line(format!("DefuzzMethod='{defuzzifier}'"));
     let known = ["min", "max", "prod", "probor", "sum"];
     for word in [and, or, implication, aggregation] {
@@ -224,6 +223,9 @@ fn line(rule: &Rule, model: &Model) -> Result<String, &'static str> {
     }
     let mut outputs = vec![0_i64; model.outputs.len()];
     for consequent in &rule.consequents {
+        if !consequent.hedges.is_empty() {
+            return Err("has a hedge in its conclusion");
+        }
         let is = |output: &fuzzy::model::Output| output.variable.name == consequent.output.text;
         let index = model.outputs.iter().position(is).ok_or("names no output")?;
         let output = model.outputs.get(index).ok_or("names no output")?;

@@ -365,7 +365,7 @@ fn blocks(draft: &mut Draft<'_>, blocks: &[&Section<'_>]) {
         let operators = Operators {
             and: operator(draft, section, "conjunction", words::CONJUNCTIONS).unwrap_or_default(),
             or: operator(draft, section, "disjunction", words::DISJUNCTIONS).unwrap_or_default(),
-            implication: operator(draft, section, "implication", words::IMPLICATIONS)
+            implication: operator(draft, section, "implication", words::CONJUNCTIONS)
                 .unwrap_or_default(),
             aggregation: draft.model.operators.aggregation,
         };

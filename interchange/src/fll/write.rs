@@ -34,7 +34,7 @@ const NAMES: Allowed = Allowed {
 const SAMPLES: usize = 1000;
 
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(losses);
+    let mut paper = Paper::new(Format::Fll, losses);
     let model = names::plain(model, &NAMES, &mut paper);
     paper.line(format!("Engine: {}", one_line(&model.name)));
     description(&mut paper, model.description.as_deref());
@@ -76,16 +76,15 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
         _ => None,
     };
     let aggregation = match computed {
-        Some(_) => Some("none"),
-        None => words::word(
+        Some(_) => "none",
+        None => paper.word(
             words::AGGREGATIONS,
-            Format::Fll,
             model.operators.aggregation,
+            "the aggregation",
         ),
     };
-    paper.line(format!("  aggregation: {}", aggregation.unwrap_or("none")));
-    let word =
-        words::word(words::DEFUZZIFIERS, Format::Fll, output.defuzzifier).unwrap_or_default();
+    paper.line(format!("  aggregation: {aggregation}"));
+    let word = paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
     let detail = match (computed, output.samples) {
         (Some(kind), _) => kind.to_owned(),
         (None, Some(sampling)) => sampling.samples.to_string(),
@@ -161,10 +160,13 @@ fn rule_block(paper: &mut Paper, model: &Model) {
     let operators = model.operators;
     paper.line("RuleBlock: rules");
     paper.line("  enabled: true");
-    let and = words::word(words::CONJUNCTIONS, Format::Fll, operators.and).unwrap_or("none");
-    let or = words::word(words::DISJUNCTIONS, Format::Fll, operators.or).unwrap_or("none");
-    let implication =
-        words::word(words::IMPLICATIONS, Format::Fll, operators.implication).unwrap_or("none");
+    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
+    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
+    let implication = paper.word(
+        words::CONJUNCTIONS,
+        operators.implication,
+        "the implication",
+    );
     paper.line(format!("  conjunction: {and}"));
     paper.line(format!("  disjunction: {or}"));
     paper.line(format!("  implication: {implication}"));

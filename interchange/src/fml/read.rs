@@ -4,8 +4,7 @@ use fuzzy::{
     diagnostic::nearest,
     format::{Document, RuleSpans, VariableSpans},
     model::{
-        Aggregation, Conjunction, Defuzzifier, Disjunction, Implication, NoRuleFires, Output, Rule,
-        Variable,
+        Aggregation, Conjunction, Defuzzifier, Disjunction, NoRuleFires, Output, Rule, Variable,
     },
     rule::{self, Condition, Consequent, Hedge, Name, Proposition},
 };
@@ -73,7 +72,7 @@ struct Reader<'t> {
     aggregation: Option<Aggregation>,
     and: Option<Conjunction>,
     or: Option<Disjunction>,
-    implication: Option<Implication>,
+    implication: Option<Conjunction>,
 }
 
 /// An attribute; case does not count.
@@ -269,7 +268,7 @@ impl Reader<'_> {
         self.and = one_of(&mut self.draft, node, "andMethod", self.and, and);
         let or = self.word(node, "orMethod", words::DISJUNCTIONS);
         self.or = one_of(&mut self.draft, node, "orMethod", self.or, or);
-        let implication = self.word(node, "activationMethod", words::IMPLICATIONS);
+        let implication = self.word(node, "activationMethod", words::CONJUNCTIONS);
         let before = self.implication;
         self.implication = one_of(
             &mut self.draft,

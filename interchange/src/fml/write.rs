@@ -75,7 +75,7 @@ impl Element {
 }
 
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(losses);
+    let mut paper = Paper::new(Format::Fml, losses);
     let mut base = Element::new("knowledgeBase");
     for input in &model.inputs {
         base.push(variable(&mut paper, input, "input"));
@@ -143,19 +143,16 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
         }
         _ => {
             let element = variable(paper, &output.variable, "output");
-            let accumulation = words::word(
+            let accumulation = paper.word(
                 words::AGGREGATIONS,
-                Format::Fml,
                 model.operators.aggregation,
+                "the aggregation",
             );
-            if accumulation.is_none() {
-                let message = format!("the output `{name}` sums without a limit");
-                paper.loss("no-operator", message, "FML has MAX, PROBOR and BSUM");
-            }
-            let defuzzifier = words::word(words::DEFUZZIFIERS, Format::Fml, output.defuzzifier);
+            let defuzzifier =
+                paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
             element
-                .with("accumulation", accumulation.unwrap_or("MAX"))
-                .with("defuzzifier", defuzzifier.unwrap_or("COG"))
+                .with("accumulation", accumulation)
+                .with("defuzzifier", defuzzifier)
         }
     };
     if let NoRuleFires::Value(value) = output.when_no_rule_fires {
@@ -272,16 +269,20 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
 
 fn rule_base(paper: &mut Paper, model: &Model, weighted: bool) -> Element {
     let operators = model.operators;
-    let and = words::word(words::CONJUNCTIONS, Format::Fml, operators.and).unwrap_or("MIN");
-    let or = words::word(words::DISJUNCTIONS, Format::Fml, operators.or).unwrap_or("MAX");
-    let implication = words::word(words::IMPLICATIONS, Format::Fml, operators.implication);
+    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
+    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
+    let implication = paper.word(
+        words::CONJUNCTIONS,
+        operators.implication,
+        "the implication",
+    );
     let mut base = Element::new(if weighted {
         "tskRuleBase"
     } else {
         "mamdaniRuleBase"
     })
     .with("name", "rules")
-    .with("activationMethod", implication.unwrap_or("MIN"))
+    .with("activationMethod", implication)
     .with("andMethod", and)
     .with("orMethod", or);
     for (index, rule) in model.rules.iter().enumerate() {
@@ -317,6 +318,13 @@ fn rule(
             return Err("joins AND and OR");
         };
         antecedent.push(clause(proposition)?);
+    }
+    if rule
+        .consequents
+        .iter()
+        .any(|consequent| !consequent.hedges.is_empty())
+    {
+        return Err("has a hedge in its conclusion");
     }
     let names = match weighted {
         true => ["tskRule", "tskConsequent", "tskThen", "tskClause"],
