@@ -59,7 +59,11 @@ pub fn profile(
     let at = Places(&tree);
     let estimator = compile(&profile, model, &at, &mut found);
     if let Some(estimator) = &estimator {
-        thresholds(&profile, estimator, &at, &mut found);
+        thresholds(estimator, &["verdict"], &at, &mut found);
+        for other in estimator.others() {
+            let place = ["other_risks", &other.profile().output];
+            thresholds(other, &place, &at, &mut found);
+        }
         for input in &profile.inputs {
             found.extend(signal(input, model, signals, &at));
         }
@@ -106,6 +110,13 @@ fn compile(
         Ok(estimator) => return Some(estimator),
         Err(error) => error,
     };
+    let of_output = |output: &str| {
+        let mut others = profile.other_risks.iter();
+        match others.find(|risk| risk.output == output) {
+            Some(risk) => Vec::from(["other_risks", &risk.output]),
+            None => Vec::from(["output"]),
+        }
+    };
     let (code, place, help) = match &error {
         EstimatorError::NoSource { input } => (
             "missing-input",
@@ -121,12 +132,17 @@ fn compile(
             let outputs = model.outputs.iter().map(|o| o.variable.name.as_str());
             let help = suggest(output, outputs)
                 .unwrap_or_else(|| "name the output with `output: NAME`".into());
-            ("unknown-output", at.of(&["output"]), help)
+            ("unknown-output", at.of(&of_output(output)), help)
         }
-        EstimatorError::NoPercentage { .. } => (
+        EstimatorError::NoPercentage { output, .. } => (
             "not-a-percentage",
-            at.of(&["output"]),
+            at.of(&of_output(output)),
             "write the output of the rule set with `range: [0, 100]`".into(),
+        ),
+        EstimatorError::KeepsPrevious { .. } => (
+            "keeps-previous",
+            at.of(&["output"]),
+            "write `when_no_rule_fires: undefined` in the rule set; `gap` of the profile says what fills gaps".into(),
         ),
         EstimatorError::Rules(_) | EstimatorError::Evaluate(_) => (
             "rule-set",
@@ -139,7 +155,9 @@ fn compile(
 }
 
 /// Thresholds that are never or always reached, and WARN above FAIL.
-fn thresholds(profile: &Profile, estimator: &Estimator, at: &Places, found: &mut Vec<Diagnostic>) {
+fn thresholds(estimator: &Estimator, place: &[&str], at: &Places, found: &mut Vec<Diagnostic>) {
+    let profile = estimator.profile();
+    let of = |keys: &[&str]| at.of(&[place, keys].concat());
     let verdict = &profile.verdict;
     let levels = [("warn", &verdict.warn), ("fail", &verdict.fail)];
     let never_rises = profile.elevated_risk.rise_pct_per_s == 0.0;
@@ -158,13 +176,13 @@ fn thresholds(profile: &Profile, estimator: &Estimator, at: &Places, found: &mut
                 shown(high)
             );
             found.push(
-                Diagnostic::error("out-of-reach", at.of(&["verdict"]), message)
+                Diagnostic::error("out-of-reach", of(&[]), message)
                     .help("lower the thresholds: with these every flight would be GOOD"),
             );
             return;
         }
         for (name, level) in levels {
-            found.extend(reached(name, level, (low, high), at));
+            found.extend(reached(name, level, (low, high), of));
         }
     }
     if never_rises {
@@ -176,7 +194,7 @@ fn thresholds(profile: &Profile, estimator: &Estimator, at: &Places, found: &mut
             {
                 let message =
                     format!("`{name}` is never reached by the elevated risk, which never rises");
-                let place = at.of(&["verdict", name, "elevated_risk"]);
+                let place = of(&[name, "elevated_risk"]);
                 let help = "write `rise_per_s` in `elevated_risk`, or remove the threshold";
                 found.push(Diagnostic::warning("out-of-reach", place, message).help(help));
             }
@@ -187,16 +205,16 @@ fn thresholds(profile: &Profile, estimator: &Estimator, at: &Places, found: &mut
         ("risk", |threshold| threshold.risk_pct),
         ("elevated_risk", |threshold| threshold.elevated_risk_pct),
     ];
-    for (measure, of) in measures {
-        if let (Some(warn), Some(fail)) = (of(&verdict.warn.raise), of(&verdict.fail.raise))
+    for (measure, limit) in measures {
+        if let (Some(warn), Some(fail)) = (limit(&verdict.warn.raise), limit(&verdict.fail.raise))
             && warn > fail
         {
             let message =
                 format!("`warn` at {measure} {warn} is above `fail` at {fail}: FAIL comes first");
-            let place = at.of(&["verdict", "warn", measure]);
+            let place = of(&["warn", measure]);
             let finding = Diagnostic::warning("order", place, message)
                 .help("WARN is the lower level; exchange the two")
-                .related(at.of(&["verdict", "fail", measure]), "FAIL");
+                .related(of(&["fail", measure]), "FAIL");
             found.push(finding);
         }
     }
@@ -217,10 +235,10 @@ fn reached(
     name: &str,
     level: &LevelSettings,
     (low, high): (f64, f64),
-    at: &Places,
+    of: impl Fn(&[&str]) -> Range<usize>,
 ) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    let place = |key: &[&str]| at.of(&[&["verdict", name], key].concat());
+    let place = |key: &[&str]| of(&[&[name], key].concat());
     if let Some(limit) = level.raise.risk_pct {
         let above = is_above(limit, high);
         if above || limit <= low {

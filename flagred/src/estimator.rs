@@ -48,6 +48,8 @@ struct Compiled {
     propositions: Vec<Proposition>,
     /// The term of each, with its hedges.
     terms: Vec<String>,
+    /// Of the other risks of the profile, each as if it were the only one.
+    others: Vec<Estimator>,
 }
 
 /// Why a profile and a rule set make no estimator.
@@ -88,6 +90,14 @@ pub enum EstimatorError {
         /// The upper end of its range.
         high: f64,
     },
+    /// An output keeps its previous value, but filling takes the place of rules that do not fire.
+    #[error(
+        "output `{output}` keeps its previous value where no rule fires, which a risk does not"
+    )]
+    KeepsPrevious {
+        /// The output.
+        output: String,
+    },
 }
 
 /// Why a profile and its rule set cannot be exported.
@@ -110,6 +120,14 @@ pub enum NoPlan {
         /// The output that is read.
         read: String,
     },
+    /// The profile has several risks.
+    #[error("the profile has the risks `{output}` and `{other}`, and what flies on board has one")]
+    SeveralRisks {
+        /// The first risk.
+        output: String,
+        /// The second one.
+        other: String,
+    },
 }
 
 impl NoPlan {
@@ -122,6 +140,9 @@ impl NoPlan {
                  `aggregation: sum`, over any terms; the Takagi-Sugeno defuzzifiers. All of them without `samples`"
             }
             NoPlan::Chained { .. } => "write rules whose conditions name inputs only",
+            NoPlan::SeveralRisks { .. } => {
+                "write a profile for each risk, and run a monitor of each: the findings are the same"
+            }
         }
     }
 }
@@ -131,9 +152,22 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// Where the rule set does not compile, the two do not name the same inputs, or the output is no percentage.
+    /// Where the rule set does not compile, the two do not name the same inputs, an output is no percentage, or an output
+    /// keeps its previous value.
     pub fn new(profile: &Profile, model: &Model) -> Result<Estimator, EstimatorError> {
-        let engine = Engine::new(model)?;
+        Estimator::with_engine(profile, model, Engine::new(model)?)
+    }
+
+    fn with_engine(
+        profile: &Profile,
+        model: &Model,
+        engine: Engine,
+    ) -> Result<Estimator, EstimatorError> {
+        let others = profile.other_risks.iter().map(|risk| {
+            let profile = profile.of_risk(risk);
+            Estimator::with_engine(&profile, model, engine.clone())
+        });
+        let others = others.collect::<Result<Vec<Estimator>, EstimatorError>>()?;
         let output =
             engine
                 .output(&profile.output)
@@ -147,6 +181,11 @@ impl Estimator {
                 output: profile.output.clone(),
                 low: variable.low,
                 high: variable.high,
+            });
+        }
+        if let Some(output) = model.outputs.iter().find(|output| output.keeps_previous()) {
+            return Err(EstimatorError::KeepsPrevious {
+                output: output.variable.name.clone(),
             });
         }
         if let Some(stray) = profile
@@ -181,6 +220,7 @@ impl Estimator {
         Ok(Estimator(Arc::new(Compiled {
             propositions: propositions.collect(),
             terms: said.into_iter().map(|said| said.term).collect(),
+            others,
             profile: profile.clone(),
             filling: Filling::new(&engine, model, output, &profile.gap)?,
             engine,
@@ -194,6 +234,11 @@ impl Estimator {
     /// The profile.
     pub fn profile(&self) -> &Profile {
         &self.0.profile
+    }
+
+    /// The estimators of [`Profile::other_risks`], each as if it were the only risk.
+    pub fn others(&self) -> &[Estimator] {
+        &self.0.others
     }
 
     /// The rule set.
@@ -255,8 +300,14 @@ impl Estimator {
     ///
     /// # Errors
     ///
-    /// The output has no closed form, or an output reads another one.
+    /// The output has no closed form, an output reads another one, or the profile has several risks.
     pub fn plan(&self) -> Result<Plan<'_>, NoPlan> {
+        if let Some(other) = self.0.profile.other_risks.first() {
+            return Err(NoPlan::SeveralRisks {
+                output: self.0.profile.output.clone(),
+                other: other.output.clone(),
+            });
+        }
         let Some(table) = self.0.engine.table() else {
             return Err(self.chained());
         };

@@ -62,7 +62,7 @@ pub struct Assessment {
 pub struct Summary {
     /// The time in the air: the sum of all flights of a log, in seconds.
     pub in_air_s: f64,
-    /// The time in the air with a known risk, in seconds.
+    /// The time in the air with a known risk, of several with all of them known, in seconds.
     pub assessed_s: f64,
     /// The time in the air with a risk interpolated where no rule applies, in seconds.
     pub filled_s: f64,
@@ -226,7 +226,8 @@ impl Assessor {
         self.keep_findings(update.ended);
         if update.risk != Err(Unknown::OutOfOrder) {
             let profile = self.monitor.estimator().profile();
-            self.flight.add(&update, sample, profile);
+            let elsewhere = self.monitor.unknown_elsewhere();
+            self.flight.add(&update, sample, profile, elsewhere);
             if sample.in_air {
                 self.keep_step(&update);
             }
@@ -242,6 +243,9 @@ impl Assessor {
 
     /// The finding behind the current level, as it stands so far; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
+        if let Some(of_risk) = self.monitor.open_elsewhere() {
+            return Some(Finding::elsewhere(&of_risk, self.monitor.estimator()));
+        }
         let found = self.monitor.open_finding()?;
         Some(Finding::new(found, self.monitor.estimator()))
     }
@@ -269,6 +273,10 @@ impl Assessor {
         self.ended_before = self.flight.findings.len();
         for found in ended.into_iter().flatten() {
             let finding = Finding::new(found, self.monitor.estimator());
+            self.flight.findings.push(finding);
+        }
+        for of_risk in self.monitor.ended_elsewhere() {
+            let finding = Finding::elsewhere(of_risk, self.monitor.estimator());
             self.flight.findings.push(finding);
         }
     }
@@ -330,7 +338,14 @@ impl Flight {
         }
     }
 
-    fn add(&mut self, update: &Update, sample: &Sample<'_>, profile: &Profile) {
+    /// Adds a sample; `elsewhere` is why another risk of the profile is unknown.
+    fn add(
+        &mut self,
+        update: &Update,
+        sample: &Sample<'_>,
+        profile: &Profile,
+        elsewhere: Option<Unknown>,
+    ) {
         let t_s = sample.t_s;
         let last = self.last.replace(Last {
             t_s,
@@ -358,7 +373,10 @@ impl Flight {
         }
         match update.risk {
             Ok(estimate) => {
-                self.summary.assessed_s += flown_s;
+                match elsewhere {
+                    None => self.summary.assessed_s += flown_s,
+                    Some(reason) => self.add_unknown(reason, flown_s),
+                }
                 if estimate.filled_from.is_some() {
                     self.summary.filled_s += flown_s;
                 }
@@ -372,17 +390,18 @@ impl Flight {
                     });
                 }
             }
-            Err(reason) => {
-                let same = |known: &Unknown| {
-                    core::mem::discriminant(known) == core::mem::discriminant(&reason)
-                };
-                match self.unknown.iter_mut().find(|(known, _)| same(known)) {
-                    Some((_, total_s)) => *total_s += flown_s,
-                    None => self.unknown.push((reason, flown_s)),
-                }
-            }
+            Err(reason) => self.add_unknown(reason, flown_s),
         }
         self.settle(t_s - quiet_s);
+    }
+
+    fn add_unknown(&mut self, reason: Unknown, flown_s: f64) {
+        let same =
+            |known: &Unknown| core::mem::discriminant(known) == core::mem::discriminant(&reason);
+        match self.unknown.iter_mut().find(|(known, _)| same(known)) {
+            Some((_, total_s)) => *total_s += flown_s,
+            None => self.unknown.push((reason, flown_s)),
+        }
     }
 
     /// Sets a judged risk aside until no landing can take it back.

@@ -231,7 +231,8 @@ impl Follower {
         self.forget(end_s, landed, room)
     }
 
-    fn level(&self) -> Level {
+    /// The level of the risk, and of what is told beside it.
+    pub(crate) fn level(&self) -> Level {
         let noticed = self.notices.open().map_or(Level::Good, |f| f.level);
         self.alert.level().max(noticed)
     }

@@ -9,7 +9,7 @@ use crate::{
     motor::{Motor, set_geometry},
     profile::Profile,
     source::{Motors, Signal, Source, Statistic, channels},
-    verdict::{Ended, Finding},
+    verdict::{Ended, Finding, Level},
     window::Window,
 };
 
@@ -105,6 +105,19 @@ pub struct Monitor {
     inputs: Vec<Input>,
     room: OwnRoom,
     follower: Follower,
+    /// Of the other risks of the profile.
+    others: Vec<Monitor>,
+    ended_elsewhere: Vec<OfRisk>,
+    unknown_elsewhere: Option<Unknown>,
+}
+
+/// A finding of another risk of the profile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OfRisk {
+    /// The index of the risk in [`Profile::other_risks`].
+    pub risk: usize,
+    /// The finding.
+    pub found: Finding,
 }
 
 /// What is kept of a flight beside the follower: allocated once.
@@ -150,7 +163,13 @@ impl Monitor {
         set_geometry(&mut motors, craft.geometry);
         let mut seen = vec![Seen::IDLE; channels.len()];
         restart(&channels, &mut seen);
+        let others = estimator.others().iter();
+        let others = others.map(|other| Monitor::new(other, craft));
+        let others = others.collect::<Result<Vec<Monitor>, MonitorError>>()?;
         Ok(Monitor {
+            ended_elsewhere: Vec::with_capacity(others.len()),
+            unknown_elsewhere: None,
+            others,
             memory: Memory::of(estimator),
             room: OwnRoom {
                 risks: Window::new(profile.elevated_risk.window_s),
@@ -170,8 +189,36 @@ impl Monitor {
         &self.estimator
     }
 
-    /// Takes a sample in.
+    /// Takes a sample in. The level of the update is the worst of all risks; risk and elevated risk are those of the
+    /// profile's `output`.
     pub fn push(&mut self, sample: &Sample<'_>) -> Update {
+        if self.others.is_empty() {
+            return self.push_first(sample);
+        }
+        let before = self.level();
+        let mut update = self.push_first(sample);
+        self.ended_elsewhere.clear();
+        self.unknown_elsewhere = None;
+        for (risk, other) in self.others.iter_mut().enumerate() {
+            let of_other = other.push_first(sample);
+            self.unknown_elsewhere = self.unknown_elsewhere.or(of_other.risk.err());
+            update.level = update.level.max(of_other.level);
+            let [found, ..] = of_other.ended;
+            self.ended_elsewhere
+                .extend(found.map(|found| OfRisk { risk, found }));
+        }
+        let level = self.level();
+        update.change = (level != before).then_some(level);
+        update
+    }
+
+    /// The worst level of all risks.
+    fn level(&self) -> Level {
+        let others = self.others.iter().map(|other| other.follower.level());
+        others.fold(self.follower.level(), Level::max)
+    }
+
+    fn push_first(&mut self, sample: &Sample<'_>) -> Update {
         let Monitor {
             estimator,
             memory,
@@ -179,6 +226,7 @@ impl Monitor {
             inputs,
             room,
             follower,
+            ..
         } = self;
         let plan = (&channels[..], &inputs[..]);
         let update = follower.push(plan, &mut room.lend(), sample, |inputs| {
@@ -197,7 +245,34 @@ impl Monitor {
 
     /// The finding behind the current level, as it stands so far; `None` while the level is good.
     pub fn open_finding(&self) -> Option<Finding> {
-        self.follower.open_finding()
+        let elsewhere = self.open_elsewhere().map(|of_risk| of_risk.found);
+        elsewhere.or_else(|| self.follower.open_finding())
+    }
+
+    /// The finding behind the current level where it is one of another risk.
+    pub fn open_elsewhere(&self) -> Option<OfRisk> {
+        let first = self.follower.open_finding().map(|found| found.level);
+        let others = self.others.iter().enumerate();
+        let open = others.filter_map(|(risk, other)| {
+            let found = other.follower.open_finding()?;
+            Some(OfRisk { risk, found })
+        });
+        // Of equal ones the first.
+        let worst = open.reduce(|worst, next| match next.found.level > worst.found.level {
+            true => next,
+            false => worst,
+        });
+        worst.filter(|worst| first.is_none_or(|first| worst.found.level > first))
+    }
+
+    /// The findings of other risks that ended with the latest sample, or with [`Monitor::finish`].
+    pub fn ended_elsewhere(&self) -> &[OfRisk] {
+        &self.ended_elsewhere
+    }
+
+    /// Why another risk is unknown after the latest sample; `None` where all are known.
+    pub fn unknown_elsewhere(&self) -> Option<Unknown> {
+        self.unknown_elsewhere
     }
 
     /// The worst open finding beside the risk, as it stands so far: little reserve or an imbalance. The level may rest on a
@@ -208,6 +283,12 @@ impl Monitor {
 
     /// Ends the flight and gives the findings that were still open, once.
     pub fn finish(&mut self) -> Ended {
+        self.ended_elsewhere.clear();
+        for (risk, other) in self.others.iter_mut().enumerate() {
+            let [found, ..] = other.follower.finish(&mut other.room.lend());
+            self.ended_elsewhere
+                .extend(found.map(|found| OfRisk { risk, found }));
+        }
         self.follower.finish(&mut self.room.lend())
     }
 

@@ -311,6 +311,10 @@ pub(crate) fn duplicate(
             "duplicate-term",
             "the terms of a variable have different names; rename one of them",
         ),
+        "block" => (
+            "duplicate-block",
+            "rule blocks have different names; rename one of them",
+        ),
         _ => ("duplicate-key", "keep one of them"),
     };
     Diagnostic::error(code, span, format!("{what} has the {kind} `{name}` twice"))

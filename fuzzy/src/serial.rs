@@ -33,6 +33,7 @@ impl Serialize for Outcome {
         let state = match self.state {
             State::Defined(_) => "defined",
             State::Default(_) => "default",
+            State::Previous(_) => "previous",
             State::NoRuleFired => "no_rule_fired",
             State::InputNotFinite => "input_not_finite",
         };

@@ -22,6 +22,8 @@ use crate::{
     rule::{Condition, DEEPEST_NESTING, Hedge, Name, Proposition},
 };
 
+mod blocks;
+
 /// Inputs and outputs of a model.
 const MOST_VARIABLES: usize = 1000;
 /// Terms of one input or output.
@@ -135,6 +137,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
             }
         }
     }
+    validator.blocks(spans);
     validator.findings.extend(circles(model, spans));
     validator.findings
 }
@@ -309,7 +312,8 @@ impl<'m> Validator<'m> {
                 self.error("wrong-parameter", here, message, help);
             }
         }
-        if let NoRuleFires::Value(value) = output.when_no_rule_fires
+        if let NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) =
+            output.when_no_rule_fires
             && !spans.range_unread
             && !(variable.low..=variable.high).contains(&value)
         {
@@ -397,7 +401,7 @@ impl<'m> Validator<'m> {
     /// A term without an area within the range gives an output no value.
     fn terms_have_area(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
         let variable = &output.variable;
-        let compiled = Defuzzify::fuzzy(output, self.model.operators);
+        let compiled = Defuzzify::fuzzy(output, self.model.operators_of_output(output));
         for (i, term) in variable.terms.iter().enumerate() {
             if compiled.is_empty(i) {
                 let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());

@@ -108,10 +108,10 @@ fn places_are_weighed_rule_by_rule() {
         assert!((up.unwrap().value.unwrap() - places[0]).abs() < 1e-14);
         assert_eq!(explained.outputs[0].value, Some(value(&engine, x)));
     }
-    // However weakly a rule fires, its place counts.
+    // However weakly a rule fires, if it fires its place counts.
     assert_eq!(value(&engine, 1.0), 8.0);
     let only = Engine::new(&model(output, "[IF x IS high THEN y IS up]")).unwrap();
-    assert!((value(&only, 1e-250) - 2.0).abs() < 1e-15);
+    assert!((value(&only, 1e-11) - 2.0).abs() < 1e-9);
 }
 
 #[test]

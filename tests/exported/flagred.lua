@@ -16,6 +16,7 @@ local floor, sqrt, exp, huge, min, max = math.floor, math.sqrt, math.exp, math.h
 
 -- The profile.
 local MIN_SAMPLES = 5
+local LEAST_STRENGTH = 1e-12
 local WARM_UP_US = 1000000
 local LONGEST_GAP_US = 2000000
 local TAKE_OFF_US = 3000000
@@ -540,6 +541,9 @@ local function along(corners, x)
 end
 
 local function fire(rule, term, strength)
+  if strength < LEAST_STRENGTH then
+    strength = 0.0
+  end
   fired[rule] = strength
   strengths[term] = strengths[term] + strength
   if strength > coverage then

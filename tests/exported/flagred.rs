@@ -1,10 +1,10 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4108 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 123168 bytes of memory.
+// 4148 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122464 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
-    ::flagred::board::Storage<37, 52, 1, 6, MOTORS>;
+    ::flagred::board::Storage<38, 6, 1, 6, MOTORS>;
 
 /// What the cause of a finding is called.
 #[allow(dead_code)]
@@ -58,7 +58,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             and: Conjunction::Product,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Trie,
-            sizes: Sizes { degrees: 13, alive: 4, partial: 24, stack: 0, strengths: 6 },
+            least_strength: 1e-12,
+            sizes: Sizes { degrees: 13, alive: 4, partial: 1, stack: 1, strengths: 6 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 3, first_start: 0, first_curve: 0, end_curve: 0 },
                 Input { low: 0.0, high: 0.5, first_literal: 2, first_cut: 3, end_cut: 6, first_start: 5, first_curve: 0, end_curve: 0 },
@@ -102,42 +103,8 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             axes: &[],
             dimensions: &[],
             cells: &[],
-            nodes: &[
-                Node { first_edge: 11, end_edge: 23, first_action: 0, end_action: 0 },
-                Node { first_edge: 0, end_edge: 1, first_action: 0, end_action: 0 },
-                Node { first_edge: 0, end_edge: 0, first_action: 0, end_action: 1 },
-                Node { first_edge: 1, end_edge: 2, first_action: 1, end_action: 1 },
-                Node { first_edge: 1, end_edge: 1, first_action: 1, end_action: 2 },
-                Node { first_edge: 2, end_edge: 3, first_action: 2, end_action: 2 },
-                Node { first_edge: 2, end_edge: 2, first_action: 2, end_action: 3 },
-                Node { first_edge: 3, end_edge: 4, first_action: 3, end_action: 3 },
-                Node { first_edge: 3, end_edge: 3, first_action: 3, end_action: 4 },
-                Node { first_edge: 4, end_edge: 5, first_action: 4, end_action: 4 },
-                Node { first_edge: 4, end_edge: 4, first_action: 4, end_action: 5 },
-                Node { first_edge: 5, end_edge: 6, first_action: 5, end_action: 5 },
-                Node { first_edge: 5, end_edge: 5, first_action: 5, end_action: 6 },
-                Node { first_edge: 6, end_edge: 7, first_action: 6, end_action: 6 },
-                Node { first_edge: 6, end_edge: 6, first_action: 6, end_action: 7 },
-                Node { first_edge: 7, end_edge: 8, first_action: 7, end_action: 7 },
-                Node { first_edge: 7, end_edge: 7, first_action: 7, end_action: 8 },
-                Node { first_edge: 8, end_edge: 9, first_action: 8, end_action: 8 },
-                Node { first_edge: 8, end_edge: 8, first_action: 8, end_action: 9 },
-                Node { first_edge: 9, end_edge: 10, first_action: 9, end_action: 9 },
-                Node { first_edge: 9, end_edge: 9, first_action: 9, end_action: 10 },
-                Node { first_edge: 10, end_edge: 11, first_action: 10, end_action: 10 },
-                Node { first_edge: 10, end_edge: 10, first_action: 10, end_action: 11 },
-                Node { first_edge: 11, end_edge: 11, first_action: 11, end_action: 12 },
-            ],
-            edges: &[
-                Edge { literal: 11, node: 2 }, Edge { literal: 11, node: 4 }, Edge { literal: 11, node: 6 },
-                Edge { literal: 11, node: 8 }, Edge { literal: 11, node: 10 }, Edge { literal: 11, node: 12 },
-                Edge { literal: 11, node: 14 }, Edge { literal: 11, node: 16 }, Edge { literal: 11, node: 18 },
-                Edge { literal: 11, node: 20 }, Edge { literal: 11, node: 22 }, Edge { literal: 0, node: 1 },
-                Edge { literal: 1, node: 3 }, Edge { literal: 2, node: 5 }, Edge { literal: 3, node: 7 },
-                Edge { literal: 4, node: 9 }, Edge { literal: 5, node: 11 }, Edge { literal: 6, node: 13 },
-                Edge { literal: 7, node: 15 }, Edge { literal: 8, node: 17 }, Edge { literal: 9, node: 19 },
-                Edge { literal: 10, node: 21 }, Edge { literal: 12, node: 23 },
-            ],
+            nodes: &[Node { first_edge: 0, end_edge: 0, first_action: 0, end_action: 0 }],
+            edges: &[],
             actions: &[
                 Action { weight: 0.5, strength: 0, output: 0, rule: 1, sums: 1 },
                 Action { weight: 1.0, strength: 4, output: 0, rule: 2, sums: 1 },
@@ -152,10 +119,33 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 Action { weight: 0.1, strength: 4, output: 0, rule: 11, sums: 1 },
                 Action { weight: 1.0, strength: 4, output: 0, rule: 0, sums: 1 },
             ],
-            programs: &[],
-            steps: &[],
+            programs: &[
+                Program { weight: 0.5, first_step: 0, end_step: 2, first_action: 0, end_action: 1, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 2, end_step: 4, first_action: 1, end_action: 2, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.2, first_step: 4, end_step: 6, first_action: 2, end_action: 3, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 6, end_step: 8, first_action: 3, end_action: 4, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 8, end_step: 10, first_action: 4, end_action: 5, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.35, first_step: 10, end_step: 12, first_action: 5, end_action: 6, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.1, first_step: 12, end_step: 14, first_action: 6, end_action: 7, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.5, first_step: 14, end_step: 16, first_action: 7, end_action: 8, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.35, first_step: 16, end_step: 18, first_action: 8, end_action: 9, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.7, first_step: 18, end_step: 20, first_action: 9, end_action: 10, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 0.1, first_step: 20, end_step: 22, first_action: 10, end_action: 11, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 22, end_step: 23, first_action: 11, end_action: 12, first_hedge: 0, end_hedge: 0 },
+            ],
+            steps: &[
+                Step { op: Op(0), literal: 0 }, Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 1 },
+                Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 2 }, Step { op: Op(1), literal: 11 },
+                Step { op: Op(0), literal: 3 }, Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 4 },
+                Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 5 }, Step { op: Op(1), literal: 11 },
+                Step { op: Op(0), literal: 6 }, Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 7 },
+                Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 8 }, Step { op: Op(1), literal: 11 },
+                Step { op: Op(0), literal: 9 }, Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 10 },
+                Step { op: Op(1), literal: 11 }, Step { op: Op(0), literal: 12 },
+            ],
+            blocks: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0 },
             ],
             pairs: &[],
             moments: &[

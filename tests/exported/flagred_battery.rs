@@ -1,11 +1,11 @@
 // The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 9132 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 72272 bytes of memory.
+// 9460 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 71528 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
 pub type Storage<const MOTORS: usize> =
-    ::flagred::board::Storage<17, 61, 1, 3, MOTORS>;
+    ::flagred::board::Storage<29, 7, 1, 3, MOTORS>;
 
 /// What the cause of a finding is called.
 #[allow(dead_code)]
@@ -68,8 +68,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
         table: Table {
             and: Conjunction::Minimum,
             or: Disjunction::Maximum,
-            conjunctions: Conjunctions::Dense,
-            sizes: Sizes { degrees: 0, alive: 5, partial: 28, stack: 0, strengths: 8 },
+            conjunctions: Conjunctions::Trie,
+            least_strength: 1e-12,
+            sizes: Sizes { degrees: 11, alive: 5, partial: 1, stack: 1, strengths: 8 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 0, end_cut: 3, first_start: 0, first_curve: 0, end_curve: 0 },
                 Input { low: 0.0, high: 0.5, first_literal: 4, first_cut: 3, end_cut: 5, first_start: 5, first_curve: 0, end_curve: 0 },
@@ -103,16 +104,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             points: &[],
             hedges: &[Not],
             axes: &[],
-            dimensions: &[
-                Dimension { input: 0, stride: 16, any: 4 }, Dimension { input: 1, stride: 4, any: 3 },
-                Dimension { input: 2, stride: 1, any: 4294967295 },
-            ],
-            cells: &[
-                0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4,
-                4, 4, 5, 5, 5, 5, 6, 6, 6, 6, 7, 7, 7, 8, 8, 8, 9, 9, 9, 9, 10, 10, 10, 10, 11, 11, 11, 11, 11, 11,
-                11, 11, 11, 11, 11, 11, 11, 11, 11, 11, 11, 11, 11, 12, 12, 12, 12,
-            ],
-            nodes: &[],
+            dimensions: &[],
+            cells: &[],
+            nodes: &[Node { first_edge: 0, end_edge: 0, first_action: 0, end_action: 0 }],
             edges: &[],
             actions: &[
                 Action { weight: 1.0, strength: 4, output: 0, rule: 9, sums: 0 },
@@ -128,10 +122,36 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                 Action { weight: 1.0, strength: 0, output: 0, rule: 0, sums: 0 },
                 Action { weight: 1.0, strength: 4, output: 0, rule: 11, sums: 0 },
             ],
-            programs: &[],
-            steps: &[],
+            programs: &[
+                Program { weight: 1.0, first_step: 0, end_step: 3, first_action: 0, end_action: 1, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 3, end_step: 6, first_action: 1, end_action: 2, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 6, end_step: 9, first_action: 2, end_action: 3, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 9, end_step: 12, first_action: 3, end_action: 4, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 12, end_step: 15, first_action: 4, end_action: 5, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 15, end_step: 18, first_action: 5, end_action: 6, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 18, end_step: 21, first_action: 6, end_action: 7, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 21, end_step: 23, first_action: 7, end_action: 8, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 23, end_step: 26, first_action: 8, end_action: 9, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 26, end_step: 29, first_action: 9, end_action: 10, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 29, end_step: 32, first_action: 10, end_action: 11, first_hedge: 0, end_hedge: 0 },
+                Program { weight: 1.0, first_step: 32, end_step: 33, first_action: 11, end_action: 12, first_hedge: 0, end_hedge: 0 },
+            ],
+            steps: &[
+                Step { op: Op(0), literal: 0 }, Step { op: Op(1), literal: 5 }, Step { op: Op(1), literal: 8 },
+                Step { op: Op(0), literal: 0 }, Step { op: Op(1), literal: 6 }, Step { op: Op(1), literal: 8 },
+                Step { op: Op(0), literal: 1 }, Step { op: Op(1), literal: 5 }, Step { op: Op(1), literal: 8 },
+                Step { op: Op(0), literal: 1 }, Step { op: Op(1), literal: 6 }, Step { op: Op(1), literal: 8 },
+                Step { op: Op(0), literal: 2 }, Step { op: Op(1), literal: 4 }, Step { op: Op(1), literal: 10 },
+                Step { op: Op(0), literal: 2 }, Step { op: Op(1), literal: 5 }, Step { op: Op(1), literal: 10 },
+                Step { op: Op(0), literal: 2 }, Step { op: Op(1), literal: 6 }, Step { op: Op(1), literal: 10 },
+                Step { op: Op(0), literal: 2 }, Step { op: Op(1), literal: 9 }, Step { op: Op(0), literal: 3 },
+                Step { op: Op(1), literal: 4 }, Step { op: Op(1), literal: 8 }, Step { op: Op(0), literal: 3 },
+                Step { op: Op(1), literal: 5 }, Step { op: Op(1), literal: 8 }, Step { op: Op(0), literal: 3 },
+                Step { op: Op(1), literal: 6 }, Step { op: Op(1), literal: 8 }, Step { op: Op(0), literal: 7 },
+            ],
+            blocks: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 3, first_strength: 0, end_strength: 7 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 3, first_strength: 0, end_strength: 7, clamps: 0 },
             ],
             pairs: &[
                 Pair { area: [[25.0, 50.0], [-12.5, -25.0]], moment: [[-937.5, -1250.0], [312.5, 625.0], [104.16666666666667, 0.0]], width: [25.0, 25.0], middle: [-37.5, -12.5] },

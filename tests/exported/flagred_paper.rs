@@ -1,5 +1,5 @@
 // The profile `flagred-paper` with the rule set `flagred-paper`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 3580 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54504 bytes of memory.
+// 3604 bytes of constants, 892 of them to fill gaps of the rules. A monitor of 4 motors takes 54528 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -55,6 +55,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             and: Conjunction::Minimum,
             or: Disjunction::Maximum,
             conjunctions: Conjunctions::Uniform { actions_a_cell: 1, first_action: 0, sums: false },
+            least_strength: 1e-12,
             sizes: Sizes { degrees: 0, alive: 4, partial: 4, stack: 0, strengths: 8 },
             inputs: &[
                 Input { low: 0.0, high: 0.5, first_literal: 0, first_cut: 8, end_cut: 8, first_start: 0, first_curve: 0, end_curve: 0 },
@@ -105,8 +106,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
             ],
             programs: &[],
             steps: &[],
+            blocks: &[],
             outputs: &[
-                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 3, first_strength: 0, end_strength: 7 },
+                Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(1), first: 0, end: 3, first_strength: 0, end_strength: 7, clamps: 0 },
             ],
             pairs: &[
                 Pair { area: [[25.0, 50.0], [-12.5, -25.0]], moment: [[-937.5, -1250.0], [312.5, 625.0], [104.16666666666667, 0.0]], width: [25.0, 25.0], middle: [-37.5, -12.5] },

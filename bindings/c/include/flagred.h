@@ -224,9 +224,14 @@ typedef struct flagred_step {
     uint32_t op, literal;
 } flagred_step;
 
+typedef struct flagred_block {
+    double strength;
+    uint32_t method, rules, and_operator, or_operator, first_program, end_program;
+} flagred_block;
+
 typedef struct flagred_output {
     double low, high, default_value;
-    uint32_t form, first, end, first_strength, end_strength;
+    uint32_t form, first, end, first_strength, end_strength, clamps;
 } flagred_output;
 
 typedef struct flagred_pair {
@@ -297,7 +302,7 @@ struct flagred_plan {
     uint32_t conjunctions, actions_a_cell, first_action, sums;
     uint32_t degrees, alive, partial, stack, strengths;
     uint32_t output, signals;
-    double coverage_below;
+    double coverage_below, least_strength;
     flagred_settings settings;
     FLAGRED_ARRAY(flagred_input, inputs);
     FLAGRED_ARRAY(double, cuts);
@@ -314,6 +319,7 @@ struct flagred_plan {
     FLAGRED_ARRAY(flagred_action, actions);
     FLAGRED_ARRAY(flagred_program, programs);
     FLAGRED_ARRAY(flagred_step, steps);
+    FLAGRED_ARRAY(flagred_block, blocks);
     FLAGRED_ARRAY(flagred_output, outputs);
     FLAGRED_ARRAY(flagred_pair, pairs);
     FLAGRED_ARRAY(flagred_moment, moments);

@@ -5,9 +5,9 @@ use flagred::{
     board::{
         self, Proposition,
         table::{
-            self, Action, Axis, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
-            Dimension, Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point,
-            Program, Sizes, Step, Table,
+            self, Action, Axis, Block as RuleBlock, Coefficient, Conjunction, Conjunctions,
+            Consequent, Curve, Dimension, Disjunction, Edge, Hedge, Input, Line, Moment, Node,
+            Output, Pair, Point, Program, Sizes, Step, Table,
         },
     },
     channel::{self, Channel, Motors, Observed, Statistic},
@@ -139,6 +139,7 @@ macro_rules! define {
             output: u32,
             signals: u32,
             coverage_below: f64,
+            least_strength: f64,
             settings: CSettings,
             $($array: Array<define!(@item $item)>,)*
             order: Array<u32>,
@@ -162,6 +163,7 @@ macro_rules! define {
                         and: conjunction(self.and)?,
                         or: disjunction(self.or)?,
                         conjunctions: self.conjunctions()?,
+                        least_strength: self.least_strength,
                         sizes: self.sizes,
                         $($array: define!(@read $item self.$array),)*
                     })
@@ -171,6 +173,7 @@ macro_rules! define {
     };
     // An enumeration, whose codes are verified before they become a reference. Of all other items every bit pattern is valid.
     (@item Hedge) => { u32 };
+    (@item Block) => { RuleBlock };
     (@item $item:ident) => { $item };
     (@read Hedge $array:expr) => { hedges($array.read()?)? };
     (@read $item:ident $array:expr) => { $array.read()? };

@@ -47,6 +47,7 @@ pub(crate) fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
 fn is_same(a: &Finding, b: &Finding) -> bool {
     let motor = |finding: &Finding| finding.motor.map(|motor| motor.motor);
     match (is_of_risk(a), is_of_risk(b)) {
+        (true, true) if a.risk != b.risk => false,
         (true, true) => match (&a.cause, &b.cause) {
             (Some(a), Some(b)) => a.input == b.input,
             (a, b) => a.is_none() && b.is_none(),
@@ -192,9 +193,10 @@ pub(crate) fn cause(finding: &Finding, motors: &[Motor]) -> [String; 2] {
 
 /// What a finding is about, before its value.
 fn quantity(finding: &Finding) -> String {
-    match is_of_risk(finding) {
-        true => format!("{} up to", finding.measure),
-        false => finding.measure.to_string(),
+    match (is_of_risk(finding), &finding.risk) {
+        (true, Some(risk)) => format!("{} of {risk} up to", finding.measure),
+        (true, None) => format!("{} up to", finding.measure),
+        (false, _) => finding.measure.to_string(),
     }
 }
 

@@ -33,7 +33,11 @@ pub(super) fn run<W: Write + ?Sized>(
     out: &mut W,
     is_read: impl Fn(&W) -> bool,
 ) -> io::Result<Result<Tally, Failure>> {
-    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let threads = match plan.engine.model().keeps_previous() {
+        // Each row takes from the one before.
+        true => 1,
+        false => thread::available_parallelism().map_or(1, usize::from),
+    };
     thread::scope(|scope| {
         let (spare, spares) = channel();
         // Each thread has every n-th block, so their order is known.

@@ -1,7 +1,7 @@
 //! Rows of a table, evaluated and written as CSV.
 
 use csv::ByteRecord;
-use fuzzy::engine::{Outcome, State};
+use fuzzy::engine::{Outcome, Sequence, State};
 
 use super::{Plan, With, tally::Tally};
 use crate::{
@@ -48,6 +48,8 @@ impl Block {
 /// Evaluates blocks in memory of its own.
 pub(super) struct Evaluator<'p> {
     plan: &'p Plan,
+    /// Of a rule set whose outputs keep their previous value.
+    sequence: Option<Sequence<'p>>,
     /// The values of each input.
     columns: Vec<Vec<f64>>,
     /// Those of the first row, then of the second.
@@ -60,6 +62,7 @@ impl<'p> Evaluator<'p> {
     pub(super) fn new(plan: &'p Plan) -> Evaluator<'p> {
         Evaluator {
             plan,
+            sequence: (plan.engine.model().keeps_previous()).then(|| Sequence::new(&plan.engine)),
             columns: vec![Vec::new(); plan.inputs.len()],
             outcomes: Vec::new(),
             problems: Vec::new(),
@@ -80,9 +83,12 @@ impl<'p> Evaluator<'p> {
         let outputs = plan.engine.output_names().len();
         self.outcomes
             .resize(block.rows * outputs, Outcome::default());
-        plan.engine
-            .evaluate_batch_into(&columns, &mut self.outcomes)
-            .map_err(Failure::unreadable)?;
+        let outcomes = &mut self.outcomes;
+        match &mut self.sequence {
+            None => plan.engine.evaluate_batch_into(&columns, outcomes),
+            Some(sequence) => sequence.evaluate_batch_into(&columns, outcomes),
+        }
+        .map_err(Failure::unreadable)?;
 
         let mut tally = Tally::new(plan);
         tally.rows = block.rows as u64;

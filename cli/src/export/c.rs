@@ -81,6 +81,7 @@ pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[Str
         ("output", plan.output.to_string()),
         ("signals", plan.signals.to_string()),
         ("coverage_below", number(plan.coverage_below)),
+        ("least_strength", number(plan.table.least_strength)),
         ("settings", settings(&plan.settings)),
     ] {
         line(&mut out, &format!("    .{field} = {value},"));

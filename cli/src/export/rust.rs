@@ -56,6 +56,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
             and: Conjunction::{:?},
             or: Disjunction::{:?},
             conjunctions: Conjunctions::{:?},
+            least_strength: {:?},
             sizes: {:?},",
             sizes.numbers,
             sizes.partials,
@@ -67,6 +68,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
             plan.table.and,
             plan.table.or,
             plan.table.conjunctions,
+            plan.table.least_strength,
             plan.table.sizes,
         ),
     );

@@ -13,6 +13,7 @@ use flagred::{
 };
 use fuzzy::{
     Engine, Model,
+    drawing::visible,
     drawing::{
         Colour, Slice, map_svg, map_text, rules_svg, rules_text, short, surface_svg, surface_text,
     },
@@ -170,6 +171,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model])?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let evaluated = evaluate(arguments)?;
+    let output = evaluated.model.outputs.get(evaluated.output);
+    if let Some(output) = output.filter(|output| output.keeps_previous()) {
+        output::say(&format!(
+            "note: `{}` keeps its previous value where no rule fires; a map has none before its cells",
+            visible(&output.variable.name)
+        ));
+    }
     let mut out = Stdout::text();
     let whole = arguments.fix.is_empty() && arguments.x.is_none() && arguments.y.is_none();
     if arguments.csv && whole && evaluated.model.inputs.len() > 2 {

@@ -117,6 +117,10 @@ pub(crate) fn say(
         Measure::Imbalance => ("imbalance", finding.map(|finding| finding.peak_pct)),
         Measure::PairImbalance => ("pair imbalance", finding.map(|finding| finding.peak_pct)),
     };
+    let (name, value) = match finding.and_then(|finding| Some((finding, finding.risk.as_ref()?))) {
+        Some((finding, risk)) => (risk.as_str(), Some(finding.peak_pct)),
+        None => (name, value),
+    };
     let mut text = format!("FLAGRED: {level}");
     if let Some(value) = value {
         text += &format!(" {name} {value:.0} %");

@@ -91,6 +91,7 @@ fn what_does_not_fit_is_told_at_its_place() {
             "fail: {risk: 80}",
             "fail: {elevated_risk: 80}\nelevated_risk: {rise_per_s: 0}",
         ),
+        ("verdict:", "other_risks: {tip_over: {}}\nverdict:"),
         ("battery_remaining_pct", "battery_v"),
         ("battery_remaining_pct", "baterry_v"),
         ("battery_remaining_pct", "coffee_level"),
@@ -135,4 +136,22 @@ fn a_mistake_in_the_profile_is_told_first() {
     let (findings, estimator) = profile("flagred: 1\nname: x", &rules(RULES), &SIGNALS);
     assert!(estimator.is_none());
     assert!(findings.0.iter().all(|one| one.code == "missing-key"));
+}
+
+#[test]
+fn the_levels_of_another_risk_are_checked_at_their_place() {
+    let rules = RULES.replace(
+        "rules:",
+        "  tip_over: {range: [0, 100], partition: [low, medium, high]}\nrules:\n  - IF margin IS low THEN tip_over IS high\n  - IF margin IS high THEN tip_over IS low",
+    );
+    let text = format!("{PROFILE}other_risks:\n  tip_over:\n    fail: {{risk: 95}}\n");
+    let (findings, estimator) = profile(&text, &self::rules(&rules), &SIGNALS);
+    let [finding] = findings.0.as_slice() else {
+        panic!("{findings}")
+    };
+    assert_eq!(
+        (finding.code, &text[finding.span.clone()]),
+        ("out-of-reach", "95")
+    );
+    assert_eq!(estimator.unwrap().others().len(), 1);
 }

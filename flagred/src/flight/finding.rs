@@ -3,7 +3,7 @@
 use alloc::string::{String, ToString};
 use core::{fmt, ops::Deref};
 
-use crate::{estimator::Estimator, verdict};
+use crate::{estimator::Estimator, monitor::OfRisk, verdict};
 
 /// A finding of a flight, with its cause by name.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +15,9 @@ pub struct Finding {
     pub found: verdict::Finding,
     /// What raised the risk; `None` where no rule did, as for a notice or an interpolated risk.
     pub cause: Option<Cause>,
+    /// The output that is the risk, where it is one of [`Profile::other_risks`](crate::profile::Profile::other_risks).
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub risk: Option<String>,
 }
 
 impl Deref for Finding {
@@ -37,7 +40,20 @@ impl Finding {
                 rule: cause.rule,
             })
         });
-        Finding { found, cause }
+        Finding {
+            found,
+            cause,
+            risk: None,
+        }
+    }
+
+    /// A finding of another risk of the profile.
+    pub(super) fn elsewhere(of_risk: &OfRisk, estimator: &Estimator) -> Finding {
+        let other = estimator.others().get(of_risk.risk).unwrap_or(estimator);
+        Finding {
+            risk: Some(other.profile().output.clone()),
+            ..Finding::new(of_risk.found, other)
+        }
     }
 }
 

@@ -292,3 +292,134 @@ fn an_assessment_is_serde_data() {
     assert_eq!(unknown["verdict"], "NA");
     assert!(unknown["reason"].is_string() && unknown["help"].is_null());
 }
+
+/// The margin makes one risk, the spread another one.
+const TWO_RISKS: &str = "
+fuzzy: 1
+name: two
+inputs:
+  margin: {range: [0, 0.5], partition: [low, high]}
+  spread: {range: [0, 0.5], partition: [low, high]}
+outputs:
+  weak: {range: [0, 100], terms: {no: {triangle: [0, 5, 10]}, yes: {triangle: [90, 95, 100]}}}
+  torn: {range: [0, 100], terms: {no: {triangle: [0, 5, 10]}, yes: {triangle: [90, 95, 100]}}}
+rules:
+  - IF margin IS low THEN weak IS yes
+  - IF margin IS high THEN weak IS no
+  - IF spread IS low THEN torn IS no
+  - IF spread IS high THEN torn IS yes
+";
+
+fn two_risks(risks: &str) -> Estimator {
+    let inputs = "inputs: {margin: {mean: motor_margin}, spread: {std: motor_command}}";
+    let profile = format!("flagred: 1\nname: two\nrules: two\n{inputs}\n{risks}\n");
+    let model = fuzzy::yaml::parse(TWO_RISKS).unwrap().model;
+    Estimator::new(&profile.parse().unwrap(), &model).unwrap()
+}
+
+/// First all motors come near their limit together, then they are torn apart.
+fn fly_twice(estimator: &Estimator) -> (Assessment, Vec<(f64, Level)>, Vec<Option<String>>) {
+    let mut assessor = Assessor::new(estimator, Craft::new(2), None).unwrap();
+    let (mut changes, mut open) = (vec![], vec![]);
+    for i in 0..4500 {
+        let t_s = f64::from(i) * 0.02;
+        let motors = match t_s {
+            20.0..25.0 => [0.999, 0.999],
+            50.0..55.0 => [0.5 - 0.46, 0.5 + 0.46],
+            _ => [0.5, 0.5],
+        };
+        let update = assessor.push(&Sample {
+            t_s,
+            motors: &motors,
+            in_air: true,
+            signals: &[],
+        });
+        changes.extend(update.change.map(|level| (t_s, level)));
+        if update.change.is_some() {
+            open.push(assessor.open_finding().and_then(|found| found.risk));
+        }
+    }
+    (assessor.finish(), changes, open)
+}
+
+#[test]
+fn several_risks_have_the_findings_of_profiles_of_each() {
+    let weak = "warn: {risk: 60}\n  fail: {risk: 99}";
+    let torn = "warn: {risk: 50}\n    fail: {risk: 80}\n    elevated_risk: {window_s: 3}";
+    let both = two_risks(&format!(
+        "output: weak\nverdict:\n  {weak}\nother_risks:\n  torn:\n    {torn}"
+    ));
+    let (assessment, changes, open) = fly_twice(&both);
+    let of = |risk: Option<&str>| {
+        let found = assessment.findings.iter();
+        let of_risk = found.filter(|found| found.risk.as_deref() == risk);
+        of_risk
+            .map(|found| (found.found, found.cause.clone()))
+            .collect::<Vec<_>>()
+    };
+    let alone = |risks: &str| {
+        let findings = fly_twice(&two_risks(risks)).0.findings.into_iter();
+        findings
+            .map(|found| (found.found, found.cause))
+            .collect::<Vec<_>>()
+    };
+    let first = alone(&format!("output: weak\nverdict:\n  {weak}"));
+    let second = alone(&format!(
+        "output: torn\nverdict:\n  {}",
+        "warn: {risk: 50}\n  fail: {risk: 80}\nelevated_risk: {window_s: 3}"
+    ));
+    assert!(
+        !first.is_empty() && second.len() == 1,
+        "{first:?} {second:?}"
+    );
+    assert_eq!((of(None), of(Some("torn"))), (first, second));
+    assert_eq!(assessment.verdict, Verdict::Known(Level::Fail));
+    let torn = assessment
+        .findings
+        .iter()
+        .find(|found| found.risk.is_some());
+    assert_eq!(torn.unwrap().cause.as_ref().unwrap().input, "spread");
+
+    // The level is the worst of both.
+    let levels: Vec<Level> = changes.iter().map(|(_, level)| *level).collect();
+    assert_eq!(levels[..2], [Level::Warn, Level::Good]);
+    assert!(levels.contains(&Level::Fail), "{changes:?}");
+    assert_eq!(open[0], None);
+    assert!(open.contains(&Some("torn".into())), "{open:?}");
+
+    let refused = both.plan().unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the profile has the risks `weak` and `torn`, and what flies on board has one"
+    );
+}
+
+/// Where a risk has no rule, a flight without findings is not GOOD for the other one.
+#[test]
+fn a_flight_is_good_where_every_risk_is_known() {
+    let rules = TWO_RISKS.replace("  - IF spread IS low THEN torn IS no\n", "");
+    let model = fuzzy::yaml::parse(&rules).unwrap().model;
+    let known = two_risks("output: weak\nother_risks: {torn: {}}");
+    let mut profile = known.profile().clone();
+    profile.gap.coverage_below = Some(0.0);
+    let estimator = Estimator::new(&profile, &model).unwrap();
+    let fly = |estimator: &Estimator| {
+        let mut assessor = Assessor::new(estimator, Craft::new(2), None).unwrap();
+        for i in 0..1000 {
+            assessor.push(&Sample {
+                t_s: f64::from(i) * 0.02,
+                motors: &HOVER[..2],
+                in_air: true,
+                signals: &[],
+            });
+        }
+        assessor.finish().verdict
+    };
+    assert_eq!(fly(&known), Verdict::Known(Level::Good));
+    let unknown = Verdict::NotAvailable(Reason::RiskUnknown {
+        unknown: Unknown::NoRule,
+        explanation: "no rule applies, and there is nothing to interpolate from".into(),
+        help: None,
+    });
+    assert_eq!(fly(&estimator), unknown);
+}

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use fuzzy::{
     Model,
-    model::{Conjunction, Output, Variable},
+    model::{Activation, Conjunction, Output, Variable},
     rule::{Condition, Name, Proposition, Rule},
 };
 
@@ -20,10 +20,10 @@ type Least = Vec<Vec<f64>>;
 ///
 /// The range of each input is cut at the corners of its terms and half way between them. In between, degrees are linear, so
 /// the least is at an end. The least strength of a rule in a cell follows from the least degrees in the intervals. Rules with
-/// other words than AND and IS, and curved terms, count as 0. Nothing is certain of an output that reads other outputs: these
-/// may have no value.
+/// other words than AND and IS, and curved terms, count as 0. Nothing is certain of an output that reads other outputs, which
+/// may have no value, of rule blocks and of activation methods.
 pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) -> bool {
-    if !model.reads(&output.variable.name).is_empty() {
+    if !model.reads(&output.variable.name).is_empty() || !is_plain(model) {
         return false;
     }
     let inputs: Vec<Least> = model.inputs.iter().map(least_degrees).collect();
@@ -61,6 +61,11 @@ pub(crate) fn has_no_gap(model: &Model, output: &Output, coverage_below: f64) ->
         steps: 0,
     };
     search.is_covered()
+}
+
+/// Whether all rules share their operators and fire as they hold.
+pub(super) fn is_plain(model: &Model) -> bool {
+    model.blocks.is_empty() && model.activation == Activation::General
 }
 
 /// The antecedent of a rule: its inputs and their terms, joined by AND.

@@ -5,6 +5,8 @@ use fuzzy::{
     model::{Conjunction, Variable},
 };
 
+use super::complete::is_plain;
+
 /// How a gap is filled.
 ///
 /// # Example
@@ -78,10 +80,11 @@ impl GapSettings {
     ///
     /// Where none is set: if the terms of every input sum to 1 everywhere, the dominating antecedent has memberships of
     /// 0.5 at least, where two neighbours meet. With the minimum as AND it then fires at 0.5 or more, with the product
-    /// of n inputs at `0.5^n`: less means that the dominating antecedent has no rule. With other terms and other
-    /// conjunctions only what no rule covers at all is a gap.
+    /// of n inputs at `0.5^n`: less means that the dominating antecedent has no rule. With other terms, other
+    /// conjunctions, rule blocks and activation methods only what no rule covers at all is a gap.
     pub fn coverage_below(&self, model: &Model) -> f64 {
         let least = || match model.operators.and {
+            _ if !is_plain(model) => f64::MIN_POSITIVE,
             Conjunction::Minimum => 0.5,
             Conjunction::Product => libm::pow(0.5, model.inputs.len() as f64),
             _ => f64::MIN_POSITIVE,

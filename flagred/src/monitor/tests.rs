@@ -78,6 +78,7 @@ fn profile() -> Profile {
             source: source("motor_margin"),
         }],
         output: "risk".into(),
+        other_risks: Vec::new(),
         sampling: Sampling::default(),
         gap: GapSettings::default(),
         elevated_risk: AccumulatorSettings::default(),

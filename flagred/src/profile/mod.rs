@@ -3,8 +3,11 @@
 use alloc::{string::String, vec::Vec};
 
 use crate::{
-    accumulator::AccumulatorSettings, follower::Settings, gap::GapSettings, source::Source,
-    verdict::VerdictSettings,
+    accumulator::AccumulatorSettings,
+    follower::Settings,
+    gap::GapSettings,
+    source::Source,
+    verdict::{LevelSettings, NoticeSettings, VerdictSettings},
 };
 
 mod read;
@@ -61,6 +64,21 @@ pub struct Profile {
     pub elevated_risk: AccumulatorSettings,
     /// When levels are raised and lowered.
     pub verdict: VerdictSettings,
+    /// Other outputs that are risks.
+    pub other_risks: Vec<OtherRisk>,
+}
+
+/// Another output that is a risk, with levels of its own. Its findings are those of a profile of which it is the only risk.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OtherRisk {
+    /// The output of the rule set, in %.
+    pub output: String,
+    /// How its risks add up.
+    pub elevated_risk: AccumulatorSettings,
+    /// When to warn.
+    pub warn: LevelSettings,
+    /// When it fails.
+    pub fail: LevelSettings,
 }
 
 /// An input of the rule set and where it comes from.
@@ -95,6 +113,22 @@ impl Profile {
             }
         }
         names
+    }
+
+    /// The same profile with another risk as the only one, and without what is told beside the risk.
+    pub(crate) fn of_risk(&self, risk: &OtherRisk) -> Profile {
+        Profile {
+            output: risk.output.clone(),
+            elevated_risk: risk.elevated_risk,
+            verdict: VerdictSettings {
+                warn: risk.warn,
+                fail: risk.fail,
+                notices: NoticeSettings::default(),
+                ..self.verdict
+            },
+            other_risks: Vec::new(),
+            ..self.clone()
+        }
     }
 
     /// What it says about time.

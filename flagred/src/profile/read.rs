@@ -14,13 +14,13 @@ mod inputs;
 mod tests;
 mod verdict;
 
-use super::{Profile, Sampling};
+use super::{OtherRisk, Profile, Sampling};
 use crate::{
     accumulator::AccumulatorSettings,
     gap::{GapMethod, GapSettings},
 };
 use inputs::inputs;
-use verdict::verdict;
+use verdict::{level, verdict};
 
 /// The version of the format.
 const VERSION: u64 = 1;
@@ -66,6 +66,7 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         "gap",
         "elevated_risk",
         "verdict",
+        "other_risks",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
         found.push(tree.unexpected_document("the profile"));
@@ -99,6 +100,14 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         .map_or_else(|| "risk".into(), |words| words.text.clone());
     let window_s = number(&fields, "window_s", WINDOW_S, Least::Above0, found);
     let inputs = inputs(&fields, window_s, found);
+    let elevated_risk = elevated_risk(&fields, AccumulatorSettings::default(), found);
+    let verdict = verdict(&fields, found);
+    let defaults = OtherRisk {
+        output: output.clone(),
+        elevated_risk,
+        warn: verdict.warn,
+        fail: verdict.fail,
+    };
     let profile = Profile {
         name: name.unwrap_or_default(),
         description,
@@ -106,8 +115,9 @@ fn read(tree: &Node, found: &mut Found) -> Option<Profile> {
         output,
         sampling: sampling(&fields, found),
         gap: gap(&fields, found),
-        elevated_risk: elevated_risk(&fields, found),
-        verdict: verdict(&fields, found),
+        elevated_risk,
+        other_risks: other_risks(&fields, &defaults, found),
+        verdict,
         window_s,
         inputs,
     };
@@ -185,8 +195,39 @@ fn method(node: &Node, found: &mut Found) -> Option<GapMethod> {
     })
 }
 
-fn elevated_risk(fields: &Fields, found: &mut Found) -> AccumulatorSettings {
-    let default = AccumulatorSettings::default();
+/// The other outputs that are risks; what one does not say is as for the first one.
+fn other_risks(fields: &Fields, defaults: &OtherRisk, found: &mut Found) -> Vec<OtherRisk> {
+    let entries = fields
+        .get("other_risks")
+        .and_then(|node| node.entries("`other_risks`", "output", found));
+    let mut risks = Vec::new();
+    for entry in entries.unwrap_or_default() {
+        if entry.key == defaults.output {
+            let message = format!("`{}` is the `output` of the profile already", entry.key);
+            found.push(
+                Diagnostic::error("other-risk", entry.key_span.clone(), message)
+                    .help("its levels stand in `verdict`; name other outputs here"),
+            );
+        }
+        let what = format!("risk `{}`", entry.key);
+        let keys = ["elevated_risk", "warn", "fail"];
+        if let Some(fields) = entry.value.fields(&what, &keys, found) {
+            risks.push(OtherRisk {
+                output: entry.key.into(),
+                elevated_risk: elevated_risk(&fields, defaults.elevated_risk, found),
+                warn: level(&fields, "warn", defaults.warn, found),
+                fail: level(&fields, "fail", defaults.fail, found),
+            });
+        }
+    }
+    risks
+}
+
+fn elevated_risk(
+    fields: &Fields,
+    default: AccumulatorSettings,
+    found: &mut Found,
+) -> AccumulatorSettings {
     let keys = ["window_s", "high", "low", "rise_per_s", "fall_per_s"];
     let Some(fields) = fields
         .get("elevated_risk")

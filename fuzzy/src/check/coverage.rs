@@ -67,12 +67,10 @@ const MOST_LOOKS: usize = 100_000;
 
 /// The boxes in which no rule of `output` reaches `coverage`, or, with `None`, in which none fires.
 pub(super) fn uncovered(model: &Model, output: &str, coverage: Option<f64>) -> Boxes {
-    let level = Level {
-        value: coverage.unwrap_or(0.0),
-        strict: coverage.is_none(),
-    };
+    let level = coverage.map_or(Level::fires(model), Level::reaches);
     let concludes = |rule: &&crate::model::Rule| {
-        rule.rule.weight > 0.0
+        model.is_enabled(rule)
+            && rule.rule.weight > 0.0
             && rule
                 .rule
                 .consequents

@@ -56,7 +56,7 @@ pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
     // A model with one rule for each term, of which one at a time fires: at i + strength, the rule of term i.
     let name = |term: usize| -> String { format!("term {term}") };
     let mut selector = Variable::new("selector", 0.0, 2.0 * terms.len().max(1) as f64);
-    let mut alone = Model::builder("extent").operators(model.operators);
+    let mut alone = Model::builder("extent").operators(model.operators_of_output(found));
     for (i, term) in terms.iter().enumerate() {
         let left = 2.0 * i as f64;
         let (peak, right) = (left + 1.0, left + 1.5);
@@ -70,7 +70,8 @@ pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
     only.when_no_rule_fires = NoRuleFires::Undefined;
     let engine = Engine::new(&alone.input(selector).output(only).build()).ok()?;
     let mut values = Vec::new();
-    if let NoRuleFires::Value(value) = found.when_no_rule_fires {
+    if let NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) = found.when_no_rule_fires
+    {
         values.push(value);
     }
     for i in 0..terms.len() {

@@ -180,7 +180,11 @@ impl At<'_> {
         let mut finding = if one.silent {
             let message = format!("no rule for `{output}` fires {place}{share}");
             let chosen = self.model.outputs.iter().any(|o| {
-                o.variable.name == *output && matches!(o.when_no_rule_fires, NoRuleFires::Value(_))
+                let value = matches!(
+                    o.when_no_rule_fires,
+                    NoRuleFires::Value(_) | NoRuleFires::Previous(_)
+                );
+                o.variable.name == *output && value
             });
             if chosen {
                 Diagnostic::note("no-rule-fires", place_of_rules, message)

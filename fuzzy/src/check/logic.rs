@@ -5,14 +5,14 @@
 //! Every input is cut at the ends of these intervals. Within a cell between the cuts no literal changes, so statements about
 //! all points follow from one look at each cell.
 //!
-//! Other operators are treated as minimum and maximum, and weights are ignored: the analysis asks where a rule fires, not how
-//! strongly.
+//! Other operators are treated as minimum and maximum, and weights and activation methods are ignored: the analysis asks where
+//! a rule can fire, not how strongly.
 
 use alloc::{boxed::Box, collections::BTreeMap, vec, vec::Vec};
 
 use super::axis;
 use crate::{
-    model::{Model, Variable},
+    model::{LEAST_STRENGTH, Model, Variable},
     rule::{Condition, Hedge, Proposition},
 };
 
@@ -21,6 +21,24 @@ use crate::{
 pub(super) struct Level {
     pub(super) value: f64,
     pub(super) strict: bool,
+}
+
+impl Level {
+    /// The degree with which a rule fires.
+    pub(super) fn fires(model: &Model) -> Self {
+        let least = model.least_strength;
+        // The default is rounding.
+        let strict = least <= LEAST_STRENGTH;
+        Level {
+            value: if strict { 0.0 } else { least },
+            strict,
+        }
+    }
+
+    pub(super) fn reaches(value: f64) -> Self {
+        let strict = false;
+        Level { value, strict }
+    }
 }
 
 /// The formulas of some conditions, and the cells they are evaluated on.

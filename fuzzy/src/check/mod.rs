@@ -10,7 +10,7 @@ use crate::{
     Engine,
     diagnostic::{Diagnostic, Findings, suggest},
     model::{
-        Aggregation, Model, Variable,
+        Model, Variable,
         chain::{Stage, stages},
         document::{Document, Spans},
     },
@@ -155,17 +155,11 @@ pub fn check(engine: &Engine, options: &Options) -> Result<Report, alloc::boxed:
     });
     let holes = model.inputs.iter().chain(read).flat_map(terms::holes);
     let mut probe = probe::Probe::new(model, engine);
-    // With another aggregation a rule adds to the result even where a wider one fires.
-    let merging = model.operators.aggregation == Aggregation::Maximum;
     Ok(Report {
         uncovered,
         uncovered_complete,
         contradictions: rules::contradictions(model),
-        subsumed: if merging {
-            rules::subsumed(model)
-        } else {
-            Vec::new()
-        },
+        subsumed: rules::subsumed(model),
         unused: terms::unused(model),
         unreachable: terms::unreachable(model, &never_firing),
         never_firing,

@@ -8,7 +8,7 @@ use alloc::{
 
 use super::logic::{Level, Logic};
 use crate::{
-    model::Model,
+    model::{self, Activation, Aggregation, Model, Output, concludes},
     rule::{Condition, Rule},
 };
 
@@ -105,7 +105,13 @@ fn canonical(condition: &Condition) -> String {
     }
 }
 
-/// Rules that conclude two terms of one output, and rules with the condition of an earlier one and another conclusion, each
+/// Whether rules of a block are compared with each other: they fire, and each as strongly as it holds. In a block with another
+/// activation method, such as the first rule that fires, one rule is meant to stand against another.
+fn is_compared(model: &Model, rule: &model::Rule) -> bool {
+    model.is_enabled(rule) && model.activation_of(rule) == Activation::General
+}
+
+/// Rules that conclude two terms of one output, and rules of the same block with the condition of an earlier one and another conclusion, each
 /// with the first that it contradicts.
 pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
     let mut found = Vec::new();
@@ -126,10 +132,12 @@ pub(super) fn contradictions(model: &Model) -> Vec<Contradiction> {
         }
     }
     let mut numbers = Numbers::default();
-    let mut by_parts: BTreeMap<Parts, Vec<usize>> = BTreeMap::new();
+    let mut by_parts: BTreeMap<(usize, Parts), Vec<usize>> = BTreeMap::new();
     for (i, rule) in model.rules.iter().enumerate() {
-        let parts = numbers.parts(&rule.rule.condition);
-        by_parts.entry(parts).or_default().push(i);
+        if is_compared(model, rule) {
+            let parts = numbers.parts(&rule.rule.condition);
+            by_parts.entry((rule.block, parts)).or_default().push(i);
+        }
     }
     for rules in by_parts.values() {
         // Of rules with one conclusion the first stands for all.
@@ -172,11 +180,20 @@ fn disagreement(model: &Model, first: usize, second: usize) -> Option<Contradict
 /// Pairs of rules that are compared: all of 10,000 rules with one conclusion. Of more the first are.
 const MOST_COMPARISONS: usize = 100_000_000;
 
-/// Rules that add nothing to a wider one of the same conclusion. Equal rules are told elsewhere.
+/// Rules that add nothing to a wider one of the same block and conclusion. Equal rules are told elsewhere.
 pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
     let mut numbers = Numbers::default();
-    let mut groups: BTreeMap<String, Vec<Member>> = BTreeMap::new();
+    let mut groups: BTreeMap<(usize, String), Vec<Member>> = BTreeMap::new();
+    // With another aggregation a rule adds to the result even where a wider one fires.
+    let aggregation = |output: &Output| model.operators_of_output(output).aggregation;
+    let outputs = model.outputs.iter();
+    let adding = outputs.filter(|output| aggregation(output) != Aggregation::Maximum);
+    let adding: Vec<&Output> = adding.collect();
     for (index, rule) in model.rules.iter().enumerate() {
+        let adds = adding.iter().any(|output| concludes(rule, output));
+        if adds || !is_compared(model, rule) {
+            continue;
+        }
         let parts = numbers.parts(&rule.rule.condition);
         let weight = rule.rule.weight;
         let signature = match &parts {
@@ -185,7 +202,7 @@ pub(super) fn subsumed(model: &Model) -> Vec<Subsumed> {
                 .fold(0u64, |bits, part| bits | 1 << (part % 64)),
         };
         groups
-            .entry(conclusion(&rule.rule))
+            .entry((rule.block, conclusion(&rule.rule)))
             .or_default()
             .push(Member {
                 index,
@@ -254,14 +271,12 @@ fn conclusion(rule: &Rule) -> String {
 
 /// The rules that fire nowhere: what they ask for excludes itself, or their weight is 0.
 pub(super) fn never_firing(model: &Model) -> Vec<usize> {
-    let level = Level {
-        value: 0.0,
-        strict: true,
-    };
+    let level = Level::fires(model);
     let conditions = model.rules.iter().map(|rule| &rule.rule.condition);
     let logic = Logic::new(model, conditions, level);
     let rules = model.rules.iter().zip(&logic.formulas).enumerate();
-    let dead = rules
-        .filter(|(_, (rule, formula))| rule.rule.weight <= 0.0 || !logic.holds_somewhere(formula));
+    let dead = rules.filter(|(_, (rule, formula))| {
+        model.is_enabled(rule) && (rule.rule.weight <= 0.0 || !logic.holds_somewhere(formula))
+    });
     dead.map(|(i, _)| i).collect()
 }

@@ -84,6 +84,9 @@ impl Table {
             .collect();
         let mut rows = BTreeMap::new();
         for (rule, written) in model.rules.iter().enumerate() {
+            if !model.is_enabled(written) {
+                continue;
+            }
             let consequents = &written.rule.consequents;
             let Some(consequent) = consequents.iter().find(|c| c.output.text == output.name) else {
                 continue;

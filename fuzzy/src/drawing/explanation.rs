@@ -170,8 +170,17 @@ pub(super) fn answer(output: &ExplainedOutput, variable: &Variable, all: &Explan
     match output.value {
         None => match unknown {
             Some(read) => format!("{} is undefined, because {} is", output.name, read.name),
+            None if output.keeps_previous => format!(
+                "{} keeps its previous value, which one point does not have: no rule fired",
+                output.name
+            ),
             None => format!("{} is undefined: no rule fired", output.name),
         },
+        Some(value) if output.is_default && output.keeps_previous => format!(
+            "{} keeps its previous value, {}{unit} where there is none: no rule fired",
+            output.name,
+            digits(value)
+        ),
         Some(value) if output.is_default => {
             format!(
                 "{} = {}{unit}, the default value: no rule fired",

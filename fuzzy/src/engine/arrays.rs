@@ -3,15 +3,13 @@
 use alloc::vec::Vec;
 
 use super::literal::Literals;
-use super::rules::Draft;
+use super::rules::{Draft, Firing};
 use super::{CompiledOutput, Input as Range};
 use crate::defuzzify::Method;
-use crate::model::{
-    Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires, Operators, Term,
-};
+use crate::model::{Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires, Term};
 use crate::table::{
-    Action, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge, Hedge,
-    Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step, Table, arrays,
+    Action, Axis, Block, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge,
+    Hedge, Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step, Table, arrays,
     arrays_from_fields,
 };
 
@@ -23,6 +21,7 @@ macro_rules! define {
             and: Conjunction,
             or: Disjunction,
             pub(super) conjunctions: Conjunctions,
+            least_strength: f64,
             pub(super) sizes: Sizes,
             $(pub(super) $array: Vec<$item>,)*
         }
@@ -33,6 +32,7 @@ macro_rules! define {
                     and: self.and,
                     or: self.or,
                     conjunctions: self.conjunctions,
+                    least_strength: self.least_strength,
                     sizes: self.sizes,
                     $($array: &self.$array,)*
                 }
@@ -45,20 +45,25 @@ arrays!(arrays_from_fields! OwnedTable;);
 
 impl OwnedTable {
     pub(super) fn new(
-        operators: Operators,
+        firing: &Firing,
         inputs: &[Range],
         literals: &[Literals],
         drafts: &[Draft],
         outputs: &[CompiledOutput],
     ) -> Self {
         let mut table = OwnedTable {
-            and: operators.and,
-            or: operators.or,
+            and: firing.and,
+            or: firing.or,
+            least_strength: firing.least_strength,
             ..OwnedTable::default()
         };
         let strengths = outputs.last().map_or(0, |output| output.strengths.end) as u32;
         table.sizes.strengths = strengths + 1;
-        table.rules(drafts, literals, strengths);
+        if firing.blocks.is_empty() {
+            table.rules(drafts, literals, strengths);
+        } else {
+            table.blocks(&firing.blocks, drafts);
+        }
         if !table.programs.is_empty() || table.conjunctions == Conjunctions::Trie {
             table.sizes.degrees = literals.iter().map(|literals| literals.count).sum();
         }
@@ -161,14 +166,17 @@ impl OwnedTable {
             low: output.low,
             high: output.high,
             default_value: match output.when_no_rule_fires {
-                NoRuleFires::Value(value) => value,
-                NoRuleFires::Undefined | NoRuleFires::Error => f64::NAN,
+                NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => value,
+                NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => {
+                    f64::NAN
+                }
             },
             form,
             first,
             end,
             first_strength: output.strengths.start as u32,
             end_strength: output.strengths.end as u32,
+            clamps: u32::from(output.clamps),
         });
     }
 }

@@ -51,6 +51,33 @@ impl Engine {
         columns: &[&[f64]],
         outcomes: &mut [Outcome],
     ) -> Result<(), EvaluateError> {
+        let rows = self.fits_columns(columns, outcomes)?;
+        #[cfg(feature = "parallel")]
+        if rows > ROWS_A_TASK {
+            use rayon::prelude::*;
+            outcomes
+                .par_chunks_mut(ROWS_A_TASK * self.outputs.len())
+                .enumerate()
+                .for_each_init(
+                    || self.scratch(),
+                    |scratch, (task, outcomes)| {
+                        self.rows(scratch, columns, task * ROWS_A_TASK, outcomes);
+                    },
+                );
+            return Ok(());
+        }
+        #[cfg(not(feature = "parallel"))]
+        let _ = rows;
+        self.rows(&mut self.scratch(), columns, 0, outcomes);
+        Ok(())
+    }
+
+    /// The number of rows: there is a column for each input, all of a length, and an outcome for each row and output.
+    pub(super) fn fits_columns(
+        &self,
+        columns: &[&[f64]],
+        outcomes: &[Outcome],
+    ) -> Result<usize, EvaluateError> {
         if columns.len() != self.inputs.len() {
             return Err(EvaluateError::WrongNumberOfInputs {
                 expected: self.inputs.len(),
@@ -70,22 +97,7 @@ impl Engine {
                 got: outcomes.len(),
             });
         }
-        #[cfg(feature = "parallel")]
-        if rows > ROWS_A_TASK {
-            use rayon::prelude::*;
-            outcomes
-                .par_chunks_mut(ROWS_A_TASK * self.outputs.len())
-                .enumerate()
-                .for_each_init(
-                    || self.scratch(),
-                    |scratch, (task, outcomes)| {
-                        self.rows(scratch, columns, task * ROWS_A_TASK, outcomes);
-                    },
-                );
-            return Ok(());
-        }
-        self.rows(&mut self.scratch(), columns, 0, outcomes);
-        Ok(())
+        Ok(rows)
     }
 
     /// Evaluates the rows that begin at index `first`, as many as `outcomes` holds.

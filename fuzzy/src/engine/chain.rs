@@ -65,7 +65,8 @@ impl Chain {
 }
 
 impl Engine {
-    /// [`Engine::outcomes`](super::Engine) of a model that chains.
+    /// [`Engine::outcomes`](super::Engine) of a model that chains. `keep` may change the outcome of an output before others read
+    /// it.
     // Apart from the evaluation of one stage, so that this one costs nothing where there is no chain.
     #[inline(never)]
     pub(super) fn chained(
@@ -74,6 +75,7 @@ impl Engine {
         scratch: &mut Scratch,
         inputs: &[f64],
         outcomes: &mut [Outcome],
+        mut keep: impl FnMut(usize, &mut Outcome),
     ) {
         let Scratch {
             first,
@@ -114,6 +116,7 @@ impl Engine {
                     clamped: own.clamped || clamped,
                     ..*own
                 };
+                keep(*output, &mut outcomes[*output]);
             }
         }
     }

@@ -6,14 +6,14 @@ use super::arrays::OwnedTable;
 use super::chain::Chain;
 use super::lanes::Lanes;
 use super::literal::{Literal, Literals};
-use super::rules::Draft;
+use super::rules::{Draft, Firing};
 use super::{CompiledOutput, Engine, Input, NamedOutput, Stage};
 use crate::defuzzify::weighted::Consequents;
 use crate::defuzzify::{Defuzzify, Merging, Method};
 use crate::diagnostic::Findings;
 use crate::model::{
-    Defuzzifier, MembershipFunction, Model, NoRuleFires, Output, Term, Variable, chain::stages,
-    document::Spans,
+    Activation, Defuzzifier, MembershipFunction, Model, NoRuleFires, Output, Term, Variable,
+    chain::stages, document::Spans,
 };
 use crate::rule::{Condition, Hedge, Proposition};
 use crate::table::{Action, Op, Step};
@@ -72,8 +72,9 @@ impl Stage {
             literals: BTreeMap::new(),
         };
         compiler.literals();
+        let firing = Firing::of(model);
         let drafts = compiler.drafts();
-        compiler.stage(drafts)
+        compiler.stage(drafts, &firing)
     }
 }
 
@@ -101,7 +102,7 @@ impl Compiler<'_> {
     /// Finds and numbers all literals of all rules.
     pub(super) fn literals(&mut self) {
         let model = self.model;
-        for rule in &model.rules {
+        for rule in model.rules.iter().filter(|rule| model.is_enabled(rule)) {
             rule.rule.condition.visit(&mut |proposition| {
                 let key = self.key(proposition);
                 self.literals.extend(key.map(|key| (key, 0)));
@@ -132,12 +133,16 @@ impl Compiler<'_> {
     }
 
     /// The rules as literals, steps and actions, in an order that is that of their content: the order of
-    /// lines in a rule set changes no bit of an answer.
+    /// lines in a rule set changes no bit of an answer. Only activation methods, of which some depend on it, keep that order.
     fn drafts(&self) -> Vec<Draft> {
         let model = self.model;
         let inputs_of: Vec<usize> = self.literals.keys().map(|key| key.0).collect();
         let mut drafts = Vec::new();
         for (index, rule) in model.rules.iter().enumerate() {
+            if !model.is_enabled(rule) {
+                continue;
+            }
+            let (block, activation) = (rule.block, model.activation_of(rule));
             let rule = &rule.rule;
             let mut steps = Vec::new();
             self.condition(&rule.condition, &mut steps);
@@ -152,25 +157,31 @@ impl Compiler<'_> {
                 };
                 let term = position(&output.variable.terms, &consequent.term.text);
                 let hedges: Vec<Hedge> = consequent.hedges.iter().rev().copied().collect();
-                let is_plain = hedges.is_empty();
                 let actions = by_hedges.entry(hedges).or_default();
                 actions.extend(term.map(|term| Action {
-                    weight: if is_plain { rule.weight } else { 1.0 },
+                    weight: rule.weight,
                     strength: term as u32,
                     output: number,
                     rule: index as u32,
                     sums: 0,
                 }));
             }
+            let kept = (activation != Activation::General).then_some(index);
+            // A rule without consequents here may still count for the activation method of its block.
+            if by_hedges.is_empty() {
+                by_hedges.insert(Vec::new(), Vec::new());
+            }
             for (hedges, actions) in by_hedges {
-                let is_plain = hedges.is_empty();
-                drafts.push(Draft {
-                    literals: plain(&steps, &inputs_of).filter(|_| is_plain),
+                let draft = Draft {
+                    literals: plain(&steps, &inputs_of).filter(|_| hedges.is_empty()),
                     steps: steps.clone(),
-                    weight: if is_plain { 1.0 } else { rule.weight },
+                    weight: rule.weight,
                     hedges,
                     actions,
-                });
+                    rule: index,
+                    block,
+                };
+                drafts.push((kept, draft));
             }
         }
         let content = |draft: &Draft| {
@@ -179,16 +190,17 @@ impl Compiler<'_> {
                 .map(|a| (a.output, a.strength, a.weight.to_bits()))
                 .collect::<Vec<_>>()
         };
-        drafts.sort_by_cached_key(|draft| {
+        drafts.sort_by_cached_key(|(kept, draft)| {
             let hedged = (draft.hedges.clone(), draft.weight.to_bits());
             (
+                *kept,
                 draft.literals.clone(),
                 draft.steps.clone(),
                 hedged,
                 content(draft),
             )
         });
-        drafts
+        drafts.into_iter().map(|(_, draft)| draft).collect()
     }
 
     fn condition(&self, condition: &Condition, steps: &mut Vec<Step>) {
@@ -236,7 +248,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn stage(&self, mut drafts: Vec<Draft>) -> Stage {
+    fn stage(&self, mut drafts: Vec<Draft>, firing: &Firing) -> Stage {
         let model = self.model;
         let mut outputs = Vec::new();
         let mut first_strength = 0;
@@ -271,10 +283,12 @@ impl Compiler<'_> {
             first += count;
             inputs.push(Input::of(variable));
         }
-        let operators = model.operators;
+        let and = (firing.and, firing.least_strength);
+        let is_plain = firing.blocks.is_empty();
+        let lanes = is_plain.then(|| Lanes::new(and, &inputs, &by_input, &drafts, &outputs));
         Stage {
-            lanes: Lanes::new(operators.and, &inputs, &by_input, &drafts, &outputs),
-            arrays: OwnedTable::new(operators, &inputs, &literals, &drafts, &outputs),
+            lanes: lanes.flatten(),
+            arrays: OwnedTable::new(firing, &inputs, &literals, &drafts, &outputs),
             outputs,
         }
     }
@@ -288,7 +302,7 @@ impl Compiler<'_> {
         drafts: &mut [Draft],
     ) -> CompiledOutput {
         let variable = &output.variable;
-        let operators = self.model.operators;
+        let operators = self.model.operators_of_output(output);
         let merging = Merging::of(output.defuzzifier, operators);
         let actions = || drafts.iter().flat_map(|draft| &draft.actions);
         let here = |action: &&Action| action.output as usize == index;
@@ -326,12 +340,13 @@ impl Compiler<'_> {
             when_no_rule_fires: output.when_no_rule_fires,
             strengths: first_strength..first_strength + count,
             offsets,
+            clamps: output.clamp,
             defuzzify,
         }
     }
 
     fn defuzzify(&self, output: &Output) -> Defuzzify {
-        let operators = self.model.operators;
+        let operators = self.model.operators_of_output(output);
         if !output.defuzzifier.is_weighted() {
             return Defuzzify::fuzzy(output, operators);
         }

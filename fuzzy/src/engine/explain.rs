@@ -1,6 +1,7 @@
 //! Why an output is what it is: memberships, fired rules, the aggregated set.
 
 use alloc::{
+    collections::BTreeMap,
     string::{String, ToString},
     vec,
     vec::Vec,
@@ -11,10 +12,11 @@ use super::{
     operators::{larger, smaller},
 };
 use crate::model::{
-    Aggregation, Defuzzifier, MembershipFunction, Model, Operators, Output, Term, Variable,
+    Activation, Aggregation, Defuzzifier, MembershipFunction, Model, Operators, Output, Term,
+    Variable, concludes,
 };
 use crate::rule::{Condition, Proposition};
-use crate::table;
+use crate::table::{self, Partial};
 
 /// Why an evaluation gives its values.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +72,8 @@ pub struct FiredRule {
     pub text: String,
     /// The degree of its condition.
     pub degree: f64,
-    /// The degree times the weight; hedges of its consequents change it in [`Share::strength`].
+    /// The degree times the weight, as the activation method leaves it; hedges of its consequents change it in
+    /// [`Share::strength`].
     pub strength: f64,
 }
 
@@ -85,6 +88,8 @@ pub struct ExplainedOutput {
     pub value: Option<f64>,
     /// Whether no rule fires and the value is the model's default.
     pub is_default: bool,
+    /// Whether it keeps its previous value where no rule fires. One point has none before it.
+    pub keeps_previous: bool,
     /// The outputs whose values it reads. Where one of them has no value, no rule of this output fires, and it has none.
     pub reads: Vec<String>,
     /// The largest firing strength of a rule of this output.
@@ -252,35 +257,44 @@ fn fired(known: &Known<'_>) -> Vec<FiredRule> {
         .iter()
         .map(|output| known.is_evaluated(&output.variable.name))
         .collect();
-    for (index, rule) in known.model.rules.iter().enumerate() {
+    let mut degrees = vec![0.0; known.model.rules.len()];
+    let mut blocks: BTreeMap<usize, (Activation, Vec<Partial>)> = BTreeMap::new();
+    for ((rule, degree), index) in known.model.rules.iter().zip(&mut degrees).zip(0..) {
         let mut outputs = known.model.outputs.iter().zip(&evaluated);
-        let concludes = |output: &Output| {
-            let mut consequents = rule.rule.consequents.iter();
-            consequents.any(|c| c.output.text == output.variable.name)
-        };
-        if !outputs.any(|(output, evaluated)| *evaluated && concludes(output)) {
+        let is_evaluated = outputs.any(|(output, evaluated)| *evaluated && concludes(rule, output));
+        if !is_evaluated || !known.model.is_enabled(rule) {
             continue;
         }
-        let degree = holds(&rule.rule.condition, known);
-        let strength = rule.rule.weight * degree;
-        if strength > 0.0 {
-            fired.push(FiredRule {
-                rule: index,
-                text: rule.rule.to_string(),
-                degree,
-                strength,
-            });
+        *degree = holds(&rule.rule.condition, known.model.operators_of(rule), known);
+        let activation = known.model.activation_of(rule);
+        let (_, strengths) = blocks.entry(rule.block).or_insert((activation, Vec::new()));
+        strengths.push(Partial::new(rule.rule.weight * *degree, index));
+    }
+    let least = known.model.least_strength;
+    for (activation, mut strengths) in blocks.into_values() {
+        activation.activate(least, &mut strengths);
+        for (strength, index) in strengths.iter().map(Partial::parts) {
+            let index = index as usize;
+            if strength >= least
+                && let Some(rule) = known.model.rules.get(index)
+            {
+                fired.push(FiredRule {
+                    rule: index,
+                    text: rule.rule.to_string(),
+                    degree: degrees[index],
+                    strength,
+                });
+            }
         }
     }
     // Of equally strong rules the first in the file stands first.
-    fired.sort_by(|a, b| b.strength.total_cmp(&a.strength));
+    fired.sort_by(|a, b| b.strength.total_cmp(&a.strength).then(a.rule.cmp(&b.rule)));
     fired
 }
 
 /// The degree of a condition, read from its tree.
-fn holds(condition: &Condition, known: &Known<'_>) -> f64 {
-    let operators = known.model.operators;
-    let degree = |part: &Condition| holds(part, known);
+fn holds(condition: &Condition, operators: Operators, known: &Known<'_>) -> f64 {
+    let degree = |part: &Condition| holds(part, operators, known);
     match condition {
         Condition::Is(proposition) => proposition_holds(proposition, known),
         Condition::Not(inner) => 1.0 - degree(inner),
@@ -325,6 +339,7 @@ fn explain_output(
         &[]
     };
     let weighted = output.defuzzifier.is_weighted();
+    let operators = model.operators_of_output(output);
     let mut active: Vec<Active<'_>> = Vec::new();
     for rule in fired {
         let consequents = model
@@ -354,12 +369,12 @@ fn explain_output(
             .map(|i| {
                 (
                     step(i as f64),
-                    aggregated(&active, model.operators, step(i as f64)),
+                    aggregated(&active, operators, step(i as f64)),
                 )
             })
             .collect();
         for i in 0..STEPS {
-            add_parts(&mut active, model.operators, step(i as f64 + 0.5));
+            add_parts(&mut active, operators, step(i as f64 + 0.5));
         }
     }
     let whole: f64 = active.iter().map(|one| one.part).sum();
@@ -375,7 +390,7 @@ fn explain_output(
                 Vec::new()
             } else {
                 let at = |i: usize| step(i as f64);
-                let implied = (0..=STEPS).map(|i| (at(i), one.degree(model.operators, at(i))));
+                let implied = (0..=STEPS).map(|i| (at(i), one.degree(operators, at(i))));
                 implied.collect()
             },
         })
@@ -391,6 +406,7 @@ fn explain_output(
         name: variable.name.clone(),
         value,
         is_default: matches!(outcome.state, State::Default(_)),
+        keeps_previous: output.keeps_previous(),
         coverage: outcome.coverage,
         reads: model
             .reads(&variable.name)

@@ -11,7 +11,7 @@ use core::ops::Range;
 use super::literal::{Literal, lines};
 use super::operators::{larger, smaller};
 use super::rules::Draft;
-use super::{CompiledOutput, FROM_TINY, Input, Outcome, State, TINY};
+use super::{CompiledOutput, Input, Outcome, State};
 use crate::defuzzify::Partition;
 use crate::model::{Conjunction, NoRuleFires};
 use crate::table::Line;
@@ -40,6 +40,7 @@ pub(super) struct Lanes {
     low: f64,
     high: f64,
     origin: f64,
+    least_strength: f64,
     otherwise: State,
 }
 
@@ -80,7 +81,7 @@ struct Block {
 impl Lanes {
     /// `None` for another kind of model.
     pub(super) fn new(
-        and: Conjunction,
+        (and, least_strength): (Conjunction, f64),
         inputs: &[Input],
         literals: &[Vec<Literal>],
         drafts: &[Draft],
@@ -144,9 +145,14 @@ impl Lanes {
             low: output.low,
             high: output.high,
             origin: output.defuzzify.middle(),
+            least_strength,
             otherwise: match output.when_no_rule_fires {
-                NoRuleFires::Value(value) => State::Default(value),
-                NoRuleFires::Undefined | NoRuleFires::Error => State::NoRuleFired,
+                NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => {
+                    State::Default(value)
+                }
+                NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => {
+                    State::NoRuleFired
+                }
             },
         })
     }
@@ -239,6 +245,8 @@ impl Lanes {
                 *of_rule = strength;
             }
             for lane in 0..LANES {
+                // The largest is below the least strength where all are.
+                largest[lane] = choose(largest[lane] < self.least_strength, 0.0, largest[lane]);
                 strongest[lane] = larger(strongest[lane], largest[lane]);
             }
             *kept = largest;
@@ -250,13 +258,6 @@ impl Lanes {
                 let is_strongest = strength[lane] == strongest[lane];
                 let index = choose(is_strongest, rule.negated_index, f64::NEG_INFINITY);
                 first[lane] = larger(first[lane], index);
-            }
-        }
-        if strongest.iter().any(|strength| *strength < TINY) {
-            for strength in &mut *strengths {
-                for lane in 0..LANES {
-                    strength[lane] *= choose(strongest[lane] < TINY, FROM_TINY, 1.0);
-                }
             }
         }
         let values = self.partition.centroids(strengths, self.origin);

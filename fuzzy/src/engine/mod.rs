@@ -22,12 +22,14 @@ mod literal;
 mod named;
 mod raising;
 mod rules;
+mod sequence;
 
-pub(crate) use crate::table::{FROM_TINY, TINY, operators};
+pub(crate) use crate::table::operators;
 pub use crate::table::{Outcome, State};
 pub use error::EvaluateError;
 pub use explain::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share};
 pub use raising::Said;
+pub use sequence::Sequence;
 
 /// A compiled model: immutable, and shared by any number of threads.
 ///
@@ -93,6 +95,8 @@ struct CompiledOutput {
     strengths: Range<usize>,
     /// The offset in that span of each term's firing strengths, and the end of the last term's.
     offsets: Vec<usize>,
+    /// Whether a value outside the range is clamped to it.
+    clamps: bool,
     defuzzify: Defuzzify,
 }
 
@@ -231,6 +235,14 @@ impl Engine {
         inputs: &[f64],
         outcomes: &mut [Outcome],
     ) -> Result<(), EvaluateError> {
+        self.fits(inputs, outcomes)?;
+        self.outcomes(scratch, inputs, outcomes);
+        self.must_fire(outcomes)
+    }
+
+    /// Whether there is one value for each input and one outcome for each output.
+    #[inline(always)]
+    fn fits(&self, inputs: &[f64], outcomes: &[Outcome]) -> Result<(), EvaluateError> {
         if inputs.len() != self.inputs.len() {
             return Err(EvaluateError::WrongNumberOfInputs {
                 expected: self.inputs.len(),
@@ -243,7 +255,12 @@ impl Engine {
                 got: outcomes.len(),
             });
         }
-        self.outcomes(scratch, inputs, outcomes);
+        Ok(())
+    }
+
+    /// An error where no rule fires for an output that must have a value.
+    #[inline(always)]
+    fn must_fire(&self, outcomes: &[Outcome]) -> Result<(), EvaluateError> {
         for (output, outcome) in self.outputs.iter().zip(outcomes) {
             if output.must_fire && outcome.state == State::NoRuleFired {
                 return Err(EvaluateError::NoRuleFired {
@@ -259,7 +276,7 @@ impl Engine {
     fn outcomes(&self, scratch: &mut Scratch, inputs: &[f64], outcomes: &mut [Outcome]) {
         match &self.chain {
             None => self.first.outcomes(&mut scratch.first, inputs, outcomes),
-            Some(chain) => self.chained(chain, scratch, inputs, outcomes),
+            Some(chain) => self.chained(chain, scratch, inputs, outcomes, |_, _| {}),
         }
     }
 }
@@ -309,5 +326,7 @@ impl Stage {
     }
 }
 
+#[cfg(test)]
+mod blocks_tests;
 #[cfg(test)]
 mod tests;

@@ -4,8 +4,9 @@ use alloc::{vec, vec::Vec};
 
 use super::arrays::OwnedTable;
 use super::literal::Literals;
+use crate::model::{Activation, Conjunction, Disjunction, Model};
 use crate::table::{
-    Action, Axis, Conjunctions, Dimension, Edge, Hedge, Line, Node, Op, Program, Step,
+    Action, Axis, Block, Conjunctions, Dimension, Edge, Hedge, Line, Node, Op, Program, Step,
 };
 
 /// A rule with indices in place of names.
@@ -16,9 +17,66 @@ pub(super) struct Draft {
     pub(super) steps: Vec<Step>,
     /// The hedges of its consequents, in the order in which they apply.
     pub(super) hedges: Vec<Hedge>,
-    /// What multiplies the degree before the hedges.
+    /// The rule's weight.
     pub(super) weight: f64,
     pub(super) actions: Vec<Action>,
+    /// The index of the rule.
+    pub(super) rule: usize,
+    /// The index of its block.
+    pub(super) block: usize,
+}
+
+/// How the rules of a stage fire.
+#[derive(Debug, Clone)]
+pub(super) struct Firing {
+    pub(super) and: Conjunction,
+    pub(super) or: Disjunction,
+    pub(super) least_strength: f64,
+    /// Empty where all rules share the operators and fire as they hold.
+    pub(super) blocks: Vec<FiringBlock>,
+}
+
+/// How the rules of a block fire.
+#[derive(Debug, Clone)]
+pub(super) struct FiringBlock {
+    pub(super) index: usize,
+    pub(super) operators: (Conjunction, Disjunction),
+    pub(super) activation: Activation,
+}
+
+impl Firing {
+    pub(super) fn of(model: &Model) -> Self {
+        let of_model = FiringBlock {
+            index: 0,
+            operators: (model.operators.and, model.operators.or),
+            activation: model.activation,
+        };
+        let blocks = model.blocks.iter().enumerate();
+        let blocks = blocks.filter(|(_, block)| block.enabled);
+        let mut blocks: Vec<FiringBlock> = blocks
+            .map(|(index, block)| FiringBlock {
+                index,
+                operators: (block.and, block.or),
+                activation: block.activation,
+            })
+            .collect();
+        if model.blocks.is_empty() {
+            blocks.push(of_model.clone());
+        }
+        let (and, or) = blocks.first().unwrap_or(&of_model).operators;
+        let is_plain = |block: &FiringBlock| {
+            block.operators == (and, or) && block.activation == Activation::General
+        };
+        if blocks.iter().all(is_plain) {
+            blocks.clear();
+        }
+        Firing {
+            and,
+            or,
+            least_strength: model.least_strength,
+            blocks,
+        }
+    }
 }
 
 /// The literals and actions of a plain AND.
@@ -64,23 +122,50 @@ impl OwnedTable {
             .iter()
             .filter(|draft| all_programs || draft.literals.is_none())
         {
-            let (first_step, first_action) = (self.steps.len(), self.actions.len());
-            let first_hedge = self.hedges.len();
-            self.steps.extend(&draft.steps);
-            self.actions.extend(&draft.actions);
-            self.hedges.extend(&draft.hedges);
-            self.programs.push(Program {
-                weight: draft.weight,
-                first_step: first_step as u32,
-                end_step: self.steps.len() as u32,
-                first_action: first_action as u32,
-                end_action: self.actions.len() as u32,
-                first_hedge: first_hedge as u32,
-                end_hedge: self.hedges.len() as u32,
-            });
-            let pushes = draft.steps.iter().filter(|step| step.op == Op::PUSH);
-            self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
+            self.program(draft, &draft.steps);
         }
+    }
+
+    /// Adds the rules of blocks, in the order of `drafts`.
+    pub(super) fn blocks(&mut self, blocks: &[FiringBlock], drafts: &[Draft]) {
+        for block in blocks {
+            let first_program = self.programs.len() as u32;
+            let mut latest = None;
+            for draft in drafts.iter().filter(|draft| draft.block == block.index) {
+                // The method takes each rule once, also where hedges make several programs of it.
+                let selects = block.activation != Activation::General;
+                let again = selects && latest.replace(draft.rule) == Some(draft.rule);
+                self.program(draft, if again { &[] } else { &draft.steps });
+            }
+            let end_program = self.programs.len() as u32;
+            let span = (first_program, end_program);
+            let block = Block::new(block.operators, block.activation, span);
+            self.blocks.push(block);
+            self.sizes.partial = self.sizes.partial.max(end_program - first_program);
+        }
+        // No rule is found by it.
+        self.nodes.push(Node::default());
+        self.conjunctions = Conjunctions::Trie;
+        self.sizes.partial = self.sizes.partial.max(1);
+    }
+
+    fn program(&mut self, draft: &Draft, steps: &[Step]) {
+        let (first_step, first_action) = (self.steps.len(), self.actions.len());
+        let first_hedge = self.hedges.len();
+        self.steps.extend(steps);
+        self.actions.extend(&draft.actions);
+        self.hedges.extend(&draft.hedges);
+        self.programs.push(Program {
+            weight: draft.weight,
+            first_step: first_step as u32,
+            end_step: self.steps.len() as u32,
+            first_action: first_action as u32,
+            end_action: self.actions.len() as u32,
+            first_hedge: first_hedge as u32,
+            end_hedge: self.hedges.len() as u32,
+        });
+        let pushes = steps.iter().filter(|step| step.op == Op::PUSH);
+        self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
     }
 
     /// Adds a dense table; `None` where it would have too many cells.

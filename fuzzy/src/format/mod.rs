@@ -7,11 +7,12 @@ use alloc::{format, string::String, vec::Vec};
 
 use crate::{
     diagnostic::{Diagnostic, Findings, Severity},
-    model::Model,
+    model::{LEAST_STRENGTH, Model, Operators},
     tree::{Node, Value},
     validate::validate,
 };
 
+mod blocks;
 mod rules;
 #[cfg(feature = "serde")]
 mod schema;
@@ -22,7 +23,9 @@ mod variables;
 mod words;
 mod write;
 
-pub use crate::model::document::{Document, RuleSpans, Spans, TermSpans, VariableSpans};
+pub use crate::model::document::{
+    BlockSpans, Document, RuleSpans, Spans, TermSpans, VariableSpans,
+};
 #[cfg(feature = "serde")]
 pub use schema::schema;
 #[doc(hidden)]
@@ -85,14 +88,17 @@ pub fn read_partly(tree: &Node) -> Option<Partial> {
 
 /// The model as far as it can be read. A part that cannot be read is a finding, and in the model only its name.
 fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Option<Model> {
-    const KEYS: [&str; 7] = [
+    const KEYS: [&str; 10] = [
         "fuzzy",
         "name",
         "description",
         "inputs",
         "outputs",
         "operators",
+        "activation",
+        "least_strength",
         "rules",
+        "blocks",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
         let finding = tree.unexpected_document("the rule set");
@@ -139,9 +145,27 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
             findings,
         )
         .and_then(|node| variables::outputs(node, &mut spans.outputs, findings));
-    let operators = match fields.get("operators") {
-        Some(node) => words::operators(node, findings),
-        None => Some(crate::model::Operators::default()),
+    let operators = fields.get("operators").and_then(|node| {
+        let keys = ["and", "or", "implication", "aggregation"];
+        words::operators(node, "`operators`", &keys, Operators::default(), findings)
+    });
+    let activation = fields.get("activation").and_then(|node| {
+        blocks::activation("the activation", node, &mut spans.activation, findings)
+    });
+    let least_strength = fields.get("least_strength").and_then(|node| {
+        spans.least_strength = node.span.clone();
+        node.finite("`least_strength`", findings)
+    });
+    let mut model = Model {
+        name: name.unwrap_or_default(),
+        description,
+        inputs: inputs?,
+        outputs: outputs?,
+        operators: operators.unwrap_or_default(),
+        activation: activation.unwrap_or_default(),
+        least_strength: least_strength.unwrap_or(LEAST_STRENGTH),
+        blocks: Vec::new(),
+        rules: Vec::new(),
     };
     let rules_help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`";
     let key = |key| {
@@ -150,17 +174,22 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
             .map_or(0..0, |entry| entry.key_span.clone())
     };
     (spans.outputs_key, spans.rules_key) = (key("outputs"), key("rules"));
-    let rules = fields.require("rules", rules_help, findings);
-    let rules = rules.and_then(|node| rules::read(node, spans, findings));
-    spans.rules_unread |= rules.is_none();
-    Some(Model {
-        name: name.unwrap_or_default(),
-        description,
-        inputs: inputs?,
-        outputs: outputs?,
-        operators: operators.unwrap_or_default(),
-        rules: rules.unwrap_or_default(),
-    })
+    let Some(node) = fields.get("blocks") else {
+        let rules = fields.require("rules", rules_help, findings);
+        let rules = rules.and_then(|node| rules::read(node, 0, spans, findings));
+        spans.rules_unread |= rules.is_none();
+        model.rules = rules.unwrap_or_default();
+        return Some(model);
+    };
+    if fields.entry("rules").is_some() {
+        let message = "the rule set has both `rules` and `blocks`";
+        let help = "put the rules into a block: then all rules stand in blocks";
+        findings.push(Diagnostic::error("duplicate-key", key("blocks"), message).help(help));
+        spans.rules_unread = true;
+    }
+    spans.rules_key = key("blocks");
+    blocks::read(node, &mut model, spans, findings);
+    Some(model)
 }
 
 /// The model as a tree; reading it again gives the same model.

@@ -13,8 +13,10 @@ use crate::{
 
 pub(super) const KEYS: [&str; 5] = ["rule", "confidence", "support", "against", "note"];
 
+/// Reads the rules of a list, which come after so many others.
 pub(super) fn read(
     node: &Node,
+    before: usize,
     spans: &mut Spans,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<Rule>> {
@@ -29,7 +31,7 @@ pub(super) fn read(
             whole: item.span.clone(),
             ..RuleSpans::default()
         };
-        match one(item, i + 1, &mut here, findings) {
+        match one(item, before + i + 1, &mut here, findings) {
             Some(rule) => {
                 rules.push(rule);
                 spans.rules.push(here);
@@ -53,6 +55,7 @@ fn one(
             consequents: Vec::new(),
             weight: 1.0,
         },
+        block: 0,
         confidence: None,
         support: None,
         against: Vec::new(),

@@ -6,12 +6,14 @@
 use alloc::{format, string::String, vec::Vec};
 
 use super::{
-    VERSION, rules,
+    VERSION,
+    blocks::{self, COMPARISONS, METHODS},
+    rules,
     variables::{INPUT_KEYS, OUTPUT_KEYS},
     words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS},
 };
 use crate::{
-    model::{Form, MembershipFunction, Role},
+    model::{Form, LEAST_STRENGTH, MembershipFunction, Role},
     tree::Node,
 };
 
@@ -43,10 +45,32 @@ pub fn schema() -> Node {
             "outputs",
             named("The outputs, by the names that rules use", "output"),
         ),
-        ("operators", operators()),
+        (
+            "operators",
+            operators("The operators that all rules share", true),
+        ),
+        ("activation", activation()),
+        (
+            "least_strength",
+            about(
+                "A firing strength below it counts as 0; 1e-12 where absent",
+                [
+                    ("type", Node::text("number")),
+                    ("minimum", Node::number(LEAST_STRENGTH)),
+                    ("maximum", Node::number(1.0)),
+                ],
+            ),
+        ),
         ("rules", list("The rules", reference("rule"), Some(1))),
+        (
+            "blocks",
+            named(
+                "Rules in blocks with operators and an activation method of their own, by names",
+                "block",
+            ),
+        ),
     ];
-    let required = ["fuzzy", "name", "inputs", "outputs", "rules"];
+    let required = ["fuzzy", "name", "inputs", "outputs"];
     let mut schema = object("A fuzzy rule set", properties, &required);
     schema.splice(
         0..0,
@@ -58,6 +82,7 @@ pub fn schema() -> Node {
             entry("title", Node::text("fuzzy rule set")),
         ],
     );
+    schema.push(one_of(["rules", "blocks"]));
     schema.push(entry("$defs", definitions()));
     Node::mapping(schema)
 }
@@ -166,15 +191,17 @@ fn named(description: &str, of: &str) -> Node {
     about(description, entries)
 }
 
+/// That exactly one of two keys is there.
+fn one_of(keys: [&str; 2]) -> (String, Node) {
+    let one = |key: &str| Node::mapping([("required", Node::list([Node::text(key)].into()))]);
+    entry("oneOf", Node::list(keys.map(one).into()))
+}
+
 fn definitions() -> Node {
     let of = |keys: &[&'static str], description| {
         let properties = keys.iter().map(|key| (*key, variable_key(key)));
         let mut entries = object(description, properties, &["range"]);
-        let one = |key: &str| Node::mapping([("required", Node::list([Node::text(key)].into()))]);
-        entries.push(entry(
-            "oneOf",
-            Node::list([one("partition"), one("terms")].into()),
-        ));
+        entries.push(one_of(["partition", "terms"]));
         Node::mapping(entries)
     };
     Node::mapping([
@@ -188,6 +215,7 @@ fn definitions() -> Node {
         ),
         ("term", term()),
         ("rule", rule()),
+        ("block", block()),
     ])
 }
 
@@ -244,15 +272,27 @@ fn variable_key(key: &str) -> Node {
             "What the output is where no rule fires",
             Vec::from([
                 words(
-                    "Undefined, or an error",
-                    &[("undefined", ()), ("error", ())],
+                    "Undefined, an error, or the value of the row before",
+                    &[("undefined", ()), ("error", ()), ("previous", ())],
                 ),
                 Node::mapping(object(
                     "A value of the range",
                     [("value", number("The value"))],
                     &["value"],
                 )),
+                Node::mapping(object(
+                    "The value of the row before, and a value before there is one",
+                    [("previous", number("The value before there is one"))],
+                    &["previous"],
+                )),
             ]),
+        ),
+        "aggregation" => words(
+            "How the terms of this output join; as in the rule set's operators where absent",
+            &AGGREGATIONS,
+        ),
+        "clamp" => boolean(
+            "Whether a value outside the range is clamped to it; only a weighted defuzzifier gives one",
         ),
         // Every key that is read has its line above; a new one is at least allowed.
         _ => Node::mapping(Entries::new()),
@@ -336,7 +376,8 @@ fn shape(form: &Form) -> Node {
     any_of(form.about, options)
 }
 
-fn operators() -> Node {
+/// With the aggregation, or as a block has them.
+fn operators(description: &str, all: bool) -> Node {
     let properties = [
         ("and", words("AND; minimum where absent", &CONJUNCTIONS)),
         ("or", words("OR; maximum where absent", &DISJUNCTIONS)),
@@ -355,11 +396,72 @@ fn operators() -> Node {
             ),
         ),
     ];
+    let count = if all { 4 } else { 3 };
+    let properties = properties.into_iter().take(count);
+    Node::mapping(object(description, properties, &[]))
+}
+
+fn block() -> Node {
+    let value = |key: &str| match key {
+        "description" => text("What its rules are for"),
+        "enabled" => boolean("Whether its rules are evaluated; true where absent"),
+        "operators" => operators("Its operators; those of the rule set where absent", false),
+        "activation" => activation(),
+        _ => list("Its rules", reference("rule"), None),
+    };
+    let properties = blocks::KEYS.iter().map(|key| (*key, value(key)));
     Node::mapping(object(
-        "The operators that all rules share",
+        "Rules with operators and an activation method of their own",
         properties,
-        &[],
+        &["rules"],
     ))
+}
+
+fn activation() -> Node {
+    let only =
+        |key: &str, which: &str, value: Node| Node::mapping(object(which, [(key, value)], &[key]));
+    let counted = |key: &str, which: &str| {
+        let counted = object(
+            "So many, of those with at least a strength",
+            [
+                ("rules", whole("How many", 1.0)),
+                ("at_least", number("Their least strength")),
+            ],
+            &["rules"],
+        );
+        let options = Vec::from([whole("How many", 1.0), Node::mapping(counted)]);
+        only(key, which, any_of("How many", options))
+    };
+    let comparisons = COMPARISONS.map(|(word, _)| (word, number("The firing strength")));
+    let mut threshold = object("The rules whose strength compares so", comparisons, &[]);
+    threshold.push(entry("minProperties", Node::number(1.0)));
+    threshold.push(entry("maxProperties", Node::number(1.0)));
+    any_of(
+        "Which rules fire: all where absent",
+        Vec::from([
+            words(
+                "All, or all with the strength divided by the sum of all",
+                &METHODS,
+            ),
+            counted("first", "The first rules that fire"),
+            counted("last", "The last rules that fire"),
+            only("highest", "The strongest rules", whole("How many", 1.0)),
+            only(
+                "lowest",
+                "The weakest rules that fire",
+                whole("How many", 1.0),
+            ),
+            only(
+                "threshold",
+                "Those above or below a strength",
+                Node::mapping(threshold),
+            ),
+        ]),
+    )
+}
+
+fn boolean(description: &str) -> Node {
+    about(description, [("type", Node::text("boolean"))])
 }
 
 fn rule() -> Node {

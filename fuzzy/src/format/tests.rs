@@ -7,8 +7,9 @@ use crate::{
     Engine,
     engine::State,
     model::{
-        Beaten, Defuzzifier, MembershipFunction, NoRuleFires, Operators, Output, Rule, Sampling,
-        SamplingRule, Term, Variable,
+        Activation, Beaten, Block, Comparison, Defuzzifier, Implication, LEAST_STRENGTH,
+        MembershipFunction, NoRuleFires, Operators, Output, Rule, Sampling, SamplingRule, Term,
+        Variable,
     },
     rule::{self, Condition, DEEPEST_NESTING, Hedge},
 };
@@ -128,6 +129,42 @@ fn any_operators() -> impl Strategy<Value = Operators> {
     })
 }
 
+fn any_activation() -> impl Strategy<Value = Activation> {
+    let (count, strength) = (1..4u32, prop_oneof![Just(0.0), 0.0..=1.0f64]);
+    (0..7u8, count, strength, select(&blocks::COMPARISONS[..])).prop_map(
+        |(method, rules, at_least, (_, comparison))| match method {
+            0 => Activation::General,
+            1 => Activation::First { rules, at_least },
+            2 => Activation::Last { rules, at_least },
+            3 => Activation::Highest { rules },
+            4 => Activation::Lowest { rules },
+            5 => Activation::Proportional,
+            _ => Activation::Threshold {
+                comparison,
+                strength: at_least,
+            },
+        },
+    )
+}
+
+fn any_block() -> impl Strategy<Value = Block> {
+    let operators = any_operators();
+    (
+        option::of(any_text()),
+        prop::bool::weighted(0.8),
+        operators,
+        any_activation(),
+    )
+        .prop_map(|(description, enabled, operators, activation)| Block {
+            description,
+            enabled,
+            and: operators.and,
+            or: operators.or,
+            activation,
+            ..Block::new("")
+        })
+}
+
 fn any_model() -> impl Strategy<Value = Model> {
     let output = (any_variable(), select(&words::DEFUZZIFIERS[..]));
     let sampling = (2..10_000usize, any::<bool>());
@@ -141,12 +178,34 @@ fn any_model() -> impl Strategy<Value = Model> {
     (
         any_text(),
         vec(any_variable(), 1..4),
-        (output, option::of(sampling), 0..3u8),
-        any_operators(),
+        (
+            output,
+            option::of(sampling),
+            0..5u8,
+            option::of(select(&words::AGGREGATIONS[..])),
+            any::<bool>(),
+        ),
+        (
+            any_operators(),
+            any_activation(),
+            prop_oneof![Just(LEAST_STRENGTH), Just(1e-6)],
+            vec(any_block(), 0..3),
+        ),
         vec(rule, 1..5),
     )
         .prop_map(
-            |(name, mut inputs, (output, samples, otherwise), operators, rules)| {
+            |(
+                name,
+                mut inputs,
+                of_output,
+                (operators, activation, least_strength, mut blocks),
+                rules,
+            )| {
+                let (output, samples, otherwise, aggregation, clamp) = of_output;
+                for (i, block) in blocks.iter_mut().enumerate() {
+                    block.name = format!("block {i}");
+                    block.implication = operators.implication;
+                }
                 for (i, input) in inputs.iter_mut().enumerate() {
                     input.name = format!("input {i}");
                 }
@@ -169,12 +228,14 @@ fn any_model() -> impl Strategy<Value = Model> {
                 let when_no_rule_fires = match otherwise {
                     0 => NoRuleFires::Undefined,
                     1 => NoRuleFires::Error,
+                    2 => NoRuleFires::Previous(None),
+                    3 => NoRuleFires::Previous(Some(variable.low)),
                     _ => NoRuleFires::Value(variable.low),
                 };
+                let (count, all) = (blocks.len(), rules.len());
                 let term = |v: &Variable, i: usize| v.terms[i % v.terms.len()].name.clone();
-                let rules = rules
-                    .into_iter()
-                    .map(|(input, i, weight, confidence, note)| {
+                let rules = rules.into_iter().enumerate().map(
+                    |(number, (input, i, weight, confidence, note))| {
                         let input = &inputs[input % inputs.len()];
                         let condition = Condition::is(&input.name, &term(input, i));
                         let rule = rule::Rule::new(condition, &variable.name, &term(&variable, i))
@@ -186,12 +247,14 @@ fn any_model() -> impl Strategy<Value = Model> {
                         };
                         Rule {
                             rule,
+                            block: number * count / all,
                             confidence,
                             support: confidence.map(|c| (c * 1e6) as u64),
                             against: confidence.map(|_| beaten).into_iter().collect(),
                             note,
                         }
-                    });
+                    },
+                );
                 Model {
                     rules: rules.collect(),
                     name,
@@ -209,8 +272,13 @@ fn any_model() -> impl Strategy<Value = Model> {
                             },
                         }),
                         when_no_rule_fires,
+                        aggregation: aggregation.map(|(_, aggregation)| aggregation),
+                        clamp,
                     }]),
                     operators,
+                    activation,
+                    least_strength,
+                    blocks,
                 }
             },
         )
@@ -229,11 +297,50 @@ fn with_condition(model: &mut Model, condition: Condition) {
     first_rule(model).condition = condition;
 }
 
+/// All rules in one block.
+fn in_block(model: &mut Model) -> &mut Block {
+    for rule in &mut model.rules {
+        rule.block = 0;
+    }
+    model.blocks = Vec::from([Block::new("only")]);
+    &mut model.blocks[0]
+}
+
 /// A code, and what makes a model deserve it.
 type Mistake = (&'static str, fn(&mut Model));
 
 /// Every way to break a model, and the code of what is wrong then.
-const MISTAKES: [Mistake; 33] = [
+const MISTAKES: [Mistake; 39] = [
+    ("value-outside-range", |m| m.least_strength = 0.0),
+    ("value-outside-range", |m| {
+        m.activation = Activation::First {
+            rules: 1,
+            at_least: 1.5,
+        };
+    }),
+    ("empty-name", |m| in_block(m).name.clear()),
+    ("value-outside-range", |m| {
+        in_block(m).activation = Activation::Threshold {
+            comparison: Comparison::Above,
+            strength: -1.0,
+        };
+    }),
+    ("duplicate-block", |m| {
+        let again = in_block(m).clone();
+        m.blocks.push(again);
+    }),
+    ("different-implications", |m| {
+        m.outputs[0] =
+            Output::new(Variable::new("the output", 0.0, 1.0).partition(["low", "high"]));
+        let rule = rule::Rule::new(m.rules[0].rule.condition.clone(), "the output", "low");
+        m.rules = Vec::from([Rule::from(rule.clone()), Rule::from(rule)]);
+        m.rules[1].block = 1;
+        let other = Block {
+            implication: Implication::Product,
+            ..Block::new("other")
+        };
+        m.blocks = Vec::from([Block::new("one"), other]);
+    }),
     ("missing-key", |m| m.outputs.clear()),
     ("missing-key", |m| m.outputs[0].variable.terms.clear()),
     ("empty-name", |m| m.inputs[0].name.clear()),
@@ -338,6 +445,8 @@ const MISTAKES: [Mistake; 33] = [
         with_condition(m, Condition::is(&m.inputs[0].name.clone(), "nothing"))
     }),
     ("circular-outputs", |m| {
+        // The rules of a disabled block read nothing.
+        m.blocks.iter_mut().for_each(|block| block.enabled = true);
         with_condition(m, Condition::is("the output", "t 0"))
     }),
     ("output-in-condition", |m| {
@@ -443,8 +552,11 @@ proptest! {
                     prop_assert!(within || (defuzzifier.is_weighted() && value.is_finite()), "{value}");
                     prop_assert!(outcome.coverage > 0.0);
                 }
-                (State::NoRuleFired, NoRuleFires::Undefined) => {}
-                (State::Default(value), NoRuleFires::Value(written)) => prop_assert_eq!(value, *written),
+                (State::NoRuleFired, NoRuleFires::Undefined | NoRuleFires::Previous(None)) => {}
+                (
+                    State::Default(value),
+                    NoRuleFires::Value(written) | NoRuleFires::Previous(Some(written)),
+                ) => prop_assert_eq!(value, *written),
                 (state, _) => prop_assert!(false, "{:?} at {:?}", state, point),
             }
         }
@@ -462,7 +574,8 @@ proptest! {
         // They write text of line breaks alone as a block that our YAML library takes for empty.
         let outputs = model.outputs.iter().map(|output| &output.variable);
         let texts = model.inputs.iter().chain(outputs).flat_map(|v| [&v.unit, &v.description]);
-        let texts = texts.chain(model.rules.iter().map(|rule| &rule.note)).flatten();
+        let texts = texts.chain(model.rules.iter().map(|rule| &rule.note));
+        let texts = texts.chain(model.blocks.iter().map(|block| &block.description)).flatten();
         // The two fold the line separators of YAML 1.1 in different ways.
         let separators = ['\u{85}', '\u{2028}', '\u{2029}'];
         let is_alike = |text: &String| !text.trim_matches('\n').is_empty() && !text.contains(separators);

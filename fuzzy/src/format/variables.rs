@@ -8,7 +8,10 @@ use alloc::{
 };
 use core::ops::Range;
 
-use super::{TermSpans, VariableSpans, optional_text, shapes, words::DEFUZZIFIERS};
+use super::{
+    TermSpans, VariableSpans, optional_text, shapes,
+    words::{AGGREGATIONS, DEFUZZIFIERS},
+};
 use crate::{
     diagnostic::{Diagnostic, duplicate},
     model::{
@@ -19,7 +22,7 @@ use crate::{
 };
 
 pub(super) const INPUT_KEYS: [&str; 5] = ["description", "unit", "range", "partition", "terms"];
-pub(super) const OUTPUT_KEYS: [&str; 8] = [
+pub(super) const OUTPUT_KEYS: [&str; 10] = [
     "description",
     "unit",
     "range",
@@ -28,6 +31,8 @@ pub(super) const OUTPUT_KEYS: [&str; 8] = [
     "defuzzifier",
     "samples",
     "when_no_rule_fires",
+    "aggregation",
+    "clamp",
 ];
 
 pub(super) fn inputs(
@@ -61,6 +66,8 @@ pub(super) fn outputs(
             defuzzifier: Defuzzifier::Centroid,
             samples: None,
             when_no_rule_fires: NoRuleFires::Undefined,
+            aggregation: None,
+            clamp: false,
         };
         if let Some(fields) = fields {
             if let Some(node) = fields.get("defuzzifier") {
@@ -74,6 +81,14 @@ pub(super) fn outputs(
             if let Some(node) = fields.get("when_no_rule_fires") {
                 let found = no_rule_fires(&what, node, &mut here.default, findings);
                 output.when_no_rule_fires = found.unwrap_or(NoRuleFires::Undefined);
+            }
+            if let Some(node) = fields.get("aggregation") {
+                let key = format!("the aggregation of {what}");
+                output.aggregation = node.choice(&key, &AGGREGATIONS, findings);
+            }
+            if let Some(node) = fields.get("clamp") {
+                let clamp = node.boolean(&format!("`clamp` of {what}"), findings);
+                output.clamp = clamp.unwrap_or(false);
             }
         }
         spans.push(here);
@@ -112,7 +127,7 @@ fn samples(
     })
 }
 
-/// `undefined`, `error` or `{value: 50}`; the span of the value goes to `span`.
+/// `undefined`, `error`, `previous`, `{value: 50}` or `{previous: 50}`; the span of the value goes to `span`.
 fn no_rule_fires(
     what: &str,
     node: &Node,
@@ -121,14 +136,24 @@ fn no_rule_fires(
 ) -> Option<NoRuleFires> {
     let key = format!("`when_no_rule_fires` of {what}");
     if let Value::Mapping(_) = &node.value {
-        let fields = node.fields(&key, &["value"], findings)?;
-        let node = fields.require("value", "write `{value: 50}`", findings)?;
-        *span = node.span.clone();
-        return node.finite(&key, findings).map(NoRuleFires::Value);
+        let fields = node.fields(&key, &["value", "previous"], findings)?;
+        let [entry] = fields.entries() else {
+            let message = format!("{key} has one key");
+            let help = "write `{value: 50}`, or `{previous: 50}` for the previous value, and 50 before there is one";
+            findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
+            return None;
+        };
+        *span = entry.value.span.clone();
+        let value = entry.value.finite(&key, findings)?;
+        return Some(match entry.key {
+            "previous" => NoRuleFires::Previous(Some(value)),
+            _ => NoRuleFires::Value(value),
+        });
     }
     let words = [
         ("undefined", NoRuleFires::Undefined),
         ("error", NoRuleFires::Error),
+        ("previous", NoRuleFires::Previous(None)),
     ];
     if let Value::Scalar(scalar) = &node.value
         && scalar.as_number().is_some()

@@ -58,10 +58,16 @@ pub(super) fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'
         .map_or("", |(word, _)| *word)
 }
 
-pub(super) fn operators(node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Operators> {
-    let keys = ["and", "or", "implication", "aggregation"];
-    let fields = node.fields("`operators`", &keys, findings)?;
-    let mut operators = Operators::default();
+/// Reads operators under some of the keys; what is not written is as in `otherwise`.
+pub(super) fn operators(
+    node: &Node,
+    what: &str,
+    keys: &[&str],
+    otherwise: Operators,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Operators> {
+    let fields = node.fields(what, keys, findings)?;
+    let mut operators = otherwise;
     if let Some(node) = fields.get("and") {
         let word = node.choice("the operator `and`", &CONJUNCTIONS, findings);
         operators.and = word.unwrap_or(operators.and);
@@ -79,4 +85,20 @@ pub(super) fn operators(node: &Node, findings: &mut Vec<Diagnostic>) -> Option<O
         operators.aggregation = word.unwrap_or(operators.aggregation);
     }
     Some(operators)
+}
+
+/// The operators in a file, each with its key.
+pub(super) fn written(operators: Operators) -> [(&'static str, Node); 4] {
+    [
+        ("and", Node::text(word_of(&CONJUNCTIONS, operators.and))),
+        ("or", Node::text(word_of(&DISJUNCTIONS, operators.or))),
+        (
+            "implication",
+            Node::text(word_of(&CONJUNCTIONS, operators.implication)),
+        ),
+        (
+            "aggregation",
+            Node::text(word_of(&AGGREGATIONS, operators.aggregation)),
+        ),
+    ]
 }

@@ -3,13 +3,13 @@
 use alloc::vec::Vec;
 
 use super::{
-    VERSION, rules, shapes,
-    words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS, word_of},
+    VERSION, blocks, rules, shapes,
+    words::{self, AGGREGATIONS, DEFUZZIFIERS, word_of},
 };
 use crate::{
     model::{
-        MembershipFunction, Model, NoRuleFires, Operators, Output, SamplingRule, Term, Variable,
-        between_peaks, even_peaks,
+        Activation, LEAST_STRENGTH, MembershipFunction, Model, NoRuleFires, Output, SamplingRule,
+        Term, Variable, between_peaks, even_peaks,
     },
     tree::Node,
 };
@@ -28,29 +28,24 @@ pub(super) fn model(model: &Model) -> Node {
     let outputs = model.outputs.iter();
     let outputs = outputs.map(|o| (o.variable.name.as_str(), output(o)));
     entries.push(("outputs", Node::mapping(outputs)));
-    entries.push(("operators", operators(&model.operators)));
-    let rules = model.rules.iter().map(rules::write);
-    entries.push(("rules", Node::list(rules.collect())));
+    entries.push(("operators", Node::mapping(words::written(model.operators))));
+    if model.activation != Activation::General {
+        entries.push(("activation", blocks::write_activation(model.activation)));
+    }
+    if model.least_strength != LEAST_STRENGTH {
+        entries.push(("least_strength", Node::number(model.least_strength)));
+    }
+    if model.blocks.is_empty() {
+        let rules = model.rules.iter().map(rules::write);
+        entries.push(("rules", Node::list(rules.collect())));
+    } else {
+        entries.push(("blocks", blocks::write(model)));
+    }
     Node::mapping(entries)
 }
 
 fn description(text: Option<&str>) -> Option<(&'static str, Node)> {
     text.map(|text| ("description", Node::text(text)))
-}
-
-fn operators(operators: &Operators) -> Node {
-    Node::mapping([
-        ("and", Node::text(word_of(&CONJUNCTIONS, operators.and))),
-        ("or", Node::text(word_of(&DISJUNCTIONS, operators.or))),
-        (
-            "implication",
-            Node::text(word_of(&CONJUNCTIONS, operators.implication)),
-        ),
-        (
-            "aggregation",
-            Node::text(word_of(&AGGREGATIONS, operators.aggregation)),
-        ),
-    ])
 }
 
 fn variable(variable: &Variable) -> Entries {
@@ -79,8 +74,17 @@ fn output(output: &Output) -> Node {
         NoRuleFires::Undefined => Node::text("undefined"),
         NoRuleFires::Error => Node::text("error"),
         NoRuleFires::Value(value) => Node::mapping([("value", Node::number(value))]),
+        NoRuleFires::Previous(None) => Node::text("previous"),
+        NoRuleFires::Previous(Some(value)) => Node::mapping([("previous", Node::number(value))]),
     };
     entries.push(("when_no_rule_fires", otherwise));
+    if let Some(aggregation) = output.aggregation {
+        let word = word_of(&AGGREGATIONS, aggregation);
+        entries.push(("aggregation", Node::text(word)));
+    }
+    if output.clamp {
+        entries.push(("clamp", Node::scalar("true".into(), false)));
+    }
     Node::mapping(entries)
 }
 

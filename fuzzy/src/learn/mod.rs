@@ -126,13 +126,16 @@ impl Learner {
     /// A learner for the variables of a model with one output.
     ///
     /// # Errors
-    /// The model does not have one output, a variable has no terms, or the settings name something the model does not have.
+    /// The model does not have one output or has rule blocks, a variable has no terms, or the settings name something the model does not have.
     pub fn new(model: &Model, settings: Settings) -> Result<Learner, LearnError> {
         let [output] = model.outputs.as_slice() else {
             return Err(LearnError::Outputs {
                 outputs: model.outputs.len(),
             });
         };
+        if !model.blocks.is_empty() {
+            return Err(LearnError::Blocks);
+        }
         let mut variables = model.inputs.iter().chain([&output.variable]);
         if let Some(bare) = variables.find(|v| v.terms.is_empty()) {
             return Err(LearnError::NoTerms {

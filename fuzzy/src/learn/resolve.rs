@@ -178,6 +178,7 @@ fn rule(
             consequents: vec![Consequent::is_hedged(&output.name, &[], word)],
             weight: 1.0,
         },
+        block: 0,
         confidence: decision.confidence,
         support: Some(cell.map_or(0, |cell| cell.samples)),
         against: against

@@ -95,6 +95,8 @@ pub enum LearnError {
         /// The number of outputs.
         outputs: usize,
     },
+    /// The rule set has rule blocks.
+    Blocks,
     /// A variable without terms.
     NoTerms {
         /// The variable.
@@ -113,6 +115,7 @@ impl core::fmt::Display for LearnError {
             LearnError::Outputs { outputs } => {
                 write!(f, "the model has {outputs} outputs; learning takes one")
             }
+            LearnError::Blocks => f.write_str("learned rules stand in no rule block"),
             LearnError::NoTerms { variable } => write!(f, "`{variable}` has no terms"),
             LearnError::NoInput { name } => write!(f, "`{name}` is not an input to learn over"),
         }

@@ -3,8 +3,8 @@
 use alloc::{boxed::Box, string::String, vec::Vec};
 
 use super::{
-    Defuzzifier, MembershipFunction, Model, NoRuleFires, Operators, Output, Rule, Sampling, Term,
-    Variable, between_peaks, even_peaks,
+    Activation, Aggregation, Block, Defuzzifier, LEAST_STRENGTH, MembershipFunction, Model,
+    NoRuleFires, Operators, Output, Rule, Sampling, Term, Variable, between_peaks, even_peaks,
 };
 use crate::rule::{self, Condition, Consequent, Proposition};
 
@@ -46,6 +46,9 @@ impl Model {
                 inputs: Vec::new(),
                 outputs: Vec::new(),
                 operators: Operators::default(),
+                activation: Activation::General,
+                least_strength: LEAST_STRENGTH,
+                blocks: Vec::new(),
                 rules: Vec::new(),
             },
         }
@@ -87,10 +90,33 @@ impl ModelBuilder {
         self
     }
 
-    /// Adds a rule.
+    /// Sets which rules fire; all where this is not called. Blocks have methods of their own.
+    #[must_use]
+    pub fn activation(mut self, activation: Activation) -> Self {
+        self.model.activation = activation;
+        self
+    }
+
+    /// Sets the least firing strength.
+    #[must_use]
+    pub fn least_strength(mut self, least: f64) -> Self {
+        self.model.least_strength = least;
+        self
+    }
+
+    /// Adds a rule block. The rules added after it are its rules.
+    #[must_use]
+    pub fn block(mut self, block: Block) -> Self {
+        self.model.blocks.push(block);
+        self
+    }
+
+    /// Adds a rule, to the latest block where there is one.
     #[must_use]
     pub fn rule(mut self, rule: rule::Rule) -> Self {
-        self.model.rules.push(Rule::from(rule));
+        let block = self.model.blocks.len().saturating_sub(1);
+        let rule = Rule::from(rule);
+        self.model.rules.push(Rule { block, ..rule });
         self
     }
 
@@ -104,6 +130,7 @@ impl From<rule::Rule> for Rule {
     fn from(rule: rule::Rule) -> Self {
         Rule {
             rule,
+            block: 0,
             confidence: None,
             support: None,
             against: Vec::new(),
@@ -196,7 +223,23 @@ impl Output {
             defuzzifier: Defuzzifier::Centroid,
             samples: None,
             when_no_rule_fires: NoRuleFires::Undefined,
+            aggregation: None,
+            clamp: false,
         }
+    }
+
+    /// Sets how the consequents of this output are combined.
+    #[must_use]
+    pub fn aggregation(mut self, aggregation: Aggregation) -> Self {
+        self.aggregation = Some(aggregation);
+        self
+    }
+
+    /// Clamps values outside the range to it.
+    #[must_use]
+    pub fn clamp(mut self) -> Self {
+        self.clamp = true;
+        self
     }
 
     /// Sets the defuzzifier.

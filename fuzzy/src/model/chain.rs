@@ -5,10 +5,17 @@
 //! first stage has the outputs that read none, each later stage has one output more. A stage is a model of its own whose
 //! inputs are those of the whole model and the outputs that it reads.
 
-use alloc::{borrow::Cow, format, string::String, vec, vec::Vec};
+use alloc::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+    format,
+    string::String,
+    vec,
+    vec::Vec,
+};
 use core::ops::Range;
 
-use super::{MembershipFunction, Model, Rule, Variable, document::Spans};
+use super::{Activation, MembershipFunction, Model, Rule, Variable, concludes, document::Spans};
 use crate::diagnostic::Diagnostic;
 
 /// That an output reads another one.
@@ -80,17 +87,20 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
             reads.push(read);
         }
     };
-    for (number, Rule { rule, .. }) in model.rules.iter().enumerate() {
-        rule.condition.visit(&mut |proposition| {
+    let together = concluded_together(model);
+    for (number, rule) in model.rules.iter().enumerate() {
+        if !model.is_enabled(rule) {
+            continue;
+        }
+        let concluded = rule.rule.consequents.iter();
+        let mut concluded: Vec<usize> = concluded.filter_map(|c| index(&c.output.text)).collect();
+        concluded.extend(together.get(&rule.block).into_iter().flatten());
+        rule.rule.condition.visit(&mut |proposition| {
             let name = &proposition.variable;
             let Some(output) = index(&name.text) else {
                 return;
             };
-            for by in rule
-                .consequents
-                .iter()
-                .filter_map(|c| index(&c.output.text))
-            {
+            for &by in &concluded {
                 let span = name.span.clone();
                 let rule = Some(number);
                 add(by, Read { output, rule, span });
@@ -124,6 +134,28 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
         }
     }
     reads
+}
+
+/// The outputs that the rules of each block with an activation method conclude. Which of its rules fire depends on all of
+/// them, so that each of these outputs reads what any of the rules reads.
+fn concluded_together(model: &Model) -> BTreeMap<usize, Vec<usize>> {
+    let mut together: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for rule in model.rules.iter().filter(|rule| is_selected(model, rule)) {
+        let outputs = model.outputs.iter().enumerate();
+        let outputs = outputs.filter(|(_, output)| concludes(rule, output));
+        let outputs = outputs.map(|(index, _)| index);
+        together.entry(rule.block).or_default().extend(outputs);
+    }
+    for outputs in together.values_mut() {
+        outputs.sort_unstable();
+        outputs.dedup();
+    }
+    together
+}
+
+/// Whether an activation method decides with what strength a rule fires.
+fn is_selected(model: &Model, rule: &Rule) -> bool {
+    model.is_enabled(rule) && model.activation_of(rule) != Activation::General
 }
 
 /// The outputs in an order in which each one comes after those it reads; else the circles that make this impossible, each as
@@ -235,13 +267,21 @@ fn stage(model: &Model, reads: Vec<usize>, outputs: Vec<usize>) -> Stage<'_> {
     let inputs: Vec<Variable> = model.inputs.iter().cloned().chain(handed_over).collect();
     let own = of(&outputs);
     let (mut numbers, mut rules) = (Vec::new(), Vec::new());
+    // Of these blocks all rules are needed to find those that fire.
+    let whole: BTreeSet<usize> = model
+        .rules
+        .iter()
+        .filter(|rule| is_selected(model, rule))
+        .filter(|rule| own.iter().any(|output| concludes(rule, output)))
+        .map(|rule| rule.block)
+        .collect();
     for (number, rule) in model.rules.iter().enumerate() {
         let mut rule = rule.clone();
         rule.rule.consequents.retain(|c| {
             own.iter()
                 .any(|output| output.variable.name == c.output.text)
         });
-        if !rule.rule.consequents.is_empty() {
+        if !rule.rule.consequents.is_empty() || whole.contains(&rule.block) {
             numbers.push(number);
             rules.push(rule);
         }
@@ -254,6 +294,9 @@ fn stage(model: &Model, reads: Vec<usize>, outputs: Vec<usize>) -> Stage<'_> {
             name: model.name.clone(),
             description: None,
             operators: model.operators,
+            activation: model.activation,
+            least_strength: model.least_strength,
+            blocks: model.blocks.clone(),
         }),
         reads,
         outputs,

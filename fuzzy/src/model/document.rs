@@ -54,12 +54,28 @@ pub struct Spans {
     pub outputs_key: Range<usize>,
     /// The outputs.
     pub outputs: Vec<VariableSpans>,
-    /// The key `rules`.
+    /// The key `rules`, or `blocks`.
     pub rules_key: Range<usize>,
     /// The rules.
     pub rules: Vec<RuleSpans>,
+    /// The activation method outside blocks.
+    pub activation: Range<usize>,
+    /// The least firing strength.
+    pub least_strength: Range<usize>,
+    /// The rule blocks.
+    pub blocks: Vec<BlockSpans>,
     /// Some rule could not be read, and is not in the model; a finding says why.
     pub(crate) rules_unread: bool,
+}
+
+/// Where the parts of a rule block stand.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct BlockSpans {
+    /// Its name.
+    pub name: Range<usize>,
+    /// Its activation method.
+    pub activation: Range<usize>,
 }
 
 /// Where the parts of a variable stand.

@@ -4,6 +4,7 @@ use alloc::{string::String, vec::Vec};
 
 use crate::rule;
 
+mod blocks;
 mod builder;
 pub(crate) mod chain;
 pub(crate) mod document;
@@ -12,7 +13,11 @@ mod partition;
 pub(crate) use crate::shape::Role;
 pub(crate) use crate::shape::{Form, Parts};
 pub use crate::shape::{MembershipError, MembershipFunction};
-pub use crate::table::{Aggregation, Conjunction, Disjunction, Implication};
+pub use crate::table::{
+    Activation, Aggregation, Comparison, Conjunction, Disjunction, Implication, LEAST_STRENGTH,
+};
+pub use blocks::Block;
+pub(crate) use blocks::concludes;
 pub use builder::ModelBuilder;
 pub(crate) use partition::{between_peaks, even_peaks};
 
@@ -40,9 +45,15 @@ pub struct Model {
     pub inputs: Vec<Variable>,
     /// The outputs, in the order in which the engine gives their values.
     pub outputs: Vec<Output>,
-    /// The operators of all rules.
+    /// The operators of all rules; of rules in blocks only the aggregation.
     pub operators: Operators,
-    /// The rules.
+    /// Which rules fire, where there are no blocks.
+    pub activation: Activation,
+    /// A firing strength below it counts as 0: such a rule does not fire. From [`LEAST_STRENGTH`], its default, up to 1.
+    pub least_strength: f64,
+    /// The rule blocks; empty where all rules share `operators` and `activation`.
+    pub blocks: Vec<Block>,
+    /// The rules; with blocks, in the order of the blocks.
     pub rules: Vec<Rule>,
 }
 
@@ -97,6 +108,10 @@ pub struct Output {
     pub samples: Option<Sampling>,
     /// What the output is where no rule fires.
     pub when_no_rule_fires: NoRuleFires,
+    /// How the consequents of this output are combined; `None` as the rule set says.
+    pub aggregation: Option<Aggregation>,
+    /// Whether a value outside the range is clamped to it. Only Takagi-Sugeno outputs can have one.
+    pub clamp: bool,
 }
 
 /// What an output is where no rule fires.
@@ -108,6 +123,9 @@ pub enum NoRuleFires {
     Error,
     /// A value the author chose.
     Value(f64),
+    /// The value of the evaluation before, in a [`Sequence`](crate::engine::Sequence). Before there is one, and for a single
+    /// evaluation: the value given here, or undefined.
+    Previous(Option<f64>),
 }
 
 /// How an aggregated fuzzy set becomes a number.
@@ -149,7 +167,7 @@ pub enum SamplingRule {
     Trapezoid,
 }
 
-/// The operators that all rules of a model share.
+/// The operators that the rules of a model or of a block share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Operators {
     /// AND.
@@ -167,6 +185,8 @@ pub struct Operators {
 pub struct Rule {
     /// The rule itself, with its weight.
     pub rule: rule::Rule,
+    /// The index of its block; 0 where the model has none.
+    pub block: usize,
     /// The confidence of its source, in [0, 1]: provenance, not a weight.
     pub confidence: Option<f64>,
     /// How many samples support it.

@@ -1,7 +1,7 @@
 //! The list of a table's arrays, and access to them one at a time.
 
 use super::{
-    Action, Axis, Coefficient, Conjunction, Conjunctions, Consequent, Curve, Dimension,
+    Action, Axis, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve, Dimension,
     Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step,
 };
 
@@ -46,6 +46,8 @@ macro_rules! table_arrays {
             programs: Program,
             /// The steps of programs.
             steps: Step,
+            /// The rule blocks, where they have different operators or activation methods. Then all rules are programs.
+            blocks: Block,
             /// The outputs.
             outputs: Output,
             /// The closed forms of partitions.
@@ -72,6 +74,8 @@ macro_rules! define {
             pub or: Disjunction,
             /// How the rules that are plain ANDs are found.
             pub conjunctions: Conjunctions,
+            /// A firing strength below it counts as 0.
+            pub least_strength: f64,
             /// The sizes of the scratch memory.
             pub sizes: Sizes,
             $($(#[$doc])* pub $array: &'a [$item],)*
@@ -83,6 +87,7 @@ macro_rules! define {
             fn and(&self) -> Conjunction;
             fn or(&self) -> Disjunction;
             fn conjunctions(&self) -> Conjunctions;
+            fn least_strength(&self) -> f64;
             $(fn $array(&self) -> &[$item];)*
         }
     };
@@ -104,6 +109,10 @@ macro_rules! arrays_from_fields {
             #[inline(always)]
             fn conjunctions(&self) -> $crate::table::Conjunctions {
                 self.conjunctions
+            }
+            #[inline(always)]
+            fn least_strength(&self) -> f64 {
+                self.least_strength
             }
             $(
                 #[inline(always)]

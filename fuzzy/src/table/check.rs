@@ -86,6 +86,14 @@ impl Table<'_> {
                 "programs",
             )?;
         }
+        for block in self.blocks {
+            let rules = block.end_program.saturating_sub(block.first_program);
+            require(
+                within(block.first_program, block.end_program, self.programs.len())
+                    && rules <= self.sizes.partial,
+                "blocks",
+            )?;
+        }
         for step in self.steps {
             let has_literal = matches!(step.op, Op::PUSH | Op::AND_LITERAL | Op::OR_LITERAL);
             require(!has_literal || (step.literal as usize) < literals, "steps")?;

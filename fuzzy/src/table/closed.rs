@@ -23,14 +23,6 @@ impl ClosedForm {
 
     /// Tsukamoto, `sum(w z) / sum(w)` with `z` where a term has the degree `w`: [`Curve`]s, one for each firing strength.
     pub const TSUKAMOTO: ClosedForm = ClosedForm(5);
-
-    /// Whether the consequents are cut fuzzy sets. Then only the ratios of firing strengths count where all are tiny.
-    pub(crate) fn is_fuzzy(self) -> bool {
-        !matches!(
-            self,
-            ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM | ClosedForm::TSUKAMOTO
-        )
-    }
 }
 
 /// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
@@ -154,10 +146,14 @@ pub(super) fn closed<A: Arrays>(
             let curves = &table.curves()[range];
             return tsukamoto(output, curves, table.points(), strengths);
         }
-        // Not clamped to the range: consequents are numbers that the author chose.
+        // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
         form => {
             let consequents = &table.consequents()[range];
-            return weighted(form, consequents, table.coefficients(), strengths, inputs);
+            let value = weighted(form, consequents, table.coefficients(), strengths, inputs)?;
+            return Some(match output.clamps {
+                0 => value,
+                _ => super::larger(output.low, smaller(output.high, value)),
+            });
         }
     };
     let value = centroid(area, moment, output.origin())?;

@@ -5,6 +5,7 @@
 
 use core::ops::DerefMut;
 
+use super::blocks::{act, fire_blocks};
 use super::input::degrees;
 use super::operators::{larger, smaller};
 use super::rules::{Action, Axis, Dimension, Op, Step};
@@ -13,8 +14,8 @@ use super::{Arrays, Buffers, Conjunction, Conjunctions, Disjunction, Line};
 /// The degree of the first literals of a plain AND, and the offset of the cell or the index of the node they lead to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Partial {
-    degree: f64,
-    at: u32,
+    pub(super) degree: f64,
+    pub(super) at: u32,
 }
 
 impl Line {
@@ -29,6 +30,16 @@ impl Line {
 }
 
 impl Partial {
+    /// The strength of a rule and its index, as [`Activation`](super::Activation) takes them.
+    pub(crate) fn new(degree: f64, at: u32) -> Self {
+        Partial { degree, at }
+    }
+
+    /// The strength and the index.
+    pub(crate) fn parts(&self) -> (f64, u32) {
+        (self.degree, self.at)
+    }
+
     /// No literal yet.
     pub const NONE: Partial = Partial { degree: 0.0, at: 0 };
 }
@@ -64,10 +75,21 @@ impl Action {
     fn act<const SUMS: bool>(
         &self,
         degree: f64,
+        least: f64,
         strengths: &mut [f64],
         strongest: Strongest,
     ) -> Strongest {
-        let strength = self.weight * degree;
+        self.act_with::<SUMS>(fires(self.weight * degree, least), strengths, strongest)
+    }
+
+    /// As [`Action::act`], with a firing strength.
+    #[inline(always)]
+    fn act_with<const SUMS: bool>(
+        &self,
+        strength: f64,
+        strengths: &mut [f64],
+        strongest: Strongest,
+    ) -> Strongest {
         let kept = &mut strengths[self.strength as usize];
         *kept = if SUMS && self.sums != 0 {
             *kept + strength
@@ -78,10 +100,19 @@ impl Action {
     }
 }
 
+/// A firing strength, or 0 below the least one.
+#[inline(always)]
+pub(super) fn fires(strength: f64, least: f64) -> f64 {
+    if strength < least { 0.0 } else { strength }
+}
+
 /// What is done with the rules that fire.
 pub(super) trait Act {
     /// Takes rules with the degree of their antecedent.
     fn act(&mut self, actions: &[Action], degree: f64);
+
+    /// Takes rules with their firing strength, whatever their weights.
+    fn act_with(&mut self, actions: &[Action], strength: f64);
 
     /// Takes the rules of cells of a uniform table.
     #[inline(always)]
@@ -94,6 +125,7 @@ pub(super) trait Act {
 
 /// The firing strengths and strongest rules that actions update.
 struct Firing<'m> {
+    least: f64,
     strengths: &'m mut [f64],
     strongest: &'m mut [Strongest],
 }
@@ -103,7 +135,15 @@ impl Act for Firing<'_> {
     fn act(&mut self, actions: &[Action], degree: f64) {
         for action in actions {
             let strongest = &mut self.strongest[action.output as usize];
-            *strongest = action.act::<true>(degree, self.strengths, *strongest);
+            *strongest = action.act::<true>(degree, self.least, self.strengths, *strongest);
+        }
+    }
+
+    #[inline(always)]
+    fn act_with(&mut self, actions: &[Action], strength: f64) {
+        for action in actions {
+            let strongest = &mut self.strongest[action.output as usize];
+            *strongest = action.act_with::<true>(strength, self.strengths, *strongest);
         }
     }
 
@@ -113,7 +153,7 @@ impl Act for Firing<'_> {
             let mut top = *strongest;
             for cell in reached {
                 let action = &cells.actions[cell.at as usize];
-                top = action.act::<false>(cell.degree, self.strengths, top);
+                top = action.act::<false>(cell.degree, self.least, self.strengths, top);
             }
             *strongest = top;
             return;
@@ -141,6 +181,7 @@ where
     let (finding, strengths, strongest) = scratch.split();
     strengths.fill(0.0);
     let mut firing = Firing {
+        least: table.least_strength(),
         strengths,
         strongest,
     };
@@ -194,6 +235,15 @@ pub(super) fn fire_into<A: Arrays>(table: &A, finding: Finding<'_>, firing: &mut
                 finding.degrees[(input.first_literal + literal) as usize] = degree;
             });
         }
+    }
+    if !table.blocks().is_empty() {
+        let Finding {
+            degrees,
+            partial,
+            stack,
+            ..
+        } = finding;
+        return fire_blocks(table, degrees, partial, stack, firing);
     }
     // The common operators, so that the loops do not branch on the operator.
     match (table.and(), table.or()) {
@@ -252,12 +302,9 @@ fn fire_with<A: Arrays>(
     for program in table.programs() {
         let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
         let degree = run(steps, degrees, &and, &or, stack);
-        if degree > 0.0 {
-            let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
-            let strength = program.weight * degree;
-            let strength = hedges.iter().fold(strength, |x, hedge| hedge.of(x));
-            let range = program.first_action as usize..program.end_action as usize;
-            firing.act(&table.actions()[range], strength);
+        let strength = fires(program.weight * degree, table.least_strength());
+        if strength > 0.0 {
+            act(table, program, strength, firing);
         }
     }
 }
@@ -440,7 +487,7 @@ impl Cells<'_> {
 
 /// The degree of an antecedent. `stack` holds at least the depth of the program.
 #[inline(always)]
-fn run(
+pub(super) fn run(
     steps: &[Step],
     degrees: &[f64],
     and: impl Fn(f64, f64) -> f64,

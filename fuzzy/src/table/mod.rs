@@ -8,7 +8,9 @@
 
 use core::ops::DerefMut;
 
+mod activation;
 mod arrays;
+mod blocks;
 mod check;
 mod closed;
 mod firing;
@@ -18,8 +20,10 @@ mod outcome;
 mod raising;
 mod rules;
 
+pub use activation::{Activation, Comparison, LEAST_STRENGTH};
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
+pub use blocks::{Block, Method};
 pub use check::Damaged;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub(crate) use closed::{centroid, finite};
@@ -94,6 +98,8 @@ pub struct Output {
     pub first_strength: u32,
     /// The end of that span.
     pub end_strength: u32,
+    /// 1 where a value outside the range is clamped to it, which only Takagi-Sugeno outputs can have; else 0.
+    pub clamps: u32,
 }
 
 /// The memory an evaluation works in, of the [`Sizes`] of the table: slices or vectors of numbers, partial conjunctions
@@ -223,17 +229,12 @@ fn state<A: Arrays, N: DerefMut<Target = [f64]>, P, S>(
     index: usize,
     output: &Output,
     strongest: f64,
-    scratch: &mut Buffers<N, P, S>,
+    scratch: &Buffers<N, P, S>,
     integrate: &mut impl FnMut(usize, &[f64]) -> Option<f64>,
 ) -> State {
     if strongest > 0.0 {
         let range = output.first_strength as usize..output.end_strength as usize;
-        let strengths = &mut scratch.strengths[range];
-        if strongest < TINY && output.form.is_fuzzy() {
-            for strength in strengths.iter_mut() {
-                *strength *= FROM_TINY;
-            }
-        }
+        let strengths = &scratch.strengths[range];
         let value = match output.form {
             ClosedForm::NONE => integrate(index, strengths),
             _ => closed(table, output, strengths, &scratch.values),
@@ -248,9 +249,3 @@ fn state<A: Arrays, N: DerefMut<Target = [f64]>, P, S>(
         State::Default(output.default_value)
     }
 }
-
-/// Below this strength, areas lose digits to underflow. Where all strengths are below it, only their ratios count, because
-/// the slopes of sets cut so low are vertical to the last digit. So all strengths are multiplied by [`FROM_TINY`].
-pub(crate) const TINY: f64 = 1e-200;
-/// 2^500: multiplying by it does not round.
-pub(crate) const FROM_TINY: f64 = 3.273_390_607_896_142e150;

@@ -1,5 +1,7 @@
 //! The operators and hedges.
 
+use super::LEAST_STRENGTH;
+
 /// AND of two degrees: a t-norm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Conjunction {
@@ -16,7 +18,7 @@ pub enum Conjunction {
     Einstein,
     /// `a b / (a + b - a b)`, 0 where both are 0.
     Hamacher,
-    /// `min(a, b)` where `a + b > 1`, else 0.
+    /// `min(a, b)` where `a + b > 1` by more than rounding (1e-12) or one of them is 1, else 0.
     NilpotentMinimum,
 }
 
@@ -36,7 +38,7 @@ pub enum Disjunction {
     Einstein,
     /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
     Hamacher,
-    /// `max(a, b)` where `a + b < 1`, else 1.
+    /// `max(a, b)` where `a + b < 1` by more than rounding (1e-12) or one of them is 0, else 1.
     NilpotentMaximum,
 }
 
@@ -82,6 +84,32 @@ pub enum Hedge {
     Seldom,
     /// 1.
     Any,
+}
+
+impl Conjunction {
+    /// All conjunctions, in the order of their codes in exported data.
+    pub const ALL: [Conjunction; 7] = [
+        Conjunction::Minimum,
+        Conjunction::Product,
+        Conjunction::BoundedDifference,
+        Conjunction::Drastic,
+        Conjunction::Einstein,
+        Conjunction::Hamacher,
+        Conjunction::NilpotentMinimum,
+    ];
+}
+
+impl Disjunction {
+    /// All disjunctions, in the order of their codes in exported data.
+    pub const ALL: [Disjunction; 7] = [
+        Disjunction::Maximum,
+        Disjunction::ProbabilisticSum,
+        Disjunction::BoundedSum,
+        Disjunction::Drastic,
+        Disjunction::Einstein,
+        Disjunction::Hamacher,
+        Disjunction::NilpotentMaximum,
+    ];
 }
 
 impl Hedge {
@@ -155,9 +183,10 @@ impl Conjunction {
                 }
             }
             Conjunction::NilpotentMinimum => {
-                // `a + b > 1`, without rounding the sum.
-                if smaller(a, b) > 1.0 - larger(a, b) {
-                    smaller(a, b)
+                // `a + b` is 1 up to rounding where b is `1 - a`.
+                let (small, large) = (smaller(a, b), larger(a, b));
+                if large == 1.0 || small - (1.0 - large) > LEAST_STRENGTH {
+                    small
                 } else {
                     0.0
                 }
@@ -191,8 +220,9 @@ impl Disjunction {
                 }
             }
             Disjunction::NilpotentMaximum => {
-                if smaller(a, b) < 1.0 - larger(a, b) {
-                    larger(a, b)
+                let (small, large) = (smaller(a, b), larger(a, b));
+                if small == 0.0 || (1.0 - large) - small > LEAST_STRENGTH {
+                    large
                 } else {
                     1.0
                 }

@@ -28,6 +28,8 @@ pub enum State {
     Defined(f64),
     /// No rule fired; this is the default value of the output.
     Default(f64),
+    /// No rule fired; this is the value of the evaluation before, in a [`Sequence`](crate::engine::Sequence).
+    Previous(f64),
     /// No rule fired, and the output has no default value.
     #[default]
     NoRuleFired,
@@ -44,10 +46,10 @@ impl Outcome {
         clamped: false,
     };
 
-    /// The value that rules gave, or the default value. Never NaN.
+    /// The value that rules gave, the default value or the previous one. Never NaN.
     pub fn value(&self) -> Option<f64> {
         match self.state {
-            State::Defined(value) | State::Default(value) => Some(value),
+            State::Defined(value) | State::Default(value) | State::Previous(value) => Some(value),
             State::NoRuleFired | State::InputNotFinite => None,
         }
     }

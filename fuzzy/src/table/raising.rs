@@ -3,7 +3,7 @@
 use core::ops::DerefMut;
 
 use super::closed::closed;
-use super::firing::{Act, Partial, Strongest, fire_into};
+use super::firing::{Act, Partial, Strongest, fire_into, fires};
 use super::{Action, Arrays, Buffers, ClosedForm, Output, Scratch, Table, clamp};
 
 impl Table<'_> {
@@ -57,6 +57,7 @@ where
         value
     };
     let mut raising = Raising {
+        least: table.least_strength(),
         output: output as u32,
         middle: 0.5 * (of.low + value),
         alone,
@@ -68,6 +69,7 @@ where
 
 /// Keeps the rule that raises an output most.
 struct Raising<F> {
+    least: f64,
     output: u32,
     middle: f64,
     /// The value of the output where only one firing strength, of this index, is 1.
@@ -78,8 +80,14 @@ struct Raising<F> {
 
 impl<F: FnMut(u32) -> Option<f64>> Act for Raising<F> {
     fn act(&mut self, actions: &[Action], degree: f64) {
+        for action in actions {
+            let strength = fires(action.weight * degree, self.least);
+            self.act_with(core::slice::from_ref(action), strength);
+        }
+    }
+
+    fn act_with(&mut self, actions: &[Action], strength: f64) {
         for action in actions.iter().filter(|action| action.output == self.output) {
-            let strength = action.weight * degree;
             if strength > 0.0
                 && let Some(alone) = (self.alone)(action.strength)
             {

@@ -90,13 +90,14 @@ pub struct Edge {
     pub node: u32,
 }
 
-/// A rule whose antecedent is not a plain AND, or whose conclusion has hedges. The degree of its antecedent times `weight`,
-/// then changed by the hedges, is the degree that its actions take.
+/// A rule whose antecedent is not a plain AND, whose conclusion has hedges, or that stands in a [`Block`](super::Block). The
+/// degree of its antecedent times `weight`, then changed by the activation method and the hedges, is the strength that its
+/// actions take. In a block with an activation method, a program without steps is more of the rule before it.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Program {
-    /// What multiplies the degree before the hedges; 1 where there are none, because actions have weights of their own.
+    /// The rule's weight, which multiplies the degree before the hedges; those of the actions are not used.
     pub weight: f64,
     /// Its span of steps.
     pub first_step: u32,

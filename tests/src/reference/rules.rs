@@ -87,8 +87,8 @@ fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) ->
     }
     if fired.is_empty() {
         return match output.when_no_rule_fires {
-            NoRuleFires::Value(value) => Some(value),
-            NoRuleFires::Undefined | NoRuleFires::Error => None,
+            NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => Some(value),
+            NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => None,
         };
     }
     Some(number(model, output, &fired, values, samples))

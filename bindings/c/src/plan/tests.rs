@@ -140,6 +140,7 @@ macro_rules! copy {
                 output: plan.output,
                 signals: plan.signals,
                 coverage_below: plan.coverage_below,
+                least_strength: table.least_strength,
                 settings: settings(&plan.settings),
                 $($array: copy!(@keep $item arrays, table.$array),)*
                 order: arrays.keep(plan.order),

@@ -76,6 +76,7 @@ fn constants(plan: &Plan<'_>) -> Vec<String> {
     let mut lines = Vec::new();
     let mut set = |name: &str, value: String| lines.push(format!("local {name} = {value}"));
     set("MIN_SAMPLES", sampling.min_samples.to_string());
+    set("LEAST_STRENGTH", number(plan.table.least_strength));
     set("WARM_UP_US", microseconds(sampling.warm_up_s));
     set("LONGEST_GAP_US", microseconds(sampling.longest_gap_s));
     set("TAKE_OFF_US", microseconds(sampling.take_off_s));

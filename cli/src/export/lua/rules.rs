@@ -10,7 +10,7 @@ use flagred::{
 };
 use fuzzy::{
     Model,
-    model::{Conjunction, Disjunction, Variable},
+    model::{Conjunction, Disjunction, Operators, Variable},
     rule::{Condition, Hedge, Proposition},
 };
 
@@ -29,8 +29,15 @@ pub(super) fn fill(
     else {
         return Ok(());
     };
+    if !plan.table.blocks.is_empty() {
+        return Err(Refused::new(
+            "the rule set has activation methods or blocks with different operators, which the script does not have".into(),
+            "the script has rules that all fire, with one AND and one OR",
+        ));
+    }
     let mut script = Script {
         model,
+        operators: model.operators,
         used: Vec::new(),
         functions: Vec::new(),
     };
@@ -46,6 +53,11 @@ pub(super) fn fill(
         let consequents = rule.rule.consequents.iter();
         let terms = consequents.filter(|consequent| consequent.output.text == *output_name);
         let mut cause = "false".to_owned();
+        if !model.is_enabled(rule) {
+            causes.push(format!("  {cause}, -- {i}"));
+            continue;
+        }
+        script.operators = model.operators_of(rule);
         for consequent in terms {
             let term = &consequent.term.text;
             // The table has rules that conclude the same update the same firing strength.
@@ -255,6 +267,8 @@ fn defuzzify(output: &Output) -> Vec<String> {
 /// Conditions as expressions over the degrees of terms.
 struct Script<'m> {
     model: &'m Model,
+    /// Of the rule that is written.
+    operators: Operators,
     /// The terms that are used: the input, and the term among its terms.
     used: Vec<(usize, usize)>,
     functions: Vec<&'static str>,
@@ -267,7 +281,7 @@ impl Script<'_> {
             Condition::Not(inner) => Ok(format!("(1 - {})", self.condition(inner)?)),
             Condition::And(parts) => {
                 let parts = self.conditions(parts)?;
-                match self.model.operators.and {
+                match self.operators.and {
                     Conjunction::Minimum => Ok(format!("min({})", parts.join(", "))),
                     Conjunction::Product => Ok(parts.join(" * ")),
                     _ => Err(operator("AND", "minimum and product")),
@@ -280,7 +294,7 @@ impl Script<'_> {
                     let first = parts.next().cloned().unwrap_or_default();
                     parts.fold(first, |all, part| format!("{function}({all}, {part})"))
                 };
-                match self.model.operators.or {
+                match self.operators.or {
                     Disjunction::Maximum => Ok(format!("max({})", parts.join(", "))),
                     Disjunction::BoundedSum => Ok(format!("min(1.0, {})", parts.join(" + "))),
                     Disjunction::ProbabilisticSum => {

@@ -513,6 +513,9 @@ local function along(corners, x)
 end
 
 local function fire(rule, term, strength)
+  if strength < LEAST_STRENGTH then
+    strength = 0.0
+  end
   fired[rule] = strength
 -- @if sums
   strengths[term] = strengths[term] + strength

@@ -58,6 +58,8 @@ verdict:
   noise: {above: 0.04, after_s: 10}
   reserve: {below: 0.1, after_s: 3}
   imbalance: {above: 0.25}
+other_risks:
+  tip_over: {warn: {risk: 30}, elevated_risk: {high: 60}}
 "
     .parse::<Profile>()
     .unwrap();
@@ -149,6 +151,20 @@ verdict:
     assert_eq!(profile.elevated_risk.low_pct, 20.0);
     assert_eq!(profile.elevated_risk.rise_pct_per_s, 30.0);
     assert_eq!(profile.elevated_risk.fall_pct_per_s, 3.0);
+    // What another risk does not say is as for the first one.
+    let [other] = profile.other_risks.as_slice() else {
+        panic!("{:?}", profile.other_risks)
+    };
+    assert_eq!(other.output, "tip_over");
+    assert_eq!(other.fail, profile.verdict.fail);
+    assert_eq!(other.warn.raise.risk_pct, Some(30.0));
+    assert_eq!(
+        other.elevated_risk,
+        AccumulatorSettings {
+            high_pct: 60.0,
+            ..profile.elevated_risk
+        }
+    );
     let threshold = |risk_pct, elevated_risk_pct| Threshold {
         risk_pct,
         elevated_risk_pct,
@@ -243,6 +259,9 @@ inputs:
   two: {mean: battery_v, window_s: 1, time_constant_s: 5}
   weightless: {max: battery_v, time_constant_s: 5}
   constant: {mean: battery_v, time_constant_s: 0}
+other_risks:
+  risk: {}
+  other: {verdict: {}, warn: {risk: 120}}
 ";
     let findings = text.parse::<Profile>().unwrap_err();
     insta::assert_snapshot!(findings);

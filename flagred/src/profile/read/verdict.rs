@@ -46,7 +46,12 @@ pub(super) fn verdict(fields: &Fields, found: &mut Found) -> VerdictSettings {
     }
 }
 
-fn level(fields: &Fields, key: &str, default: LevelSettings, found: &mut Found) -> LevelSettings {
+pub(super) fn level(
+    fields: &Fields,
+    key: &str,
+    default: LevelSettings,
+    found: &mut Found,
+) -> LevelSettings {
     let what = format!("`{key}`");
     let keys = ["risk", "elevated_risk", "after_s", "until"];
     let Some(node) = fields.get(key) else {

@@ -1,0 +1,151 @@
+//! Evaluations one after another, in which outputs keep their previous value.
+
+use alloc::{vec, vec::Vec};
+
+use super::{Engine, EvaluateError, Outcome, Scratch, State};
+use crate::model::{Model, NoRuleFires, Output};
+
+/// Evaluates rows in their order. An output with `when_no_rule_fires: previous` keeps the value it had in the row before, also
+/// for outputs that read it.
+///
+/// An engine has no memory: [`Engine::evaluate`] and all that stands on it answers as for the first row.
+///
+/// # Example: a fan that keeps its speed between the rules
+/// ```
+/// use fuzzy::{Engine, Model, engine::{Sequence, State}};
+///
+/// let model: Model = "
+/// fuzzy: 1
+/// name: fan
+/// inputs: {heat: {range: [0, 40], terms: {low: {left_shoulder: [15, 20]}, high: {right_shoulder: [25, 30]}}}}
+/// outputs: {speed: {range: [0, 9], partition: [slow, fast], when_no_rule_fires: previous}}
+/// rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
+/// ".parse()?;
+/// let engine = Engine::new(&model)?;
+/// let mut rows = Sequence::new(&engine);
+/// assert_eq!(rows.evaluate(&[22.0])?[0].value(), None); // no value yet
+/// let fast = rows.evaluate(&[30.0])?[0].value().ok_or("no value")?;
+/// assert_eq!(rows.evaluate(&[22.0])?[0].state, State::Previous(fast));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Sequence<'e> {
+    engine: &'e Engine,
+    scratch: Scratch,
+    outcomes: Vec<Outcome>,
+    previous: Previous,
+}
+
+/// The values of the outputs in the row before.
+#[derive(Debug, Clone)]
+pub(super) struct Previous {
+    /// Whether each output keeps its value.
+    keeps: Vec<bool>,
+    values: Vec<Option<f64>>,
+}
+
+impl Previous {
+    /// Gives an output its previous value where no rule fires, and keeps its value for the next row.
+    #[inline(always)]
+    pub(super) fn keep(&mut self, output: usize, outcome: &mut Outcome) {
+        if !self.keeps[output] {
+            return;
+        }
+        if let (State::NoRuleFired | State::Default(_), Some(value)) =
+            (outcome.state, self.values[output])
+        {
+            outcome.state = State::Previous(value);
+        }
+        self.values[output] = outcome.value().or(self.values[output]);
+    }
+}
+
+impl Model {
+    /// Whether an output keeps its previous value where no rule fires. Then rows are evaluated by a
+    /// [`Sequence`], in their order.
+    pub fn keeps_previous(&self) -> bool {
+        self.outputs.iter().any(Output::keeps_previous)
+    }
+}
+
+impl Output {
+    /// Whether it keeps its previous value where no rule fires.
+    pub fn keeps_previous(&self) -> bool {
+        matches!(self.when_no_rule_fires, NoRuleFires::Previous(_))
+    }
+}
+
+impl<'e> Sequence<'e> {
+    /// Before the first row.
+    pub fn new(engine: &'e Engine) -> Self {
+        let outputs = engine.model().outputs.iter();
+        Sequence {
+            engine,
+            scratch: engine.scratch(),
+            outcomes: vec![Outcome::default(); engine.outputs.len()],
+            previous: Previous {
+                keeps: outputs.map(Output::keeps_previous).collect(),
+                values: vec![None; engine.outputs.len()],
+            },
+        }
+    }
+
+    /// Evaluates the next row, without allocation. A row with an input that is NaN or infinite leaves the previous values as
+    /// they are.
+    ///
+    /// # Errors
+    /// As [`Engine::evaluate`].
+    pub fn evaluate(&mut self, inputs: &[f64]) -> Result<&[Outcome], EvaluateError> {
+        self.engine.fits(inputs, &self.outcomes)?;
+        self.next(inputs);
+        self.engine.must_fire(&self.outcomes)?;
+        Ok(&self.outcomes)
+    }
+
+    /// Evaluates rows, given as a column for each input, into one outcome for each row and output. As
+    /// [`Engine::evaluate_batch_into`], but in the order of the rows, and so on one core.
+    ///
+    /// # Errors
+    /// As [`Engine::evaluate_batch_into`].
+    pub fn evaluate_batch_into(
+        &mut self,
+        columns: &[&[f64]],
+        outcomes: &mut [Outcome],
+    ) -> Result<(), EvaluateError> {
+        let rows = self.engine.fits_columns(columns, outcomes)?;
+        let mut inputs = vec![0.0; columns.len()];
+        let outputs = self.outcomes.len();
+        for (row, outcomes) in (0..rows).zip(outcomes.chunks_exact_mut(outputs)) {
+            for (value, column) in inputs.iter_mut().zip(columns) {
+                *value = column[row];
+            }
+            self.next(&inputs);
+            outcomes.copy_from_slice(&self.outcomes);
+        }
+        Ok(())
+    }
+
+    fn next(&mut self, inputs: &[f64]) {
+        let (engine, outcomes) = (self.engine, &mut self.outcomes);
+        match &engine.chain {
+            None => {
+                engine
+                    .first
+                    .outcomes(&mut self.scratch.first, inputs, outcomes);
+                for (output, outcome) in outcomes.iter_mut().enumerate() {
+                    self.previous.keep(output, outcome);
+                }
+            }
+            Some(chain) => {
+                let previous = &mut self.previous;
+                let keep = |output: usize, outcome: &mut Outcome| previous.keep(output, outcome);
+                engine.chained(chain, &mut self.scratch, inputs, outcomes, keep);
+            }
+        }
+    }
+
+    /// Forgets the previous values.
+    pub fn reset(&mut self) {
+        self.previous.values.fill(None);
+    }
+}

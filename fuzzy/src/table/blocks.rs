@@ -1,0 +1,167 @@
+//! Rule blocks with operators and an activation method of their own. Each rule is a program.
+
+use super::firing::{Act, run};
+use super::{Activation, Arrays, Comparison, Conjunction, Disjunction, Partial, Program};
+
+/// A rule block.
+#[doc(hidden)] // Exported data.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct Block {
+    /// The strength that the method compares with; 0 where it compares with none.
+    pub strength: f64,
+    /// The activation method.
+    pub method: Method,
+    /// How many rules the method keeps; 0 where it does not count.
+    pub rules: u32,
+    /// AND, an index in [`Conjunction::ALL`].
+    pub and: u32,
+    /// OR, an index in [`Disjunction::ALL`].
+    pub or: u32,
+    /// Its span of programs, in the order of its rules.
+    pub first_program: u32,
+    /// The end of that span.
+    pub end_program: u32,
+}
+
+/// The activation method of a block.
+#[doc(hidden)] // Exported data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Method(pub u32);
+
+impl Method {
+    const FIRST: Method = Method(1);
+    const LAST: Method = Method(2);
+    const HIGHEST: Method = Method(3);
+    const LOWEST: Method = Method(4);
+    const PROPORTIONAL: Method = Method(5);
+    /// A threshold has 6 and the place of its comparison among these.
+    const THRESHOLD: u32 = 6;
+    const COMPARISONS: [Comparison; 6] = [
+        Comparison::Below,
+        Comparison::AtMost,
+        Comparison::Equal,
+        Comparison::NotEqual,
+        Comparison::AtLeast,
+        Comparison::Above,
+    ];
+}
+
+impl Block {
+    /// A block of the programs of this span.
+    pub(crate) fn new(
+        (and, or): (Conjunction, Disjunction),
+        activation: Activation,
+        (first_program, end_program): (u32, u32),
+    ) -> Self {
+        let (method, rules, strength) = match activation {
+            Activation::General => (Method(0), 0, 0.0),
+            Activation::First { rules, at_least } => (Method::FIRST, rules, at_least),
+            Activation::Last { rules, at_least } => (Method::LAST, rules, at_least),
+            Activation::Highest { rules } => (Method::HIGHEST, rules, 0.0),
+            Activation::Lowest { rules } => (Method::LOWEST, rules, 0.0),
+            Activation::Proportional => (Method::PROPORTIONAL, 0, 0.0),
+            Activation::Threshold {
+                comparison,
+                strength,
+            } => {
+                let place = Method::COMPARISONS.iter().zip(Method::THRESHOLD..);
+                let place = place
+                    .into_iter()
+                    .find_map(|(known, code)| (*known == comparison).then_some(code));
+                (Method(place.unwrap_or(Method::THRESHOLD)), 0, strength)
+            }
+        };
+        Block {
+            strength,
+            method,
+            rules,
+            and: and as u32,
+            or: or as u32,
+            first_program,
+            end_program,
+        }
+    }
+
+    fn activation(&self) -> Activation {
+        let (rules, at_least) = (self.rules, self.strength);
+        match self.method {
+            Method::FIRST => Activation::First { rules, at_least },
+            Method::LAST => Activation::Last { rules, at_least },
+            Method::HIGHEST => Activation::Highest { rules },
+            Method::LOWEST => Activation::Lowest { rules },
+            Method::PROPORTIONAL => Activation::Proportional,
+            Method(code) => {
+                let place = code.checked_sub(Method::THRESHOLD);
+                let comparison = place.and_then(|i| Method::COMPARISONS.get(i as usize));
+                comparison.map_or(Activation::General, |comparison| Activation::Threshold {
+                    comparison: *comparison,
+                    strength: self.strength,
+                })
+            }
+        }
+    }
+
+    /// AND and OR; minimum and maximum for codes of a damaged table.
+    fn operators(&self) -> (Conjunction, Disjunction) {
+        let and = Conjunction::ALL.get(self.and as usize).copied();
+        let or = Disjunction::ALL.get(self.or as usize).copied();
+        (and.unwrap_or_default(), or.unwrap_or_default())
+    }
+}
+
+/// Gives a rule that fires with a strength to `firing`, once the hedges of its consequents have changed it.
+#[inline(always)]
+pub(super) fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing: &mut impl Act) {
+    let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
+    let strength = hedges.iter().fold(strength, |x, hedge| hedge.of(x));
+    let actions = program.first_action as usize..program.end_action as usize;
+    firing.act_with(&table.actions()[actions], strength);
+}
+
+/// Gives the rules of all blocks that fire to `firing`, with the strengths that the activation methods leave. `rules` has room
+/// for those of the largest block.
+// Apart from plain rules, so that these cost nothing more.
+#[inline(never)]
+pub(super) fn fire_blocks<A: Arrays>(
+    table: &A,
+    degrees: &[f64],
+    rules: &mut [Partial],
+    stack: &mut [f64],
+    firing: &mut impl Act,
+) {
+    for block in table.blocks() {
+        let (and, or) = block.operators();
+        let mut count = 0;
+        let programs = block.first_program..block.end_program;
+        for at in programs {
+            let program = &table.programs()[at as usize];
+            let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
+            // Without steps it is more of the rule before it.
+            if !steps.is_empty() {
+                let degree = program.weight
+                    * run(
+                        steps,
+                        degrees,
+                        |a, b| and.of(a, b),
+                        |a, b| or.of(a, b),
+                        stack,
+                    );
+                rules[count] = Partial { degree, at };
+                count += 1;
+            }
+        }
+        let rules = &mut rules[..count];
+        let least = table.least_strength();
+        block.activation().activate(least, rules);
+        for rule in rules.iter().filter(|rule| rule.degree >= least) {
+            let programs = &table.programs()[rule.at as usize..block.end_program as usize];
+            let more = |program: &&Program| program.first_step == program.end_step;
+            let others = programs.iter().skip(1).take_while(more);
+            for program in programs.iter().take(1).chain(others) {
+                act(table, program, rule.degree, firing);
+            }
+        }
+    }
+}
