@@ -33,6 +33,7 @@
 
 use fuzzy::{Findings, Model, format::Document};
 
+mod blocks;
 mod comments;
 mod conditions;
 mod draft;

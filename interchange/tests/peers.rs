@@ -47,6 +47,10 @@ fn largest_difference(model: &Model, points: &[(Vec<f64>, Vec<f64>)]) -> f64 {
     for (inputs, expected) in points {
         let found = engine.evaluate(inputs).unwrap();
         for ((found, expected), output) in found.iter().zip(expected).zip(&model.outputs) {
+            // At the degree 1 a sigmoid has no place: fuzzylite gives infinity.
+            if expected.is_infinite() {
+                continue;
+            }
             let width = output.variable.high - output.variable.low;
             let difference = match found.value() {
                 Some(value) => (value - expected).abs() / width,
@@ -131,7 +135,8 @@ fn fll_models_equal_fuzzylite() {
         })
         .collect();
     assert_eq!(files.len(), 26);
-    let failed = compare(&files, 1e-9, |_, _| ());
+    // fuzzylite's C++ library drops strengths up to 1e-6.
+    let failed = compare(&files, 1e-9, |_, model| model.least_strength = 1e-6);
     assert!(failed.is_empty());
 }
 

@@ -2,7 +2,7 @@
 //! degrees are handed over, not the value. So the condition becomes the conditions of those rules.
 
 use fuzzy::{
-    model::{Aggregation, Disjunction, Model},
+    model::{Activation, Aggregation, Disjunction, Model, Operators, Rule},
     rule::{Condition, Hedge, Proposition},
 };
 
@@ -58,7 +58,7 @@ fn concluded(
         .iter()
         .any(|output| output.variable.name == *name);
     let term = proposition.term.as_ref().filter(|_| is_output)?;
-    let concludes = |rule: &&fuzzy::model::Rule| {
+    let concludes = |rule: &&Rule| {
         let mut consequents = rule.rule.consequents.iter();
         consequents
             .any(|consequent| consequent.output == proposition.variable && consequent.term == *term)
@@ -76,9 +76,27 @@ fn concluded(
         .iter()
         .map(|rule| rule.rule.condition.clone())
         .collect();
-    let operators = model.operators;
-    let largest =
-        operators.aggregation == Aggregation::Maximum && operators.or == Disjunction::Maximum;
+    let user = model.rules.get(rule)?;
+    let (operators, activation) = operators(model, user);
+    let plain = |condition: &Condition| matches!(condition, Condition::Is(_));
+    for other in &before {
+        let (others, others_activation) = self::operators(model, other);
+        let same = (others.and, others.or) == (operators.and, operators.or)
+            || plain(&other.rule.condition);
+        if !same || (activation, others_activation) != (Activation::General, Activation::General) {
+            problems.push(format!(
+                "`{name}` is concluded in a block with other operators or another activation"
+            ));
+        }
+    }
+    let output = model
+        .outputs
+        .iter()
+        .find(|output| output.variable.name == *name);
+    let aggregation = output
+        .and_then(|output| output.aggregation)
+        .unwrap_or(operators.aggregation);
+    let largest = aggregation == Aggregation::Maximum && operators.or == Disjunction::Maximum;
     if conditions.len() > 1 && !largest {
         problems.push(format!(
             "`{name}` is concluded by several rules that are not joined by the maximum"
@@ -94,6 +112,15 @@ fn concluded(
         _ => Condition::Or(conditions),
     };
     Some(hedged(condition, &proposition.hedges, problems))
+}
+
+/// The operators of a rule, and which rules of its block fire.
+fn operators(model: &Model, rule: &Rule) -> (Operators, Activation) {
+    let block = model.blocks.get(rule.block);
+    (
+        model.operators_of(rule),
+        block.map_or(model.activation, |block| block.activation),
+    )
 }
 
 fn hedged(mut condition: Condition, hedges: &[Hedge], problems: &mut Vec<String>) -> Condition {

@@ -4,13 +4,13 @@ use fuzzy::{
     diagnostic::nearest,
     format::{Document, RuleSpans, VariableSpans},
     model::{
-        Aggregation, Defuzzifier, NoRuleFires, Operators, Output, Rule, Sampling, SamplingRule,
+        Aggregation, Block, Defuzzifier, Model, NoRuleFires, Output, Rule, Sampling, SamplingRule,
         Variable,
     },
 };
 
-use super::{handover, term};
-use crate::{Format, Losses, draft::Draft, rules, shapes, words};
+use super::{activation, handover, term};
+use crate::{Format, Losses, blocks, draft::Draft, rules, shapes, words};
 
 /// A section and its lines.
 struct Section<'t> {
@@ -111,7 +111,7 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         output(&mut draft, section, &inputs);
     }
     blocks(&mut draft, &of(Kind::Rules).collect::<Vec<_>>());
-    merged(&mut draft, &of(Kind::Output).collect::<Vec<_>>());
+    aggregate(&mut draft, &of(Kind::Output).collect::<Vec<_>>());
     handover::replace(&mut draft);
     draft.finish()
 }
@@ -276,14 +276,18 @@ fn output(draft: &mut Draft<'_>, section: &Section<'_>, inputs: &[&str]) {
         let help = "take `when_no_rule_fires` out of the rule set to leave it undefined";
         draft.note("no-rule-fires", section.name, message, help);
     }
-    for key in ["lock-previous", "lock-valid"] {
-        if flag(draft, section, key) == Some(true) {
-            let word = section.get(key).unwrap_or(section.name);
-            let message = format!("`{}` keeps its value where no rule fires", section.name);
-            let help = "a value then depends on the values before it";
-            draft.loss("lock-previous", word, message, help);
-        }
+    if ["lock-previous", "lock-valid"]
+        .into_iter()
+        .any(|key| flag(draft, section, key) == Some(true))
+    {
+        output.when_no_rule_fires = NoRuleFires::Previous(match output.when_no_rule_fires {
+            NoRuleFires::Value(value) => Some(value),
+            _ => None,
+        });
     }
+    // Fuzzy sets have their values inside the range anyway.
+    output.clamp =
+        words::is_weighted(output.defuzzifier) && flag(draft, section, "lock-range") == Some(true);
     draft.model.outputs.push(output);
     draft.spans.outputs.push(spans);
 }
@@ -353,23 +357,42 @@ fn unknown(draft: &mut Draft<'_>, what: &str, word: &str, part: &str, known: Vec
     draft.error("unknown-word", part, message, &help);
 }
 
-/// The rules of all blocks, which must share their operators.
-fn blocks(draft: &mut Draft<'_>, blocks: &[&Section<'_>]) {
-    for section in blocks {
-        if !is_enabled(draft, section) {
-            let message = format!("the rule block `{}` is not enabled", section.name);
-            let help = "its rules are left out";
-            draft.warning("not-enabled", section.name, message, help);
-            continue;
-        }
-        let operators = Operators {
-            and: operator(draft, section, "conjunction", words::CONJUNCTIONS).unwrap_or_default(),
-            or: operator(draft, section, "disjunction", words::DISJUNCTIONS).unwrap_or_default(),
-            implication: operator(draft, section, "implication", words::CONJUNCTIONS)
-                .unwrap_or_default(),
-            aggregation: draft.model.operators.aggregation,
+/// The rules of all blocks.
+fn blocks(draft: &mut Draft<'_>, sections: &[&Section<'_>]) {
+    let mut blocks = vec![];
+    for (index, section) in sections.iter().enumerate() {
+        let mut block = Block::new(section.name);
+        block.description = description(section);
+        block.enabled = flag(draft, section, "enabled").unwrap_or(true);
+        let and = operator(draft, section, "conjunction", words::CONJUNCTIONS);
+        block.and = and.unwrap_or_default();
+        let or = operator(draft, section, "disjunction", words::DISJUNCTIONS);
+        block.or = or.unwrap_or_default();
+        // In fuzzylite 5 the activation was what the implication is now.
+        let old = section
+            .get("activation")
+            .filter(|word| words::value(words::CONJUNCTIONS, Format::Fll, word).is_some());
+        let key = match old {
+            Some(_) => "activation",
+            None => "implication",
         };
-        draft.model.operators = operators;
+        let implication = operator(draft, section, key, words::CONJUNCTIONS);
+        block.implication = implication.unwrap_or_default();
+        if let Some(word) = section
+            .get("activation")
+            .filter(|word| old.is_none() && !word.is_empty())
+        {
+            match activation::read(word) {
+                Some(activation) => block.activation = activation,
+                None => unknown(
+                    draft,
+                    "activation",
+                    word,
+                    word,
+                    activation::METHODS.to_vec(),
+                ),
+            }
+        }
         for written in section.all("rule") {
             let Some(rule) = rules::read(draft, &rules::words(written)) else {
                 continue;
@@ -377,43 +400,55 @@ fn blocks(draft: &mut Draft<'_>, blocks: &[&Section<'_>]) {
             let mut spans = RuleSpans::default();
             spans.whole = draft.span(written);
             draft.spans.rules.push(spans);
-            draft.model.rules.push(Rule::from(rule));
+            draft.model.rules.push(Rule {
+                block: index,
+                ..Rule::from(rule)
+            });
         }
+        blocks.push(block);
     }
+    blocks::settle(&mut draft.model, blocks);
 }
 
-/// The aggregation of all outputs, which they must share.
-fn merged(draft: &mut Draft<'_>, outputs: &[&Section<'_>]) {
-    let mut first: Option<(&str, Aggregation)> = None;
+/// The aggregation of each output.
+fn aggregate(draft: &mut Draft<'_>, outputs: &[&Section<'_>]) {
+    let mut found = vec![];
     for section in outputs {
-        let weighted = draft.model.outputs.iter().any(|output| {
-            output.variable.name == section.name && words::is_weighted(output.defuzzifier)
-        });
-        if weighted {
-            continue;
-        }
         let key = match section.get("accumulation") {
             Some(_) => "accumulation",
             None => "aggregation",
         };
-        let Some(aggregation) = operator(draft, section, key, words::AGGREGATIONS) else {
-            continue;
-        };
-        match first {
-            None => first = Some((section.name, aggregation)),
-            Some((_, same)) if same == aggregation => {}
-            Some((other, _)) => {
-                let message = format!(
-                    "the outputs `{other}` and `{}` are aggregated in different ways",
-                    section.name
-                );
-                let word = section.get(key).unwrap_or(section.name);
-                let help = "a rule set has one aggregation: make a rule set for each output";
-                draft.loss("two-aggregations", word, message, help);
-            }
+        let aggregation = operator(draft, section, key, words::AGGREGATIONS);
+        let output = draft.model.outputs.get(found.len());
+        let weighted = output.is_some_and(|output| words::is_weighted(output.defuzzifier));
+        let joins = weighted && !matches!(aggregation, None | Some(Aggregation::Sum));
+        if joins && concludes_twice(&draft.model, section.name) {
+            let message = format!(
+                "several rules conclude one term of `{}`, and its aggregation joins them",
+                section.name
+            );
+            let part = section.get(key).unwrap_or(section.name);
+            draft.loss(
+                "joined",
+                part,
+                message,
+                "write `aggregation: none`, which weighs each rule",
+            );
         }
+        found.push(aggregation.filter(|_| !weighted));
     }
-    if let Some((_, aggregation)) = first {
-        draft.model.operators.aggregation = aggregation;
+    blocks::aggregate(&mut draft.model, &found);
+}
+
+/// Whether two rules conclude the same term of an output.
+fn concludes_twice(model: &Model, output: &str) -> bool {
+    let mut terms = vec![];
+    let consequents = model.rules.iter().flat_map(|rule| &rule.rule.consequents);
+    for consequent in consequents.filter(|consequent| consequent.output.text == output) {
+        if terms.contains(&&consequent.term.text) {
+            return true;
+        }
+        terms.push(&consequent.term.text);
     }
+    false
 }

@@ -5,8 +5,10 @@ use fuzzy::{
     model::{Defuzzifier, MembershipFunction, NoRuleFires, Output, Term, Variable},
 };
 
+use super::activation;
 use crate::{
     Format, Losses, Written,
+    blocks::{self, Rules},
     names::{self, Allowed},
     paper::{Paper, numbers, one_line},
     rules, shapes, words,
@@ -50,7 +52,9 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     for output in &model.outputs {
         self::output(&mut paper, output, &model);
     }
-    rule_block(&mut paper, &model);
+    for block in blocks::of(&model) {
+        rule_block(&mut paper, &block);
+    }
     paper.finish()
 }
 
@@ -69,7 +73,7 @@ fn variable(paper: &mut Paper, variable: &Variable) {
 fn output(paper: &mut Paper, output: &Output, model: &Model) {
     paper.line(format!("OutputVariable: {}", output.variable.name));
     variable(paper, &output.variable);
-    paper.line("  lock-range: false");
+    paper.line(format!("  lock-range: {}", output.clamp));
     let computed = match output.defuzzifier {
         Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => Some("TakagiSugeno"),
         Defuzzifier::Tsukamoto => Some("Tsukamoto"),
@@ -79,7 +83,7 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
         Some(_) => "none",
         None => paper.word(
             words::AGGREGATIONS,
-            model.operators.aggregation,
+            output.aggregation.unwrap_or(model.operators.aggregation),
             "the aggregation",
         ),
     };
@@ -99,8 +103,8 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
     };
     paper.line(format!("  defuzzifier: {word} {detail}"));
     let default = match output.when_no_rule_fires {
-        NoRuleFires::Value(value) => value.to_string(),
-        NoRuleFires::Undefined => "nan".into(),
+        NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => value.to_string(),
+        NoRuleFires::Undefined | NoRuleFires::Previous(None) => "nan".into(),
         NoRuleFires::Error => {
             let message = format!(
                 "the output `{}` is nan where no rule fires, not an error",
@@ -111,7 +115,8 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
         }
     };
     paper.line(format!("  default: {default}"));
-    paper.line("  lock-previous: false");
+    let keeps = matches!(output.when_no_rule_fires, NoRuleFires::Previous(_));
+    paper.line(format!("  lock-previous: {keeps}"));
     for term in &output.variable.terms {
         self::term(paper, term, model);
     }
@@ -156,10 +161,10 @@ fn term(paper: &mut Paper, term: &Term, model: &Model) {
     ));
 }
 
-fn rule_block(paper: &mut Paper, model: &Model) {
-    let operators = model.operators;
-    paper.line("RuleBlock: rules");
-    paper.line("  enabled: true");
+fn rule_block(paper: &mut Paper, block: &Rules<'_>) {
+    let operators = block.operators;
+    paper.line(format!("RuleBlock: {}", one_line(block.name)));
+    paper.line(format!("  enabled: {}", block.enabled));
     let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
     let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
     let implication = paper.word(
@@ -170,14 +175,17 @@ fn rule_block(paper: &mut Paper, model: &Model) {
     paper.line(format!("  conjunction: {and}"));
     paper.line(format!("  disjunction: {or}"));
     paper.line(format!("  implication: {implication}"));
-    paper.line("  activation: General");
-    for (index, rule) in model.rules.iter().enumerate() {
+    paper.line(format!(
+        "  activation: {}",
+        activation::write(block.activation)
+    ));
+    for (number, rule) in &block.rules {
         match rules::write(&rule.rule, operators, " and ") {
             Some(rules) => rules
                 .iter()
                 .for_each(|rule| paper.line(format!("  rule: {rule}"))),
             None => {
-                let message = format!("rule {} has a NOT before brackets", index + 1);
+                let message = format!("rule {number} has a NOT before brackets");
                 paper.loss("not", message, "fuzzylite has `not` before a term only");
             }
         }
