@@ -16,13 +16,15 @@ inputs:
 outputs:
   y: {range: [0, 9], <OUTPUT>}
 operators: {and: <AND>, or: <OR>, implication: <IMPLICATION>, aggregation: <AGGREGATION>}
-rules:
-  - <RULE>
-  - IF a IS high OR b IS low THEN y IS large
+<RULES>
 ";
 
 /// The places of [`BASE`], and what stands there where a feature changes something else.
-const PLACES: [(&str, &str); 7] = [
+const PLACES: [(&str, &str); 8] = [
+    (
+        "RULES",
+        "rules: [<RULE>, IF a IS high OR b IS low THEN y IS large]",
+    ),
     ("TERM", "{triangle: [3, 7, 10]}"),
     (
         "OUTPUT",
@@ -168,6 +170,26 @@ const FEATURES: &[(&str, &str, &str)] = &[
         "a hedge in a conclusion",
         "RULE",
         "IF a IS low AND b IS low THEN y IS very small",
+    ),
+    (
+        "`activation`",
+        "RULES",
+        "activation: {highest: 1}\nrules: [IF a IS low THEN y IS small, IF a IS high OR b IS low THEN y IS large]",
+    ),
+    (
+        "`blocks` with operators of their own",
+        "RULES",
+        "blocks: {one: {operators: {and: product}, rules: [IF a IS low AND b IS low THEN y IS small]}, two: {rules: [IF a IS high OR b IS low THEN y IS large]}}",
+    ),
+    (
+        "`when_no_rule_fires: previous`",
+        "OUTPUT",
+        "terms: {small: {triangle: [0, 2, 4]}, large: {triangle: [3, 6, 9]}}, when_no_rule_fires: previous",
+    ),
+    (
+        "`clamp`",
+        "OUTPUT",
+        "terms: {small: {constant: 2}, large: {constant: 12}}, defuzzifier: weighted_sum, clamp: true",
     ),
     (
         "a weight",

@@ -146,7 +146,11 @@ fn mistakes_are_told_with_their_place() {
         (Format::Fll, "Maximum\n  defuzz", "Maxmum\n  defuzz"),
         (Format::Fll, "and heat", "heat"),
         (Format::Fll, "if heat is any then", "if heat is any the"),
-        (Format::Fll, "  default", "  lock-previous: true\n  default"),
+        (
+            Format::Fll,
+            "  range: 0 40",
+            "  enabled: false\n  range: 0 40",
+        ),
         (Format::Fll, "Centroid 100", "Centroid many"),
         (Format::Fll, "(heat is very", "((heat is very"),
         (Format::Fcl, "GAUSS 20 5", "GAUS 20 5"),
@@ -190,10 +194,10 @@ fn mistakes_are_told_with_their_place() {
 
 #[test]
 fn what_a_rule_set_cannot_say_is_a_warning_where_losses_are_accepted() {
-    let text = FLL.replace("  default", "  lock-previous: true\n  default");
+    let text = FLL.replace("  range: 0 40", "  enabled: false\n  range: 0 40");
     assert!(interchange::read(&text, Format::Fll, Losses::Refuse).is_err());
     let document = interchange::read(&text, Format::Fll, Losses::Accept).unwrap();
-    assert_eq!(document.warnings.0[0].code, "lock-previous");
+    assert_eq!(document.warnings.0[0].code, "not-enabled");
 }
 
 /// Bytes of each text are replaced, doubled, cut out and swapped.

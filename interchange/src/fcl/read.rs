@@ -4,13 +4,13 @@ use fuzzy::{
     diagnostic::nearest,
     format::{Document, RuleSpans, VariableSpans},
     model::{
-        Aggregation, Conjunction, Disjunction, MembershipFunction, NoRuleFires, Output, Rule,
-        Variable,
+        Aggregation, Block, Conjunction, Disjunction, MembershipFunction, NoRuleFires, Output,
+        Rule, Variable,
     },
 };
 
 use super::{lex, term};
-use crate::{Format, Losses, conditions::dual, draft::Draft, rules, words};
+use crate::{Format, Losses, blocks, conditions::dual, draft::Draft, rules, words};
 
 pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
     let words = lex::words(text);
@@ -19,9 +19,9 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         words: &words,
         next: 0,
         outputs: vec![],
-        and: None,
-        or: None,
-        aggregation: None,
+        aggregations: vec![],
+        common: None,
+        blocks: vec![],
     };
     reader.file();
     reader.finish()
@@ -33,9 +33,11 @@ struct Reader<'r, 't> {
     next: usize,
     /// The names behind VAR_OUTPUT.
     outputs: Vec<&'t str>,
-    and: Option<Conjunction>,
-    or: Option<Disjunction>,
-    aggregation: Option<Aggregation>,
+    /// Of each output.
+    aggregations: Vec<Option<Aggregation>>,
+    /// Of a rule block, which holds for outputs without one.
+    common: Option<Aggregation>,
+    blocks: Vec<Block>,
 }
 
 impl<'r, 't> Reader<'r, 't> {
@@ -212,6 +214,7 @@ impl<'r, 't> Reader<'r, 't> {
             return self.unexpected("an output");
         };
         let mut output = Output::new(Variable::new(name, f64::NAN, f64::NAN));
+        let mut aggregation = None;
         let mut spans = VariableSpans::default();
         spans.name = self.draft.span(name);
         while !self.take("END_DEFUZZIFY") && self.peek().is_some() {
@@ -220,8 +223,7 @@ impl<'r, 't> Reader<'r, 't> {
                     output.defuzzifier = method;
                 }
             } else if self.take("ACCU") {
-                let aggregation = self.setting("ACCU", words::AGGREGATIONS);
-                self.aggregate(aggregation);
+                aggregation = self.setting("ACCU", words::AGGREGATIONS);
             } else if self.take("DEFAULT") {
                 self.default(&mut output, &mut spans);
             } else if !self.part(&mut output.variable, &mut spans) {
@@ -239,6 +241,7 @@ impl<'r, 't> Reader<'r, 't> {
             }
         }
         self.universe(&mut output.variable, &mut spans, name);
+        self.aggregations.push(aggregation.filter(|_| !weighted));
         self.draft.model.outputs.push(output);
         self.draft.spans.outputs.push(spans);
     }
@@ -254,12 +257,7 @@ impl<'r, 't> Reader<'r, 't> {
         self.take(";");
         spans.default = self.draft.span(word);
         if word.eq_ignore_ascii_case("NC") {
-            let message = format!(
-                "`{}` keeps its value where no rule fires",
-                output.variable.name
-            );
-            let help = "a value then depends on the values before it";
-            self.draft.loss("lock-previous", word, message, help);
+            output.when_no_rule_fires = NoRuleFires::Previous(None);
         } else if let Some(value) = self.draft.number(word).filter(|value| !value.is_nan()) {
             output.when_no_rule_fires = NoRuleFires::Value(value);
         }
@@ -353,39 +351,30 @@ impl<'r, 't> Reader<'r, 't> {
         value
     }
 
-    fn aggregate(&mut self, aggregation: Option<Aggregation>) {
-        match (self.aggregation, aggregation) {
-            (Some(before), Some(now)) if before != now => {
-                let part = self.here();
-                let message = "outputs are aggregated in different ways".into();
-                let help = "a rule set has one aggregation: make a rule set for each output";
-                self.draft.loss("two-aggregations", part, message, help);
-            }
-            (None, now) => self.aggregation = now,
-            _ => {}
-        }
-    }
-
     fn rules(&mut self) {
         const KEYS: [&str; 6] = ["AND", "OR", "ACT", "ACCU", "RULE", "END_RULEBLOCK"];
-        if self
-            .peek()
-            .is_some_and(|word| !KEYS.iter().any(|key| key.eq_ignore_ascii_case(word)))
-        {
-            self.next += 1;
-        }
+        let is_key = |word: &&str| KEYS.iter().any(|key| key.eq_ignore_ascii_case(word));
+        let name = self.peek().filter(|word| !is_key(word));
+        self.next += usize::from(name.is_some());
+        let mut block = Block::new(name.unwrap_or_default());
+        let (mut and, mut or) = (None, None);
         while !self.take("END_RULEBLOCK") && self.peek().is_some() {
             if self.take("AND") {
-                self.and = self.setting("AND", words::CONJUNCTIONS).or(self.and);
+                and = self.setting("AND", words::CONJUNCTIONS);
             } else if self.take("OR") {
-                self.or = self.setting("OR", words::DISJUNCTIONS).or(self.or);
+                or = self.setting("OR", words::DISJUNCTIONS);
             } else if self.take("ACT") {
-                if let Some(implication) = self.setting("ACT", words::CONJUNCTIONS) {
-                    self.draft.model.operators.implication = implication;
-                }
+                let implication = self.setting("ACT", words::CONJUNCTIONS);
+                block.implication = implication.unwrap_or_default();
             } else if self.take("ACCU") {
                 let aggregation = self.setting("ACCU", words::AGGREGATIONS);
-                self.aggregate(aggregation);
+                if self.common.is_some() && aggregation.is_some() && self.common != aggregation {
+                    let part = self.here();
+                    let message = "two rule blocks have a different `ACCU`".into();
+                    let help = "write `ACCU` in the `DEFUZZIFY` of each output";
+                    self.draft.loss("two-aggregations", part, message, help);
+                }
+                self.common = aggregation.or(self.common);
             } else if self.take("RULE") {
                 self.rule();
             } else {
@@ -393,6 +382,17 @@ impl<'r, 't> Reader<'r, 't> {
                 return self.skip("RULEBLOCK");
             }
         }
+        // Where one of them is not named, it is the dual of the other.
+        (block.and, block.or) = match (and, or) {
+            (None, None) => (Conjunction::Minimum, Disjunction::Maximum),
+            (Some(and), None) => (and, dual(and)),
+            (None, Some(or)) => {
+                let mut known = words::CONJUNCTIONS.iter().map(|entry| entry.0);
+                (known.find(|&and| dual(and) == or).unwrap_or_default(), or)
+            }
+            (Some(and), Some(or)) => (and, or),
+        };
+        self.blocks.push(block);
     }
 
     /// `1 : IF ... THEN ...;`
@@ -409,27 +409,29 @@ impl<'r, 't> Reader<'r, 't> {
             let mut spans = RuleSpans::default();
             spans.whole = span;
             self.draft.spans.rules.push(spans);
-            self.draft.model.rules.push(Rule::from(rule));
+            self.draft.model.rules.push(Rule {
+                block: self.blocks.len(),
+                ..Rule::from(rule)
+            });
         }
     }
 
     fn finish(mut self) -> Result<Document, fuzzy::Findings> {
-        let operators = &mut self.draft.model.operators;
-        // Where one of them is not named, it is the dual of the other.
-        let (and, or) = match (self.and, self.or) {
-            (None, None) => (Conjunction::Minimum, Disjunction::Maximum),
-            (Some(and), None) => (and, dual(and)),
-            (None, Some(or)) => {
-                let and = words::CONJUNCTIONS
-                    .iter()
-                    .map(|entry| entry.0)
-                    .find(|&and| dual(and) == or);
-                (and.unwrap_or_default(), or)
-            }
-            (Some(and), Some(or)) => (and, or),
+        let common = self.common;
+        let of_output = |(found, output): (&Option<Aggregation>, &Output)| match words::is_weighted(
+            output.defuzzifier,
+        ) {
+            true => None,
+            false => Some(found.or(common).unwrap_or_default()),
         };
-        (operators.and, operators.or) = (and, or);
-        operators.aggregation = self.aggregation.unwrap_or_default();
+        let found = self
+            .aggregations
+            .iter()
+            .zip(&self.draft.model.outputs)
+            .map(of_output);
+        let found: Vec<Option<Aggregation>> = found.collect();
+        blocks::aggregate(&mut self.draft.model, &found);
+        blocks::settle(&mut self.draft.model, std::mem::take(&mut self.blocks));
         for name in &self.outputs {
             let has_terms = self
                 .draft

@@ -2,11 +2,12 @@
 
 use fuzzy::{
     Findings, Model,
-    model::{MembershipFunction, NoRuleFires, Term, Variable},
+    model::{Activation, MembershipFunction, NoRuleFires, Term, Variable},
 };
 
 use crate::{
     Format, Losses, Written,
+    blocks::{self, Rules},
     names::{self, Allowed},
     paper::{Paper, numbers, one_line},
     rules, shapes, words,
@@ -42,11 +43,7 @@ const NAMES: Allowed = Allowed {
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
     let mut paper = Paper::new(Format::Fcl, losses);
     let model = names::plain(model, &NAMES, &mut paper);
-    let name: String = model
-        .name
-        .chars()
-        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
-        .collect();
+    let name = identifier(&model.name);
     if let Some(description) = &model.description {
         paper.line(format!(
             "(* {} *)",
@@ -76,13 +73,23 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         if !words::is_weighted(output.defuzzifier) {
             let word = paper.word(
                 words::AGGREGATIONS,
-                model.operators.aggregation,
+                output.aggregation.unwrap_or(model.operators.aggregation),
                 "the aggregation",
             );
             paper.line(format!("  ACCU : {};", word));
         }
-        if let NoRuleFires::Value(value) = output.when_no_rule_fires {
-            paper.line(format!("  DEFAULT := {value};"));
+        match output.when_no_rule_fires {
+            NoRuleFires::Value(value) => paper.line(format!("  DEFAULT := {value};")),
+            NoRuleFires::Previous(None) => paper.line("  DEFAULT := NC;"),
+            NoRuleFires::Previous(Some(_)) => {
+                let message = format!("`{name}` keeps its value, and has a first one");
+                paper.loss("no-rule-fires", message, "FCL has `NC` or a value");
+            }
+            NoRuleFires::Undefined | NoRuleFires::Error => {}
+        }
+        if output.clamp {
+            let message = format!("`{name}` is clamped to its range");
+            paper.loss("clamp", message, "FCL does not clamp");
         }
         paper.line("END_DEFUZZIFY");
         if output.samples.is_some() {
@@ -90,7 +97,10 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
             paper.note("sampled", message, "each program samples in its own way");
         }
     }
-    rule_block(&mut paper, &model);
+    let mut number = 0;
+    for block in blocks::of(&model) {
+        rule_block(&mut paper, &block, &mut number);
+    }
     paper.line("\nEND_FUNCTION_BLOCK");
     paper.finish()
 }
@@ -165,8 +175,15 @@ fn edges(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points
 }
 
-fn rule_block(paper: &mut Paper, model: &Model) {
-    let operators = model.operators;
+fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
+    let operators = block.operators;
+    if !block.enabled {
+        return;
+    }
+    if block.activation != Activation::General {
+        let message = format!("the rules `{}` do not all fire", block.name);
+        paper.loss("activation", message, "FCL has no activation methods");
+    }
     let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
     let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
     let implication = paper.word(
@@ -174,25 +191,30 @@ fn rule_block(paper: &mut Paper, model: &Model) {
         operators.implication,
         "the implication",
     );
+    let name = identifier(block.name);
     paper.line(format!(
-        "\nRULEBLOCK rules\n  AND : {and};\n  OR : {or};\n  ACT : {implication};"
+        "\nRULEBLOCK {name}\n  AND : {and};\n  OR : {or};\n  ACT : {implication};"
     ));
-    let mut number = 0;
-    for (index, rule) in model.rules.iter().enumerate() {
+    for (index, rule) in &block.rules {
         match rules::write(&rule.rule, operators, ", ") {
             Some(rules) => {
                 for rule in rules {
-                    number += 1;
+                    *number += 1;
                     paper.line(format!("  RULE {number} : {};", keywords(&rule)));
                 }
             }
             None => {
-                let message = format!("rule {} has a NOT before brackets", index + 1);
+                let message = format!("rule {index} has a NOT before brackets");
                 paper.loss("not", message, "write NOT before the terms");
             }
         }
     }
     paper.line("END_RULEBLOCK");
+}
+
+fn identifier(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    name.chars().map(plain).collect()
 }
 
 /// The keywords in capitals, as IEC 61131-7 writes them.

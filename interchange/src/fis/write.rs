@@ -2,7 +2,7 @@
 
 use fuzzy::{
     Findings, Model,
-    model::{Defuzzifier, MembershipFunction, NoRuleFires, Rule, Term, Variable},
+    model::{Activation, Defuzzifier, MembershipFunction, NoRuleFires, Rule, Term, Variable},
     rule::{Condition, Hedge, Name},
 };
 
@@ -23,12 +23,23 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         paper.line(format!("\n[Output{}]", index + 1));
         variable(&mut paper, &output.variable, model);
         let name = &output.variable.name;
-        if let NoRuleFires::Value(value) = output.when_no_rule_fires {
-            let message = format!("where no rule fires `{name}` is {value}, which FIS cannot say");
+        if !matches!(
+            output.when_no_rule_fires,
+            NoRuleFires::Undefined | NoRuleFires::Error
+        ) {
+            let message = format!("`{name}` has a value where no rule fires, which FIS cannot say");
             paper.loss(
                 "no-rule-fires",
                 message,
                 "MATLAB gives the middle of the range",
+            );
+        }
+        if output.clamp || output.aggregation.is_some() {
+            let message = format!("`{name}` is clamped, or has an aggregation of its own");
+            paper.loss(
+                "own",
+                message,
+                "FIS has one aggregation, and does not clamp",
             );
         }
         if output.samples.is_some() {
@@ -39,6 +50,14 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
                 "MATLAB samples 101 places unless told otherwise",
             );
         }
+    }
+    if !model.blocks.is_empty() || model.activation != Activation::General {
+        let message = "the rules stand in blocks, or do not all fire".into();
+        paper.loss(
+            "blocks",
+            message,
+            "FIS has no blocks and no activation methods",
+        );
     }
     paper.line("\n[Rules]");
     for (index, rule) in model.rules.iter().enumerate() {

@@ -3,15 +3,13 @@
 use fuzzy::{
     diagnostic::nearest,
     format::{Document, RuleSpans, VariableSpans},
-    model::{
-        Aggregation, Conjunction, Defuzzifier, Disjunction, NoRuleFires, Output, Rule, Variable,
-    },
+    model::{Aggregation, Block, Defuzzifier, NoRuleFires, Output, Rule, Variable},
     rule::{self, Condition, Consequent, Hedge, Name, Proposition},
 };
 use roxmltree::Node;
 
 use super::term;
-use crate::{Format, Losses, draft::Draft, words};
+use crate::{Format, Losses, blocks, draft::Draft, words};
 
 /// The namespace of the standard's schema.
 pub(super) const NAMESPACE: &str = "http://www.ieee1855.org";
@@ -46,10 +44,8 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let mut reader = Reader {
         // In the older form `left` and `right` say where the slope is, in the standard where the degree is 1.
         right_is_high: root.tag_name().namespace() == Some(NAMESPACE),
-        aggregation: None,
-        and: None,
-        or: None,
-        implication: None,
+        aggregations: vec![],
+        blocks: vec![],
         draft,
     };
     for base in children(root, &["knowledgeBase"]) {
@@ -58,21 +54,17 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     for base in root.children().filter(Node::is_element) {
         reader.rule_base(base);
     }
-    let operators = &mut reader.draft.model.operators;
-    operators.and = reader.and.unwrap_or_default();
-    operators.or = reader.or.unwrap_or_default();
-    operators.implication = reader.implication.unwrap_or_default();
-    operators.aggregation = reader.aggregation.unwrap_or_default();
+    blocks::aggregate(&mut reader.draft.model, &reader.aggregations);
+    blocks::settle(&mut reader.draft.model, reader.blocks);
     reader.draft.finish()
 }
 
 struct Reader<'t> {
     draft: Draft<'t>,
     right_is_high: bool,
-    aggregation: Option<Aggregation>,
-    and: Option<Conjunction>,
-    or: Option<Disjunction>,
-    implication: Option<Conjunction>,
+    /// Of each output.
+    aggregations: Vec<Option<Aggregation>>,
+    blocks: Vec<Block>,
 }
 
 /// An attribute; case does not count.
@@ -204,8 +196,8 @@ impl Reader<'_> {
             output.when_no_rule_fires = NoRuleFires::Value(value);
         }
         let aggregation = self.word(node, "accumulation", words::AGGREGATIONS);
-        let before = self.aggregation;
-        self.aggregation = one_of(&mut self.draft, node, "accumulation", before, aggregation);
+        self.aggregations
+            .push(Some(aggregation.unwrap_or_default()));
         self.draft.model.outputs.push(output);
         self.draft.spans.outputs.push(spans);
     }
@@ -237,6 +229,7 @@ impl Reader<'_> {
                 spans.terms.push(span);
             }
         }
+        self.aggregations.push(None);
         self.draft.model.outputs.push(output);
         self.draft.spans.outputs.push(spans);
     }
@@ -262,21 +255,17 @@ impl Reader<'_> {
         value
     }
 
-    /// Operators of a rule base or a rule, which all others must share.
-    fn operators(&mut self, node: Node<'_, '_>) {
+    /// The operators of a rule base or a rule; those of the base where a rule names none.
+    fn operators(&mut self, node: Node<'_, '_>, base: &Block) -> Block {
         let and = self.word(node, "andMethod", words::CONJUNCTIONS);
-        self.and = one_of(&mut self.draft, node, "andMethod", self.and, and);
         let or = self.word(node, "orMethod", words::DISJUNCTIONS);
-        self.or = one_of(&mut self.draft, node, "orMethod", self.or, or);
         let implication = self.word(node, "activationMethod", words::CONJUNCTIONS);
-        let before = self.implication;
-        self.implication = one_of(
-            &mut self.draft,
-            node,
-            "activationMethod",
-            before,
-            implication,
-        );
+        Block {
+            and: and.unwrap_or(base.and),
+            or: or.unwrap_or(base.or),
+            implication: implication.unwrap_or(base.implication),
+            ..base.clone()
+        }
     }
 
     fn rule_base(&mut self, base: Node<'_, '_>) {
@@ -291,16 +280,31 @@ impl Reader<'_> {
                 return;
             }
         }
-        self.operators(base);
+        let block = self.operators(
+            base,
+            &Block::new(attribute(base, "name").unwrap_or_default()),
+        );
         for node in children(base, &["rule", "tskRule"]) {
-            self.operators(node);
-            if let Some(rule) = self.rule(node) {
-                let mut spans = RuleSpans::default();
-                spans.whole = node.range();
-                self.draft.spans.rules.push(spans);
-                self.draft.model.rules.push(Rule::from(rule));
+            let Some(rule) = self.rule(node) else {
+                continue;
+            };
+            let own = self.operators(node, &block);
+            let joins = matches!(rule.condition, Condition::And(_) | Condition::Or(_));
+            if own.implication != block.implication || joins && own != block {
+                let part = tag(self.draft.text, node);
+                let message = "the rule has operators of its own".into();
+                let help = "give it a rule base of its own";
+                self.draft.loss("own-operators", part, message, help);
             }
+            let mut spans = RuleSpans::default();
+            spans.whole = node.range();
+            self.draft.spans.rules.push(spans);
+            self.draft.model.rules.push(Rule {
+                block: self.blocks.len(),
+                ..Rule::from(rule)
+            });
         }
+        self.blocks.push(block);
     }
 
     fn rule(&mut self, node: Node<'_, '_>) -> Option<rule::Rule> {
@@ -408,25 +412,4 @@ impl Reader<'_> {
             term: Some(name(term)),
         })
     }
-}
-
-/// The one operator of all rules; another one than before is a loss.
-fn one_of<T: Copy + PartialEq>(
-    draft: &mut Draft<'_>,
-    node: Node<'_, '_>,
-    key: &str,
-    before: Option<T>,
-    now: Option<T>,
-) -> Option<T> {
-    if before.is_some() && now.is_some() && before != now {
-        let part = tag(draft.text, node);
-        let message = format!("`{key}` differs from the one before");
-        draft.loss(
-            "two-operators",
-            part,
-            message,
-            "all rules of a rule set share their operators",
-        );
-    }
-    before.or(now)
 }

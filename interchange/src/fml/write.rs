@@ -2,7 +2,10 @@
 
 use fuzzy::{
     Findings, Model,
-    model::{Defuzzifier, MembershipFunction, NoRuleFires, Output, Rule, Term, Variable},
+    model::{
+        Activation, Defuzzifier, MembershipFunction, NoRuleFires, Operators, Output, Rule, Term,
+        Variable,
+    },
     rule::{Condition, Hedge, Proposition},
 };
 use quick_xml::{
@@ -11,7 +14,13 @@ use quick_xml::{
 };
 
 use super::read::{HEDGES, NAMESPACE};
-use crate::{Format, Losses, Written, conditions, paper::Paper, words};
+use crate::{
+    Format, Losses, Written,
+    blocks::{self, Rules},
+    conditions,
+    paper::Paper,
+    words,
+};
 
 /// An element with attributes and content.
 struct Element {
@@ -89,10 +98,14 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         let message = "some outputs are weighted, others are not".into();
         paper.loss("two-kinds", message, "write a rule set for each kind");
     }
+    let enabled = blocks::of(model).into_iter().filter(|block| block.enabled);
+    let bases: Vec<Element> = enabled
+        .map(|block| rule_base(&mut paper, &block, weighted))
+        .collect();
     let root = Element::new("fuzzySystem")
         .with("xmlns", NAMESPACE)
         .with("name", &model.name)
-        .of([base, rule_base(&mut paper, model, weighted)]);
+        .of([base].into_iter().chain(bases));
     let mut writer = Writer::new_with_indent(vec![], b' ', 2);
     let declaration = Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None));
     let written = writer
@@ -145,7 +158,7 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
             let element = variable(paper, &output.variable, "output");
             let accumulation = paper.word(
                 words::AGGREGATIONS,
-                model.operators.aggregation,
+                output.aggregation.unwrap_or(model.operators.aggregation),
                 "the aggregation",
             );
             let defuzzifier =
@@ -155,8 +168,17 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
                 .with("defuzzifier", defuzzifier)
         }
     };
-    if let NoRuleFires::Value(value) = output.when_no_rule_fires {
-        element = element.with("defaultValue", value);
+    match output.when_no_rule_fires {
+        NoRuleFires::Value(value) => element = element.with("defaultValue", value),
+        NoRuleFires::Previous(_) => {
+            let message = format!("`{name}` keeps its value where no rule fires");
+            paper.loss("no-rule-fires", message, "FML has a value or none");
+        }
+        NoRuleFires::Undefined | NoRuleFires::Error => {}
+    }
+    if output.clamp {
+        let message = format!("`{name}` is clamped to its range");
+        paper.loss("clamp", message, "FML does not clamp");
     }
     element
 }
@@ -267,8 +289,12 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
     shape
 }
 
-fn rule_base(paper: &mut Paper, model: &Model, weighted: bool) -> Element {
-    let operators = model.operators;
+fn rule_base(paper: &mut Paper, block: &Rules<'_>, weighted: bool) -> Element {
+    let operators = block.operators;
+    if block.activation != Activation::General {
+        let message = format!("the rules `{}` do not all fire", block.name);
+        paper.loss("activation", message, "FML has no activation methods");
+    }
     let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
     let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
     let implication = paper.word(
@@ -276,20 +302,20 @@ fn rule_base(paper: &mut Paper, model: &Model, weighted: bool) -> Element {
         operators.implication,
         "the implication",
     );
-    let mut base = Element::new(if weighted {
-        "tskRuleBase"
-    } else {
-        "mamdaniRuleBase"
-    })
-    .with("name", "rules")
-    .with("activationMethod", implication)
-    .with("andMethod", and)
-    .with("orMethod", or);
-    for (index, rule) in model.rules.iter().enumerate() {
-        match self::rule(rule, index + 1, model, weighted) {
+    let kind = match weighted {
+        true => "tskRuleBase",
+        false => "mamdaniRuleBase",
+    };
+    let mut base = Element::new(kind)
+        .with("name", block.name)
+        .with("activationMethod", implication)
+        .with("andMethod", and)
+        .with("orMethod", or);
+    for (number, rule) in &block.rules {
+        match self::rule(rule, *number, operators, weighted) {
             Ok(element) => base.push(element.with("andMethod", and).with("orMethod", or)),
             Err(what) => {
-                let message = format!("rule {} {what}", index + 1);
+                let message = format!("rule {number} {what}");
                 let help = "a rule of FML joins its clauses by AND alone or OR alone";
                 paper.loss("rule", message, help);
             }
@@ -301,11 +327,11 @@ fn rule_base(paper: &mut Paper, model: &Model, weighted: bool) -> Element {
 fn rule(
     rule: &Rule,
     number: usize,
-    model: &Model,
+    operators: Operators,
     weighted: bool,
 ) -> Result<Element, &'static str> {
     let rule = &rule.rule;
-    let condition = conditions::without_not(&rule.condition, model.operators);
+    let condition = conditions::without_not(&rule.condition, operators);
     let condition = condition.ok_or("has a NOT before brackets")?;
     let (parts, connector) = match &condition {
         Condition::And(parts) => (parts.as_slice(), "and"),
