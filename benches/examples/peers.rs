@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
-use flagred_benches::{four_inputs, points, published, tipper};
+use flagred_benches::{four_inputs, gaussians, points, published, tipper};
 use fuzzy::engine::Outcome;
 use fuzzy::map::{DecisionMap, Grid};
 use fuzzy::model::{MembershipFunction, Model, Variable};
@@ -20,6 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("a", tipper()),
         ("bw", published(true)),
         ("c", four_inputs()),
+        ("g", gaussians(5)),
     ];
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {

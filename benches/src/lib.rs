@@ -211,3 +211,34 @@ pub fn points(model: &Model, count: usize) -> Vec<Vec<f64>> {
         })
         .collect()
 }
+
+/// (g): the commonest system of gaussians: 2 inputs of 5 terms, 25 rules, an output of so many gaussian terms.
+pub fn gaussians(outputs: usize) -> Model {
+    let of = |name: &str, low: f64, high: f64, count: usize| {
+        let step = (high - low) / (count - 1) as f64;
+        (0..count).fold(Variable::new(name, low, high), |variable, i| {
+            let term = MembershipFunction::Gaussian {
+                mean: low + step * i as f64,
+                // Not all alike, and none so wide that it is flat.
+                sd: step * (0.35 + 0.05 * (i % 3) as f64),
+            };
+            variable.term(format!("t{i}"), term)
+        })
+    };
+    let mut model = Model::builder("gaussians")
+        .input(of("x", 0.0, 10.0, 5))
+        .input(of("y", -1.0, 1.0, 5))
+        .output(Output::new(of("z", 0.0, 100.0, outputs)))
+        .build();
+    for x in 0..5 {
+        for y in 0..5 {
+            let condition =
+                Condition::is("x", &format!("t{x}")).and(Condition::is("y", &format!("t{y}")));
+            let z = (x + y) * (outputs - 1) / 8;
+            model
+                .rules
+                .push(Rule::new(condition, "z", &format!("t{z}")).into());
+        }
+    }
+    model
+}

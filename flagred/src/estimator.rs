@@ -5,13 +5,13 @@ use alloc::{string::String, sync::Arc, vec, vec::Vec};
 use fuzzy::{
     Engine, Model,
     diagnostic::Findings,
-    engine::{EvaluateError, Outcome, Scratch},
+    engine::{EvaluateError, Outcome, Said, Scratch},
     table::ClosedForm,
 };
 
 use crate::{
     board::Plan,
-    cause::{Cause, Proposition, cause},
+    cause::{Asked, Cause, Proposition, Propositions},
     channel::{Channel, Input},
     gap::Filling,
     lookup::Lookup,
@@ -46,8 +46,10 @@ struct Compiled {
     channels: Vec<Channel>,
     inputs: Vec<Input>,
     propositions: Vec<Proposition>,
-    /// The term of each, with its hedges.
-    terms: Vec<String>,
+    /// The same as the engine has them.
+    said: Vec<Said>,
+    /// See [`Propositions`]; empty where no output reads another one.
+    rules: Vec<u32>,
     /// Of the other risks of the profile, each as if it were the only one.
     others: Vec<Estimator>,
 }
@@ -213,13 +215,24 @@ impl Estimator {
             .map_err(|input| EstimatorError::NoSource { input })?;
         let said = engine.propositions();
         let propositions = said.iter().map(|said| Proposition {
-            rule: said.rule as u32,
-            input: order.get(said.input).copied().unwrap_or_default(),
+            rule: said.place as u32,
+            input: match said.input.checked_sub(order.len()) {
+                None => order.get(said.input).copied().unwrap_or_default(),
+                Some(output) => (profile.inputs.len() + output) as u32,
+            },
             literal: said.literal as u32,
         });
+        let mut rules = Vec::new();
+        for said in said.iter().filter(|_| engine.table().is_none()) {
+            rules.resize(rules.len().max(said.place + 1), 0);
+            if let Some(rule) = rules.get_mut(said.place) {
+                *rule = said.rule as u32;
+            }
+        }
         Ok(Estimator(Arc::new(Compiled {
             propositions: propositions.collect(),
-            terms: said.into_iter().map(|said| said.term).collect(),
+            rules,
+            said,
             others,
             profile: profile.clone(),
             filling: Filling::new(&engine, model, output, &profile.gap)?,
@@ -260,17 +273,35 @@ impl Estimator {
     ) -> Option<Cause> {
         let Memory { scratch, point, .. } = memory;
         self.lookup().reorder(inputs, point)?;
-        let rule = (self.0.engine).raised_by(scratch, point, self.0.output, risk_pct)?;
-        cause(&self.0.propositions, scratch.degrees(), rule, inputs)
+        let engine = &self.0.engine;
+        let propositions = Propositions {
+            all: &self.0.propositions,
+            rules: &self.0.rules,
+        };
+        let risk = (self.0.output, risk_pct);
+        let outputs = engine.output_names().len();
+        propositions.cause(inputs, risk, outputs, |output, asked, pick| {
+            let rule = match asked {
+                Asked::Raises(value) => engine.raised_by(scratch, point, output, value),
+                Asked::Concludes(said) => {
+                    engine.concluded_by(scratch, point, self.0.said.get(said)?)
+                }
+            };
+            pick(rule?, scratch.degrees())
+        })
     }
 
     /// The input and the term, with its hedges, of each proposition of the rules, in the order of
     /// [`Plan::propositions`]: what a [`Cause`] is called.
     pub fn propositions(&self) -> impl ExactSizeIterator<Item = (&str, &str)> {
-        let all = self.0.propositions.iter().zip(&self.0.terms);
-        all.map(|(said, term)| {
-            let input = self.0.profile.inputs.get(said.input as usize);
-            (input.map_or("", |input| input.name.as_str()), term.as_str())
+        let all = self.0.propositions.iter().zip(&self.0.said);
+        all.map(|(said, Said { term, .. })| {
+            let inputs = &self.0.profile.inputs;
+            let name = match (said.input as usize).checked_sub(inputs.len()) {
+                None => inputs.get(said.input as usize).map(|input| &*input.name),
+                Some(output) => self.0.engine.output_names().nth(output),
+            };
+            (name.unwrap_or_default(), term.as_str())
         })
     }
 

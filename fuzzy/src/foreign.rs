@@ -62,7 +62,7 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("coa", &["centroid", "bisector"]),
     ("centerofarea", &["bisector"]),
     ("centreofarea", &["bisector"]),
-    ("cogs", &["weighted_average"]),
+    ("cogs", &["centroid"]),
     ("wtaver", &["weighted_average"]),
     ("wtsum", &["weighted_sum"]),
     ("mom", &["mean_of_maxima"]),

@@ -62,6 +62,7 @@ mod fields;
 mod foreign;
 #[cfg(feature = "alloc")]
 pub mod format;
+mod formula;
 #[cfg(feature = "learn")]
 pub mod learn;
 #[cfg(feature = "alloc")]

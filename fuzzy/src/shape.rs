@@ -21,6 +21,8 @@ mod tests;
 mod validate;
 
 #[cfg(feature = "alloc")]
+use crate::formula::Formula;
+#[cfg(feature = "alloc")]
 pub(crate) use form::{Form, Parts, Role};
 pub use formula::Kind;
 #[cfg(feature = "alloc")]
@@ -236,6 +238,13 @@ pub enum MembershipFunction {
         /// The degree, or `z`.
         value: f64,
     },
+    /// A formula: the degree is its value, cut to [0, 1], with the variable's own name for the value; 0 where it has none. In a
+    /// Takagi-Sugeno output it is `z` itself, over inputs and other outputs.
+    /// fuzzylite's `Function`.
+    Function {
+        /// The formula.
+        formula: Formula,
+    },
     /// Takagi-Sugeno outputs only: `z = constant + sum(coefficient input)`.
     Linear {
         /// A coefficient for each input named; the others count 0.
@@ -246,7 +255,8 @@ pub enum MembershipFunction {
 }
 
 // The name of each shape in a rule set, its parameters from left to right, and a line for the schema. Where all
-// parameters are places, they may be written as a list. `piecewise` and `linear` are written in ways of their own.
+// parameters are places, they may be written as a list. `piecewise`, `function` and `linear` are written in ways of
+// their own.
 #[cfg(feature = "alloc")]
 form::forms! {
     Triangle "triangle" TRIANGLE [left: Ascending, peak: Ascending, right: Ascending]
@@ -295,6 +305,25 @@ form::forms! {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
+    /// The place of a singleton.
+    pub(crate) fn at(&self) -> Option<f64> {
+        match self {
+            MembershipFunction::Singleton { at } => Some(*at),
+            _ => None,
+        }
+    }
+
+    /// The names of the variables whose values it reads: those of a linear function or a formula.
+    pub(crate) fn reads(&self) -> Vec<&str> {
+        match self {
+            MembershipFunction::Linear { coefficients, .. } => {
+                coefficients.iter().map(|(name, _)| &**name).collect()
+            }
+            MembershipFunction::Function { formula } => formula.variables().collect(),
+            _ => Vec::new(),
+        }
+    }
+
     /// The degree of membership of `x`, always in [0, 1] and never NaN.
     ///
     /// The formula of each shape stands at its variant. Everywhere:
@@ -311,6 +340,9 @@ impl MembershipFunction {
         match self {
             MembershipFunction::Piecewise { .. } if x.is_nan() => 0.0,
             MembershipFunction::Piecewise { points } => into_unit(along(points.iter().copied(), x)),
+            MembershipFunction::Function { formula } => {
+                Kind::FUNCTION.membership(&[0.0; 4], formula.code(), x)
+            }
             _ => {
                 let (kind, parameters) = self.kind();
                 kind.membership(&parameters, &[], x)

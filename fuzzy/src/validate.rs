@@ -15,7 +15,7 @@ use crate::{
     defuzzify::Defuzzify,
     diagnostic::{Diagnostic, duplicate, nearest, suggest},
     model::{
-        Defuzzifier, MembershipFunction, Model, NoRuleFires, Output, Rule, Variable,
+        Defuzzifier, Formula, MembershipFunction, Model, NoRuleFires, Output, Rule, Variable,
         chain::circles,
         document::{RuleSpans, Spans, TermSpans, VariableSpans},
     },
@@ -90,7 +90,7 @@ pub fn validate(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     for (i, input) in model.inputs.iter().enumerate() {
         let spans = spans.inputs.get(i).unwrap_or(&no_spans);
         validator.variable(&format!("input `{}`", input.name), input, spans);
-        validator.no_linear_terms(input, spans);
+        validator.terms_are_sets(input, spans);
     }
     if model.outputs.is_empty() {
         validator.findings.push(
@@ -276,16 +276,43 @@ impl<'m> Validator<'m> {
         }
     }
 
-    fn no_linear_terms(&mut self, input: &Variable, spans: &VariableSpans) {
+    /// Terms of an input are no linear functions, and formulas over the input alone.
+    fn terms_are_sets(&mut self, input: &Variable, spans: &VariableSpans) {
         for (i, term) in input.terms.iter().enumerate() {
-            if let MembershipFunction::Linear { .. } = term.membership_function {
-                let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());
-                let message = format!(
-                    "term `{}` of input `{}` is a linear function",
-                    term.name, input.name
+            let no_spans = TermSpans::default();
+            let spans = spans.terms.get(i).unwrap_or(&no_spans);
+            let what = format!("term `{}` of input `{}`", term.name, input.name);
+            match &term.membership_function {
+                MembershipFunction::Linear { .. } => {
+                    let message = format!("{what} is a linear function");
+                    let help = "only outputs may have one; an input needs a membership function such as `triangle`";
+                    self.error("wrong-term", &spans.name, message, help);
+                }
+                MembershipFunction::Function { formula } => {
+                    self.own_formula(&what, input, formula, spans);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A formula that is a fuzzy set reads its own variable alone.
+    fn own_formula(
+        &mut self,
+        what: &str,
+        variable: &Variable,
+        formula: &Formula,
+        spans: &TermSpans,
+    ) {
+        for (i, name) in formula.variables().enumerate() {
+            if name != variable.name {
+                let here = spans.parameters.get(i).unwrap_or(&spans.name);
+                let message = format!("{what}: the formula of a fuzzy set reads `{name}`");
+                let own = &variable.name;
+                let help = format!(
+                    "write `{own}` for the value of the variable; formulas over several variables are for outputs with `weighted_average` or `weighted_sum`"
                 );
-                let help = "only outputs may have one; an input needs a membership function such as `triangle`";
-                self.error("wrong-term", &here, message, help);
+                self.error("wrong-term", here, message, &help);
             }
         }
     }
@@ -348,14 +375,32 @@ impl<'m> Validator<'m> {
                     }
                     self.coefficients(&what, coefficients, spans);
                 }
+                MembershipFunction::Function { formula } if weighted => {
+                    for (i, name) in formula.variables().enumerate() {
+                        self.is_read(name, spans.parameters.get(i).unwrap_or(here));
+                    }
+                }
+                MembershipFunction::Function { formula } if !tsukamoto => {
+                    self.own_formula(&what, &output.variable, formula, spans);
+                }
                 shape if tsukamoto && !shape.is_monotone() => {
                     let message = format!("{what} does not rise or fall all along");
                     let help = "with `tsukamoto` each degree has one place: write `right_shoulder`, `left_shoulder`, `s_shape`, `z_shape`, `sigmoid`, `concave`, `arc` or a monotone `piecewise`";
                     self.error("wrong-term", here, message, help);
                 }
-                MembershipFunction::Singleton { .. } if !weighted => {
-                    let message = format!("{what} is a singleton, which has no area");
-                    self.error("wrong-term", here, message, WEIGHTED);
+                MembershipFunction::Singleton { .. } if !weighted && !output.is_discrete() => {
+                    let message =
+                        format!("{what} is a singleton, which has no area beside fuzzy sets");
+                    let help = "make all terms of the output singletons, or this one a narrow set such as `rectangle`";
+                    self.error("wrong-term", here, message, help);
+                }
+                MembershipFunction::Singleton { .. }
+                    if output.defuzzifier == Defuzzifier::Bisector =>
+                {
+                    let message = format!("{what} is a singleton, which has no area to halve");
+                    let help =
+                        "write `defuzzifier: centroid`, the mean of the places by their degrees";
+                    self.error("wrong-term", here, message, help);
                 }
                 MembershipFunction::Constant { .. } | MembershipFunction::Singleton { .. } => {}
                 shape if weighted => {
@@ -385,16 +430,21 @@ impl<'m> Validator<'m> {
                 // In a rule set this key is the constant part.
                 let message = format!("{what} has a coefficient for an input called `constant`");
                 self.error("wrong-term", here, message, "rename the input");
-            } else if !self.inputs.contains_key(input.as_str())
-                && !self.outputs.contains_key(input.as_str())
-            {
-                let finding = self.unknown_input(input, here);
-                self.findings.push(finding);
+            } else {
+                self.is_read(input, here);
             }
             if !seen.insert(input) {
                 let message = format!("{what} has two coefficients for `{input}`");
                 self.error("duplicate-key", here, message, "keep one of them");
             }
+        }
+    }
+
+    /// What a consequent reads is an input or an output.
+    fn is_read(&mut self, name: &str, here: &Range<usize>) {
+        if !self.inputs.contains_key(name) && !self.outputs.contains_key(name) {
+            let finding = self.unknown_input(name, here);
+            self.findings.push(finding);
         }
     }
 
@@ -405,8 +455,13 @@ impl<'m> Validator<'m> {
         for (i, term) in variable.terms.iter().enumerate() {
             if compiled.is_empty(i) {
                 let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());
+                let lacks = if output.is_discrete() {
+                    "does not lie"
+                } else {
+                    "has no area"
+                };
                 let message = format!(
-                    "term `{}` of {what} has no area within the range [{}, {}]",
+                    "term `{}` of {what} {lacks} within the range [{}, {}]",
                     term.name, variable.low, variable.high
                 );
                 let help = "widen the range or move the term";

@@ -32,7 +32,8 @@ static long tried, accepted;
 static const struct { size_t field, size; } arrays[] = {
     ARRAY(inputs), ARRAY(cuts), ARRAY(starts), ARRAY(lines), ARRAY(curves), ARRAY(points), ARRAY(hedges), ARRAY(axes),
     ARRAY(dimensions), ARRAY(cells), ARRAY(nodes), ARRAY(edges), ARRAY(actions), ARRAY(programs), ARRAY(steps),
-    ARRAY(outputs), ARRAY(pairs), ARRAY(moments), ARRAY(consequents), ARRAY(coefficients), ARRAY(order), ARRAY(channels),
+    ARRAY(outputs), ARRAY(pairs), ARRAY(moments), ARRAY(consequents), ARRAY(coefficients), ARRAY(sets), ARRAY(set_terms),
+    ARRAY(sections), ARRAY(strands), ARRAY(flanks), ARRAY(knots), ARRAY(order), ARRAY(channels),
     ARRAY(sources), ARRAY(coordinates), ARRAY(first_coordinates), ARRAY(values), ARRAY(distances),
 };
 #define ARRAYS (sizeof arrays / sizeof *arrays)

@@ -244,13 +244,42 @@ typedef struct flagred_moment {
 
 typedef struct flagred_consequent {
     double constant;
-    uint32_t first, end;
+    uint32_t first, end, first_code, end_code;
 } flagred_consequent;
 
 typedef struct flagred_coefficient {
     double coefficient;
     uint32_t input;
 } flagred_coefficient;
+
+typedef struct flagred_fuzzy_set {
+    double unit;
+    uint32_t defuzzifier, sum, first_section, end_section, first_term, end_term;
+} flagred_fuzzy_set;
+
+typedef struct flagred_set_term {
+    double highest;
+    uint32_t first_flank, end_flank;
+} flagred_set_term;
+
+typedef struct flagred_section {
+    double from, to;
+    uint32_t first_strand, end_strand;
+} flagred_section;
+
+typedef struct flagred_strand {
+    double left, right, left_tail[2], right_tail[2];
+    uint32_t strength, flank;
+} flagred_strand;
+
+typedef struct flagred_flank {
+    double parameters[4], height, from, to, left, right, area, moment, beyond;
+    uint32_t kind, first_knot, end_knot;
+} flagred_flank;
+
+typedef struct flagred_knot {
+    double x, area, moment;
+} flagred_knot;
 
 typedef struct flagred_channel {
     double window_s, limit;
@@ -325,6 +354,12 @@ struct flagred_plan {
     FLAGRED_ARRAY(flagred_moment, moments);
     FLAGRED_ARRAY(flagred_consequent, consequents);
     FLAGRED_ARRAY(flagred_coefficient, coefficients);
+    FLAGRED_ARRAY(flagred_fuzzy_set, sets);
+    FLAGRED_ARRAY(flagred_set_term, set_terms);
+    FLAGRED_ARRAY(flagred_section, sections);
+    FLAGRED_ARRAY(flagred_strand, strands);
+    FLAGRED_ARRAY(flagred_flank, flanks);
+    FLAGRED_ARRAY(flagred_knot, knots);
     FLAGRED_ARRAY(uint32_t, order);
     FLAGRED_ARRAY(flagred_channel, channels);
     FLAGRED_ARRAY(flagred_source, sources);

@@ -6,8 +6,9 @@ use flagred::{
         self, Proposition,
         table::{
             self, Action, Axis, Block as RuleBlock, Coefficient, Conjunction, Conjunctions,
-            Consequent, Curve, Dimension, Disjunction, Edge, Hedge, Input, Line, Moment, Node,
-            Output, Pair, Point, Program, Sizes, Step, Table,
+            Consequent, Curve, Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot,
+            Line, Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Step,
+            Strand, Table,
         },
     },
     channel::{self, Channel, Motors, Observed, Statistic},

@@ -28,7 +28,7 @@
 use fuzzy::table::{Damaged, Outcome, Scratch, Table};
 
 use crate::{
-    cause::{Cause, cause},
+    cause::{Asked, Cause, Propositions},
     channel::{Channel, Input, Observed, Seen, motors_needed, restart},
     effort::ROLL_PITCH_YAW_THRUST,
     follower::{Follower, Room, Settings},
@@ -179,9 +179,19 @@ impl Plan<'_> {
         scratch: &mut Scratch<'_>,
     ) -> Option<Cause> {
         self.lookup().reorder(inputs, point)?;
-        let output = self.output as usize;
-        let rule = self.table.raised_by(scratch, point, output, risk_pct)?;
-        cause(self.propositions, scratch.degrees, rule, inputs)
+        let propositions = Propositions {
+            all: self.propositions,
+            rules: &[],
+        };
+        let risk = (self.output as usize, risk_pct);
+        let outputs = self.table.outputs.len();
+        propositions.cause(inputs, risk, outputs, |output, asked, pick| match asked {
+            Asked::Raises(value) => {
+                let rule = self.table.raised_by(scratch, point, output, value)?;
+                pick(rule, scratch.degrees)
+            }
+            Asked::Concludes(_) => None,
+        })
     }
 
     fn lookup(&self) -> Lookup<'_> {

@@ -146,6 +146,49 @@ inputs:
         }
     }
 
+    /// The risk is about a strain, and the strain about the inputs. What votes for little strain is stronger.
+    #[test]
+    fn the_cause_is_found_through_a_chain() {
+        let rules = "
+fuzzy: 1
+name: chained
+inputs:
+  shake: {range: [0, 1], partition: {calm: 0, violent: 1}}
+  at_limit: {range: [0, 1], partition: {none: 0, much: 1}}
+outputs:
+  strain: {range: [0, 10], partition: [low, high]}
+  risk: {range: [0, 100], partition: [low, high]}
+operators: {and: product, or: maximum, implication: product, aggregation: sum}
+rules:
+  - IF at_limit IS much THEN risk IS high
+  - IF strain IS somewhat high AND at_limit IS none THEN risk IS high
+  - IF at_limit IS none AND strain IS low THEN risk IS low
+  - IF at_limit IS none THEN strain IS low WITH 0.95
+  - IF shake IS violent THEN strain IS high WITH 0.9
+  - IF shake IS calm THEN strain IS low
+";
+        let rules = fuzzy::yaml::parse(rules).unwrap().model;
+        let estimator = Estimator::new(estimator().profile(), &rules).unwrap();
+        let cause = |inputs: [f64; 2]| {
+            let risk_pct = estimator.at(&inputs).unwrap().risk_pct;
+            let found = estimator.cause(&inputs, risk_pct, &mut Memory::of(&estimator));
+            let cause = verdict::Finding {
+                cause: found,
+                ..verdict::Finding::NONE
+            };
+            let cause = Finding::new(cause, &estimator).cause.unwrap();
+            format!("{cause} {}, rule {}", cause.value, cause.rule)
+        };
+        assert_eq!(cause([0.0, 0.9]), "shake violent 0.9, rule 4");
+        assert_eq!(cause([0.9, 0.1]), "at_limit much 0.9, rule 0");
+        assert_eq!(cause([0.0, 0.0]), "shake calm 0, rule 5");
+        let all: Vec<String> = estimator
+            .propositions()
+            .map(|(input, term)| format!("{input} {term}"))
+            .collect();
+        assert!(all.contains(&"strain somewhat high".into()), "{all:?}");
+    }
+
     /// A hedge, and an alternative that does not hold.
     #[test]
     fn a_term_is_told_with_its_hedges_and_only_where_it_holds() {

@@ -32,7 +32,7 @@ pub(super) fn marks(shape: &MembershipFunction) -> Vec<f64> {
     match shape.parts() {
         Parts::Fixed(_, parameters) => parameters,
         Parts::Points(points) => points.iter().map(|&(x, _)| x).collect(),
-        Parts::Linear(..) => Vec::new(),
+        Parts::Formula(_) | Parts::Linear(..) => Vec::new(),
     }
 }
 

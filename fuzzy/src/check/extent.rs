@@ -15,7 +15,7 @@ const STRENGTHS: [f64; 7] = [1.0, 0.9, 0.75, 0.5, 0.25, 0.1, 0.01];
 ///
 /// Where terms are a partition, several consequents together lie between these values. In general they can go a
 /// little beyond. The value where no rule fires counts too. `None` where the model does not compile, has no such output or
-/// no rule for it, and where values have no bound of this kind: of linear terms, of the weighted sum, and of Tsukamoto's places.
+/// no rule for it, and where values have no bound of this kind: of linear terms and formulas, of the weighted sum, and of Tsukamoto's places.
 ///
 /// # Example: the centroid of the last term is not the end of the range
 /// ```
@@ -46,7 +46,11 @@ pub fn extent(model: &Model, output: &str) -> Option<(f64, f64)> {
     };
     let terms = found.variable.terms.iter();
     let terms: Vec<_> = terms.filter(|term| concluded(&term.name)).collect();
-    let is_linear = |f: &MembershipFunction| matches!(f, MembershipFunction::Linear { .. });
+    let is_linear = |f: &MembershipFunction| match f {
+        MembershipFunction::Linear { .. } => true,
+        MembershipFunction::Function { .. } => found.defuzzifier.takes_numbers(),
+        _ => false,
+    };
     if terms
         .iter()
         .any(|term| is_linear(&term.membership_function))

@@ -46,7 +46,8 @@ pub(super) fn equal(variable: &Variable) -> Vec<EqualTerms> {
     let values = axis::values(variable);
     let outside = outside(variable);
     let same = |a: &Term, b: &Term| {
-        let sets = is_set(&a.membership_function) && is_set(&b.membership_function);
+        let sets =
+            is_set(&a.membership_function, variable) && is_set(&b.membership_function, variable);
         let equal = || values.iter().all(|&x| a.membership(x) == b.membership(x));
         (a.membership_function == b.membership_function && a.height == b.height)
             || (sets && equal())
@@ -146,7 +147,7 @@ pub(super) fn unreachable(model: &Model, never_firing: &[usize]) -> Vec<TermOf> 
 pub(super) fn is_outside(variable: &Variable, term: &str) -> bool {
     let values = axis::values(variable);
     let mut terms = variable.terms.iter().filter(|one| one.name == term);
-    terms.any(|term| is_set(&term.membership_function) && is_zero(term, &values))
+    terms.any(|term| is_set(&term.membership_function, variable) && is_zero(term, &values))
 }
 
 fn is_zero(term: &Term, values: &[f64]) -> bool {
@@ -164,13 +165,14 @@ fn outside(variable: &Variable) -> Vec<usize> {
     let terms = variable.terms.iter().enumerate();
     // A linear or constant function of a weighted output is no fuzzy set, and a shape that could not be read is none yet.
     terms
-        .filter(|(_, term)| is_set(&term.membership_function) && is_zero(term, &values))
+        .filter(|(_, term)| is_set(&term.membership_function, variable) && is_zero(term, &values))
         .map(|(i, _)| i)
         .collect()
 }
 
-fn is_set(shape: &MembershipFunction) -> bool {
+fn is_set(shape: &MembershipFunction, variable: &Variable) -> bool {
     match shape {
+        MembershipFunction::Function { formula } => formula.is_over(&variable.name),
         MembershipFunction::Linear { .. } | MembershipFunction::Constant { .. } => false,
         MembershipFunction::Piecewise { points } => !points.is_empty(),
         _ => true,

@@ -199,10 +199,14 @@ fn ranks(variable: &Variable) -> Vec<usize> {
         .collect()
 }
 
-/// The middle of the values at which the degree of a term is highest; the value of a constant; `None` for a linear function.
+/// The middle of the values at which the degree of a term is highest; the value of a constant; `None` for a linear function
+/// or a formula over inputs.
 fn middle(term: &Term, variable: &Variable) -> Option<f64> {
-    match term.membership_function {
-        MembershipFunction::Constant { value } => return Some(value),
+    match &term.membership_function {
+        MembershipFunction::Constant { value } => return Some(*value),
+        MembershipFunction::Function { formula } if !formula.is_over(&variable.name) => {
+            return None;
+        }
         MembershipFunction::Linear { .. } => return None,
         _ => {}
     }

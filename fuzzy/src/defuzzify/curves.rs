@@ -3,10 +3,14 @@
 
 use alloc::vec::Vec;
 
-use super::piece::{Piece, root};
+use super::piece::Piece;
 use super::polyline::Workspace;
 use super::{Joint, Strengths};
-use crate::model::{Aggregation, Implication, Term};
+use crate::model::{Aggregation, Implication, MembershipFunction, Term};
+use crate::table::numeric::root;
+
+/// A formula may have a kink anywhere: it is integrated between so many even cuts. What is narrower may be missed.
+const EVENLY: u32 = 256;
 
 /// The terms of one output and the cuts of its range.
 #[derive(Debug, Clone)]
@@ -20,7 +24,12 @@ impl Curves {
     pub(crate) fn new(terms: &[Term], low: f64, high: f64) -> Self {
         let mut cuts = Vec::from([(low, None), (high, None)]);
         for (index, term) in terms.iter().enumerate() {
-            for x in term.membership_function.cuts() {
+            let evenly = match term.membership_function {
+                MembershipFunction::Function { .. } => EVENLY,
+                _ => 0,
+            };
+            let even = (1..evenly).map(|i| low + (high - low) * (f64::from(i) / f64::from(evenly)));
+            for x in term.membership_function.cuts().into_iter().chain(even) {
                 if low < x && x < high {
                     cuts.push((x, Some(index)));
                 }

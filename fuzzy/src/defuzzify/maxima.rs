@@ -1,7 +1,8 @@
 //! The maxima of an aggregated set, from its pieces.
 
-use super::piece::{Piece, root};
+use super::piece::Piece;
 use crate::model::Defuzzifier;
+use crate::table::{SetDefuzzifier, numeric::root, set::Maxima as Values};
 
 /// Degrees this close to the highest, relative to it, count as the highest. Rounding changes a plateau made of two slopes by
 /// less.
@@ -26,14 +27,7 @@ impl Highest {
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Maxima {
     least_degree: f64,
-    smallest: Option<f64>,
-    largest: f64,
-    /// The length of all plateaus, and the mean of the values on them.
-    length: f64,
-    mean_of_plateaus: f64,
-    /// The number of all points, and their mean.
-    points: f64,
-    mean_of_points: f64,
+    values: Values,
     /// The end of the piece before.
     before: End,
 }
@@ -90,14 +84,8 @@ impl Maxima {
                 self.point(piece.from);
             }
         }
-        let width = piece.to - piece.from;
-        if is_plateau && width > 0.0 {
-            self.smallest = self.smallest.or(Some(piece.from));
-            self.largest = piece.to;
-            self.length += width;
-            // Sums of lengths times values are no numbers where the range is very wide or narrow.
-            let middle = piece.from + 0.5 * width;
-            self.mean_of_plateaus += (middle - self.mean_of_plateaus) * (width / self.length);
+        if is_plateau {
+            self.values.plateau(piece.from, piece.to);
         }
         if let Some((first, last, count)) = inside {
             self.point(first);
@@ -121,21 +109,16 @@ impl Maxima {
     }
 
     fn point(&mut self, x: f64) {
-        self.smallest = self.smallest.or(Some(x));
-        self.largest = x;
-        self.points += 1.0;
-        self.mean_of_points += (x - self.mean_of_points) / self.points;
+        self.values.point(x);
     }
 
     /// The value; `None` of a set that is 0 everywhere.
     pub(crate) fn value(mut self, defuzzifier: Defuzzifier) -> Option<f64> {
         self.close(false);
-        let smallest = self.smallest?;
-        Some(match defuzzifier {
-            Defuzzifier::SmallestOfMaxima => smallest,
-            Defuzzifier::LargestOfMaxima => self.largest,
-            _ if self.length > 0.0 => self.mean_of_plateaus,
-            _ => self.mean_of_points,
+        self.values.value(match defuzzifier {
+            Defuzzifier::SmallestOfMaxima => SetDefuzzifier::SMALLEST_OF_MAXIMA,
+            Defuzzifier::LargestOfMaxima => SetDefuzzifier::LARGEST_OF_MAXIMA,
+            _ => SetDefuzzifier::MEAN_OF_MAXIMA,
         })
     }
 }
@@ -147,9 +130,18 @@ const WINDOWS: usize = 8;
 /// whether the curve rises at its beginning and towards its end; `None` of a straight piece.
 fn peaks(piece: &Piece<'_>, above: f64, visit: &mut dyn FnMut(f64, f64)) -> Option<(bool, bool)> {
     let curve = piece.curve?;
-    let mut found = |part: f64| {
+    Some(turns(curve, 0.9 * above, &mut |part| {
         visit(piece.from + (piece.to - piece.from) * part, curve(part));
-    };
+    }))
+}
+
+/// Calls `visit` with each place inside [0, 1] at which a smooth function has a maximum, unless it is below `above` all around.
+/// Returns whether it rises at 0 and towards 1.
+pub(super) fn turns(
+    curve: &dyn Fn(f64) -> f64,
+    above: f64,
+    visit: &mut dyn FnMut(f64),
+) -> (bool, bool) {
     let half = 0.5 / WINDOWS as f64;
     let (mut first, mut last) = (0.0, 0.0);
     for window in 0..WINDOWS {
@@ -159,14 +151,14 @@ fn peaks(piece: &Piece<'_>, above: f64, visit: &mut dyn FnMut(f64, f64)) -> Opti
         if window == 0 {
             first = left;
         } else if last > 0.0 && left <= 0.0 {
-            found(middle - half);
+            visit(middle - half);
         }
-        if left > 0.0 && right < 0.0 && slopes.highest > 0.9 * above {
-            found(middle + half * root(-1.0, 1.0, |t| slopes.at(t)));
+        if left > 0.0 && right < 0.0 && slopes.highest > above {
+            visit(middle + half * root(-1.0, 1.0, |t| slopes.at(t)));
         }
         last = right;
     }
-    Some((first > 0.0, last > 0.0))
+    (first > 0.0, last > 0.0)
 }
 
 /// The slope of a smooth function on [-1, 1]: that of its interpolation at Chebyshev's nodes.
@@ -184,7 +176,10 @@ impl Slopes {
         let step = core::f64::consts::PI / (Self::NODES - 1) as f64;
         let nodes = core::array::from_fn(|i| -libm::cos(i as f64 * step));
         let mut differences = nodes.map(f);
-        let highest = differences.iter().fold(0.0, |most: f64, y| most.max(*y));
+        let highest = differences
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
         for order in 1..Self::NODES {
             for i in (order..Self::NODES).rev() {
                 differences[i] =

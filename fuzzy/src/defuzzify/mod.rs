@@ -2,7 +2,9 @@
 
 use alloc::vec::Vec;
 
-use crate::model::{Aggregation, Defuzzifier, Implication, Operators, Output, Sampling, Term};
+use crate::model::{
+    Aggregation, Defuzzifier, Implication, Operators, Output, Sampling, Term, Variable,
+};
 use crate::table::Moment;
 use crate::table::operators::{larger, smaller};
 use curves::Curves;
@@ -10,6 +12,8 @@ use maxima::{Highest, Maxima};
 pub(crate) use partition::Partition;
 use piece::{Integrals, Piece, unit};
 use polyline::{Polylines, Workspace};
+pub(crate) use prepared::Prepared;
+use singletons::Singletons;
 use weighted::Consequents;
 
 mod curves;
@@ -17,7 +21,9 @@ mod maxima;
 mod partition;
 mod piece;
 pub(crate) mod polyline;
+mod prepared;
 mod sampled;
+mod singletons;
 pub(crate) mod weighted;
 
 /// The operators that activate and aggregate consequents.
@@ -73,6 +79,10 @@ pub(crate) enum Method {
     Partition(Partition),
     Curves(Curves),
     Sampled(Sampling, Curves),
+    /// All terms are singletons.
+    Singletons(Singletons),
+    /// What does not depend on the inputs is computed.
+    Prepared(Prepared),
     /// The centroid of a sum of products: the area and moment of each term at a firing strength of 1.
     Moments(Vec<Moment>),
     /// Takagi-Sugeno.
@@ -109,6 +119,47 @@ impl Defuzzifier {
     }
 }
 
+impl Method {
+    /// The fastest that is exact.
+    fn of(output: &Output, joint: Joint) -> Self {
+        let Variable {
+            low, high, terms, ..
+        } = &output.variable;
+        let (low, high) = (*low, *high);
+        if let Some(singletons) = Singletons::new(output) {
+            return Method::Singletons(singletons);
+        }
+        if let Some(sampling) = output.samples {
+            return Method::Sampled(sampling, Curves::new(terms, low, high));
+        }
+        let lines = Polylines::new(terms, low, high).filter(|_| Polylines::can(joint));
+        if output.defuzzifier == Defuzzifier::Centroid
+            && joint.implication == Implication::Minimum
+            && joint.aggregation == Aggregation::Maximum
+            && let Some(lines) = &lines
+        {
+            let origin = low + 0.5 * (high - low);
+            let partition = Partition::new(lines, terms.len(), origin, unit(high - low));
+            if let Some(partition) = partition {
+                return Method::Partition(partition);
+            }
+        }
+        let prepared = Prepared::new(terms, (low, high), joint, output.defuzzifier);
+        match (prepared, lines) {
+            (Some(prepared), _)
+                if output.defuzzifier == Defuzzifier::Centroid
+                    && joint.implication == Implication::Product
+                    && joint.aggregation == Aggregation::Sum =>
+            {
+                Method::Moments(prepared.moments(unit(high - low)))
+            }
+            (Some(prepared), _) => Method::Prepared(prepared),
+            (None, Some(lines)) => Method::Lines(lines),
+            (None, None) => Method::Curves(Curves::new(terms, low, high)),
+        }
+    }
+}
+
 impl Defuzzify {
     /// Compiles a Mamdani output.
     pub(crate) fn fuzzy(output: &Output, operators: Operators) -> Self {
@@ -118,44 +169,13 @@ impl Defuzzify {
             implication: operators.implication,
             aggregation: operators.aggregation,
         };
-        let curves = || Curves::new(&variable.terms, low, high);
-        let method = match output.samples {
-            Some(sampling) => Method::Sampled(sampling, curves()),
-            None => Polylines::new(&variable.terms, low, high)
-                .filter(|_| Polylines::can(joint))
-                .map_or_else(|| Method::Curves(curves()), Method::Lines),
-        };
-        let mut compiled = Defuzzify {
+        Defuzzify {
             low,
             high,
             defuzzifier: output.defuzzifier,
             joint,
-            method,
-        };
-        if output.defuzzifier == Defuzzifier::Centroid && output.samples.is_none() {
-            let terms = variable.terms.len();
-            let closed = match (
-                &compiled.method,
-                operators.implication,
-                operators.aggregation,
-            ) {
-                (_, Implication::Product, Aggregation::Sum) => {
-                    Some(Method::Moments(compiled.moments(terms)))
-                }
-                (Method::Lines(lines), Implication::Minimum, Aggregation::Maximum) => {
-                    Partition::new(
-                        lines,
-                        terms,
-                        compiled.middle(),
-                        unit(compiled.high - compiled.low),
-                    )
-                    .map(Method::Partition)
-                }
-                _ => None,
-            };
-            compiled.method = closed.unwrap_or(compiled.method);
+            method: Method::of(output, joint),
         }
-        compiled
     }
 
     /// Compiles a Takagi-Sugeno or Tsukamoto output.
@@ -170,27 +190,6 @@ impl Defuzzify {
             },
             method,
         }
-    }
-
-    /// The area and moment of each term alone at a firing strength of 1.
-    fn moments(&self, terms: usize) -> Vec<Moment> {
-        let offsets: Vec<usize> = (0..=terms).collect();
-        let mut workspace = Workspace::new(terms, self.cuts());
-        let mut moments = Vec::new();
-        for term in 0..terms {
-            let strengths: Vec<f64> = (0..terms).map(|i| f64::from(i == term)).collect();
-            let strengths = Strengths {
-                strengths: &strengths,
-                offsets: &offsets,
-            };
-            let mut integrals = self.integrals();
-            self.pieces(strengths, &mut workspace, &mut |piece| integrals.add(piece));
-            moments.push(Moment {
-                area: integrals.area,
-                moment: integrals.moment,
-            });
-        }
-        moments
     }
 
     /// The closed form of the centroid over a partition.
@@ -222,7 +221,9 @@ impl Defuzzify {
             Method::Lines(lines) => lines.is_empty(term),
             Method::Curves(curves) | Method::Sampled(_, curves) => curves.is_empty(term),
             Method::Partition(partition) => partition.is_empty(term),
+            Method::Prepared(prepared) => prepared.is_empty(term),
             Method::Moments(moments) => moments.get(term).is_none_or(|m| m.area <= 0.0),
+            Method::Singletons(singletons) => singletons.is_empty(term),
             Method::Weighted(_) | Method::Places(_) => false,
         }
     }
@@ -238,9 +239,14 @@ impl Defuzzify {
                 })
             }
             Method::Lines(_) | Method::Curves(_) => self.exact(strengths, workspace),
-            Method::Partition(_) | Method::Moments(_) | Method::Weighted(_) | Method::Places(_) => {
-                None
+            Method::Singletons(singletons) => {
+                singletons.value(strengths, self.joint, self.defuzzifier)
             }
+            Method::Partition(_)
+            | Method::Prepared(_)
+            | Method::Moments(_)
+            | Method::Weighted(_)
+            | Method::Places(_) => None,
         }?;
         Some(larger(self.low, smaller(self.high, value)))
     }
@@ -282,6 +288,10 @@ impl Defuzzify {
         }
     }
 
+    pub(crate) fn implication(&self) -> Implication {
+        self.joint.implication
+    }
+
     /// The middle of the range.
     pub(crate) fn middle(&self) -> f64 {
         self.low + 0.5 * (self.high - self.low)
@@ -301,7 +311,9 @@ impl Defuzzify {
             Method::Lines(lines) => lines.pieces(strengths, self.joint, workspace, visit),
             Method::Curves(curves) => curves.pieces(strengths, self.joint, workspace, visit),
             Method::Partition(_)
+            | Method::Prepared(_)
             | Method::Sampled(..)
+            | Method::Singletons(_)
             | Method::Moments(_)
             | Method::Weighted(_)
             | Method::Places(_) => {}

@@ -1,6 +1,10 @@
 //! Stretches of an aggregated set, and integrals over them.
 
-use crate::table::{centroid, operators::larger};
+use crate::table::{
+    centroid,
+    numeric::{gauss, root},
+    operators::larger,
+};
 
 /// A stretch on which the aggregated set is a straight line or a smooth curve.
 pub(crate) struct Piece<'a> {
@@ -34,6 +38,11 @@ pub(crate) fn unit(width: f64) -> f64 {
     if (1e-100..1e100).contains(&width) {
         return 1.0;
     }
+    power_of_two(width)
+}
+
+/// The largest power of two up to a width.
+pub(super) fn power_of_two(width: f64) -> f64 {
     f64::from_bits(width.to_bits() & f64::INFINITY.to_bits())
 }
 
@@ -102,15 +111,6 @@ impl Piece<'_> {
     }
 }
 
-/// Gauss-Legendre with 8 nodes on [-1, 1]: exact for polynomials up to degree 15.
-/// Half of the nodes; the others are their mirror images. (Abramowitz and Stegun, table 25.4.)
-const NODES: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
-    (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
-];
-
 /// The most halvings of a stretch, and of all stretches of a piece. They suffice to close in on several missed kinks, and
 /// end the search where rounding keeps halves from agreeing.
 const DEEPEST: usize = 48;
@@ -124,16 +124,17 @@ const AGREEMENT: f64 = 1e-13;
 /// they agree. `known` is the area of the rest of the set: the error need not be far below it.
 fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
     let mut stack = [(0.0, 0.0, 0.0, 0.0); DEEPEST + 1];
-    let (whole, moment) = gauss(curve, 0.0, end);
+    let (whole, moment) = gauss(curve, 0.0, end, 0.0);
     stack[0] = (0.0, end, whole, moment);
     let (mut open, mut halvings) = (1, 0);
     let (mut sum, mut sum_of_moments) = (0.0, 0.0);
     while open > 0 {
         open -= 1;
         let (a, b, area, moment) = stack[open];
-        let middle = 0.5 * (a + b);
-        let left = gauss(curve, a, middle);
-        let right = gauss(curve, middle, b);
+        // Not in the middle: a symmetric kink there would go unseen.
+        let middle = a + 0.43 * (b - a);
+        let left = gauss(curve, a, middle, 0.0);
+        let right = gauss(curve, middle, b, 0.0);
         let (halves, moments) = (left.0 + right.0, left.1 + right.1);
         let allowed = AGREEMENT * (known + larger(whole, sum + halves));
         let agree = libm::fabs(halves - area) <= allowed && libm::fabs(moments - moment) <= allowed;
@@ -148,53 +149,6 @@ fn integrate(curve: &dyn Fn(f64) -> f64, end: f64, known: f64) -> (f64, f64) {
         }
     }
     (sum, sum_of_moments)
-}
-
-fn gauss(curve: &dyn Fn(f64) -> f64, from: f64, to: f64) -> (f64, f64) {
-    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let (mut area, mut moment) = (0.0, 0.0);
-    for (node, weight) in NODES {
-        let (left, right) = (curve(middle - half * node), curve(middle + half * node));
-        area += weight * (left + right);
-        moment += weight * node * (right - left);
-    }
-    (half * area, half * (middle * area + half * moment))
-}
-
-/// The root of a function that changes sign between `a` and `b`: bisection with regula falsi (Illinois), to the last digit.
-pub(crate) fn root(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let (mut a, mut b) = (a, b);
-    let (mut fa, mut fb) = (f(a), f(b));
-    let rising = fb > fa;
-    for step in 0..200 {
-        let guess = b - fb * (b - a) / (fb - fa);
-        let middle = 0.5 * (a + b);
-        // Every third step halves, so that a flat function cannot stall the search.
-        let x = if step % 3 != 2 && guess > a && guess < b {
-            guess
-        } else {
-            middle
-        };
-        if x <= a || x >= b {
-            break;
-        }
-        let fx = f(x);
-        if fx == 0.0 {
-            return x;
-        }
-        if (fx > 0.0) == rising {
-            if (b - x) < 0.5 * (b - a) {
-                fa *= 0.5;
-            }
-            (b, fb) = (x, fx);
-        } else {
-            if (x - a) < 0.5 * (b - a) {
-                fb *= 0.5;
-            }
-            (a, fa) = (x, fx);
-        }
-    }
-    0.5 * (a + b)
 }
 
 #[cfg(test)]
@@ -261,12 +215,5 @@ mod tests {
         let area = curve(0.0, 1.0, &counted).area();
         assert!((0.3..0.7).contains(&area), "{area}");
         assert!(counter.get() < 50 * MOST_HALVINGS, "{}", counter.get());
-    }
-
-    #[test]
-    fn roots_to_the_last_digit() {
-        assert!((root(0.0, 2.0, |x| x * x - 2.0) - 2f64.sqrt()).abs() < 1e-15);
-        assert!((root(0.0, 1.0, |x| 0.3 - x) - 0.3).abs() < 1e-15);
-        assert!((root(0.0, 1.0, |x| (x - 0.7).powi(9)) - 0.7).abs() < 1e-8);
     }
 }

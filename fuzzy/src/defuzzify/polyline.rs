@@ -362,7 +362,7 @@ fn upper_envelope(segments: &[Segment], stretch: Stretch, visit: &mut dyn FnMut(
 }
 
 /// The degrees of a polyline just inside the ends of an interval without corners.
-fn limits(corners: &[(f64, f64)], from: f64, to: f64) -> (f64, f64) {
+pub(super) fn limits(corners: &[(f64, f64)], from: f64, to: f64) -> (f64, f64) {
     let mut before: Option<(f64, f64)> = None;
     for &corner in corners {
         if corner.0 >= to {

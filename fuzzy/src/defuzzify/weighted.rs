@@ -3,13 +3,14 @@
 use alloc::vec::Vec;
 
 use crate::model::MembershipFunction;
-use crate::table::{Coefficient, Consequent};
+use crate::table::{Coefficient, Consequent, Point};
 
-/// The consequents of the terms of an output, with spans in their own coefficients.
+/// The consequents of the terms of an output, with spans in their own coefficients and code.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Consequents {
     pub(crate) consequents: Vec<Consequent>,
     pub(crate) coefficients: Vec<Coefficient>,
+    pub(crate) code: Vec<Point>,
 }
 
 impl Consequents {
@@ -19,10 +20,10 @@ impl Consequents {
         shape: &MembershipFunction,
         input: impl Fn(&str) -> Option<usize>,
     ) {
-        let first = self.coefficients.len();
+        let (first, first_code) = (self.coefficients.len(), self.code.len());
         let constant = match shape {
             MembershipFunction::Constant { value: constant }
-            | MembershipFunction::Singleton { at: constant } => constant,
+            | MembershipFunction::Singleton { at: constant } => *constant,
             MembershipFunction::Linear {
                 coefficients,
                 constant,
@@ -36,14 +37,20 @@ impl Consequents {
                 }
                 // By input, so that the order in the text does not change a bit of the sum.
                 self.coefficients[first..].sort_by_key(|coefficient| coefficient.input);
-                constant
+                *constant
+            }
+            MembershipFunction::Function { formula } => {
+                self.code.extend(formula.code_with(input));
+                0.0
             }
             _ => return,
         };
         self.consequents.push(Consequent {
-            constant: *constant,
+            constant,
             first: first as u32,
             end: self.coefficients.len() as u32,
+            first_code: first_code as u32,
+            end_code: self.code.len() as u32,
         });
     }
 }

@@ -82,7 +82,7 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
             let mut rules = explanation.rules.iter();
             distinct(rules.position(|rule| rule.rule == share.rule).unwrap_or(0))
         };
-        if written.defuzzifier.is_weighted() {
+        if written.defuzzifier.is_weighted() || written.is_discrete() {
             let numbers = output.rules.iter();
             let numbers = numbers.filter_map(|rule| {
                 let text = format!("rule {}: {}", rule.rule + 1, short(rule.value?));

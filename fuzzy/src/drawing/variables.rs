@@ -40,7 +40,7 @@ pub fn variables_svg(model: &Model, curves: &[Slice]) -> String {
     for (i, output) in model.outputs.iter().enumerate() {
         let frame = frame(model.inputs.len() + i, FRAME);
         title(&mut sheet, &frame, &heading(&output.variable));
-        if output.defuzzifier.takes_numbers() {
+        if output.defuzzifier.takes_numbers() || output.is_discrete() {
             let numbers: Vec<Number> = numbers(output);
             sticks(&mut sheet, &frame, &output.variable, &numbers);
         } else {
@@ -61,7 +61,7 @@ pub fn variables_svg(model: &Model, curves: &[Slice]) -> String {
 fn numbers(output: &Output) -> Vec<Number> {
     let terms = output.variable.terms.iter().enumerate();
     let numbers = terms.filter_map(|(i, term)| {
-        let text = formula(term)?;
+        let text = formula(term, &output.variable)?;
         Some(match term.membership_function {
             MembershipFunction::Constant { value: at } | MembershipFunction::Singleton { at } => {
                 (at, 1.0, distinct(i), text)
@@ -73,8 +73,11 @@ fn numbers(output: &Output) -> Vec<Number> {
 }
 
 /// `fast = 0.1 heat + 3`; `None` for a fuzzy set.
-fn formula(term: &Term) -> Option<String> {
+fn formula(term: &Term, variable: &Variable) -> Option<String> {
     let value = match &term.membership_function {
+        MembershipFunction::Function { formula } if !formula.is_over(&variable.name) => {
+            formula.to_string()
+        }
         MembershipFunction::Constant { value: at } | MembershipFunction::Singleton { at } => {
             short(*at)
         }
@@ -111,7 +114,10 @@ pub fn variables_text(
             visible(&titled(&variable.name, variable.unit.as_deref()))
         );
         let x = Scale::new(variable.low, variable.high);
-        let sets = variable.terms.iter().filter(|term| formula(term).is_none());
+        let sets = variable
+            .terms
+            .iter()
+            .filter(|term| formula(term, variable).is_none());
         let sets: Vec<&Term> = sets.collect();
         if !sets.is_empty() {
             let degree = |i: usize, column: usize| {
@@ -124,7 +130,11 @@ pub fn variables_text(
             let mark = paint(mark(i), Some(distinct_line(i)));
             text += &format!("  {mark} {}\n", visible(&term.name));
         }
-        for formula in variable.terms.iter().filter_map(formula) {
+        for formula in variable
+            .terms
+            .iter()
+            .filter_map(|term| formula(term, variable))
+        {
             text += &format!("  {}\n", visible(&formula));
         }
     }

@@ -5,12 +5,14 @@ use alloc::vec::Vec;
 use super::literal::Literals;
 use super::rules::{Draft, Firing};
 use super::{CompiledOutput, Input as Range};
-use crate::defuzzify::Method;
-use crate::model::{Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires, Term};
+use crate::defuzzify::{Method, Prepared};
+use crate::model::{
+    Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, NoRuleFires, Term,
+};
 use crate::table::{
     Action, Axis, Block, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge,
-    Hedge, Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step, Table, arrays,
-    arrays_from_fields,
+    Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair, Point, Program, Section,
+    SetTerm, Sizes, Step, Strand, Table, arrays, arrays_from_fields,
 };
 
 macro_rules! define {
@@ -111,8 +113,12 @@ impl OwnedTable {
     fn curve(&mut self, index: u32, term: &Term, hedges: &[Hedge]) {
         let (first_point, first_hedge) = (self.points.len() as u32, self.hedges.len() as u32);
         let (kind, parameters) = term.membership_function.kind();
-        if let MembershipFunction::Piecewise { points } = &term.membership_function {
-            self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
+        match &term.membership_function {
+            MembershipFunction::Piecewise { points } => {
+                self.points.extend(points.iter().map(|(x, y)| [*x, *y]));
+            }
+            MembershipFunction::Function { formula } => self.points.extend(formula.code()),
+            _ => {}
         }
         self.hedges.extend(hedges);
         self.curves.push(Curve {
@@ -130,13 +136,20 @@ impl OwnedTable {
     fn output(&mut self, output: &CompiledOutput) {
         let defuzzify = &output.defuzzify;
         let (form, (first, end)) = match &defuzzify.method {
-            Method::Lines(_) | Method::Curves(_) | Method::Sampled(..) => {
+            Method::Lines(_) | Method::Curves(_) | Method::Sampled(..) | Method::Singletons(_) => {
                 (ClosedForm::NONE, (0, 0))
             }
             Method::Partition(partition) => (
                 ClosedForm::PARTITION,
                 extend(&mut self.pairs, partition.pairs()),
             ),
+            Method::Prepared(prepared) => {
+                let form = match defuzzify.implication() {
+                    Implication::Product => ClosedForm::SCALED,
+                    _ => ClosedForm::CUT,
+                };
+                (form, self.set(prepared, &output.offsets))
+            }
             Method::Moments(moments) => (ClosedForm::MOMENTS, extend(&mut self.moments, moments)),
             Method::Places(terms) => {
                 let first = self.curves.len() as u32;
@@ -150,10 +163,13 @@ impl OwnedTable {
             }
             Method::Weighted(weighted) => {
                 let (first, _) = extend(&mut self.coefficients, &weighted.coefficients);
+                let (first_code, _) = extend(&mut self.points, &weighted.code);
                 let mut consequents = weighted.consequents.clone();
                 for consequent in &mut consequents {
                     consequent.first += first;
                     consequent.end += first;
+                    consequent.first_code += first_code;
+                    consequent.end_code += first_code;
                 }
                 let form = match defuzzify.defuzzifier {
                     Defuzzifier::WeightedSum => ClosedForm::WEIGHTED_SUM,
@@ -178,6 +194,50 @@ impl OwnedTable {
             end_strength: output.strengths.end as u32,
             clamps: u32::from(output.clamps),
         });
+    }
+}
+
+impl OwnedTable {
+    /// Adds a prepared set whose term k has the firing strengths `offsets[k]..offsets[k + 1]`.
+    fn set(&mut self, prepared: &Prepared, offsets: &[usize]) -> (u32, u32) {
+        let (first_knot, first_flank) = (self.knots.len() as u32, self.flanks.len() as u32);
+        let (first_strand, first_term) = (self.strands.len() as u32, self.set_terms.len() as u32);
+        self.knots.extend(&prepared.knots);
+        self.flanks
+            .extend(prepared.flanks.iter().map(|flank| Flank {
+                first_knot: flank.first_knot + first_knot,
+                end_knot: flank.end_knot + first_knot,
+                ..*flank
+            }));
+        self.strands
+            .extend(prepared.strands.iter().map(|strand| Strand {
+                flank: strand.flank + first_flank,
+                ..*strand
+            }));
+        let ends = offsets.iter().zip(offsets.iter().skip(1));
+        for (term, (first, end)) in prepared.terms.iter().zip(ends) {
+            let term = SetTerm {
+                first_flank: term.first_flank + first_flank,
+                end_flank: term.end_flank + first_flank,
+                ..*term
+            };
+            self.set_terms.extend((*first..*end).map(|_| term));
+        }
+        let sections = prepared.sections.iter().map(|section| Section {
+            first_strand: section.first_strand + first_strand,
+            end_strand: section.end_strand + first_strand,
+            ..*section
+        });
+        let first_section = self.sections.len() as u32;
+        self.sections.extend(sections);
+        let set = FuzzySet {
+            first_section,
+            end_section: self.sections.len() as u32,
+            first_term,
+            end_term: self.set_terms.len() as u32,
+            ..prepared.set
+        };
+        extend(&mut self.sets, &[set])
     }
 }
 

@@ -57,6 +57,12 @@ impl Chain {
         &self.later
     }
 
+    /// The stages in the order of their evaluation, each with what it is in the model.
+    fn stages<'a>(&'a self, first: &'a Stage) -> impl Iterator<Item = (&'a Place, &'a Stage)> {
+        let later = self.later.iter().map(|later| (&later.place, &later.stage));
+        core::iter::once((&self.first, first)).chain(later)
+    }
+
     /// The most outputs that a stage reads.
     pub(super) fn most_reads(&self) -> usize {
         let reads = self.later.iter().map(|later| later.place.reads.len());
@@ -82,6 +88,7 @@ impl Engine {
             later,
             values,
             own,
+            ..
         } = scratch;
         values[..inputs.len()].copy_from_slice(inputs);
         let stages = chain.later.iter().zip(later);
@@ -119,6 +126,34 @@ impl Engine {
                 keep(*output, &mut outcomes[*output]);
             }
         }
+    }
+}
+
+impl Engine {
+    /// The stage of an output in a model that chains: its number, the output's place in it, and the number of rules of the
+    /// stages before it. The scratch memory has the values that it reads; `None` where one of them is unknown.
+    pub(super) fn stage_of<'a>(
+        &'a self,
+        chain: &'a Chain,
+        scratch: &mut Scratch,
+        inputs: &[f64],
+        output: usize,
+    ) -> Option<(usize, &'a Stage, usize, usize)> {
+        let mut outcomes = core::mem::take(&mut scratch.outcomes);
+        self.chained(chain, scratch, inputs, &mut outcomes, |_, _| {});
+        scratch.outcomes = outcomes;
+        let mut rules = 0;
+        for (number, (place, stage)) in chain.stages(&self.first).enumerate() {
+            if let Some(own) = place.outputs.iter().position(|own| *own == output) {
+                let reads = scratch.values.get_mut(inputs.len()..)?.iter_mut();
+                for (value, read) in reads.zip(&place.reads) {
+                    *value = scratch.outcomes.get(*read)?.value()?;
+                }
+                return Some((number, stage, own, rules));
+            }
+            rules += place.rules.len();
+        }
+        None
     }
 }
 

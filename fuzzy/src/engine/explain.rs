@@ -98,7 +98,8 @@ pub struct ExplainedOutput {
     pub rules: Vec<Share>,
     /// The degree of the value in each term; empty for Takagi-Sugeno outputs.
     pub terms: Vec<Degree>,
-    /// The aggregated set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno and Tsukamoto outputs.
+    /// The aggregated set: `(value, degree)` at even steps over the range, or at the places of singletons; empty for
+    /// Takagi-Sugeno and Tsukamoto outputs.
     pub set: Vec<(f64, f64)>,
 }
 
@@ -121,7 +122,7 @@ pub struct Share {
     /// this rule is the highest; with sums, its part of the area of all sets; in a Takagi-Sugeno or Tsukamoto output, its
     /// part of the weights.
     pub share: f64,
-    /// In a Takagi-Sugeno or Tsukamoto output the number that its consequent gives at these inputs.
+    /// In a Takagi-Sugeno or Tsukamoto output, and one of singletons, the number that its consequent gives at these inputs.
     pub value: Option<f64>,
     /// The implied set: `(value, degree)` at even steps over the range; empty for Takagi-Sugeno and
     /// Tsukamoto outputs. Not serialised.
@@ -362,8 +363,18 @@ fn explain_output(
     }
     let mut set = Vec::new();
     let step = |i: f64| variable.low + (variable.high - variable.low) * i / STEPS as f64;
+    let discrete = output.is_discrete();
     if weighted {
         active.iter_mut().for_each(|one| one.part = one.strength);
+    } else if discrete {
+        let terms = variable.terms.iter();
+        let mut places: Vec<f64> = terms.filter_map(|t| t.membership_function.at()).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        for x in places {
+            set.push((x, aggregated(&active, operators, x)));
+            add_parts(&mut active, operators, x);
+        }
     } else {
         set = (0..=STEPS)
             .map(|i| {
@@ -385,8 +396,10 @@ fn explain_output(
             term: one.term.name.clone(),
             strength: one.strength,
             share: if whole > 0.0 { one.part / whole } else { 0.0 },
-            value: weighted.then(|| number(output, one, known)).flatten(),
-            implied: if weighted {
+            value: (weighted || discrete)
+                .then(|| number(output, one, known))
+                .flatten(),
+            implied: if weighted || discrete {
                 Vec::new()
             } else {
                 let at = |i: usize| step(i as f64);
@@ -443,6 +456,11 @@ fn number(output: &Output, active: &Active<'_>, known: &Known<'_>) -> Option<f64
                 Some(factor * value?)
             });
             Some(parts.sum::<Option<f64>>()? + constant)
+        }
+        MembershipFunction::Function { formula } => {
+            let value = |name: &str| known.variable(name).and_then(|(_, value)| value);
+            let value = formula.evaluate(|name| value(name).unwrap_or(f64::NAN));
+            value.is_finite().then_some(value)
         }
         _ => None,
     }

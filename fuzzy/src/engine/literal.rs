@@ -7,7 +7,7 @@ use crate::rule::Hedge;
 use crate::table::Line;
 
 /// A term of an input with its hedges, in the order in which they apply.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Literal {
     pub(super) term: Term,
     pub(super) hedges: Vec<Hedge>,

@@ -110,6 +110,10 @@ pub struct Scratch {
     values: Vec<f64>,
     /// The outcomes of a stage of a model that chains.
     own: Vec<Outcome>,
+    /// Those of all its outputs, where a rule is looked for.
+    outcomes: Vec<Outcome>,
+    /// The stage in which a rule was looked for last.
+    asked: usize,
 }
 
 #[derive(Debug, Clone)]
@@ -159,6 +163,8 @@ impl Engine {
                 later: Vec::new(),
                 values: Vec::new(),
                 own: Vec::new(),
+                outcomes: Vec::new(),
+                asked: 0,
             };
         };
         let later = chain.later().iter().map(|later| later.stage.scratch());
@@ -167,6 +173,8 @@ impl Engine {
             later: later.collect(),
             values: vec![0.0; self.inputs.len() + chain.most_reads()],
             own: vec![Outcome::default(); self.outputs.len()],
+            outcomes: vec![Outcome::default(); self.outputs.len()],
+            asked: 0,
         }
     }
 

@@ -3,17 +3,25 @@
 use alloc::{collections::BTreeMap, string::String, vec::Vec};
 
 use super::compile::Compiler;
-use super::{Engine, Scratch, StageScratch};
+use super::literal::Literal;
+use super::{Engine, Scratch, Stage, StageScratch};
+use crate::model::{
+    Variable,
+    chain::{self, stages},
+};
 use crate::rule::Proposition;
 use crate::table;
 
 /// A proposition of a rule's antecedent.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Said {
-    /// The index of the rule.
+    /// The place of the rule among those of all stages, in the order of their evaluation: its index, where no output reads
+    /// another one.
+    pub place: usize,
+    /// The index of the rule in the model.
     pub rule: usize,
-    /// The index of the input.
+    /// The index of the input; of an output that is read, the number of inputs and its index.
     pub input: usize,
     /// The term with its hedges: `very hot`.
     pub term: String,
@@ -21,11 +29,13 @@ pub struct Said {
     pub literal: usize,
     /// The number of rules that have the same proposition.
     pub rules: usize,
+    /// Of an output that is read.
+    read: Option<Literal>,
 }
 
 impl Engine {
-    /// The index of the rule that raises an output most: [`Table::raised_by`](table::Table::raised_by). `None` where no rule
-    /// fires, a value is not finite, the output is unknown, or outputs read others.
+    /// The place of the rule that raises an output most: [`Table::raised_by`](table::Table::raised_by). `None` where no rule
+    /// fires, a value is not finite, or the output is unknown. Places are those of [`Said::place`].
     ///
     /// # Example: why is the fan fast?
     /// ```
@@ -56,69 +66,172 @@ impl Engine {
         output: usize,
         value: f64,
     ) -> Option<usize> {
-        if inputs.len() != self.inputs.len() || self.chain.is_some() {
+        self.rule_of(scratch, inputs, output, Sought::Raises(value))
+    }
+
+    /// The place of the rule that says most that a proposition about an output holds: of the rules of that output that fire,
+    /// the one with the largest product of its firing strength and the degree of the proposition at the value of the output
+    /// if only this rule fired. `None` where the proposition is about an input.
+    pub fn concluded_by(
+        &self,
+        scratch: &mut Scratch,
+        inputs: &[f64],
+        said: &Said,
+    ) -> Option<usize> {
+        let output = said.input.checked_sub(self.inputs.len())?;
+        self.rule_of(
+            scratch,
+            inputs,
+            output,
+            Sought::Concludes(said.read.as_ref()?),
+        )
+    }
+
+    fn rule_of(
+        &self,
+        scratch: &mut Scratch,
+        inputs: &[f64],
+        output: usize,
+        sought: Sought<'_>,
+    ) -> Option<usize> {
+        if inputs.len() != self.inputs.len() {
             return None;
         }
-        let StageScratch {
-            table: buffers,
-            workspace,
-        } = &mut scratch.first;
-        let stage = &self.first;
-        table::raised_by(
-            &stage.arrays,
-            buffers,
-            inputs,
-            (output, value),
-            |index, strengths| stage.integrate(index, strengths, workspace),
-        )
+        let Some(chain) = &self.chain else {
+            return rule_of(&self.first, &mut scratch.first, inputs, output, sought);
+        };
+        let (number, stage, own, rules) = self.stage_of(chain, scratch, inputs, output)?;
+        let Scratch {
+            first,
+            later,
+            values,
+            asked,
+            ..
+        } = scratch;
+        *asked = number;
+        let own_scratch = match number.checked_sub(1) {
+            None => first,
+            Some(later_number) => later.get_mut(later_number)?,
+        };
+        let inputs = values.get(..stage.arrays.inputs.len())?;
+        let rule = rule_of(stage, own_scratch, inputs, own, sought)?;
+        Some(rules + rule)
     }
 
     /// The propositions of all rules, in the order of the rules; within a rule, those of the fewest rules first. A
     /// proposition that many rules have says little about one of them.
     pub fn propositions(&self) -> Vec<Said> {
-        let model = self.model();
+        let (first, later) = stages(self.model());
+        let mut all = Vec::new();
+        let mut places = 0;
+        for stage in core::iter::once(&first).chain(&later) {
+            let mut of_stage = self.propositions_of(stage, places);
+            let mut rules_of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+            for said in &of_stage {
+                rules_of.entry(said.literal).or_default().push(said.rule);
+            }
+            for said in &mut of_stage {
+                if let Some(rules) = rules_of.get_mut(&said.literal) {
+                    rules.dedup();
+                    said.rules = rules.len();
+                }
+            }
+            of_stage.sort_by_key(|said| (said.rule, said.rules));
+            all.append(&mut of_stage);
+            places += stage.rules.len();
+        }
+        all
+    }
+
+    /// The propositions of the rules of a stage, whose first rule has this place.
+    fn propositions_of(&self, stage: &chain::Stage<'_>, first_place: usize) -> Vec<Said> {
+        let model = &*stage.model;
         let mut compiler = Compiler {
             model,
             literals: BTreeMap::new(),
         };
         compiler.literals();
+        let inputs = self.inputs.len();
         let mut all = Vec::new();
-        for (rule, found) in model.rules.iter().enumerate() {
+        let rules = model.rules.iter().zip(&stage.rules);
+        for (place, (found, rule)) in (first_place..).zip(rules) {
             found.rule.condition.visit(&mut |proposition| {
-                if let Some((input, ..)) = compiler.key(proposition) {
-                    let said = Said {
-                        rule,
-                        input,
-                        term: term(proposition),
-                        literal: compiler.literal(proposition) as usize,
-                        rules: 0,
-                    };
-                    if all.last() != Some(&said) {
-                        all.push(said);
-                    }
+                let Some((input, ..)) = compiler.key(proposition) else {
+                    return;
+                };
+                let read = input.checked_sub(inputs);
+                let read = read.and_then(|read| stage.reads.get(read));
+                let said = Said {
+                    place,
+                    rule: *rule,
+                    input: read.map_or(input, |output| inputs + output),
+                    read: read.and_then(|_| literal(model.inputs.get(input)?, proposition)),
+                    term: term(proposition),
+                    literal: compiler.literal(proposition) as usize,
+                    rules: 0,
+                };
+                if all.last() != Some(&said) {
+                    all.push(said);
                 }
             });
         }
-        let mut rules_of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for said in &all {
-            rules_of.entry(said.literal).or_default().push(said.rule);
-        }
-        for said in &mut all {
-            if let Some(rules) = rules_of.get_mut(&said.literal) {
-                rules.dedup();
-                said.rules = rules.len();
-            }
-        }
-        all.sort_by_key(|said| (said.rule, said.rules));
         all
     }
+}
+
+/// Which rule is looked for.
+#[derive(Clone, Copy)]
+enum Sought<'a> {
+    Raises(f64),
+    Concludes(&'a Literal),
+}
+
+fn rule_of(
+    stage: &Stage,
+    scratch: &mut StageScratch,
+    inputs: &[f64],
+    output: usize,
+    sought: Sought<'_>,
+) -> Option<usize> {
+    let StageScratch {
+        table: buffers,
+        workspace,
+    } = scratch;
+    let arrays = &stage.arrays;
+    let integrate = |index: usize, strengths: &[f64]| stage.integrate(index, strengths, workspace);
+    match sought {
+        Sought::Raises(value) => {
+            table::raised_by(arrays, buffers, inputs, (output, value), integrate)
+        }
+        Sought::Concludes(literal) => {
+            let degree = |x: f64| {
+                let hedges = literal.hedges.iter();
+                hedges.fold(literal.term.membership(x), |degree, hedge| hedge.of(degree))
+            };
+            table::concluded_by(arrays, buffers, inputs, (output, degree), integrate)
+        }
+    }
+}
+
+/// The term of a proposition about a variable, with its hedges.
+fn literal(variable: &Variable, proposition: &Proposition) -> Option<Literal> {
+    let name = &proposition.term.as_ref()?.text;
+    let term = variable.terms.iter().find(|term| term.name == *name)?;
+    Some(Literal {
+        term: term.clone(),
+        hedges: proposition.hedges.iter().rev().copied().collect(),
+    })
 }
 
 impl Scratch {
     /// The degrees of the literals at the latest evaluation; empty where all rules are plain ANDs that a table finds. Then
     /// every proposition of a rule that fires holds.
     pub fn degrees(&self) -> &[f64] {
-        &self.first.table.degrees
+        let stage = match self.asked.checked_sub(1) {
+            None => Some(&self.first),
+            Some(later) => self.later.get(later),
+        };
+        stage.map_or(&[], |stage| &stage.table.degrees)
     }
 }
 

@@ -75,7 +75,14 @@ fn one(
     if let Some(node) = fields.get("operators") {
         let of = format!("`operators` of {what}");
         let keys = ["and", "or", "implication"];
+        let before = findings.len();
         let found = words::operators(node, &of, &keys, model.operators, findings);
+        for finding in findings.iter_mut().skip(before) {
+            if finding.code == "unknown-key" && finding.message.ends_with("`aggregation`") {
+                let help = "an output has an `aggregation`, or the `operators` of the rule set";
+                finding.help = Some(help.into());
+            }
+        }
         let found = found.unwrap_or(model.operators);
         (block.and, block.or, block.implication) = (found.and, found.or, found.implication);
     }
@@ -169,6 +176,12 @@ fn counted(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<(u
 
 /// `{at_least: 0.3}`
 fn threshold(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<Activation> {
+    let help = "write `{at_least: 0.3}`, or `below`, `at_most`, `equal`, `not_equal`, `above`";
+    let Value::Mapping(_) = &node.value else {
+        let finding = node.unexpected(&format!("a comparison for {what}"));
+        findings.push(finding.help(help));
+        return None;
+    };
     let keys = COMPARISONS.map(|(word, _)| word);
     let fields = node.fields(what, &keys, findings)?;
     let found = COMPARISONS
@@ -177,7 +190,6 @@ fn threshold(what: &str, node: &Node, findings: &mut Vec<Diagnostic>) -> Option<
     let found: Vec<(Comparison, &Node)> = found.collect();
     let [(comparison, number)] = found.as_slice() else {
         let message = format!("{what} has one comparison");
-        let help = "write `{at_least: 0.3}`, or `below`, `at_most`, `equal`, `not_equal`, `above`";
         findings.push(Diagnostic::error("wrong-type", node.span.clone(), message).help(help));
         return None;
     };

@@ -336,6 +336,16 @@ fn term() -> Node {
                 Some(1),
             ),
         ),
+        (
+            "function",
+            about(
+                "A formula over the variable; in a Takagi-Sugeno output, the value itself over inputs and other outputs",
+                [(
+                    "type",
+                    Node::list(["string", "number"].map(Node::text).into()),
+                )],
+            ),
+        ),
         ("linear", linear),
         height,
     ];
@@ -529,7 +539,7 @@ mod tests {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/rule-sets.md");
         let guide = std::fs::read_to_string(path).unwrap();
         let names = MembershipFunction::FORMS.iter().map(|form| form.name);
-        for name in names.chain(["piecewise", "linear"]) {
+        for name in names.chain(["piecewise", "function", "linear"]) {
             assert!(guide.contains(&format!("\n| `{name}` |")), "{name}");
         }
     }

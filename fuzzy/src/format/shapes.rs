@@ -8,7 +8,7 @@ use alloc::{
 
 use crate::{
     diagnostic::{Diagnostic, suggest},
-    model::{Form, MembershipFunction, Parts, document::TermSpans},
+    model::{Form, Formula, MembershipFunction, Parts, document::TermSpans},
     tree::{Fields, Node, Value},
 };
 
@@ -33,7 +33,7 @@ pub(super) fn read(
         return None;
     };
     let known = MembershipFunction::FORMS.iter().map(|form| form.name);
-    let known = known.chain(["piecewise", "linear"]);
+    let known = known.chain(["piecewise", "function", "linear"]);
     if !known.clone().any(|name| name == shape.key) {
         let message = format!("there is no membership function `{}`", shape.key);
         let mut finding = Diagnostic::error(
@@ -62,6 +62,7 @@ pub(super) fn read(
     }
     match shape.key {
         "piecewise" => points(term, shape.value, spans, findings),
+        "function" => function(term, shape.value, spans, findings),
         "linear" => linear(shape.value, spans, findings),
         name => {
             let mut forms = MembershipFunction::FORMS.iter();
@@ -175,6 +176,32 @@ fn points(
     (points.len() == items.len()).then_some(MembershipFunction::Piecewise { points })
 }
 
+/// `function: 2 * speed^2 + 1`
+fn function(
+    term: &str,
+    node: &Node,
+    spans: &mut TermSpans,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<MembershipFunction> {
+    let Value::Scalar(scalar) = &node.value else {
+        let finding = node.unexpected(&format!("a formula for {term}"));
+        findings.push(finding.help("write `function: 2 * speed^2 + 1`"));
+        return None;
+    };
+    match scalar.text.parse::<Formula>() {
+        Ok(formula) => {
+            let places = formula.spans().map(|span| scalar.span(span.clone()));
+            spans.parameters.extend(places);
+            Some(MembershipFunction::Function { formula })
+        }
+        Err(mut finding) => {
+            finding.span = scalar.span(finding.span.clone());
+            findings.push(*finding);
+            None
+        }
+    }
+}
+
 fn linear(
     node: &Node,
     spans: &mut TermSpans,
@@ -218,6 +245,7 @@ pub(super) fn write(shape: &MembershipFunction) -> (&'static str, Node) {
             let points = points.iter().map(|&(x, degree)| numbers(&[x, degree]));
             ("piecewise", Node::list(points.collect()))
         }
+        Parts::Formula(formula) => ("function", Node::text(formula.to_string())),
         Parts::Linear(coefficients, constant) => {
             let entries = coefficients.iter().map(|(name, c)| (name.as_str(), *c));
             let entries = entries.chain([("constant", constant)]);

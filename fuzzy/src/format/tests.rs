@@ -211,13 +211,33 @@ fn any_model() -> impl Strategy<Value = Model> {
                 }
                 let (mut variable, (_, defuzzifier)) = output;
                 variable.name = "the output".into();
-                if defuzzifier.is_weighted() {
+                if defuzzifier == Defuzzifier::Tsukamoto {
+                    for (i, term) in variable.terms.iter_mut().enumerate() {
+                        let (foot, top) = (variable.low, variable.high);
+                        term.membership_function = match i % 3 {
+                            0 => MembershipFunction::RightShoulder { foot, top },
+                            1 => MembershipFunction::ZShape {
+                                top: foot,
+                                foot: top,
+                            },
+                            _ => MembershipFunction::Sigmoid {
+                                inflection: foot,
+                                slope: -0.5,
+                            },
+                        };
+                    }
+                }
+                if defuzzifier.takes_numbers() {
                     for (i, term) in variable.terms.iter_mut().enumerate() {
                         let constant = i as f64;
                         let coefficients = Vec::from([(inputs[0].name.clone(), 0.5)]);
-                        term.membership_function = match i % 3 {
+                        let formula = "abs(\"input 0\")^0.5 - 2 * max(\"input 0\", 1)";
+                        term.membership_function = match i % 4 {
                             0 => MembershipFunction::Constant { value: constant },
                             1 => MembershipFunction::Singleton { at: constant },
+                            2 => MembershipFunction::Function {
+                                formula: formula.parse().unwrap(),
+                            },
                             _ => MembershipFunction::Linear {
                                 coefficients,
                                 constant,
@@ -411,7 +431,7 @@ const MISTAKES: [Mistake; 39] = [
         };
     }),
     ("wrong-term", |m| {
-        m.outputs[0].defuzzifier = Defuzzifier::Centroid;
+        m.outputs[0].defuzzifier = Defuzzifier::Bisector;
         m.outputs[0].variable.terms[0].membership_function = MembershipFunction::Singleton {
             at: m.outputs[0].variable.low,
         };

@@ -216,6 +216,12 @@ impl Term {
 }
 
 impl Output {
+    /// Whether its terms are singletons and its defuzzifier takes fuzzy sets: the aggregated set is a few places.
+    pub(crate) fn is_discrete(&self) -> bool {
+        let mut terms = self.variable.terms.iter();
+        !self.defuzzifier.is_weighted() && terms.all(|term| term.membership_function.at().is_some())
+    }
+
     /// An output with the exact centroid, undefined where no rule fires.
     pub fn new(variable: Variable) -> Self {
         Output {

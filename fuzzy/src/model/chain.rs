@@ -1,7 +1,7 @@
 //! Chains: outputs that the rules of other outputs read.
 //!
 //! An output reads another one where a rule that concludes it names the other one in its condition, or where a linear
-//! function of it has a coefficient for the other one. A model in which outputs read others is evaluated in stages. The
+//! function or a formula of it names the other one. A model in which outputs read others is evaluated in stages. The
 //! first stage has the outputs that read none, each later stage has one output more. A stage is a model of its own whose
 //! inputs are those of the whole model and the outputs that it reads.
 
@@ -15,7 +15,7 @@ use alloc::{
 };
 use core::ops::Range;
 
-use super::{Activation, MembershipFunction, Model, Rule, Variable, concludes, document::Spans};
+use super::{Activation, Model, Rule, Variable, concludes, document::Spans};
 use crate::diagnostic::Diagnostic;
 
 /// That an output reads another one.
@@ -23,7 +23,7 @@ use crate::diagnostic::Diagnostic;
 pub(crate) struct Read {
     /// The index of the output that is read.
     pub(crate) output: usize,
-    /// The index of the first rule that reads it; `None` where only a linear function does.
+    /// The index of the first rule that reads it; `None` where only a linear function or a formula does.
     pub(crate) rule: Option<usize>,
     /// Where it is named.
     pub(crate) span: Range<usize>,
@@ -43,7 +43,7 @@ pub(crate) struct Stage<'m> {
 }
 
 impl Model {
-    /// The other outputs that an output reads: in the conditions of its rules, or in its linear functions.
+    /// The other outputs that an output reads: in the conditions of its rules, or in its linear functions and formulas.
     ///
     /// # Example: a comfort that the speed of a fan is decided by
     /// ```
@@ -109,11 +109,11 @@ pub(crate) fn reads_of_all(model: &Model, spans: &Spans) -> Vec<Vec<Read>> {
     }
     for (by, output) in model.outputs.iter().enumerate() {
         for (term, written) in output.variable.terms.iter().enumerate() {
-            let MembershipFunction::Linear { coefficients, .. } = &written.membership_function
-            else {
+            // Of a fuzzy set, a formula names its own variable.
+            if !output.defuzzifier.takes_numbers() {
                 continue;
-            };
-            for (i, (name, _)) in coefficients.iter().enumerate() {
+            }
+            for (i, name) in written.membership_function.reads().into_iter().enumerate() {
                 let span = spans
                     .outputs
                     .get(by)
@@ -202,7 +202,15 @@ pub(crate) fn circles(model: &Model, spans: &Spans) -> Vec<Diagnostic> {
     let step = |by: usize, output: usize| {
         let mut reads = reads.get(by)?.iter();
         let read = reads.find(|read| read.output == output)?;
-        let rule = read.rule.map(|rule| format!(" in rule {}", rule + 1));
+        let rule = read.rule.map(|rule| {
+            let mut place = format!(" in rule {}", rule + 1);
+            let rule = model.rules.get(rule);
+            // Its activation method asks all rules of the block.
+            if rule.is_some_and(|rule| !concludes(rule, &model.outputs[by])) {
+                place += " of its block";
+            }
+            place
+        });
         let rule = rule.unwrap_or_default();
         let text = format!("`{}` reads `{}`{rule}", name(by)?, name(output)?);
         Some((text, read.span.clone()))

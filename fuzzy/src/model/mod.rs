@@ -9,6 +9,7 @@ mod builder;
 pub(crate) mod chain;
 pub(crate) mod document;
 mod partition;
+pub use crate::formula::Formula;
 #[cfg(feature = "serde")]
 pub(crate) use crate::shape::Role;
 pub(crate) use crate::shape::{Form, Parts};
@@ -123,7 +124,7 @@ pub enum NoRuleFires {
     Error,
     /// A value the author chose.
     Value(f64),
-    /// The value of the evaluation before, in a [`Sequence`](crate::engine::Sequence). Before there is one, and for a single
+    /// The value of the evaluation before, in a `Sequence`. Before there is one, and for a single
     /// evaluation: the value given here, or undefined.
     Previous(Option<f64>),
 }

@@ -52,6 +52,8 @@ pub(crate) enum Parts<'a> {
     Fixed(&'static Form, Vec<f64>),
     /// The points of a piecewise shape.
     Points(&'a [(f64, f64)]),
+    /// A formula.
+    Formula(&'a crate::formula::Formula),
     /// The coefficients and the constant of a linear function.
     Linear(&'a [(alloc::string::String, f64)], f64),
 }
@@ -80,16 +82,18 @@ macro_rules! forms {
                         vec![$($parameter),+],
                     ),)+
                     MembershipFunction::Piecewise { ref points } => Parts::Points(points),
+                    MembershipFunction::Function { ref formula } => Parts::Formula(formula),
                     MembershipFunction::Linear { ref coefficients, constant } => Parts::Linear(coefficients, constant),
                 }
             }
 
-            /// The formula and its parameters; of a piecewise shape the points are apart, and `Linear` is no membership
+            /// The formula and its parameters; of a piecewise shape the points are apart, of a formula its code, and `Linear` is no membership
             /// function: 0 everywhere.
             pub(crate) fn kind(&self) -> (Kind, [f64; 4]) {
                 match *self {
                     $(MembershipFunction::$shape { $($parameter),+ } => (Kind::$formula, form::padded(&[$($parameter),+])),)+
                     MembershipFunction::Piecewise { .. } => (Kind::PIECEWISE, [0.0; 4]),
+                    MembershipFunction::Function { .. } => (Kind::FUNCTION, [0.0; 4]),
                     MembershipFunction::Linear { .. } => (Kind::CONSTANT, [0.0; 4]),
                 }
             }

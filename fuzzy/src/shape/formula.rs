@@ -2,6 +2,8 @@
 
 use libm::{cos, fabs, pow, sqrt};
 
+use crate::formula::evaluate;
+
 use super::{
     exponential::exp_of_minus,
     smooth::{gaussian, s_shape, sigmoid, z_shape},
@@ -38,8 +40,10 @@ impl Kind {
     pub const TRIANGLE: Kind = Kind(19);
     pub const ARC: Kind = Kind(20);
     pub const SEMI_ELLIPSE: Kind = Kind(21);
+    pub const FUNCTION: Kind = Kind(22);
 
-    /// The degree at `x` with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape.
+    /// The degree at `x` with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape, or the
+    /// code of a formula.
     pub(crate) fn membership(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
         if x.is_nan() {
             return 0.0;
@@ -79,6 +83,7 @@ impl Kind {
                 2.0 * sqrt(t * (1.0 - t))
             }
             Kind::CONSTANT => a,
+            Kind::FUNCTION => evaluate(points, |_| x),
             _ => 0.0,
         })
     }

@@ -143,7 +143,10 @@ impl MembershipFunction {
                 Smooth(vec![left, 0.5 * (left + right), right])
             }
             MembershipFunction::Constant { value } => Straight(vec![(0.0, into_unit(value))]),
-            MembershipFunction::Linear { .. } => Smooth(vec![]),
+            // Who integrates a formula cuts the range evenly.
+            MembershipFunction::Function { .. } | MembershipFunction::Linear { .. } => {
+                Smooth(vec![])
+            }
         }
     }
 

@@ -8,7 +8,6 @@ use libm::{log, sqrt};
 use super::Kind;
 #[cfg(feature = "alloc")]
 use super::MembershipFunction;
-use crate::table::operators::larger;
 
 impl Kind {
     /// The place where a monotone membership function has this degree in [0, 1]: the inverse of its formula, on a plateau the
@@ -87,8 +86,12 @@ fn going_up<'a>(points: impl Iterator<Item = &'a [f64; 2]>, degree: f64) -> f64 
             && y > low
         {
             if degree <= y {
-                let part = larger(0.0, (degree - low) / (y - low));
-                return left + (x - left) * part;
+                let part = (degree - low) / (y - low);
+                return if part > 0.0 {
+                    left + (x - left) * part
+                } else {
+                    left
+                };
             }
             top = x;
         }

@@ -65,6 +65,7 @@ impl MembershipFunction {
                 }
             }
             Parts::Points(points) => piecewise(points)?,
+            Parts::Formula(_) => {}
             Parts::Linear(coefficients, constant) => {
                 for (i, (input, coefficient)) in coefficients.iter().enumerate() {
                     finite(i, input, *coefficient)?;

@@ -2,7 +2,8 @@
 
 use super::{
     Action, Axis, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve, Dimension,
-    Disjunction, Edge, Hedge, Input, Line, Moment, Node, Output, Pair, Point, Program, Sizes, Step,
+    Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair,
+    Point, Program, Section, SetTerm, Sizes, Step, Strand,
 };
 
 /// Calls `$then!` with the given tokens and the arrays of a table, each as `name: Item,` with its documentation.
@@ -26,7 +27,7 @@ macro_rules! table_arrays {
             lines: Line,
             /// The terms of inputs that are curved or hedged.
             curves: Curve,
-            /// The corners of piecewise linear curves.
+            /// The corners of piecewise linear curves, and the code of formulas.
             points: Point,
             /// The hedges of curves.
             hedges: Hedge,
@@ -58,6 +59,18 @@ macro_rules! table_arrays {
             consequents: Consequent,
             /// The coefficients of consequents.
             coefficients: Coefficient,
+            /// The prepared fuzzy sets.
+            sets: FuzzySet,
+            /// The terms of sets, one for each firing strength.
+            set_terms: SetTerm,
+            /// The parts of the ranges of sets.
+            sections: Section,
+            /// The terms on sections.
+            strands: Strand,
+            /// The flanks of the terms of sets.
+            flanks: Flank,
+            /// The tails of flanks.
+            knots: Knot,
         }
     };
 }

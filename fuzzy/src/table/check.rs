@@ -1,6 +1,6 @@
 //! Verifies the indices of a table.
 
-use super::{ClosedForm, Conjunctions, Dimension, Input, Op, Table};
+use super::{ClosedForm, Conjunctions, Dimension, FuzzySet, Input, Op, Table};
 
 /// The array of a damaged table or plan that has an index out of bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,6 +106,7 @@ impl Table<'_> {
                 ClosedForm::MOMENTS => self.moments.len(),
                 ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => self.consequents.len(),
                 ClosedForm::TSUKAMOTO => self.curves.len(),
+                ClosedForm::CUT | ClosedForm::SCALED => self.sets.len(),
                 _ => 0,
             };
             let of_all = self.sizes.strengths as usize;
@@ -115,13 +116,54 @@ impl Table<'_> {
                     && (output.form != ClosedForm::PARTITION || 2 * numbers < strengths),
                 "outputs",
             )?;
+            if let ClosedForm::CUT | ClosedForm::SCALED = output.form {
+                require(numbers == 1, "outputs")?;
+                self.check_set(&self.sets[output.first as usize], strengths)?;
+            }
+        }
+        for term in self.set_terms {
+            let span = within(term.first_flank, term.end_flank, self.flanks.len());
+            require(span, "set_terms")?;
+        }
+        for flank in self.flanks {
+            let span = within(flank.first_knot, flank.end_knot, self.knots.len());
+            require(span, "flanks")?;
         }
         for consequent in self.consequents {
-            let span = within(consequent.first, consequent.end, self.coefficients.len());
+            let span = within(consequent.first, consequent.end, self.coefficients.len())
+                && within(
+                    consequent.first_code,
+                    consequent.end_code,
+                    self.points.len(),
+                );
             require(span, "consequents")?;
         }
         for coefficient in self.coefficients {
             require((coefficient.input as usize) < inputs, "coefficients")?;
+        }
+        Ok(())
+    }
+
+    /// Verifies the set of an output with so many firing strengths.
+    fn check_set(&self, set: &FuzzySet, strengths: usize) -> Result<(), Damaged> {
+        let terms = set.end_term.saturating_sub(set.first_term) as usize;
+        require(
+            within(set.first_section, set.end_section, self.sections.len())
+                && within(set.first_term, set.end_term, self.set_terms.len())
+                && terms <= strengths,
+            "sets",
+        )?;
+        for section in &self.sections[set.first_section as usize..set.end_section as usize] {
+            let span = within(section.first_strand, section.end_strand, self.strands.len());
+            require(span, "sections")?;
+            let strands = section.first_strand as usize..section.end_strand as usize;
+            for strand in &self.strands[strands] {
+                let index = (strand.strength as usize) < terms;
+                require(
+                    index && (strand.flank as usize) < self.flanks.len(),
+                    "strands",
+                )?;
+            }
         }
         Ok(())
     }

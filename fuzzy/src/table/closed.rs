@@ -2,6 +2,7 @@
 
 use super::operators::smaller;
 use super::{Arrays, Curve, Output, Point};
+use crate::formula::evaluate;
 
 /// The closed form of a defuzzifier.
 #[doc(hidden)] // Exported data.
@@ -23,6 +24,10 @@ impl ClosedForm {
 
     /// Tsukamoto, `sum(w z) / sum(w)` with `z` where a term has the degree `w`: [`Curve`]s, one for each firing strength.
     pub const TSUKAMOTO: ClosedForm = ClosedForm(5);
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are cut off: the implication is the minimum.
+    pub const CUT: ClosedForm = ClosedForm(6);
+    /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled: the implication is the product.
+    pub const SCALED: ClosedForm = ClosedForm(7);
 }
 
 /// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
@@ -58,7 +63,7 @@ pub struct Moment {
     pub moment: f64,
 }
 
-/// A Takagi-Sugeno consequent: `z = constant + sum(coefficient input)`.
+/// A Takagi-Sugeno consequent: `z = constant + sum(coefficient input) + formula`.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
@@ -69,6 +74,10 @@ pub struct Consequent {
     pub first: u32,
     /// The end of that span.
     pub end: u32,
+    /// The span in `points` of the code of its formula; empty where it has none.
+    pub first_code: u32,
+    /// The end of that span.
+    pub end_code: u32,
 }
 
 /// A coefficient of a Takagi-Sugeno consequent.
@@ -142,18 +151,26 @@ pub(super) fn closed<A: Arrays>(
             }
             sum
         }
-        ClosedForm::TSUKAMOTO => {
-            let curves = &table.curves()[range];
-            return tsukamoto(output, curves, table.points(), strengths);
-        }
+        ClosedForm::CUT | ClosedForm::SCALED => return super::set::value(table, output, strengths),
         // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
         form => {
-            let consequents = &table.consequents()[range];
-            let value = weighted(form, consequents, table.coefficients(), strengths, inputs)?;
-            return Some(match output.clamps {
-                0 => value,
-                _ => super::larger(output.low, smaller(output.high, value)),
-            });
+            let points = table.points();
+            let value = match form {
+                ClosedForm::TSUKAMOTO => {
+                    tsukamoto(output, &table.curves()[range], points, strengths)
+                }
+                _ => {
+                    let coefficients = (table.coefficients(), points);
+                    weighted(
+                        form,
+                        &table.consequents()[range],
+                        coefficients,
+                        strengths,
+                        inputs,
+                    )
+                }
+            };
+            return value.map(|value| output.clamped(value));
         }
     };
     let value = centroid(area, moment, output.origin())?;
@@ -191,11 +208,11 @@ fn tsukamoto(
     (total > 0.0).then(|| sum / total)
 }
 
-/// `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; `None` where none is over 0.
+/// `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; `None` where none is over 0, and where a formula has no value.
 fn weighted(
     form: ClosedForm,
     consequents: &[Consequent],
-    coefficients: &[Coefficient],
+    (coefficients, points): (&[Coefficient], &[Point]),
     strengths: &[f64],
     inputs: &[f64],
 ) -> Option<f64> {
@@ -203,17 +220,23 @@ fn weighted(
     for (consequent, &strength) in consequents.iter().zip(strengths) {
         if strength > 0.0 {
             let range = consequent.first as usize..consequent.end as usize;
-            let z = coefficients[range]
+            let mut z = coefficients[range]
                 .iter()
                 .fold(consequent.constant, |z, c| {
                     z + c.coefficient * inputs[c.input as usize]
                 });
+            let code = consequent.first_code as usize..consequent.end_code as usize;
+            if !code.is_empty() {
+                let value = |i: usize| inputs.get(i).copied().unwrap_or(f64::NAN);
+                z += evaluate(&points[code], value);
+            }
             sum += strength * z;
             total += strength;
         }
     }
-    (total > 0.0).then_some(match form {
+    let value = match form {
         ClosedForm::WEIGHTED_SUM => sum,
         _ => sum / total,
-    })
+    };
+    (total > 0.0 && value.is_finite()).then_some(value)
 }

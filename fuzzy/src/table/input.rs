@@ -44,7 +44,7 @@ pub struct Line {
     pub literal: u32,
 }
 
-/// A corner `(x, degree)` of a piecewise linear membership function.
+/// A corner `(x, degree)` of a piecewise linear membership function, or an instruction of a formula.
 #[doc(hidden)] // Exported data.
 pub type Point = [f64; 2];
 
@@ -61,7 +61,7 @@ pub struct Curve {
     pub kind: Kind,
     /// The index of the literal among its input's.
     pub literal: u32,
-    /// Its span of points, where it is piecewise linear.
+    /// Its span of points, where it is piecewise linear or a formula.
     pub first_point: u32,
     /// The end of that span.
     pub end_point: u32,

@@ -14,11 +14,14 @@ mod blocks;
 mod check;
 mod closed;
 mod firing;
+pub(crate) mod flank;
 mod input;
+pub(crate) mod numeric;
 pub(crate) mod operators;
 mod outcome;
 mod raising;
 mod rules;
+pub(crate) mod set;
 
 pub use activation::{Activation, Comparison, LEAST_STRENGTH};
 pub(crate) use arrays::{Arrays, arrays_from_fields};
@@ -28,19 +31,21 @@ pub use check::Damaged;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub(crate) use closed::{centroid, finite};
 pub use firing::{Partial, Strongest};
+pub use flank::{Flank, Knot};
 #[cfg(test)]
 pub(crate) use input::degrees;
 pub use input::{Curve, Input, Line, Point};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
 pub use rules::{Action, Axis, Dimension, Edge, Node, Op, Program, Step};
+pub use set::{FuzzySet, Section, SetDefuzzifier, SetTerm, Strand};
 
 pub use crate::shape::Kind;
 
 use closed::closed;
 use firing::fire;
 use operators::{larger, smaller};
-pub(crate) use raising::raised_by;
+pub(crate) use raising::{concluded_by, raised_by};
 
 /// How the rules that are plain ANDs of terms of different inputs are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -128,6 +133,15 @@ pub struct Buffers<N, P, S> {
 pub type Scratch<'m> = Buffers<&'m mut [f64], &'m mut [Partial], &'m mut [Strongest]>;
 
 impl Output {
+    /// The value, clamped to the range where the author says so.
+    #[inline(always)]
+    fn clamped(&self, value: f64) -> f64 {
+        match self.clamps {
+            0 => value,
+            _ => larger(self.low, smaller(self.high, value)),
+        }
+    }
+
     /// The middle of the range. Moments are measured from there, against cancellation.
     #[inline(always)]
     pub(crate) fn origin(&self) -> f64 {

@@ -28,7 +28,7 @@ pub enum State {
     Defined(f64),
     /// No rule fired; this is the default value of the output.
     Default(f64),
-    /// No rule fired; this is the value of the evaluation before, in a [`Sequence`](crate::engine::Sequence).
+    /// No rule fired; this is the value of the evaluation before, in a `Sequence`.
     Previous(f64),
     /// No rule fired, and the output has no default value.
     #[default]

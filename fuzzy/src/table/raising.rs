@@ -31,6 +31,45 @@ pub(crate) fn raised_by<A, N, P, S>(
     scratch: &mut Buffers<N, P, S>,
     inputs: &[f64],
     (output, value): (usize, f64),
+    integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
+) -> Option<usize>
+where
+    A: Arrays,
+    N: DerefMut<Target = [f64]>,
+    P: DerefMut<Target = [Partial]>,
+    S: DerefMut<Target = [Strongest]>,
+{
+    let middle = 0.5 * (table.outputs().get(output)?.low + value);
+    let score = |alone: f64| alone - middle;
+    most(table, scratch, inputs, (output, score), integrate)
+}
+
+/// The index of the rule that says most that an output has a degree: of the rules that fire, the one with the largest
+/// `strength degree(alone)`; where none of them says so, the strongest.
+pub(crate) fn concluded_by<A, N, P, S>(
+    table: &A,
+    scratch: &mut Buffers<N, P, S>,
+    inputs: &[f64],
+    (output, degree): (usize, impl Fn(f64) -> f64),
+    integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
+) -> Option<usize>
+where
+    A: Arrays,
+    N: DerefMut<Target = [f64]>,
+    P: DerefMut<Target = [Partial]>,
+    S: DerefMut<Target = [Strongest]>,
+{
+    const NOT_AT_ALL: f64 = 1e-9;
+    let score = |alone: f64| degree(alone).max(NOT_AT_ALL);
+    most(table, scratch, inputs, (output, score), integrate)
+}
+
+/// The index of the rule with the largest product of its firing strength and the score of `alone`.
+fn most<A, N, P, S>(
+    table: &A,
+    scratch: &mut Buffers<N, P, S>,
+    inputs: &[f64],
+    (output, score): (usize, impl Fn(f64) -> f64),
     mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
 ) -> Option<usize>
 where
@@ -45,22 +84,21 @@ where
     let (values, first) = (finding.values(), of.first_strength);
     let strengths = strengths.get_mut(first as usize..of.end_strength as usize)?;
     strengths.fill(0.0);
-    let alone = |strength: u32| {
+    let score = |strength: u32| {
         // In a damaged table it may be one of another output.
         let index = strength.checked_sub(first)? as usize;
         *strengths.get_mut(index)? = 1.0;
-        let value = match of.form {
+        let alone = match of.form {
             ClosedForm::NONE => integrate(output, strengths),
             _ => closed(table, of, strengths, values),
         };
         *strengths.get_mut(index)? = 0.0;
-        value
+        alone.map(&score)
     };
     let mut raising = Raising {
         least: table.least_strength(),
         output: output as u32,
-        middle: 0.5 * (of.low + value),
-        alone,
+        score,
         most: None,
     };
     fire_into(table, finding, &mut raising);
@@ -71,9 +109,8 @@ where
 struct Raising<F> {
     least: f64,
     output: u32,
-    middle: f64,
-    /// The value of the output where only one firing strength, of this index, is 1.
-    alone: F,
+    /// The score of the value of the output where only one firing strength, of this index, is 1.
+    score: F,
     /// How much it is raised, and by which rule.
     most: Option<(f64, u32)>,
 }
@@ -89,9 +126,9 @@ impl<F: FnMut(u32) -> Option<f64>> Act for Raising<F> {
     fn act_with(&mut self, actions: &[Action], strength: f64) {
         for action in actions.iter().filter(|action| action.output == self.output) {
             if strength > 0.0
-                && let Some(alone) = (self.alone)(action.strength)
+                && let Some(score) = (self.score)(action.strength)
             {
-                let raises = strength * (alone - self.middle);
+                let raises = strength * score;
                 // In whatever order they fire.
                 let is_more = |(most, rule): (f64, u32)| {
                     raises > most || raises == most && action.rule < rule

@@ -11,10 +11,10 @@ pub(super) fn cause(text: &str) -> Option<Diagnostic> {
     let lines: Vec<(usize, &str)> = text
         .split_inclusive('\n')
         .map(|line| {
-            let indent = line.len() - line.trim_start_matches(['\u{feff}', ' ', '\t']).len();
-            let start = at + indent;
+            let blank = |c: char| c == '\u{feff}' || c.is_whitespace();
+            let start = at + line.len() - line.trim_start_matches(blank).len();
             at += line.len();
-            (start, line.trim_matches('\u{feff}').trim())
+            (start, line.trim_matches(blank))
         })
         .collect();
     let foreign = |(start, line): (usize, &str), message: String, help: &str| {

@@ -135,6 +135,13 @@ fn meaning(node: &Node) -> serde_json::Value {
     serde_json::to_value(node).unwrap()
 }
 
+#[test]
+fn a_foreign_line_begins_behind_blanks_of_any_kind() {
+    let text = "\u{2000}<a>";
+    let found = parse(text).unwrap_err();
+    assert_eq!(text.get(found.0[0].span.clone()), Some("<a>"));
+}
+
 proptest! {
     #[test]
     fn a_written_tree_reads_back_as_the_same(tree in any_tree()) {

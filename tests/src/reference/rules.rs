@@ -4,8 +4,8 @@
 use std::{collections::BTreeMap, f64::consts::PI};
 
 use fuzzy::model::{
-    Aggregation, Conjunction, Defuzzifier, Disjunction, MembershipFunction, Model, NoRuleFires,
-    Output, Term, Variable,
+    Activation, Aggregation, Comparison, Conjunction, Defuzzifier, Disjunction, MembershipFunction,
+    Model, NoRuleFires, Output, Rule, Term, Variable,
 };
 use fuzzy::rule::{Condition, Hedge, Proposition};
 
@@ -48,13 +48,16 @@ type Values<'m> = BTreeMap<&'m str, Option<(&'m Variable, f64)>>;
 /// The names in the conditions of the rules of an output, and in its linear functions.
 fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
     let mut names = Vec::new();
-    for rule in &model.rules {
-        if rule
-            .rule
-            .consequents
-            .iter()
-            .any(|c| c.output.text == output.variable.name)
-        {
+    let concludes = |rule: &&Rule| {
+        let mut consequents = rule.rule.consequents.iter();
+        consequents.any(|c| c.output.text == output.variable.name)
+    };
+    let of_output: Vec<&Rule> = model.rules.iter().filter(concludes).collect();
+    for rule in model.rules.iter().filter(|rule| model.is_enabled(rule)) {
+        // An activation method asks all rules of its block.
+        let asked = model.activation_of(rule) != Activation::General
+            && of_output.iter().any(|one| one.block == rule.block);
+        if asked || concludes(&rule) {
             rule.rule
                 .condition
                 .visit(&mut |proposition| names.push(&*proposition.variable.text));
@@ -70,19 +73,18 @@ fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
 
 fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) -> Option<f64> {
     let mut fired: Vec<(f64, &Term)> = Vec::new();
-    for rule in &model.rules {
+    for (rule, strength) in model.rules.iter().zip(strengths(model, output, values)) {
+        if strength < model.least_strength {
+            continue;
+        }
         for consequent in &rule.rule.consequents {
             if consequent.output.text != output.variable.name {
                 continue;
             }
-            let degree = degree(model, values, &rule.rule.condition);
-            let strength = hedged(&consequent.hedges, rule.rule.weight * degree);
-            if strength > 0.0 {
-                fired.push((
-                    strength,
-                    term(&output.variable.terms, &consequent.term.text),
-                ));
-            }
+            fired.push((
+                hedged(&consequent.hedges, strength),
+                term(&output.variable.terms, &consequent.term.text),
+            ));
         }
     }
     if fired.is_empty() {
@@ -91,7 +93,98 @@ fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) ->
             NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => None,
         };
     }
-    Some(number(model, output, &fired, values, samples))
+    let number = number(model, output, &fired, values, samples);
+    Some(match output.clamp {
+        true => number.clamp(output.variable.low, output.variable.high),
+        false => number,
+    })
+}
+
+/// The strength with which each rule fires that has to do with an output: that concludes it, or stands in a block of which a
+/// rule does.
+fn strengths(model: &Model, output: &Output, values: &Values<'_>) -> Vec<f64> {
+    let concludes = |rule: &Rule| {
+        let mut consequents = rule.rule.consequents.iter();
+        consequents.any(|c| c.output.text == output.variable.name)
+    };
+    let in_its_blocks = |rule: &Rule| {
+        let mut rules = model.rules.iter();
+        rules.any(|other| other.block == rule.block && concludes(other))
+    };
+    let before: Vec<f64> = model
+        .rules
+        .iter()
+        .map(|rule| {
+            let selects = model.activation_of(rule) != Activation::General;
+            if model.is_enabled(rule) && (concludes(rule) || selects && in_its_blocks(rule)) {
+                rule.rule.weight * degree(model, rule, values, &rule.rule.condition)
+            } else {
+                0.0
+            }
+        })
+        .collect();
+    let after = |i: usize| {
+        let (rule, strength) = (&model.rules[i], before[i]);
+        let least = model.least_strength;
+        let others = || {
+            let all = model.rules.iter().zip(&before).enumerate();
+            let all = all.filter(|(_, (other, _))| other.block == rule.block);
+            all.map(|(j, (_, strength))| (j, *strength))
+        };
+        let fires = |strength: f64| strength >= least;
+        let at_least = |strength: f64, bound: f64| strength > bound || near(strength, bound, least);
+        // Whether fewer than so many rules come before this one.
+        let is_kept = |count: u32, before: &dyn Fn(usize, f64) -> bool| {
+            let ahead = others().filter(|(j, strength)| *j != i && before(*j, *strength));
+            fires(strength) && ahead.count() < count as usize
+        };
+        let kept = match model.activation_of(rule) {
+            Activation::General => true,
+            Activation::First {
+                rules,
+                at_least: bound,
+            } => {
+                let counts = |s: f64| fires(s) && at_least(s, bound);
+                counts(strength) && is_kept(rules, &|j, s| j < i && counts(s))
+            }
+            Activation::Last {
+                rules,
+                at_least: bound,
+            } => {
+                let counts = |s: f64| fires(s) && at_least(s, bound);
+                counts(strength) && is_kept(rules, &|j, s| j > i && counts(s))
+            }
+            Activation::Highest { rules } => {
+                is_kept(rules, &|j, s| s > strength || s == strength && j < i)
+            }
+            Activation::Lowest { rules } => is_kept(rules, &|j, s| {
+                fires(s) && (s < strength || s == strength && j < i)
+            }),
+            Activation::Proportional => {
+                return strength / others().map(|(_, strength)| strength).sum::<f64>();
+            }
+            Activation::Threshold {
+                comparison,
+                strength: bound,
+            } => {
+                let equal = near(strength, bound, least);
+                match comparison {
+                    Comparison::Below => strength < bound && !equal,
+                    Comparison::AtMost => strength < bound || equal,
+                    Comparison::Equal => equal,
+                    Comparison::NotEqual => !equal,
+                    Comparison::AtLeast => strength > bound || equal,
+                    Comparison::Above => strength > bound && !equal,
+                }
+            }
+        };
+        if kept { strength } else { 0.0 }
+    };
+    (0..before.len()).map(after).collect()
+}
+
+fn near(a: f64, b: f64, least: f64) -> bool {
+    (a - b).abs() < least
 }
 
 fn term<'m>(terms: &'m [Term], name: &str) -> &'m Term {
@@ -99,20 +192,19 @@ fn term<'m>(terms: &'m [Term], name: &str) -> &'m Term {
 }
 
 /// The degree of a condition.
-fn degree(model: &Model, values: &Values<'_>, condition: &Condition) -> f64 {
-    let of = |condition: &Condition| degree(model, values, condition);
+fn degree(model: &Model, rule: &Rule, values: &Values<'_>, condition: &Condition) -> f64 {
+    let of = |condition: &Condition| degree(model, rule, values, condition);
+    let operators = model.operators_of(rule);
     match condition {
         Condition::Is(proposition) => proposed(values, proposition),
         Condition::Not(inner) => 1.0 - of(inner),
         Condition::And(all) => {
             let degrees = all.iter().map(of);
-            degrees
-                .reduce(|a, b| and(model.operators.and, a, b))
-                .unwrap()
+            degrees.reduce(|a, b| and(operators.and, a, b)).unwrap()
         }
         Condition::Or(any) => {
             let degrees = any.iter().map(of);
-            degrees.reduce(|a, b| or(model.operators.or, a, b)).unwrap()
+            degrees.reduce(|a, b| or(operators.or, a, b)).unwrap()
         }
     }
 }
@@ -202,12 +294,20 @@ fn number(
             .map(|(weight, term)| weight * place(term, *weight, &output.variable));
         return sums.sum::<f64>() / total;
     }
+    let is_singleton = |term: &Term| {
+        matches!(
+            term.membership_function,
+            MembershipFunction::Singleton { .. }
+        )
+    };
+    let discrete = output.variable.terms.iter().all(is_singleton);
+    let operators = model.operators_of_output(output);
     let aggregated = |x: f64| {
         let mut y = 0.0;
         for (strength, term) in fired {
             let membership = term.height * membership(&term.membership_function, x);
-            let part = and(model.operators.implication, *strength, membership);
-            y = match model.operators.aggregation {
+            let part = and(operators.implication, *strength, membership);
+            y = match operators.aggregation {
                 Aggregation::Maximum => part.max(y),
                 Aggregation::ProbabilisticSum => y + part - y * part,
                 Aggregation::BoundedSum => (y + part).min(1.0),
@@ -232,11 +332,21 @@ fn number(
     cuts.dedup();
     // (place, width of the cell, degree)
     let mut set = Vec::new();
-    for ends in cuts.windows(2) {
-        let width = (ends[1] - ends[0]) / samples as f64;
-        for i in 0..samples {
-            let x = ends[0] + (i as f64 + 0.5) * width;
-            set.push((x, width, aggregated(x)));
+    if discrete {
+        let mut places: Vec<f64> = fired
+            .iter()
+            .map(|(_, term)| consequent(&term.membership_function, values))
+            .collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        set.extend(places.into_iter().map(|x| (x, 1.0, aggregated(x))));
+    } else {
+        for ends in cuts.windows(2) {
+            let width = (ends[1] - ends[0]) / samples as f64;
+            for i in 0..samples {
+                let x = ends[0] + (i as f64 + 0.5) * width;
+                set.push((x, width, aggregated(x)));
+            }
         }
     }
     let area: f64 = set.iter().map(|(_, width, y)| width * y).sum();
@@ -362,6 +472,7 @@ fn parameters(shape: &MembershipFunction) -> Vec<f64> {
             ..
         } => vec![left_inflection, right_inflection],
         MembershipFunction::Singleton { .. }
+        | MembershipFunction::Function { .. }
         | MembershipFunction::Constant { .. }
         | MembershipFunction::Linear { .. } => vec![],
     }
@@ -499,6 +610,14 @@ fn membership(shape: &MembershipFunction, x: f64) -> f64 {
             let (centre, radius) = ((left + right) / 2.0, (right - left) / 2.0);
             let away = (x - centre).abs().min(radius);
             (radius.powi(2) - away.powi(2)).sqrt() / radius
+        }
+        MembershipFunction::Function { ref formula } => {
+            let degree = formula.evaluate(|_| x);
+            if degree.is_nan() {
+                0.0
+            } else {
+                degree.clamp(0.0, 1.0)
+            }
         }
         MembershipFunction::Constant { value } => value,
         MembershipFunction::Linear { .. } => 0.0,

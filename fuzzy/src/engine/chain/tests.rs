@@ -324,3 +324,29 @@ proptest! {
         }
     }
 }
+
+/// The rule that raises the fan most is about the comfort, and that one holds by what a rule says of the heat.
+#[test]
+fn the_rule_that_raises_an_output_is_found_through_the_outputs_it_reads() {
+    let engine = engine(FAN);
+    let mut scratch = engine.scratch();
+    let fan = engine.evaluate(&[3.0]).unwrap()[0].value().unwrap();
+    let said = engine.propositions();
+    let of_place = |place: usize| {
+        let mut all = said.iter().filter(|said| said.place == place);
+        all.next().unwrap()
+    };
+    // Rules 3 and 4 are evaluated first.
+    let place = engine.raised_by(&mut scratch, &[3.0], 0, fan).unwrap();
+    let why = of_place(place);
+    assert_eq!(
+        (place, why.rule, why.input, &*why.term),
+        (3, 1, 2, "NOT good")
+    );
+    // Low heat is the stronger rule, but it says that the comfort is good.
+    let place = engine.concluded_by(&mut scratch, &[3.0], why).unwrap();
+    let why = of_place(place);
+    assert_eq!((place, why.rule, why.input, &*why.term), (1, 3, 0, "high"));
+    assert_eq!(engine.concluded_by(&mut scratch, &[3.0], why), None);
+    assert_eq!(engine.raised_by(&mut scratch, &[f64::NAN], 0, fan), None);
+}

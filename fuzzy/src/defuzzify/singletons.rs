@@ -1,0 +1,78 @@
+//! Outputs whose terms are all singletons: the aggregated set is a few places with a degree each.
+
+use alloc::vec::Vec;
+
+use super::{Joint, Strengths};
+use crate::model::{Defuzzifier, Output};
+
+/// The terms of one output as places, from left to right.
+#[derive(Debug, Clone)]
+pub(crate) struct Singletons {
+    /// The place, the index of the term and its height.
+    terms: Vec<(f64, usize, f64)>,
+    low: f64,
+    high: f64,
+}
+
+impl Singletons {
+    /// `None` where a term is no singleton.
+    pub(super) fn new(output: &Output) -> Option<Self> {
+        if !output.is_discrete() {
+            return None;
+        }
+        let terms = output.variable.terms.iter().enumerate();
+        let place = |(i, term): (usize, &crate::model::Term)| {
+            Some((term.membership_function.at()?, i, term.height))
+        };
+        let mut terms: Vec<(f64, usize, f64)> = terms.map(place).collect::<Option<_>>()?;
+        terms.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        Some(Singletons {
+            terms,
+            low: output.variable.low,
+            high: output.variable.high,
+        })
+    }
+
+    /// Whether a term lies outside the range.
+    pub(super) fn is_empty(&self, term: usize) -> bool {
+        let place = self.terms.iter().find(|(_, index, _)| *index == term);
+        place.is_none_or(|(x, ..)| !(self.low..=self.high).contains(x))
+    }
+
+    /// The centroid `sum(x y) / sum(y)` over the places x with their aggregated degrees y, or the smallest, mean or largest of
+    /// the places with the highest degree; `None` where all degrees are 0.
+    pub(super) fn value(
+        &self,
+        strengths: Strengths<'_>,
+        joint: Joint,
+        defuzzifier: Defuzzifier,
+    ) -> Option<f64> {
+        let places = || {
+            self.terms.chunk_by(|a, b| a.0 == b.0).filter_map(|terms| {
+                let mut degree = 0.0;
+                for (_, term, height) in terms {
+                    for strength in strengths.of(*term).iter().filter(|h| **h > 0.0) {
+                        let part = joint.implication.of(*strength, *height);
+                        degree = joint.aggregation.of(degree, part);
+                    }
+                }
+                terms.first().map(|(x, ..)| (*x, degree))
+            })
+        };
+        let total: f64 = places().map(|(_, degree)| degree).sum();
+        if total <= 0.0 {
+            return None;
+        }
+        let highest = places().map(|(_, degree)| degree).fold(0.0, f64::max);
+        let top = places().filter(|(_, degree)| *degree == highest);
+        Some(match defuzzifier {
+            Defuzzifier::SmallestOfMaxima => top.clone().next()?.0,
+            Defuzzifier::LargestOfMaxima => top.last()?.0,
+            Defuzzifier::MeanOfMaxima => {
+                let count = top.clone().count() as f64;
+                top.map(|(x, _)| x / count).sum()
+            }
+            _ => places().map(|(x, degree)| x * (degree / total)).sum(),
+        })
+    }
+}

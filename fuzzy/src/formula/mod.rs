@@ -1,0 +1,164 @@
+//! Formulas over the values of variables, such as `2 * speed^2 + min(wind, 1)`.
+//!
+//! A formula is parsed once into flat code and evaluated without allocation. Its functions are `libm`'s, so the same values
+//! give the same bits on every machine.
+
+mod code;
+#[cfg(feature = "alloc")]
+mod parse;
+#[cfg(feature = "alloc")]
+mod print;
+#[cfg(all(test, feature = "alloc"))]
+mod tests;
+
+#[cfg(feature = "alloc")]
+use alloc::{boxed::Box, string::String, vec::Vec};
+#[cfg(feature = "alloc")]
+use core::{ops::Range, str::FromStr};
+
+#[cfg(feature = "alloc")]
+use crate::diagnostic::Diagnostic;
+
+pub(crate) use code::{Instruction, Operation, evaluate};
+
+/// A formula over the values of variables.
+///
+/// # Example: parsed once, evaluated often, printed back
+/// ```
+/// use fuzzy::model::Formula;
+///
+/// let power: Formula = "2*speed ^ 2 + max(wind, 1)".parse()?;
+/// let value = |name: &str| if name == "speed" { 3.0 } else { 0.5 };
+/// assert_eq!(power.evaluate(value), 19.0);
+/// assert_eq!(power.variables().collect::<Vec<_>>(), ["speed", "wind"]);
+/// assert_eq!(power.to_string(), "2 * speed^2 + max(wind, 1)");
+/// # Ok::<(), Box<fuzzy::Diagnostic>>(())
+/// ```
+#[cfg(feature = "alloc")]
+#[derive(Debug, Clone)]
+pub struct Formula {
+    expression: Expression,
+    /// What it reads, each variable once, in the order in which they are first named.
+    variables: Vec<Variable>,
+    /// Reads the variables by their index in that list.
+    code: Vec<Instruction>,
+}
+
+/// A variable that a formula reads.
+#[cfg(feature = "alloc")]
+#[derive(Debug, Clone)]
+pub(crate) struct Variable {
+    pub(crate) name: String,
+    /// Where it is first named.
+    pub(crate) span: Range<usize>,
+}
+
+#[cfg(feature = "alloc")]
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Expression {
+    Number(f64),
+    /// By its index in [`Formula::variables`].
+    Variable(usize),
+    /// An operator or a function of one or two numbers.
+    Apply(Operation, Vec<Expression>),
+}
+
+/// Deeper brackets than this are an error: a tree is walked by recursion.
+#[cfg(feature = "alloc")]
+const DEEPEST_NESTING: usize = 64;
+/// More numbers, variables and operations than this are an error.
+#[cfg(feature = "alloc")]
+const LONGEST: usize = 1000;
+
+#[cfg(feature = "alloc")]
+impl Formula {
+    /// The names of the variables that it reads, each once, in the order in which they are first named.
+    pub fn variables(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.variables.iter().map(|variable| &*variable.name)
+    }
+
+    /// Its value where `value` gives those of the variables. It is NaN or infinite where the formula has no value, such as
+    /// that of `1 / x` at 0.
+    pub fn evaluate(&self, value: impl Fn(&str) -> f64) -> f64 {
+        evaluate(&self.code, |index| {
+            self.variables
+                .get(index)
+                .map_or(f64::NAN, |variable| value(&variable.name))
+        })
+    }
+
+    /// Whether it is a function of this variable alone, and no constant.
+    pub(crate) fn is_over(&self, variable: &str) -> bool {
+        matches!(&self.variables[..], [only] if only.name == variable)
+    }
+
+    /// Where its variables are first named in the text it was parsed from.
+    pub(crate) fn spans(&self) -> impl Iterator<Item = &Range<usize>> {
+        self.variables.iter().map(|variable| &variable.span)
+    }
+
+    /// Its code, which reads variables by their index.
+    pub(crate) fn code(&self) -> &[Instruction] {
+        &self.code
+    }
+
+    /// Its code, with the variables read by another index.
+    pub(crate) fn code_with(
+        &self,
+        index: impl Fn(&str) -> Option<usize>,
+    ) -> impl Iterator<Item = Instruction> {
+        self.code.iter().map(move |instruction| {
+            let variable = Operation::input_of(instruction).and_then(|i| self.variables.get(i));
+            match variable.and_then(|variable| index(&variable.name)) {
+                Some(index) => Operation::INPUT.with(index as f64),
+                None => *instruction,
+            }
+        })
+    }
+
+    fn new(expression: Expression, variables: Vec<Variable>) -> Self {
+        let mut code = Vec::new();
+        expression.append(&mut code);
+        Formula {
+            expression,
+            variables,
+            code,
+        }
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl Expression {
+    /// Adds its code: operands first, then the operation.
+    fn append(&self, code: &mut Vec<Instruction>) {
+        match self {
+            Expression::Number(number) => code.push(Operation::NUMBER.with(*number)),
+            Expression::Variable(index) => code.push(Operation::INPUT.with(*index as f64)),
+            Expression::Apply(operation, operands) => {
+                for operand in operands {
+                    operand.append(code);
+                }
+                code.push(operation.with(0.0));
+            }
+        }
+    }
+}
+
+/// Formulas are equal that are written with the same operations, numbers and names.
+#[cfg(feature = "alloc")]
+impl PartialEq for Formula {
+    fn eq(&self, other: &Self) -> bool {
+        self.expression == other.expression && self.variables().eq(other.variables())
+    }
+}
+
+#[cfg(feature = "alloc")]
+impl FromStr for Formula {
+    type Err = Box<Diagnostic>;
+
+    /// # Errors
+    /// The first mistake, with its span in the text and what to do.
+    fn from_str(text: &str) -> Result<Self, Box<Diagnostic>> {
+        parse::parse(text)
+    }
+}

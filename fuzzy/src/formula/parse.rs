@@ -1,0 +1,451 @@
+//! The parser of formulas.
+//!
+//! ```text
+//! any-of     = all-of { or all-of }
+//! all-of     = truth { and truth }
+//! truth      = not truth | comparison
+//! comparison = sum [ ( < | <= | > | >= | == | != ) sum ]
+//! sum        = product { ( + | - ) product }
+//! product    = signed { ( * | / | % ) signed }
+//! signed     = - signed | power
+//! power      = operand [ ^ signed ]
+//! operand    = number | pi | name | function "(" any-of { "," any-of } ")" | "(" any-of ")"
+//! ```
+//!
+//! A name is letters, digits, `_` and `.`, and begins with no digit; any other stands in single or double quotes, `\` before
+//! a quote or a `\` in it.
+
+use alloc::{boxed::Box, format, string::String, vec::Vec};
+
+use nom::{
+    Err, IResult, Parser as _,
+    bytes::complete::take_while1,
+    character::complete::{digit1, one_of},
+    combinator::{opt, recognize},
+    error::{ErrorKind, ParseError},
+};
+
+use super::{DEEPEST_NESTING, Expression, Formula, LONGEST, Operation, Variable, code};
+use crate::diagnostic::{Diagnostic, suggest};
+
+/// Functions of other programs, and what they are here.
+const OTHER_NAMES: [(&str, Operation); 11] = [
+    ("pow", Operation::POWER),
+    ("fmod", Operation::REMAINDER),
+    ("fabs", Operation::ABS),
+    ("ln", Operation::LOG),
+    ("lt", Operation::LESS),
+    ("le", Operation::LESS_OR_EQUAL),
+    ("gt", Operation::GREATER),
+    ("ge", Operation::GREATER_OR_EQUAL),
+    ("eq", Operation::EQUAL),
+    ("neq", Operation::UNEQUAL),
+    ("mod", Operation::REMAINDER),
+];
+
+pub(super) fn parse(text: &str) -> Result<Formula, Box<Diagnostic>> {
+    let mut parser = Parser {
+        text,
+        variables: Vec::new(),
+    };
+    let read = parser.level(text, 1, 0).and_then(|(rest, expression)| {
+        let rest = after_space(rest);
+        match rest {
+            "" => Ok(expression),
+            _ => wrong(rest, Wrong::Operator),
+        }
+    });
+    let whole = |message: String, help: &str| {
+        let finding = Diagnostic::error("formula-syntax", 0..text.len(), message);
+        Err(Box::new(finding.help(help)))
+    };
+    match read {
+        Ok(expression) => {
+            let formula = Formula::new(expression, parser.variables);
+            if formula.code.len() > LONGEST {
+                let message = format!("the formula has more than {LONGEST} parts");
+                return whole(message, "let several terms share the work");
+            }
+            if code::depth(&formula.code) > code::DEEPEST {
+                let message = format!(
+                    "the formula keeps more than {} numbers at a time",
+                    code::DEEPEST
+                );
+                return whole(message, "write what is nested to the right further left");
+            }
+            Ok(formula)
+        }
+        Err(Err::Error(mistake) | Err::Failure(mistake)) => Err(Box::new(mistake.explain(text))),
+        // Only nom's streaming parsers ask for more, and none is used.
+        Err(Err::Incomplete(_)) => whole("the formula ends too early".into(), "finish it"),
+    }
+}
+
+type Step<'a, T> = IResult<&'a str, T, Mistake<'a>>;
+
+/// What is wrong, and the text that was left when it was met.
+struct Mistake<'a> {
+    rest: &'a str,
+    kind: Wrong<'a>,
+}
+
+enum Wrong<'a> {
+    /// No number, name or bracket.
+    Operand,
+    /// No operator, and no end.
+    Operator,
+    /// A second comparison.
+    Chain,
+    /// A function that is not known, by its name.
+    Function(&'a str),
+    /// A function's name, and the number of operands that it takes and has.
+    Count(&'a str, usize, usize),
+    /// A bracket without its partner.
+    OpenBracket,
+    /// A quote without its partner, or with nothing in it.
+    Quote,
+    /// Digits that are no number, or too large a one.
+    Number(&'a str),
+    TooDeep,
+}
+
+impl<'a> ParseError<&'a str> for Mistake<'a> {
+    // nom's own parsers are only tried, never required: what they would say is always replaced.
+    fn from_error_kind(rest: &'a str, _: ErrorKind) -> Self {
+        Mistake {
+            rest,
+            kind: Wrong::Operand,
+        }
+    }
+
+    fn append(_: &'a str, _: ErrorKind, other: Self) -> Self {
+        other
+    }
+}
+
+fn wrong<'a, T>(rest: &'a str, kind: Wrong<'a>) -> Result<T, Err<Mistake<'a>>> {
+    Err(Err::Failure(Mistake { rest, kind }))
+}
+
+fn after_space(rest: &str) -> &str {
+    rest.trim_start()
+}
+
+fn begins_name(c: char) -> bool {
+    c.is_alphabetic() || c == '_'
+}
+
+fn in_name(c: char) -> bool {
+    c.is_alphanumeric() || matches!(c, '_' | '.')
+}
+
+/// The word here, empty where there is none.
+fn word(rest: &str) -> &str {
+    if !rest.starts_with(begins_name) {
+        return "";
+    }
+    let end = rest.find(|c| !in_name(c)).unwrap_or(rest.len());
+    rest.get(..end).unwrap_or("")
+}
+
+fn is_keyword(word: &str) -> bool {
+    let words = ["and", "or", "not"];
+    words.iter().any(|known| known.eq_ignore_ascii_case(word))
+}
+
+/// Whether a name can stand in a formula without quotes.
+pub(super) fn is_plain_name(name: &str) -> bool {
+    !name.is_empty() && word(name) == name && !is_keyword(name) && name != "pi"
+}
+
+/// Takes the operator if it stands here.
+fn operator<'a>(rest: &'a str, operation: Operation) -> Option<&'a str> {
+    let symbol = operation.word();
+    let rest = after_space(rest);
+    if symbol.starts_with(begins_name) {
+        let found = word(rest);
+        return found
+            .eq_ignore_ascii_case(symbol)
+            .then(|| rest.get(found.len()..).unwrap_or(""));
+    }
+    let after = rest.strip_prefix(symbol)?;
+    // `<` is not the beginning of `<=`, nor `*` of `**`.
+    let longer = after.starts_with('=') && matches!(symbol, "<" | ">")
+        || symbol == "*" && after.starts_with('*');
+    (!longer).then_some(after)
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    variables: Vec<Variable>,
+}
+
+impl<'a> Parser<'a> {
+    /// What binds at least as tightly as `binds`.
+    fn level(&mut self, rest: &'a str, binds: u8, depth: usize) -> Step<'a, Expression> {
+        if depth > DEEPEST_NESTING {
+            return wrong(after_space(rest), Wrong::TooDeep);
+        }
+        let prefix = [Operation::NOT, Operation::NEGATE]
+            .into_iter()
+            .find(|operation| operation.binds() == Some(binds));
+        if let Some(prefix) = prefix {
+            return match operator(rest, prefix) {
+                Some(after) => {
+                    let (after, inner) = self.level(after, binds, depth + 1)?;
+                    Ok((after, Expression::Apply(prefix, Vec::from([inner]))))
+                }
+                None => self.level(rest, binds + 1, depth),
+            };
+        }
+        if Some(binds) == Operation::POWER.binds() {
+            let (rest, base) = self.operand(rest, depth)?;
+            return match operator(rest, Operation::POWER) {
+                Some(after) => {
+                    let (after, exponent) = self.level(after, binds - 1, depth + 1)?;
+                    let both = Vec::from([base, exponent]);
+                    Ok((after, Expression::Apply(Operation::POWER, both)))
+                }
+                None => Ok((rest, base)),
+            };
+        }
+        let infix = |rest| {
+            let all = Operation::ALL.iter();
+            let mut here = all.filter(|(operation, ..)| operation.binds() == Some(binds));
+            here.find_map(|(operation, ..)| Some((*operation, operator(rest, *operation)?)))
+        };
+        let (mut rest, mut left) = self.level(rest, binds + 1, depth)?;
+        let mut count = 0;
+        while let Some((operation, after)) = infix(rest) {
+            count += 1;
+            if count > 1 && Some(binds) == Operation::LESS.binds() {
+                return wrong(after_space(rest), Wrong::Chain);
+            }
+            let (after, right) = self.level(after, binds + 1, depth)?;
+            left = Expression::Apply(operation, Vec::from([left, right]));
+            rest = after;
+        }
+        Ok((rest, left))
+    }
+
+    fn operand(&mut self, rest: &'a str, depth: usize) -> Step<'a, Expression> {
+        let rest = after_space(rest);
+        if let Some(inside) = rest.strip_prefix('(') {
+            let (after, inner) = self.level(inside, 1, depth + 1)?;
+            return match after_space(after).strip_prefix(')') {
+                Some(after) => Ok((after, inner)),
+                None if after_space(after).is_empty() => wrong(rest, Wrong::OpenBracket),
+                None => wrong(after_space(after), Wrong::Operator),
+            };
+        }
+        if rest.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
+            return number(rest);
+        }
+        if let Some(quote @ ('"' | '\'')) = rest.chars().next() {
+            let (after, name) = quoted(rest, quote)?;
+            return Ok((after, self.variable(rest, after, name)));
+        }
+        let name = word(rest);
+        if name.is_empty() || is_keyword(name) {
+            return wrong(rest, Wrong::Operand);
+        }
+        let after = rest.get(name.len()..).unwrap_or("");
+        if let Some(operands) = after_space(after).strip_prefix('(') {
+            return self.call(rest, name, operands, depth);
+        }
+        if name == "pi" {
+            return Ok((after, Expression::Number(core::f64::consts::PI)));
+        }
+        Ok((after, self.variable(rest, after, name.into())))
+    }
+
+    fn variable(&mut self, rest: &'a str, after: &'a str, name: String) -> Expression {
+        let known = self.variables.iter().position(|v| v.name == name);
+        let index = known.unwrap_or_else(|| {
+            let span = self.text.len() - rest.len()..self.text.len() - after.len();
+            self.variables.push(Variable { name, span });
+            self.variables.len() - 1
+        });
+        Expression::Variable(index)
+    }
+
+    /// A function; `operands` is the text behind its bracket.
+    fn call(
+        &mut self,
+        start: &'a str,
+        name: &'a str,
+        operands: &'a str,
+        depth: usize,
+    ) -> Step<'a, Expression> {
+        let functions = || {
+            let all = Operation::ALL.iter();
+            all.filter(|(operation, ..)| operation.binds().is_none())
+        };
+        let other = OTHER_NAMES.iter().find(|(other, _)| *other == name);
+        let known = functions().find(|(_, word, _)| *word == name);
+        let operation = known
+            .map(|(operation, ..)| *operation)
+            .or(other.map(|(_, operation)| *operation));
+        let Some(operation) = operation else {
+            return wrong(start, Wrong::Function(name));
+        };
+        let mut found = Vec::new();
+        let mut rest = operands;
+        loop {
+            let (after, operand) = self.level(rest, 1, depth + 1)?;
+            found.push(operand);
+            let after = after_space(after);
+            if let Some(next) = after.strip_prefix(',') {
+                rest = next;
+            } else if let Some(after) = after.strip_prefix(')') {
+                let all = Operation::ALL.iter();
+                let mut all = all.filter(|(known, ..)| *known == operation);
+                let takes = all.next().map_or(0, |(.., count)| *count);
+                if found.len() != takes {
+                    return wrong(start, Wrong::Count(name, takes, found.len()));
+                }
+                return Ok((after, Expression::Apply(operation, found)));
+            } else if after.is_empty() {
+                return wrong(start, Wrong::OpenBracket);
+            } else {
+                return wrong(after, Wrong::Operator);
+            }
+        }
+    }
+}
+
+fn number(rest: &str) -> Step<'_, Expression> {
+    let digits = take_while1(|c: char| c.is_ascii_digit() || c == '.');
+    let power = (one_of("eE"), opt(one_of("+-")), digit1);
+    let (after, written) = recognize((digits, opt(power))).parse(rest)?;
+    match written.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok((after, Expression::Number(number))),
+        _ => wrong(rest, Wrong::Number(written)),
+    }
+}
+
+/// A name in quotes; a backslash takes the next quote or backslash as it is.
+fn quoted(rest: &str, quote: char) -> Step<'_, String> {
+    let mut name = String::new();
+    let mut letters = rest.char_indices().skip(1);
+    while let Some((at, letter)) = letters.next() {
+        match letter {
+            '\\' => match letters.next() {
+                Some((_, escaped @ ('"' | '\'' | '\\'))) => name.push(escaped),
+                Some((_, other)) => name.extend(['\\', other]),
+                None => break,
+            },
+            _ if letter == quote && name.is_empty() => break,
+            _ if letter == quote => return Ok((rest.get(at + 1..).unwrap_or(""), name)),
+            _ => name.push(letter),
+        }
+    }
+    wrong(rest, Wrong::Quote)
+}
+
+impl Mistake<'_> {
+    /// The mistake in words.
+    fn explain(self, text: &str) -> Diagnostic {
+        let rest = after_space(self.rest);
+        let start = text.len() - rest.len();
+        let signs = |c: char| "=<>!&|*".contains(c);
+        let found = match rest.chars().next() {
+            Some(c) if begins_name(c) => word(rest),
+            Some(c) if c.is_ascii_digit() => {
+                let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.');
+                rest.get(..end.unwrap_or(rest.len())).unwrap_or("")
+            }
+            Some(c) if signs(c) => {
+                let end = rest.find(|c| !signs(c)).unwrap_or(rest.len());
+                rest.get(..end).unwrap_or("")
+            }
+            Some(c) => rest.get(..c.len_utf8()).unwrap_or(""),
+            None => "",
+        };
+        let shown = match found {
+            "" => String::from("the end of the formula"),
+            found => format!("`{found}`"),
+        };
+        let error = |length: usize, message: String| {
+            Diagnostic::error("formula-syntax", start..start + length, message)
+        };
+        match self.kind {
+            Wrong::Operand => {
+                let message = format!("expected a number, a name or `(`, found {shown}");
+                let help = match found {
+                    "" if text.trim().is_empty() => "write a formula, such as `2 * speed^2 + 1`",
+                    "" => "add what is missing, or remove the operator",
+                    "!" => "write `not`",
+                    "+" => "a sign `+` has no effect; remove it",
+                    _ if is_keyword(found) => "as a name it stands in quotes",
+                    _ => "an operator stands between two numbers or names",
+                };
+                error(found.len(), message).help(help)
+            }
+            Wrong::Operator => {
+                let message = format!("expected an operator or the end, found {shown}");
+                let help = match found {
+                    "=" | "===" => "write `==` to compare",
+                    "**" => "write `^` for a power",
+                    "²" => "write `^2`",
+                    "³" => "write `^3`",
+                    "&" | "&&" => "write `and`",
+                    "|" | "||" => "write `or`",
+                    "<>" | "=/=" => "write `!=`",
+                    "=<" => "write `<=`",
+                    "=>" => "write `>=`",
+                    "," => {
+                        "a decimal point is written as `.`; operands stand in the brackets of a function"
+                    }
+                    ")" => "no `(` stands before it; remove it, or add one",
+                    "(" => "write `*` to multiply",
+                    _ if found.starts_with(|c: char| in_name(c)) => {
+                        "write `*` to multiply; a name of several words stands in quotes"
+                    }
+                    _ => "operators are `+ - * / % ^`, `< <= > >= == !=`, `and` and `or`",
+                };
+                error(found.len(), message).help(help)
+            }
+            Wrong::Chain => error(found.len(), format!("{shown} follows another comparison"))
+                .help("write `low < x and x < high`"),
+            Wrong::Function(name) => {
+                let mut finding = error(name.len(), format!("there is no function `{name}`"));
+                let functions = Operation::ALL.iter();
+                let functions = functions.filter(|(operation, ..)| operation.binds().is_none());
+                finding.help = suggest(name, functions.map(|(_, word, _)| *word));
+                finding
+            }
+            Wrong::Count(name, takes, has) => {
+                let numbers = if takes == 1 { "number" } else { "numbers" };
+                let message = format!("`{name}` takes {takes} {numbers}, not {has}");
+                let help = match takes {
+                    1 => format!("write `{name}(x)`"),
+                    _ if has > 2 => format!("nest it: `{name}({name}(x, y), z)`"),
+                    _ => format!("write `{name}(x, y)`"),
+                };
+                error(name.len(), message).help(help)
+            }
+            Wrong::OpenBracket => {
+                let length = rest.find('(').map_or(0, |at| at + 1);
+                error(length, "the bracket `(` is never closed".into())
+                    .help("add `)` at the end of what belongs together")
+            }
+            Wrong::Quote => error(
+                found.len(),
+                "the quoted name is empty or never closed".into(),
+            )
+            .help("write the name of a variable between two quotes"),
+            Wrong::Number(written) => {
+                let message = match written.parse::<f64>() {
+                    Ok(_) => format!("`{written}` is too large a number"),
+                    Err(_) => format!("`{written}` is no number"),
+                };
+                error(written.len(), message).help("write digits with one decimal point: `0.5`")
+            }
+            Wrong::TooDeep => {
+                let message = format!("brackets are nested deeper than {DEEPEST_NESTING}");
+                error(found.len(), message).help("let several terms share the work")
+            }
+        }
+    }
+}

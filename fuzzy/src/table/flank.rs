@@ -1,0 +1,234 @@
+//! Flanks of output terms: degree, inverse, and the area below them.
+
+use core::f64::consts::{PI, SQRT_2};
+
+use libm::{atan2, erfc, log, pow, sqrt};
+
+use super::Kind;
+use super::numeric::{gauss, root};
+use super::operators::{larger, smaller};
+
+/// A stretch of the output's range on which a term only rises, only falls or is level.
+///
+/// Its foot is its lower end. The tail up to `x` is what lies between the foot and `x`: its area and first moment. Measured from
+/// there, also the area of a low tail is exact to its last digits. The tail of a gaussian is
+/// `sd sqrt(pi/2) (erfc(z) - erfc(z_foot))` with `z = |x - mean| / (sd sqrt(2))`. That of a straight flank is a trapezoid. The
+/// others have [`Knot`]s, with Gauss-Legendre of 8 nodes between a knot and `x`.
+#[doc(hidden)] // Exported data.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct Flank {
+    /// The parameters of the membership function.
+    pub parameters: [f64; 4],
+    /// The height of the term.
+    pub height: f64,
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// The degree just inside `from`.
+    pub left: f64,
+    /// The degree just inside `to`.
+    pub right: f64,
+    /// The area of the whole flank.
+    pub area: f64,
+    /// The moment of the whole flank, from the middle of the range.
+    pub moment: f64,
+    /// Of a gaussian: the area beyond the foot.
+    pub beyond: f64,
+    /// The kind of membership function; [`Kind::PIECEWISE`] is straight from `left` to `right`.
+    pub kind: Kind,
+    /// Its span of knots.
+    pub first_knot: u32,
+    /// The end of that span.
+    pub end_knot: u32,
+}
+
+/// The tail of a flank up to a value. The first knot of a flank is its foot.
+#[doc(hidden)] // Exported data.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C)]
+pub struct Knot {
+    /// The value.
+    pub x: f64,
+    /// The area of the tail.
+    pub area: f64,
+    /// Its moment, from the middle of the range.
+    pub moment: f64,
+}
+
+/// How areas over the range of an output are measured.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measure {
+    /// The middle of the range. Moments are measured from there.
+    pub(crate) origin: f64,
+    /// The unit of length of areas.
+    pub(crate) unit: f64,
+}
+
+impl Measure {
+    /// The area and moment of a rectangle.
+    #[inline(always)]
+    pub(crate) fn rectangle(self, from: f64, to: f64, degree: f64) -> (f64, f64) {
+        let area = degree * ((to - from) / self.unit);
+        (area, area * (from + 0.5 * (to - from) - self.origin))
+    }
+}
+
+impl Flank {
+    #[inline(always)]
+    pub(crate) fn rises(&self) -> bool {
+        self.left < self.right
+    }
+
+    /// Whether every value of the flank has one degree. A curve may only seem level, because it differs by less than the last
+    /// digit.
+    #[inline(always)]
+    pub(crate) fn is_level(&self) -> bool {
+        self.left == self.right && self.kind == Kind::PIECEWISE
+    }
+
+    /// The foot, and the degree there.
+    #[inline(always)]
+    pub(crate) fn foot(&self) -> (f64, f64) {
+        if self.right < self.left {
+            (self.to, self.right)
+        } else {
+            (self.from, self.left)
+        }
+    }
+
+    /// The summit, and the degree there.
+    #[inline(always)]
+    pub(crate) fn summit(&self) -> (f64, f64) {
+        if self.right < self.left {
+            (self.from, self.left)
+        } else {
+            (self.to, self.right)
+        }
+    }
+
+    /// The degree at `x`.
+    pub(crate) fn degree(&self, x: f64) -> f64 {
+        if self.kind == Kind::PIECEWISE {
+            let (left, right) = (x - self.from, self.to - x);
+            // From the nearer end, so that the ends are exact.
+            return if left < right {
+                self.left + (self.right - self.left) * (left / (self.to - self.from))
+            } else {
+                self.right + (self.left - self.right) * (right / (self.to - self.from))
+            };
+        }
+        self.height * self.kind.membership(&self.parameters, &[], x)
+    }
+
+    /// Of a gaussian: what it is the exponential of, without its sign.
+    pub(crate) fn exponent(&self, x: f64) -> f64 {
+        let [mean, sd, ..] = self.parameters;
+        let z = (x - mean) / sd;
+        0.5 * z * z
+    }
+
+    /// Where the flank has a degree between those of its ends.
+    pub(crate) fn where_degree_is(&self, degree: f64) -> f64 {
+        let [a, b, c, d] = self.parameters;
+        let level = smaller(1.0, degree / self.height);
+        // From the middle of the shape to the left or right.
+        let side = if self.rises() { -1.0 } else { 1.0 };
+        let x = match self.kind {
+            Kind::PIECEWISE => {
+                let (low, high) = (degree - self.left, self.right - degree);
+                if libm::fabs(low) < libm::fabs(high) {
+                    self.from + (self.to - self.from) * (low / (low + high))
+                } else {
+                    self.to - (self.to - self.from) * (high / (low + high))
+                }
+            }
+            Kind::GAUSSIAN => a + side * b * sqrt(-2.0 * log(level)),
+            Kind::BELL => a + side * b * pow((1.0 - level) / level, 0.5 / c),
+            Kind::SIGMOID => a + log(level / (1.0 - level)) / b,
+            Kind::S_SHAPE => a + (b - a) * step(level),
+            Kind::Z_SHAPE => b - (b - a) * step(level),
+            Kind::PI_SHAPE if self.rises() => a + (b - a) * step(level),
+            Kind::PI_SHAPE => d - (d - c) * step(level),
+            Kind::COSINE => a + side * (b / PI) * atan2(sqrt(1.0 - level), sqrt(level)),
+            Kind::SPIKE => a - side * 0.1 * b * log(level),
+            Kind::CONCAVE => 2.0 * b - a - (b - a) / level,
+            _ => root(self.from, self.to, |x| self.degree(x) - degree),
+        };
+        // NaN becomes the upper end.
+        larger(self.from, smaller(x, self.to))
+    }
+
+    /// The area and moment of the tail up to `x`, where the flank has this degree.
+    pub(crate) fn tail(&self, knots: &[Knot], measure: Measure, x: f64, degree: f64) -> (f64, f64) {
+        let (foot, low) = self.foot();
+        if self.kind == Kind::PIECEWISE {
+            let signed = x - foot;
+            let units = libm::fabs(signed) / measure.unit;
+            let area = units * 0.5 * (low + degree);
+            let moment = units * signed * (low + 2.0 * degree) / 6.0;
+            return (area, (foot - measure.origin) * area + moment);
+        }
+        if self.first_knot == self.end_knot {
+            let area = self.beyond_of(x, measure) - self.beyond;
+            let [mean, sd, ..] = self.parameters;
+            let side = if self.rises() { -1.0 } else { 1.0 };
+            let around = side * sd * (sd / measure.unit) * (degree - low);
+            return (area, (mean - measure.origin) * area + around);
+        }
+        let knots = &knots[self.first_knot as usize..self.end_knot as usize];
+        let passed = if self.right < self.left {
+            knots.partition_point(|knot| knot.x >= x)
+        } else {
+            knots.partition_point(|knot| knot.x <= x)
+        };
+        let knot = knots[passed.saturating_sub(1)];
+        let (from, to) = (smaller(knot.x, x), larger(knot.x, x));
+        let (area, moment) = gauss(|x| self.degree(x), from, to, measure.origin);
+        (
+            knot.area + area / measure.unit,
+            knot.moment + moment / measure.unit,
+        )
+    }
+
+    /// The area of a gaussian beyond `x`, seen from the mean.
+    pub(crate) fn beyond_of(&self, x: f64, measure: Measure) -> f64 {
+        /// `sqrt(pi / 2)`.
+        const HALF: f64 = 1.253_314_137_315_500_3;
+        let [mean, sd, ..] = self.parameters;
+        let z = (x - mean) / (sd * SQRT_2);
+        let z = if self.rises() { -z } else { z };
+        self.height * (sd / measure.unit) * HALF * erfc(z)
+    }
+
+    /// The area and moment of the flank cut off at a firing strength, from `from` to `until`, where it is at or above its foot.
+    pub(crate) fn clipped(&self, knots: &[Knot], measure: Measure, strength: f64) -> (f64, f64) {
+        let (summit, high) = self.summit();
+        if high <= strength {
+            return (self.area, self.moment);
+        }
+        let (foot, low) = self.foot();
+        let x = if low < strength {
+            self.where_degree_is(strength)
+        } else {
+            foot
+        };
+        let (area, moment) = if x == foot {
+            (0.0, 0.0)
+        } else {
+            self.tail(knots, measure, x, strength)
+        };
+        let plateau = measure.rectangle(smaller(x, summit), larger(x, summit), strength);
+        (area + plateau.0, moment + plateau.1)
+    }
+}
+
+/// Where a smooth step of two parabolas has a degree: `2 t^2` to the middle, `1 - 2 (1 - t)^2` beyond.
+fn step(degree: f64) -> f64 {
+    if degree <= 0.5 {
+        sqrt(0.5 * degree)
+    } else {
+        1.0 - sqrt(0.5 * (1.0 - degree))
+    }
+}
