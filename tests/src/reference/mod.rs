@@ -6,6 +6,7 @@
 pub mod elevated;
 pub mod flight;
 pub mod inputs;
+pub mod integral;
 pub mod levels;
 pub mod rules;
 pub mod window;

@@ -9,9 +9,30 @@ use fuzzy::model::{
 };
 use fuzzy::rule::{Condition, Hedge, Proposition};
 
-/// The value of each output at a point; `None` where no rule fires and the author chose no value.
-/// `samples` are taken between every two places at which a shape has a parameter.
+/// The aggregated set of an output, for a function that makes a number of it.
+#[expect(missing_docs, reason = "each says what it is")]
+pub struct Set<'a> {
+    pub low: f64,
+    pub high: f64,
+    /// The ends of the range and all places at which a shape has a parameter.
+    pub cuts: Vec<f64>,
+    /// The places of singletons, where all terms are; the degrees between them count for nothing.
+    pub places: Vec<f64>,
+    pub defuzzifier: Defuzzifier,
+    pub degree: &'a dyn Fn(f64) -> f64,
+}
+
+/// Defuzzifies a [`Set`].
+pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> f64;
+
+/// The value of each output at a point; `None` where no rule fires and the author chose no value. The integrals are sums of so
+/// many samples between every two places at which a shape has a parameter.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
+    evaluate_with(model, point, &|set| sampled(set, samples))
+}
+
+/// [`evaluate`] with integrals of the caller.
+pub fn evaluate_with(model: &Model, point: &[f64], defuzzify: Defuzzify<'_>) -> Vec<Option<f64>> {
     let mut values = Values::new();
     for (variable, x) in model.inputs.iter().zip(point) {
         values.insert(
@@ -32,7 +53,7 @@ pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>
                 continue;
             }
             if reads.iter().all(|read| before[read].is_some()) {
-                *number = value(model, output, &before, samples);
+                *number = value(model, output, &before, defuzzify);
             }
             let clamped = number.map(|x: f64| (variable, x.clamp(variable.low, variable.high)));
             values.insert(&variable.name, clamped);
@@ -71,7 +92,12 @@ fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
     names
 }
 
-fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) -> Option<f64> {
+fn value(
+    model: &Model,
+    output: &Output,
+    values: &Values<'_>,
+    defuzzify: Defuzzify<'_>,
+) -> Option<f64> {
     let mut fired: Vec<(f64, &Term)> = Vec::new();
     for (rule, strength) in model.rules.iter().zip(strengths(model, output, values)) {
         if strength < model.least_strength {
@@ -93,7 +119,7 @@ fn value(model: &Model, output: &Output, values: &Values<'_>, samples: usize) ->
             NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => None,
         };
     }
-    let number = number(model, output, &fired, values, samples);
+    let number = number(model, output, &fired, values, defuzzify);
     Some(match output.clamp {
         true => number.clamp(output.variable.low, output.variable.high),
         false => number,
@@ -262,7 +288,7 @@ fn or(operator: Disjunction, a: f64, b: f64) -> f64 {
         Disjunction::Drastic if b == 0.0 => a,
         Disjunction::Drastic => 1.0,
         Disjunction::Einstein => (a + b) / (1.0 + a * b),
-        Disjunction::Hamacher if a * b == 1.0 => 1.0,
+        Disjunction::Hamacher if a == 1.0 || b == 1.0 => 1.0,
         Disjunction::Hamacher => (a + b - 2.0 * a * b) / (1.0 - a * b),
         Disjunction::NilpotentMaximum if a + b < 1.0 => a.max(b),
         Disjunction::NilpotentMaximum => 1.0,
@@ -274,7 +300,7 @@ fn number(
     output: &Output,
     fired: &[(f64, &Term)],
     values: &Values<'_>,
-    samples: usize,
+    defuzzify: Defuzzify<'_>,
 ) -> f64 {
     if let Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum = output.defuzzifier {
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
@@ -301,6 +327,12 @@ fn number(
         )
     };
     let discrete = output.variable.terms.iter().all(is_singleton);
+    let places = fired.iter().filter(|_| discrete);
+    let mut places: Vec<f64> = places
+        .map(|(_, term)| consequent(&term.membership_function, values))
+        .collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup();
     let operators = model.operators_of_output(output);
     let aggregated = |x: f64| {
         let mut y = 0.0;
@@ -330,16 +362,23 @@ fn number(
     cuts.extend([low, high]);
     cuts.sort_by(f64::total_cmp);
     cuts.dedup();
+    defuzzify(&Set {
+        low,
+        high,
+        cuts,
+        places,
+        defuzzifier: output.defuzzifier,
+        degree: &aggregated,
+    })
+}
+
+fn sampled(set: &Set<'_>, samples: usize) -> f64 {
+    let (high, cuts, aggregated, defuzzifier) = (set.high, &set.cuts, set.degree, set.defuzzifier);
+    let places = &set.places;
     // (place, width of the cell, degree)
     let mut set = Vec::new();
-    if discrete {
-        let mut places: Vec<f64> = fired
-            .iter()
-            .map(|(_, term)| consequent(&term.membership_function, values))
-            .collect();
-        places.sort_by(f64::total_cmp);
-        places.dedup();
-        set.extend(places.into_iter().map(|x| (x, 1.0, aggregated(x))));
+    if !places.is_empty() {
+        set.extend(places.iter().map(|x| (*x, 1.0, aggregated(*x))));
     } else {
         for ends in cuts.windows(2) {
             let width = (ends[1] - ends[0]) / samples as f64;
@@ -352,7 +391,7 @@ fn number(
     let area: f64 = set.iter().map(|(_, width, y)| width * y).sum();
     let highest = set.iter().fold(0.0, |most: f64, (_, _, y)| most.max(*y));
     let top = set.iter().filter(|(_, _, y)| *y >= highest * (1.0 - 1e-9));
-    match output.defuzzifier {
+    match defuzzifier {
         Defuzzifier::Centroid => set.iter().map(|(x, width, y)| x * width * y).sum::<f64>() / area,
         Defuzzifier::Bisector => {
             let mut sum = 0.0;
