@@ -41,6 +41,7 @@ mod fcl;
 mod fis;
 mod fll;
 mod fml;
+mod formula;
 mod names;
 mod paper;
 mod rules;

@@ -130,7 +130,9 @@ impl Spelling {
 pub(crate) fn is_computed(term: &Term) -> bool {
     matches!(
         term.membership_function,
-        MembershipFunction::Constant { .. } | MembershipFunction::Linear { .. }
+        MembershipFunction::Constant { .. }
+            | MembershipFunction::Linear { .. }
+            | MembershipFunction::Function { .. }
     )
 }
 

@@ -157,6 +157,12 @@ pub(crate) const DEFUZZIFIERS: &Words<Defuzzifier> = &[
     (Defuzzifier::Tsukamoto, ["", "WeightedAverage", "", ""]),
 ];
 
+/// Whether a word is a name without quotes: a letter, then letters, digits and `_`.
+pub(crate) fn is_name(word: &str) -> bool {
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') && word.chars().all(is_letter)
+}
+
 /// Whether the defuzzifier weighs a number for each rule.
 pub(crate) fn is_weighted(defuzzifier: Defuzzifier) -> bool {
     matches!(

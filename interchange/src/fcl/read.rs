@@ -4,8 +4,8 @@ use fuzzy::{
     diagnostic::nearest,
     format::{Document, RuleSpans, VariableSpans},
     model::{
-        Aggregation, Block, Conjunction, Disjunction, MembershipFunction, NoRuleFires, Output,
-        Rule, Variable,
+        Aggregation, Block, Conjunction, Defuzzifier, Disjunction, MembershipFunction, NoRuleFires,
+        Output, Rule, Term, Variable,
     },
 };
 
@@ -231,6 +231,18 @@ impl<'r, 't> Reader<'r, 't> {
                 return self.skip("DEFUZZIFY");
             }
         }
+        let is_number = |term: &Term| {
+            matches!(
+                term.membership_function,
+                MembershipFunction::Singleton { .. }
+            )
+        };
+        if output.defuzzifier == Defuzzifier::WeightedAverage
+            && output.variable.terms.iter().all(is_number)
+        {
+            // The centre of gravity for singletons: degrees are aggregated before they weigh the places.
+            output.defuzzifier = Defuzzifier::Centroid;
+        }
         let weighted = words::is_weighted(output.defuzzifier);
         if weighted {
             // The places of singletons are values here.
@@ -278,7 +290,7 @@ impl<'r, 't> Reader<'r, 't> {
                 self.unexpected("`NAME := SHAPE;` before this");
                 return true;
             };
-            if let Some((term, span)) = term::read(&mut self.draft, name, shape) {
+            if let Some((term, span)) = term::read(&mut self.draft, &variable.name, name, shape) {
                 variable.terms.push(term);
                 spans.terms.push(span);
             }

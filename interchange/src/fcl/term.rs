@@ -9,11 +9,17 @@ use fuzzy::{
 use crate::{
     Format,
     draft::{Draft, number},
-    shapes,
+    formula,
+    shapes::{self, Shape},
 };
 
 /// The term of a name, from the words behind `:=`. In an output with computed values a number is a constant.
-pub(super) fn read(draft: &mut Draft<'_>, name: &str, words: &[&str]) -> Option<(Term, TermSpans)> {
+pub(super) fn read(
+    draft: &mut Draft<'_>,
+    variable: &str,
+    name: &str,
+    words: &[&str],
+) -> Option<(Term, TermSpans)> {
     let mut spans = TermSpans::default();
     spans.name = draft.span(name);
     let Some((&first, rest)) = words.split_first() else {
@@ -31,16 +37,9 @@ pub(super) fn read(draft: &mut Draft<'_>, name: &str, words: &[&str]) -> Option<
             vec![first],
         )
     } else if first.eq_ignore_ascii_case("FUNCTION") {
-        let message = format!("the term `{name}` is a formula");
-        draft.loss(
-            "formula",
-            first,
-            message,
-            "write it as points: `(0, 0) (1, 1)`",
-        );
-        return None;
+        (formula::read(draft, rest, None)?, vec![])
     } else {
-        shape(draft, first, rest)?
+        shape(draft, variable, first, rest)?
     };
     spans.parameters = parameters.iter().map(|word| draft.span(word)).collect();
     let term = Term {
@@ -53,6 +52,7 @@ pub(super) fn read(draft: &mut Draft<'_>, name: &str, words: &[&str]) -> Option<
 
 fn shape<'t>(
     draft: &mut Draft<'_>,
+    variable: &str,
     shape: &str,
     words: &[&'t str],
 ) -> Option<(MembershipFunction, Vec<&'t str>)> {
@@ -78,7 +78,20 @@ fn shape<'t>(
         draft.error("parameter-count", shape, message, "count the numbers");
         return None;
     }
-    Some((shapes::read(format, known, &numbers)?, words.to_vec()))
+    let function = match (known, &numbers[..]) {
+        // jFuzzyLogic takes 0 where the difference is negative, and not its size.
+        (Shape::SigmoidDifference, [a, b, c, d]) if format == Format::Fcl && (a != c || b > d) => {
+            let x = formula::quoted(variable);
+            let sigmoid =
+                |slope: &f64, place: &f64| format!("1 / (1 + exp(-({slope}) * ({x} - ({place}))))");
+            let text = format!("max(0, {} - {})", sigmoid(a, b), sigmoid(c, d));
+            MembershipFunction::Function {
+                formula: text.parse().ok()?,
+            }
+        }
+        _ => shapes::read(format, known, &numbers)?,
+    };
+    Some((function, words.to_vec()))
 }
 
 /// `(x, y) (x, y) ...`

@@ -2,7 +2,7 @@
 
 use fuzzy::{
     Findings, Model,
-    model::{Activation, MembershipFunction, NoRuleFires, Term, Variable},
+    model::{Activation, Aggregation, MembershipFunction, NoRuleFires, Term, Variable},
 };
 
 use crate::{
@@ -70,14 +70,13 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         terms(&mut paper, &output.variable);
         let word = paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
         paper.line(format!("  METHOD : {word};"));
-        if !words::is_weighted(output.defuzzifier) {
-            let word = paper.word(
-                words::AGGREGATIONS,
-                output.aggregation.unwrap_or(model.operators.aggregation),
-                "the aggregation",
-            );
-            paper.line(format!("  ACCU : {};", word));
-        }
+        // The sum of singletons weighs each rule.
+        let aggregation = match words::is_weighted(output.defuzzifier) {
+            true => Aggregation::Sum,
+            false => output.aggregation.unwrap_or(model.operators.aggregation),
+        };
+        let word = paper.word(words::AGGREGATIONS, aggregation, "the aggregation");
+        paper.line(format!("  ACCU : {word};"));
         match output.when_no_rule_fires {
             NoRuleFires::Value(value) => paper.line(format!("  DEFAULT := {value};")),
             NoRuleFires::Previous(None) => paper.line("  DEFAULT := NC;"),

@@ -220,9 +220,11 @@ fn variable(
         .is_some_and(|word| word.starts_with("Weighted"));
     let (low, high) = draft.range(range, low, high, computed)?;
     let mut variable = Variable::new(section.name, low, high);
+    // Computed values read the inputs, a degree its own variable.
+    let own = (!computed).then_some(section.name);
     variable.description = description(section);
     for written in section.all("term") {
-        if let Some((term, span)) = term::read(draft, written, inputs) {
+        if let Some((term, span)) = term::read(draft, written, inputs, own) {
             // A rule finds the first term of a name.
             if variable.terms.iter().any(|known| known.name == term.name) {
                 let message = format!("`{}` has a term `{}` before", section.name, term.name);

@@ -6,7 +6,7 @@ use fuzzy::{
     model::{MembershipFunction, Term},
 };
 
-use crate::{Format, draft::Draft, shapes};
+use crate::{Format, draft::Draft, formula, shapes};
 
 /// Shapes whose number of parameters is not fixed.
 const OTHERS: [&str; 5] = ["Discrete", "Constant", "Linear", "Function", "Binary"];
@@ -15,6 +15,7 @@ pub(super) fn read(
     draft: &mut Draft<'_>,
     written: &str,
     inputs: &[&str],
+    own: Option<&str>,
 ) -> Option<(Term, TermSpans)> {
     let mut words = written.split_whitespace();
     let (Some(name), Some(shape)) = (words.next(), words.next()) else {
@@ -26,9 +27,15 @@ pub(super) fn read(
     let mut spans = TermSpans::default();
     spans.name = draft.span(name);
     if shape == "Function" {
-        let message = format!("the term `{name}` is a formula");
-        draft.loss("formula", shape, message, "write it as points: `Discrete`");
-        return None;
+        let at = draft.span(shape).end - draft.span(written).start;
+        let text = written.get(at..).unwrap_or_default();
+        let membership_function = formula::read(draft, &formula::words(text), own)?;
+        let term = Term {
+            name: name.to_owned(),
+            membership_function,
+            height: 1.0,
+        };
+        return Some((term, spans));
     }
     let mut numbers = vec![];
     for word in words {

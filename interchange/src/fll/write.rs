@@ -145,10 +145,10 @@ fn term(paper: &mut Paper, term: &Term, model: &Model) {
     };
     let Some((shape, mut parameters)) = written else {
         let message = format!(
-            "the term `{}` is a singleton, which fuzzylite has in weighted outputs only",
+            "the term `{}` is a formula, or a singleton among fuzzy sets",
             term.name
         );
-        paper.loss("no-shape", message, "write a narrow triangle");
+        paper.loss("no-shape", message, "write it as points: `piecewise`");
         return;
     };
     if term.height != 1.0 {
