@@ -41,6 +41,8 @@ pub(crate) const WORDS: &[(&str, &[&str])] = &[
     ("bsum", &["bounded_sum"]),
     ("lukasiewicz", &["bounded_difference", "bounded_sum"]),
     ("unboundedsum", &["sum"]),
+    ("nsum", &["sum"]),
+    ("normalizedsum", &["bounded_sum"]),
     ("dmin", &["drastic"]),
     ("dmax", &["drastic"]),
     ("drasticproduct", &["drastic"]),

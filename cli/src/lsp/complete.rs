@@ -100,9 +100,11 @@ fn in_rule(document: &Document, rule: &str) -> Vec<lsp::CompletionItem> {
                     item(&term.name, Kind::EnumMember, Some(shape))
                 })
                 .collect();
-            if !concludes {
-                found.extend(keywords(&hedges));
-            }
+            let hedges = fuzzy::rule::Hedge::ALL.into_iter();
+            let fitting = hedges.filter(|hedge| !concludes || hedge.may_conclude());
+            found.extend(keywords(
+                &fitting.map(|hedge| hedge.word()).collect::<Vec<_>>(),
+            ));
             found
         }
         Some(word)

@@ -67,11 +67,7 @@ impl Engine {
 impl Stage {
     /// Compiles a valid model in which no output reads another one.
     pub(super) fn new(model: &Model) -> Self {
-        let mut compiler = Compiler {
-            model,
-            literals: BTreeMap::new(),
-        };
-        compiler.literals();
+        let compiler = Compiler::new(model);
         let firing = Firing::of(model);
         let drafts = compiler.drafts();
         compiler.stage(drafts, &firing)
@@ -94,13 +90,26 @@ pub(super) type LiteralKey = (usize, Option<usize>, Vec<Hedge>);
 /// Compiles a valid model, in which every name is known.
 pub(super) struct Compiler<'m> {
     pub(super) model: &'m Model,
+    /// The index of each input by its name.
+    inputs: BTreeMap<&'m str, usize>,
     /// Numbered by input, term and hedges, whatever the order of the rules.
     pub(super) literals: BTreeMap<LiteralKey, u32>,
 }
 
-impl Compiler<'_> {
+impl<'m> Compiler<'m> {
+    pub(super) fn new(model: &'m Model) -> Self {
+        let inputs = model.inputs.iter().zip(0..);
+        let mut compiler = Compiler {
+            model,
+            inputs: inputs.map(|(input, i)| (input.name.as_str(), i)).collect(),
+            literals: BTreeMap::new(),
+        };
+        compiler.literals();
+        compiler
+    }
+
     /// Finds and numbers all literals of all rules.
-    pub(super) fn literals(&mut self) {
+    fn literals(&mut self) {
         let model = self.model;
         for rule in model.rules.iter().filter(|rule| model.is_enabled(rule)) {
             rule.rule.condition.visit(&mut |proposition| {
@@ -115,9 +124,7 @@ impl Compiler<'_> {
 
     pub(super) fn key(&self, proposition: &Proposition) -> Option<LiteralKey> {
         let inputs = &self.model.inputs;
-        let input = inputs
-            .iter()
-            .position(|input| input.name == proposition.variable.text)?;
+        let input = *self.inputs.get(proposition.variable.text.as_str())?;
         let term = match &proposition.term {
             Some(name) => Some(position(&inputs.get(input)?.terms, &name.text)?),
             None => None,
@@ -354,7 +361,7 @@ impl Compiler<'_> {
             let terms = output.variable.terms.clone();
             return Defuzzify::weighted(output, operators, Method::Places(terms));
         }
-        let input = |name: &str| self.model.inputs.iter().position(|v| v.name == name);
+        let input = |name: &str| self.inputs.get(name).copied();
         let mut consequents = Consequents::default();
         for term in &output.variable.terms {
             consequents.push(&term.membership_function, input);

@@ -146,11 +146,7 @@ impl Engine {
     /// The propositions of the rules of a stage, whose first rule has this place.
     fn propositions_of(&self, stage: &chain::Stage<'_>, first_place: usize) -> Vec<Said> {
         let model = &*stage.model;
-        let mut compiler = Compiler {
-            model,
-            literals: BTreeMap::new(),
-        };
-        compiler.literals();
+        let compiler = Compiler::new(model);
         let inputs = self.inputs.len();
         let mut all = Vec::new();
         let rules = model.rules.iter().zip(&stage.rules);

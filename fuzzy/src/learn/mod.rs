@@ -142,6 +142,15 @@ impl Learner {
                 variable: bare.name.clone(),
             });
         }
+        let reads = |term: &&crate::model::Term| {
+            let reads = term.membership_function.reads();
+            reads.iter().any(|name| *name != output.variable.name)
+        };
+        if let Some(term) = output.variable.terms.iter().find(reads) {
+            return Err(LearnError::ReadsInputs {
+                term: term.name.clone(),
+            });
+        }
         for (name, _) in &settings.monotone {
             if model.inputs.iter().all(|input| input.name != *name) {
                 return Err(LearnError::NoInput { name: name.clone() });

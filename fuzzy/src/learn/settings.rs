@@ -97,6 +97,11 @@ pub enum LearnError {
     },
     /// The rule set has rule blocks.
     Blocks,
+    /// A term of the output is a function of inputs, which no value of the output belongs to.
+    ReadsInputs {
+        /// Its name.
+        term: String,
+    },
     /// A variable without terms.
     NoTerms {
         /// The variable.
@@ -116,6 +121,10 @@ impl core::fmt::Display for LearnError {
                 write!(f, "the model has {outputs} outputs; learning takes one")
             }
             LearnError::Blocks => f.write_str("learned rules stand in no rule block"),
+            LearnError::ReadsInputs { term } => write!(
+                f,
+                "the term `{term}` of the output is a function of inputs; rules are learned for fuzzy sets and numbers"
+            ),
             LearnError::NoTerms { variable } => write!(f, "`{variable}` has no terms"),
             LearnError::NoInput { name } => write!(f, "`{name}` is not an input to learn over"),
         }

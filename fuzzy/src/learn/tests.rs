@@ -372,3 +372,14 @@ fn outputs_that_chain_are_refused() {
     let refused = Learner::new(&model, Settings::default()).unwrap_err();
     assert_eq!(refused, LearnError::Outputs { outputs: 2 });
 }
+
+#[test]
+fn rules_are_not_learned_for_functions_of_inputs() {
+    let text = "{fuzzy: 1, name: t, inputs: {x: {range: [0, 1], partition: [a, b]}}, outputs: {y: {range: [0, 1], defuzzifier: weighted_sum, terms: {steep: {function: x^2}}}}, rules: []}";
+    let model = crate::yaml::parse(text).unwrap().model;
+    let refused = Learner::new(&model, Settings::default()).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the term `steep` of the output is a function of inputs; rules are learned for fuzzy sets and numbers"
+    );
+}

@@ -15,9 +15,9 @@ pub struct Block {
     /// How many rules the method keeps; 0 where it does not count.
     pub rules: u32,
     /// AND, an index in [`Conjunction::ALL`].
-    pub and: u32,
+    pub and_operator: u32,
     /// OR, an index in [`Disjunction::ALL`].
-    pub or: u32,
+    pub or_operator: u32,
     /// Its span of programs, in the order of its rules.
     pub first_program: u32,
     /// The end of that span.
@@ -77,8 +77,8 @@ impl Block {
             strength,
             method,
             rules,
-            and: and as u32,
-            or: or as u32,
+            and_operator: and as u32,
+            or_operator: or as u32,
             first_program,
             end_program,
         }
@@ -105,8 +105,8 @@ impl Block {
 
     /// AND and OR; minimum and maximum for codes of a damaged table.
     fn operators(&self) -> (Conjunction, Disjunction) {
-        let and = Conjunction::ALL.get(self.and as usize).copied();
-        let or = Disjunction::ALL.get(self.or as usize).copied();
+        let and = Conjunction::ALL.get(self.and_operator as usize).copied();
+        let or = Disjunction::ALL.get(self.or_operator as usize).copied();
         (and.unwrap_or_default(), or.unwrap_or_default())
     }
 }

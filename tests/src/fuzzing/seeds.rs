@@ -129,6 +129,7 @@ pub fn rule_sets() -> Vec<Vec<u8>> {
         rules_file!("flagred-paper.yaml"),
         include_str!("../../onboard/curves.yaml"),
         include_str!("../../onboard/functions.yaml"),
+        include_str!("../../onboard/blocks.yaml"),
     ];
     texts.map(|text| text.as_bytes().to_vec()).to_vec()
 }

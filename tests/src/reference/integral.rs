@@ -10,14 +10,17 @@ use fuzzy::model::Defuzzifier;
 
 use super::rules::Set;
 
-/// The value of a set; NaN where it hangs on digits that no number of 64 bits has, as the maxima of two peaks of almost one
+/// The value of a set, `None` of one that is 0 everywhere; NaN where it hangs on digits that no number of 64 bits has, as the maxima of two peaks of almost one
 /// height do.
-pub fn defuzzify(set: &Set<'_>) -> f64 {
+pub fn defuzzify(set: &Set<'_>) -> Option<f64> {
     let panels = panels(set);
     if panels.len() >= MOST_PANELS {
-        return f64::NAN;
+        return Some(f64::NAN);
     }
-    match set.defuzzifier {
+    if panels.iter().all(|panel| panel.area <= 0.0) {
+        return None;
+    }
+    Some(match set.defuzzifier {
         Defuzzifier::Centroid => {
             let area: f64 = panels.iter().map(|panel| panel.area).sum();
             let moment: f64 = panels.iter().map(|panel| panel.moment).sum();
@@ -25,7 +28,7 @@ pub fn defuzzify(set: &Set<'_>) -> f64 {
         }
         Defuzzifier::Bisector => bisector(set, &panels),
         _ => maxima(set, &panels),
-    }
+    })
 }
 
 fn middle(set: &Set<'_>) -> f64 {
@@ -218,7 +221,19 @@ fn maxima(set: &Set<'_>, panels: &[Panel]) -> f64 {
             }
         }
     }
-    let highest = tops.iter().fold(0.0, |most: f64, top| most.max(top.degree));
+    let highest = |tops: &[Top]| tops.iter().fold(0.0, |most: f64, top| most.max(top.degree));
+    let about = highest(&tops) * (1.0 - 1e-6);
+    for top in &mut tops {
+        // Panels end about 1e-8 beside a kink.
+        if top.from == top.to && top.degree >= about {
+            let x = steepest(set, top.from - 1e-6 * width, top.from + 1e-6 * width);
+            let degree = (set.degree)(x);
+            if degree > top.degree * (1.0 + 1e-13) {
+                *top = place(x, degree);
+            }
+        }
+    }
+    let highest = highest(&tops);
     let as_high_as = |factor: f64| {
         let tops = tops.iter().copied();
         tops.filter(move |top| top.degree >= highest * (1.0 - factor))
@@ -273,6 +288,20 @@ fn maxima(set: &Set<'_>, panels: &[Panel]) -> f64 {
         Defuzzifier::LargestOfMaxima => largest,
         _ => mean,
     }
+}
+
+/// Where a set is highest that rises to a kink and falls from it: by trisection.
+fn steepest(set: &Set<'_>, from: f64, to: f64) -> f64 {
+    let (mut from, mut to) = (from.max(set.low), to.min(set.high));
+    for _ in 0..100 {
+        let third = (to - from) / 3.0;
+        if (set.degree)(from + third) < (set.degree)(to - third) {
+            from += third;
+        } else {
+            to -= third;
+        }
+    }
+    0.5 * (from + to)
 }
 
 /// The plateau goes on beyond a panel's end, unless that is a cut.

@@ -22,13 +22,13 @@ pub struct Set<'a> {
     pub degree: &'a dyn Fn(f64) -> f64,
 }
 
-/// Defuzzifies a [`Set`].
-pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> f64;
+/// Defuzzifies a [`Set`]; `None` of one that is 0 everywhere.
+pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> Option<f64>;
 
 /// The value of each output at a point; `None` where no rule fires and the author chose no value. The integrals are sums of so
 /// many samples between every two places at which a shape has a parameter.
 pub fn evaluate(model: &Model, point: &[f64], samples: usize) -> Vec<Option<f64>> {
-    evaluate_with(model, point, &|set| sampled(set, samples))
+    evaluate_with(model, point, &|set| Some(sampled(set, samples)))
 }
 
 /// [`evaluate`] with integrals of the caller.
@@ -88,6 +88,14 @@ fn reads<'m>(model: &'m Model, output: &'m Output) -> Vec<&'m str> {
         if let MembershipFunction::Linear { coefficients, .. } = &term.membership_function {
             names.extend(coefficients.iter().map(|(name, _)| &**name));
         }
+        if let MembershipFunction::Function { formula } = &term.membership_function
+            && matches!(
+                output.defuzzifier,
+                Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
+            )
+        {
+            names.extend(formula.variables());
+        }
     }
     names
 }
@@ -119,7 +127,7 @@ fn value(
             NoRuleFires::Undefined | NoRuleFires::Error | NoRuleFires::Previous(None) => None,
         };
     }
-    let number = number(model, output, &fired, values, defuzzify);
+    let number = number(model, output, &fired, values, defuzzify)?;
     Some(match output.clamp {
         true => number.clamp(output.variable.low, output.variable.high),
         false => number,
@@ -301,24 +309,24 @@ fn number(
     fired: &[(f64, &Term)],
     values: &Values<'_>,
     defuzzify: Defuzzify<'_>,
-) -> f64 {
+) -> Option<f64> {
     if let Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum = output.defuzzifier {
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
         let sum: f64 = fired
             .iter()
             .map(|(weight, term)| weight * consequent(&term.membership_function, values))
             .sum();
-        return match output.defuzzifier {
+        return Some(match output.defuzzifier {
             Defuzzifier::WeightedSum => sum,
             _ => sum / total,
-        };
+        });
     }
     if output.defuzzifier == Defuzzifier::Tsukamoto {
         let total: f64 = fired.iter().map(|(weight, _)| weight).sum();
         let sums = fired
             .iter()
             .map(|(weight, term)| weight * place(term, *weight, &output.variable));
-        return sums.sum::<f64>() / total;
+        return Some(sums.sum::<f64>() / total);
     }
     let is_singleton = |term: &Term| {
         matches!(
@@ -455,6 +463,9 @@ fn consequent(shape: &MembershipFunction, values: &Values<'_>) -> f64 {
                 z += coefficient * values[&**name].unwrap().1;
             }
             z
+        }
+        MembershipFunction::Function { formula } => {
+            formula.evaluate(|name| values[name].unwrap().1)
         }
         other => panic!("{other:?} is no consequent"),
     }

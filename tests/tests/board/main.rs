@@ -433,7 +433,7 @@ fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
         let file = folder.file(&format!("{name}-profile.yaml"), text);
         profiles.push((name, estimator, file));
     }
-    assert_eq!(profiles.len(), 3);
+    assert_eq!(profiles.len(), 4);
     profiles
 }
 
@@ -449,6 +449,7 @@ fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
             (!table.points.is_empty(), "points"),
             (!table.hedges.is_empty(), "hedges"),
             (!table.programs.is_empty(), "programs"),
+            (!table.blocks.is_empty(), "blocks"),
             (!table.nodes.is_empty(), "nodes"),
             (!table.pairs.is_empty(), "pairs"),
             (!table.moments.is_empty(), "moments"),

@@ -1,0 +1,192 @@
+//! Rules: names, weights, provenance.
+
+use alloc::{format, string::String};
+use core::ops::Range;
+
+use super::{Validator, or};
+use crate::{
+    diagnostic::{Diagnostic, nearest, suggest},
+    model::{Rule, Variable, document::RuleSpans},
+    rule::{Condition, DEEPEST_NESTING, Hedge, Name, Proposition},
+};
+
+impl<'m> Validator<'m> {
+    pub(super) fn rule(&mut self, what: &str, rule: &'m Rule, spans: &RuleSpans) {
+        let Rule {
+            rule,
+            confidence,
+            against,
+            ..
+        } = rule;
+        self.condition(&rule.condition, 0, &spans.whole);
+        if rule.consequents.is_empty() {
+            let message = String::from("the rule has no conclusion");
+            let help = "add `THEN output IS term`";
+            self.error("empty-rule", &spans.whole, message, help);
+        }
+        for consequent in &rule.consequents {
+            if let Some(output) = self.known_output(&consequent.output) {
+                self.known_term("output", output, &consequent.term);
+            }
+            let mut hedges = consequent.hedges.iter();
+            if let Some(hedge) = hedges.find(|hedge| !hedge.may_conclude()) {
+                let message = format!("`{}` cannot stand after `THEN`", hedge.word());
+                let help = "it belongs in the condition";
+                self.error("rule-syntax", &spans.whole, message, help);
+            }
+        }
+        if !is_degree(rule.weight) {
+            let message = format!("the weight {} is outside [0, 1]", rule.weight);
+            let help = "a weight is a number from 0 to 1";
+            self.error("weight-outside-range", &spans.whole, message, help);
+        }
+        let help = "write a number from 0 to 1";
+        if let Some(confidence) = *confidence
+            && !is_degree(confidence)
+        {
+            let here = or(&spans.confidence, &spans.whole);
+            let message = format!("the confidence of {what} is {confidence}, outside [0, 1]");
+            self.error("value-outside-range", here, message, help);
+        }
+        for (i, beaten) in against.iter().enumerate() {
+            if !is_degree(beaten.degree) {
+                let here = spans.against.get(i).unwrap_or(&spans.whole);
+                let degree = beaten.degree;
+                let message =
+                    format!("the degree in `against` of {what} is {degree}, outside [0, 1]");
+                self.error("value-outside-range", here, message, help);
+            }
+        }
+    }
+
+    /// `depth` counts NOTs and brackets, as the rule is written.
+    pub(super) fn condition(
+        &mut self,
+        condition: &'m Condition,
+        depth: usize,
+        rule: &Range<usize>,
+    ) {
+        if depth > DEEPEST_NESTING {
+            let message = format!("brackets and NOTs are nested deeper than {DEEPEST_NESTING}");
+            let help = "split the rule into several rules of the same conclusion";
+            self.error("rule-too-deep", rule, message, help);
+            return;
+        }
+        match condition {
+            Condition::Is(proposition) => self.proposition(proposition),
+            Condition::Not(inner) => {
+                let brackets = matches!(**inner, Condition::And(_) | Condition::Or(_));
+                self.condition(inner, depth + 1 + usize::from(brackets), rule);
+            }
+            Condition::And(parts) | Condition::Or(parts) => {
+                if parts.is_empty() {
+                    let message = String::from("the rule has an empty condition");
+                    self.error("empty-rule", rule, message, "add `input IS term`");
+                }
+                let in_or = matches!(condition, Condition::Or(_));
+                for part in parts {
+                    let brackets = match part {
+                        Condition::Or(_) => true,
+                        Condition::And(_) => !in_or,
+                        _ => false,
+                    };
+                    self.condition(part, depth + usize::from(brackets), rule);
+                }
+            }
+        }
+    }
+
+    pub(super) fn proposition(&mut self, proposition: &'m Proposition) {
+        let name = &proposition.variable;
+        let input = self.inputs.get(name.text.as_str()).copied();
+        let output = self.outputs.get(name.text.as_str()).copied();
+        let (kind, variable) = match (input, output) {
+            (Some(input), _) => ("input", input),
+            (None, Some(output)) => ("output", output),
+            (None, None) => {
+                let finding = self.unknown_input(&name.text, &name.span);
+                self.findings.push(finding);
+                return;
+            }
+        };
+        match &proposition.term {
+            Some(_) if kind == "output" && self.is_weighted(variable) => {
+                let message = format!(
+                    "`{}` is a Takagi-Sugeno output, whose terms are numbers; a condition reads fuzzy sets",
+                    name.text
+                );
+                let help = "let a linear function read it, or give it another defuzzifier and fuzzy sets as terms";
+                self.error("output-in-condition", &name.span, message, help);
+            }
+            Some(term) => self.known_term(kind, variable, term),
+            // What a rule without a term reads back as.
+            None if proposition.hedges.last() == Some(&Hedge::Any) => {}
+            None => {
+                let message = format!("`{}` has no term", name.text);
+                let help = "add a term, or the hedge `any`";
+                self.error("missing-term", &name.span, message, help);
+            }
+        }
+    }
+
+    pub(super) fn is_weighted(&self, variable: &Variable) -> bool {
+        let mut outputs = self.model.outputs.iter();
+        outputs.any(|o| o.variable.name == variable.name && o.defuzzifier.takes_numbers())
+    }
+
+    /// Suggests an output only where the name is nearly that of one.
+    pub(super) fn unknown_input(&self, name: &str, span: &Range<usize>) -> Diagnostic {
+        let inputs = self.inputs.keys().copied();
+        match nearest(name, inputs.clone().chain(self.outputs.keys().copied())) {
+            Some(near) => unknown("input", name, span, core::iter::once(near)),
+            None => unknown("input", name, span, inputs),
+        }
+    }
+
+    pub(super) fn known_output(&mut self, name: &Name) -> Option<&'m Variable> {
+        let found = self.outputs.get(name.text.as_str()).copied();
+        // A model without outputs has a finding of its own.
+        if found.is_none() && !self.outputs.is_empty() {
+            let finding = if self.inputs.contains_key(name.text.as_str()) {
+                let message = format!("`{}` is an input; a conclusion sets outputs", name.text);
+                let help = "write the name of an output after `THEN`";
+                Diagnostic::error("input-in-conclusion", name.span.clone(), message).help(help)
+            } else {
+                let known = self.outputs.keys().copied();
+                unknown("output", &name.text, &name.span, known)
+            };
+            self.findings.push(finding);
+        }
+        found
+    }
+
+    pub(super) fn known_term(&mut self, kind: &str, variable: &Variable, term: &Name) {
+        // Terms that could not be read, and an output without any, are findings of their own.
+        let is_told = self.unread.contains(&variable.name.as_str())
+            || (kind == "output" && variable.terms.is_empty());
+        if is_told || variable.terms.iter().any(|t| t.name == term.text) {
+            return;
+        }
+        let message = format!("{kind} `{}` has no term `{}`", variable.name, term.text);
+        let mut finding = Diagnostic::error("unknown-term", term.span.clone(), message);
+        let known = variable.terms.iter().map(|t| t.name.as_str());
+        finding.help = suggest(&term.text, known).or_else(|| Some("add terms to it".into()));
+        self.findings.push(finding);
+    }
+}
+
+fn is_degree(x: f64) -> bool {
+    (0.0..=1.0).contains(&x)
+}
+
+fn unknown<'a>(
+    kind: &str,
+    name: &str,
+    span: &Range<usize>,
+    known: impl Iterator<Item = &'a str>,
+) -> Diagnostic {
+    let message = format!("there is no {kind} `{name}`");
+    let mut finding = Diagnostic::error("unknown-variable", span.clone(), message);
+    finding.help = suggest(name, known).or_else(|| Some(format!("declare it under `{kind}s`")));
+    finding
+}

@@ -1,0 +1,273 @@
+//! Inputs and outputs: ranges, membership functions, what the terms of an output may be.
+
+use alloc::{collections::BTreeSet, format, string::String};
+use core::ops::Range;
+
+use super::{MOST_FINDINGS, Validator, or};
+use crate::{
+    defuzzify::Defuzzify,
+    model::{
+        Defuzzifier, Formula, MembershipFunction, NoRuleFires, Output, Variable,
+        document::{TermSpans, VariableSpans},
+    },
+};
+
+/// Products of degrees and distances within a narrower range lose their digits.
+const NARROWEST_RANGE: f64 = 1e-250;
+
+/// More samples than this add no accuracy and make an evaluation hang.
+const MOST_SAMPLES: usize = 10_000_000;
+
+impl Validator<'_> {
+    /// The range, the membership functions and the heights of an input or output; `what` names it in messages.
+    pub(super) fn variable(&mut self, what: &str, variable: &Variable, spans: &VariableSpans) {
+        if !spans.range_unread {
+            self.range(what, variable, or(&spans.range, &spans.name));
+        }
+        let no_spans = TermSpans::default();
+        for (i, term) in variable.terms.iter().enumerate() {
+            let term_spans = spans.terms.get(i).unwrap_or(&no_spans);
+            let what = format!("term `{}` of {what}", term.name);
+            if !term_spans.unread
+                && let Err(error) = term.membership_function.validate()
+            {
+                let blamed = error.parameter.and_then(|i| term_spans.parameters.get(i));
+                let here = blamed.unwrap_or(&term_spans.name);
+                let message = format!("{what}: {error}");
+                let help = "the positions of a membership function ascend, its widths are greater than 0, its degrees lie in [0, 1]";
+                self.error("wrong-parameter", here, message, help);
+            }
+            if !(term.height > 0.0 && term.height <= 1.0) {
+                let here = or(&term_spans.height, &term_spans.name);
+                let message = format!("the height {} of {what} is outside (0, 1]", term.height);
+                let help =
+                    "a height is the largest degree of membership: greater than 0, at most 1";
+                self.error("wrong-parameter", here, message, help);
+            }
+        }
+    }
+
+    pub(super) fn range(&mut self, what: &str, variable: &Variable, here: &Range<usize>) {
+        let Variable { low, high, .. } = *variable;
+        if !low.is_finite() || !high.is_finite() {
+            let message = format!("the range of {what} is [{low}, {high}], not finite");
+            self.error("wrong-range", here, message, "write two finite numbers");
+        } else if low >= high {
+            let message = format!("the range of {what} starts at {low} and ends at {high}");
+            let help = "write the least value first, then the greatest";
+            self.error("wrong-range", here, message, help);
+        } else if !(2.0 * (high - low)).is_finite() {
+            // Twice the width must be a number too, or distances within the range overflow.
+            let message = format!("the range of {what} is too wide");
+            self.error(
+                "wrong-range",
+                here,
+                message,
+                "write the values that can occur",
+            );
+        } else if high - low < NARROWEST_RANGE {
+            let message = format!("the range of {what} is too narrow");
+            let help = "write it in a smaller unit";
+            self.error("wrong-range", here, message, help);
+        }
+    }
+
+    /// Terms of an input are no linear functions, and formulas over the input alone.
+    pub(super) fn terms_are_sets(&mut self, input: &Variable, spans: &VariableSpans) {
+        for (i, term) in input.terms.iter().enumerate() {
+            let no_spans = TermSpans::default();
+            let spans = spans.terms.get(i).unwrap_or(&no_spans);
+            let what = format!("term `{}` of input `{}`", term.name, input.name);
+            match &term.membership_function {
+                MembershipFunction::Linear { .. } => {
+                    let message = format!("{what} is a linear function");
+                    let help = "only outputs may have one; an input needs a membership function such as `triangle`";
+                    self.error("wrong-term", &spans.name, message, help);
+                }
+                MembershipFunction::Function { formula } => {
+                    self.own_formula(&what, input, formula, spans);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A formula that is a fuzzy set reads its own variable alone.
+    pub(super) fn own_formula(
+        &mut self,
+        what: &str,
+        variable: &Variable,
+        formula: &Formula,
+        spans: &TermSpans,
+    ) {
+        for (i, name) in formula.variables().enumerate() {
+            if name != variable.name {
+                let here = spans.parameters.get(i).unwrap_or(&spans.name);
+                let message = format!("{what}: the formula of a fuzzy set reads `{name}`");
+                let own = &variable.name;
+                let help = format!(
+                    "write `{own}` for the value of the variable; formulas over several variables are for outputs with `weighted_average` or `weighted_sum`"
+                );
+                self.error("wrong-term", here, message, &help);
+            }
+        }
+    }
+
+    pub(super) fn output(&mut self, output: &Output, spans: &VariableSpans) {
+        let variable = &output.variable;
+        let what = format!("output `{}`", variable.name);
+        let first = self.findings.len();
+        self.variable(&what, variable, spans);
+        if variable.terms.is_empty() && !spans.terms_unread {
+            let message = format!("{what} has no terms");
+            let help = "write `partition: [low, medium, high]`, or `terms` with a membership function for each";
+            self.error("missing-key", &spans.name, message, help);
+        }
+        if let Some(sampling) = output.samples {
+            let here = or(&spans.samples, &spans.name);
+            let samples = sampling.samples;
+            if samples < 2 {
+                let message = format!("{what} is integrated with {samples} samples");
+                self.error("wrong-parameter", here, message, "write 2 samples or more");
+            } else if samples > MOST_SAMPLES {
+                let message = format!("{samples} samples are more than {MOST_SAMPLES}");
+                let help = "leave `samples` out: the result is exact then";
+                self.error("wrong-parameter", here, message, help);
+            }
+        }
+        if let NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) =
+            output.when_no_rule_fires
+            && !spans.range_unread
+            && !(variable.low..=variable.high).contains(&value)
+        {
+            let message = format!("the value {value} lies outside the range of {what}");
+            let help = format!("write a value from {} to {}", variable.low, variable.high);
+            let here = or(&spans.default, &spans.name);
+            self.error("value-outside-range", here, message, &help);
+        }
+        self.consequents_fit(&what, output, spans);
+        let unread = spans.range_unread || spans.terms.iter().any(|term| term.unread);
+        if self.findings.len() == first && !unread && !output.defuzzifier.is_weighted() {
+            self.terms_have_area(&what, output, spans);
+        }
+    }
+
+    /// A Takagi-Sugeno output has numbers and linear functions as terms, a Mamdani output has fuzzy sets.
+    pub(super) fn consequents_fit(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
+        const WEIGHTED: &str = "it needs `defuzzifier: weighted_average` or `weighted_sum`";
+        let weighted = output.defuzzifier.takes_numbers();
+        let tsukamoto = output.defuzzifier == Defuzzifier::Tsukamoto;
+        let no_spans = TermSpans::default();
+        for (i, term) in output.variable.terms.iter().enumerate() {
+            let spans = spans.terms.get(i).unwrap_or(&no_spans);
+            let here = &spans.name;
+            let what = format!("term `{}` of {what}", term.name);
+            match &term.membership_function {
+                _ if spans.unread => {}
+                MembershipFunction::Linear { coefficients, .. } => {
+                    if !weighted {
+                        let message = format!("{what} is a linear function");
+                        self.error("wrong-term", here, message, WEIGHTED);
+                    }
+                    self.coefficients(&what, coefficients, spans);
+                }
+                MembershipFunction::Function { formula } if weighted => {
+                    for (i, name) in formula.variables().enumerate() {
+                        self.is_read(name, spans.parameters.get(i).unwrap_or(here));
+                    }
+                }
+                MembershipFunction::Function { formula } if !tsukamoto => {
+                    self.own_formula(&what, &output.variable, formula, spans);
+                }
+                shape if tsukamoto && !shape.is_monotone() => {
+                    let message = format!("{what} does not rise or fall all along");
+                    let help = "with `tsukamoto` each degree has one place: write `right_shoulder`, `left_shoulder`, `s_shape`, `z_shape`, `sigmoid`, `concave`, `arc` or a monotone `piecewise`";
+                    self.error("wrong-term", here, message, help);
+                }
+                MembershipFunction::Singleton { .. } if !weighted && !output.is_discrete() => {
+                    let message =
+                        format!("{what} is a singleton, which has no area beside fuzzy sets");
+                    let help = "make all terms of the output singletons, or this one a narrow set such as `rectangle`";
+                    self.error("wrong-term", here, message, help);
+                }
+                MembershipFunction::Singleton { .. }
+                    if output.defuzzifier == Defuzzifier::Bisector =>
+                {
+                    let message = format!("{what} is a singleton, which has no area to halve");
+                    let help =
+                        "write `defuzzifier: centroid`, the mean of the places by their degrees";
+                    self.error("wrong-term", here, message, help);
+                }
+                MembershipFunction::Constant { .. } | MembershipFunction::Singleton { .. } => {}
+                shape if weighted => {
+                    let message =
+                        format!("{what} is a fuzzy set, but the output is a weighted one");
+                    let help = if shape.is_monotone() {
+                        "write `defuzzifier: tsukamoto`, or numbers: `{constant: 5}` or `{linear: {input: 2, constant: 1}}`"
+                    } else {
+                        "write `{constant: 5}` or `{linear: {input: 2, constant: 1}}`, or `defuzzifier: centroid`"
+                    };
+                    self.error("wrong-term", here, message, help);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// The inputs that a linear function names.
+    pub(super) fn coefficients(
+        &mut self,
+        what: &str,
+        coefficients: &[(String, f64)],
+        spans: &TermSpans,
+    ) {
+        let mut seen = BTreeSet::new();
+        for (i, (input, _)) in coefficients.iter().enumerate() {
+            if self.findings.len() >= MOST_FINDINGS {
+                return;
+            }
+            let here = spans.parameters.get(i).unwrap_or(&spans.name);
+            if input == "constant" {
+                // In a rule set this key is the constant part.
+                let message = format!("{what} has a coefficient for an input called `constant`");
+                self.error("wrong-term", here, message, "rename the input");
+            } else {
+                self.is_read(input, here);
+            }
+            if !seen.insert(input) {
+                let message = format!("{what} has two coefficients for `{input}`");
+                self.error("duplicate-key", here, message, "keep one of them");
+            }
+        }
+    }
+
+    /// What a consequent reads is an input or an output.
+    pub(super) fn is_read(&mut self, name: &str, here: &Range<usize>) {
+        if !self.inputs.contains_key(name) && !self.outputs.contains_key(name) {
+            let finding = self.unknown_input(name, here);
+            self.findings.push(finding);
+        }
+    }
+
+    /// A term without an area within the range gives an output no value.
+    pub(super) fn terms_have_area(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
+        let variable = &output.variable;
+        let compiled = Defuzzify::fuzzy(output, self.model.operators_of_output(output));
+        for (i, term) in variable.terms.iter().enumerate() {
+            if compiled.is_empty(i) {
+                let here = spans.terms.get(i).map_or(0..0, |term| term.name.clone());
+                let lacks = if output.is_discrete() {
+                    "does not lie"
+                } else {
+                    "has no area"
+                };
+                let message = format!(
+                    "term `{}` of {what} {lacks} within the range [{}, {}]",
+                    term.name, variable.low, variable.high
+                );
+                let help = "widen the range or move the term";
+                self.error("term-outside-range", &here, message, help);
+            }
+        }
+    }
+}
