@@ -163,3 +163,8 @@ pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, F
         Format::Fml => fml::write(model, losses),
     }
 }
+
+/// The example of the README, run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
