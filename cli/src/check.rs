@@ -21,12 +21,12 @@ use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
     output::{Files, Stdout},
-    profile,
+    profile, rule_set,
 };
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Rule sets or profiles in YAML; `-` is standard input
+    /// Rule sets or profiles in YAML, or rule sets in FIS, FLL, FCL or FML; `-` is standard input
     #[arg(required = true, value_name = "MODEL")]
     models: Vec<PathBuf>,
     /// How to print the findings
@@ -151,7 +151,7 @@ fn examine(
     text: &str,
     arguments: &Arguments,
 ) -> Result<(Findings, Option<(Document, check::Report)>), Failure> {
-    let document = match fuzzy::yaml::parse(text) {
+    let document = match rule_set::document(text) {
         Ok(document) => document,
         Err(findings) => return Ok((findings, None)),
     };

@@ -109,18 +109,22 @@ fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Grou
     vec![group]
 }
 
-/// Whether a line of a text begins with a key that only rule sets and profiles have. No other file is quoted: it may hold
-/// secrets, and be named by somebody else.
+/// Whether a text is a rule set of another program, or a line of it begins with a key that only rule sets and profiles have.
+/// No other file is quoted: it may hold secrets, and be named by somebody else.
 pub(crate) fn is_meant_as_rules(text: &str) -> bool {
-    text.lines().any(|line| {
-        let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);
-        ["fuzzy", "flagred", "inputs", "outputs", "rules"]
-            .iter()
-            .any(|key| {
-                let rest = line.strip_prefix(key);
-                rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
-            })
-    })
+    let mut lines = text.lines();
+    interchange::Format::of(text).is_some()
+        || lines.any(|line| {
+            let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);
+            ["fuzzy", "flagred", "inputs", "outputs", "rules"]
+                .iter()
+                .any(|key| {
+                    let rest = line.strip_prefix(key);
+                    rest.is_some_and(|rest| {
+                        rest.trim_start_matches(['"', '\'', ' ']).starts_with(':')
+                    })
+                })
+        })
 }
 
 /// The command that helps with a finding: the engine knows no commands.

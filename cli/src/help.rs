@@ -77,7 +77,18 @@ pub(crate) const EXPORT: &str = "\
 Examples:
   flagred export --rust --output profile.rs
   flagred export --c --output profile.h flagred-paper
-  flagred export --c my-profile.yaml";
+  flagred export --c my-profile.yaml
+  flagred export --fis my-rules.yaml --output my-rules.fis
+
+`--fis`, `--fll`, `--fcl` and `--fml` write a rule set for MATLAB, fuzzylite, jFuzzyLogic and JFML. What such a file
+cannot say is an error; with `--lossy` it is left out with a warning.";
+
+pub(crate) const IMPORT: &str = "\
+Examples:
+  flagred import tipper.fis --output tipper.yaml
+  flagred import --lossy crane.fcl
+
+Commands that take a rule set also take such files as they are: `flagred check tipper.fis`.";
 
 pub(crate) const FMT: &str = "\
 Examples:

@@ -19,6 +19,7 @@ mod fmt;
 #[doc(hidden)] // For fuzz targets and tests of other packages.
 pub mod fuzzing;
 mod help;
+mod import;
 mod inspect;
 mod learn;
 mod lsp;
@@ -98,7 +99,10 @@ enum Command {
     /// Measure how well profiles predict attitude errors, compared with simple baselines
     #[command(after_help = help::EVALUATE)]
     Evaluate(evaluate::Arguments),
-    /// Export a profile and its rule set as Rust or C constants for firmware
+    /// Read a rule set of another program (FIS, FLL, FCL, FML) and write it in YAML
+    #[command(after_help = help::IMPORT)]
+    Import(import::Arguments),
+    /// Export a profile as code for firmware, or a rule set for another program
     #[command(after_help = help::EXPORT)]
     Export(export::Arguments),
     /// Print the JSON Schema of a format: rule set, profile, or what a command prints
@@ -130,6 +134,7 @@ impl Command {
             Command::Dataset(arguments) => dataset::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Evaluate(arguments) => evaluate::run(&arguments),
+            Command::Import(arguments) => import::run(&arguments),
             Command::Export(arguments) => export::run(&arguments),
             Command::Schema(arguments) => schema::run(&arguments),
             Command::Completions(arguments) => completions::run(&arguments),

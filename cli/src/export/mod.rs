@@ -1,6 +1,9 @@
-//! `flagred export`: a profile and its rule set as constant data for on-board use.
+//! `flagred export`: a profile and its rule set as constant data for on-board use, or a rule set for another program.
 
-use std::{fmt::Debug, path::PathBuf};
+use std::{
+    fmt::Debug,
+    path::{Path, PathBuf},
+};
 
 use flagred::{
     board::{
@@ -11,11 +14,12 @@ use flagred::{
     gap::FilledKnots,
 };
 use fuzzy::drawing::visible;
+use interchange::{Format, Losses};
 
 use crate::{
     failure::{Exit, Failure},
-    output::{Files, Replace},
-    profile,
+    output::{Files, Replace, say},
+    profile, rule_set,
 };
 
 mod c;
@@ -34,16 +38,34 @@ pub(crate) struct Arguments {
     /// Write a Lua script that ArduPilot runs from its card: docs/on-ardupilot.md
     #[arg(long, group = "language")]
     lua: bool,
-    /// Profile: `flagred`, `flagred-paper`, or a file
-    #[arg(value_name = "PROFILE", default_value = profile::DEFAULT)]
-    profile: String,
+    /// Write a rule set as FIS, for MATLAB and Octave
+    #[arg(long, group = "language")]
+    fis: bool,
+    /// Write a rule set as FLL, for fuzzylite
+    #[arg(long, group = "language")]
+    fll: bool,
+    /// Write a rule set as FCL, for jFuzzyLogic and other programs of IEC 61131-7
+    #[arg(long, group = "language")]
+    fcl: bool,
+    /// Write a rule set as FML, for JFML and other programs of IEEE 1855
+    #[arg(long, group = "language")]
+    fml: bool,
+    /// Leave out what FIS, FLL, FCL or FML cannot say: its values may be others
+    #[arg(long, conflicts_with_all = ["rust", "c", "lua"])]
+    lossy: bool,
+    /// Profile: `flagred`, `flagred-paper`, or a file; for FIS, FLL, FCL and FML the file of a rule set
+    #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
+    file: String,
     /// The file to write; `-` is standard output
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let loaded = profile::load(&arguments.profile)?;
+    if let Some(format) = arguments.format() {
+        return to_program(arguments, format);
+    }
+    let loaded = profile::load(&arguments.file)?;
     let output = Files::reading(&loaded.files)?.output(&arguments.output, Replace::Yes)?;
     let plan = loaded.estimator.plan().map_err(|error| {
         let rules = &loaded.estimator.profile().rules;
@@ -62,6 +84,52 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     output.write(&text)?;
     Ok(Exit::Clean)
+}
+
+impl Arguments {
+    /// The format of another program.
+    fn format(&self) -> Option<Format> {
+        let chosen = [self.fis, self.fll, self.fcl, self.fml];
+        let mut formats = Format::ALL.into_iter().zip(chosen);
+        formats
+            .find(|(_, chosen)| *chosen)
+            .map(|(format, _)| format)
+    }
+}
+
+/// Writes a rule set for another program.
+fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
+    let path = Path::new(&arguments.file);
+    let (document, text) = rule_set::read(path)?;
+    rule_set::compile(&document, &arguments.file, &text)?;
+    let output = Files::reading([path])?.output(&arguments.output, Replace::Yes)?;
+    let losses = match arguments.lossy {
+        true => Losses::Accept,
+        false => Losses::Refuse,
+    };
+    let tell = |findings: &fuzzy::Findings| {
+        findings
+            .0
+            .iter()
+            .for_each(|finding| say(&finding.to_string()))
+    };
+    match interchange::write(&document.model, format, losses) {
+        Ok(written) => {
+            tell(&written.findings);
+            output.write(&written.text)?;
+            Ok(Exit::Clean)
+        }
+        Err(findings) => {
+            tell(&findings);
+            let message = format!(
+                "`{}` cannot be written as {}",
+                arguments.file,
+                format.name()
+            );
+            Err(Failure::unreadable(message)
+                .help("`--lossy` leaves out what the format cannot say"))
+        }
+    }
 }
 
 /// What the cause of a finding is called, as string literals: `"unsteady_now violent"`.

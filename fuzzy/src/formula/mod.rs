@@ -88,6 +88,7 @@ impl Formula {
     }
 
     /// Whether it is a function of this variable alone, and no constant.
+    #[cfg(any(feature = "check", feature = "drawing"))]
     pub(crate) fn is_over(&self, variable: &str) -> bool {
         matches!(&self.variables[..], [only] if only.name == variable)
     }

@@ -32,6 +32,18 @@ pub struct Document {
     pub warnings: Findings,
 }
 
+impl Document {
+    /// A model that was read from a text of another format.
+    #[must_use]
+    pub fn new(model: Model, spans: Spans, warnings: Findings) -> Self {
+        Document {
+            model,
+            spans,
+            warnings,
+        }
+    }
+}
+
 /// Where the parts of a model stand in its text, in the order of the model. Empty for a model made in code.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]

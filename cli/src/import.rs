@@ -1,0 +1,51 @@
+//! `flagred import`: a rule set of another program, in YAML.
+
+use std::path::PathBuf;
+
+use interchange::{Format, Losses};
+
+use crate::{
+    diagnostics::{read_text, refuse, show},
+    failure::{Exit, Failure},
+    output::{Files, Replace},
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Rule set in FIS, FLL, FCL or FML, told by its content; `-` is standard input
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// The file to write; `-` is standard output
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+    /// Leave out what a rule set cannot say: its values may be others
+    #[arg(long)]
+    lossy: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let output = Files::reading([&arguments.file])?.output(&arguments.output, Replace::Yes)?;
+    let text = read_text(&arguments.file)?;
+    let file = arguments.file.display().to_string();
+    let Some(format) = Format::of(&text) else {
+        let failure = Failure::unreadable(format!("`{file}` is no FIS, FLL, FCL or FML"));
+        return Err(failure.help("a rule set in YAML needs no import"));
+    };
+    let losses = match arguments.lossy {
+        true => Losses::Accept,
+        false => Losses::Refuse,
+    };
+    let document = interchange::read(&text, format, losses)
+        .map_err(|findings| refuse(&findings, &file, &text))?;
+    show(&document.warnings, &file, &text);
+    let invalid = fuzzy::validate(&document.model, &document.spans);
+    if !invalid.is_empty() {
+        return Err(refuse(
+            &fuzzy::Findings::locate(invalid, &text),
+            &file,
+            &text,
+        ));
+    }
+    output.write(&fuzzy::yaml::to_string(&document.model))?;
+    Ok(Exit::Clean)
+}

@@ -1,0 +1,96 @@
+//! Rule blocks, and what outputs have of their own: a rule set has either once for all, or for each.
+
+use fuzzy::model::{Activation, Aggregation, Block, Model, Operators, Rule};
+
+/// Gives a model the blocks that its rules were read from. A single one is the rule set itself.
+pub(crate) fn settle(model: &mut Model, mut blocks: Vec<Block>) {
+    if let [block] = &blocks[..]
+        && block.enabled
+    {
+        model.operators.and = block.and;
+        model.operators.or = block.or;
+        model.operators.implication = block.implication;
+        model.activation = block.activation;
+        return;
+    }
+    for index in 0..blocks.len() {
+        let taken = |name: &str| blocks.iter().take(index).any(|block| block.name == name);
+        let Some(name) = blocks.get(index).map(|block| block.name.clone()) else {
+            continue;
+        };
+        if name.is_empty() || taken(&name) {
+            let free = (index + 1..).map(|number| format!("block {number}"));
+            let free = free.into_iter().find(|name| !taken(name));
+            if let (Some(block), Some(free)) = (blocks.get_mut(index), free) {
+                block.name = free;
+            }
+        }
+    }
+    model.blocks = blocks;
+}
+
+/// Gives a model the aggregation of each output: that of the first one is the rule set's, others are their own.
+pub(crate) fn aggregate(model: &mut Model, found: &[Option<Aggregation>]) {
+    let common = found.iter().flatten().next().copied().unwrap_or_default();
+    model.operators.aggregation = common;
+    for (output, found) in model.outputs.iter_mut().zip(found) {
+        output.aggregation = found.filter(|found| *found != common);
+    }
+}
+
+/// The rules that share operators.
+pub(crate) struct Rules<'m> {
+    pub(crate) name: &'m str,
+    pub(crate) enabled: bool,
+    pub(crate) operators: Operators,
+    pub(crate) activation: Activation,
+    /// Each with its number from 1.
+    pub(crate) rules: Vec<(usize, &'m Rule)>,
+}
+
+/// All rules of a model, by block.
+pub(crate) fn of(model: &Model) -> Vec<Rules<'_>> {
+    let rules = |of: usize| {
+        let numbered = model
+            .rules
+            .iter()
+            .enumerate()
+            .map(|(index, rule)| (index + 1, rule));
+        numbered
+            .filter(|(_, rule)| model.blocks.is_empty() || rule.block == of)
+            .collect()
+    };
+    if model.blocks.is_empty() {
+        return vec![Rules {
+            name: "rules",
+            enabled: true,
+            operators: model.operators,
+            activation: model.activation,
+            rules: rules(0),
+        }];
+    }
+    let of_block = |(index, block)| {
+        let Block {
+            name,
+            enabled,
+            and,
+            or,
+            implication,
+            activation,
+            ..
+        }: &Block = block;
+        Rules {
+            name,
+            enabled: *enabled,
+            operators: Operators {
+                and: *and,
+                or: *or,
+                implication: *implication,
+                aggregation: model.operators.aggregation,
+            },
+            activation: *activation,
+            rules: rules(index),
+        }
+    };
+    model.blocks.iter().enumerate().map(of_block).collect()
+}

@@ -1,0 +1,127 @@
+//! A model that is being read, and what is found on the way.
+
+use std::ops::Range;
+
+use fuzzy::{
+    Diagnostic, Findings, Model,
+    format::{Document, Spans},
+};
+
+use crate::{Losses, comments};
+
+/// A model that is being read from a text.
+pub(crate) struct Draft<'t> {
+    pub(crate) text: &'t str,
+    losses: Losses,
+    pub(crate) model: Model,
+    pub(crate) spans: Spans,
+    findings: Vec<Diagnostic>,
+}
+
+impl<'t> Draft<'t> {
+    pub(crate) fn new(text: &'t str, losses: Losses) -> Self {
+        Draft {
+            text,
+            losses,
+            model: Model::builder("").build(),
+            spans: Spans::default(),
+            findings: vec![],
+        }
+    }
+
+    /// Where a part of the text stands in it.
+    pub(crate) fn span(&self, part: &str) -> Range<usize> {
+        let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
+        start..start + part.len()
+    }
+
+    /// Something that makes the text unreadable.
+    pub(crate) fn error(&mut self, code: &'static str, part: &str, message: String, help: &str) {
+        self.findings
+            .push(Diagnostic::error(code, self.span(part), message).help(help));
+    }
+
+    /// Something that the model cannot carry, so that its answers would be others: an error, or a warning where losses are
+    /// accepted.
+    pub(crate) fn loss(&mut self, code: &'static str, part: &str, message: String, help: &str) {
+        let span = self.span(part);
+        let finding = match self.losses {
+            Losses::Refuse => Diagnostic::error(code, span, message),
+            Losses::Accept => Diagnostic::warning(code, span, message),
+        };
+        self.findings.push(finding.help(help));
+    }
+
+    /// Something that has no meaning here, and is left out.
+    pub(crate) fn warning(&mut self, code: &'static str, part: &str, message: String, help: &str) {
+        self.findings
+            .push(Diagnostic::warning(code, self.span(part), message).help(help));
+    }
+
+    /// Something that was decided without a word in the text.
+    pub(crate) fn note(&mut self, code: &'static str, part: &str, message: String, help: &str) {
+        self.findings
+            .push(Diagnostic::note(code, self.span(part), message).help(help));
+    }
+
+    /// A number; what is none is an error.
+    pub(crate) fn number(&mut self, word: &str) -> Option<f64> {
+        let number = number(word);
+        if number.is_none() {
+            let message = format!("`{word}` is not a number");
+            self.error(
+                "not-a-number",
+                word,
+                message,
+                "write it out in digits: 0.7853981633974483 for pi/4",
+            );
+        }
+        number
+    }
+
+    /// The ends of a range. An output that computes its values needs none, so `0 0` becomes a range around it.
+    pub(crate) fn range(
+        &mut self,
+        part: &str,
+        low: &str,
+        high: &str,
+        computed: bool,
+    ) -> Option<(f64, f64)> {
+        let (low, high) = (self.number(low)?, self.number(high)?);
+        if low != high || !computed {
+            return Some((low, high));
+        }
+        let message = format!("the range from {low} to {high} is empty");
+        let help = "the output computes its values, and its range becomes one wide";
+        self.note("empty-range", part, message, help);
+        Some((low - 0.5, high + 0.5))
+    }
+
+    /// Whether something makes the text unreadable.
+    pub(crate) fn has_errors(&self) -> bool {
+        let error = fuzzy::diagnostic::Severity::Error;
+        self.findings
+            .iter()
+            .any(|finding| finding.severity == error)
+    }
+
+    /// The model, or what keeps the text from being read.
+    pub(crate) fn finish(mut self) -> Result<Document, Findings> {
+        comments::keep(self.text, &mut self.model, &self.spans);
+        let findings = Findings::locate(self.findings, self.text);
+        if findings.has_errors() {
+            return Err(findings);
+        }
+        Ok(Document::new(self.model, self.spans, findings))
+    }
+}
+
+/// A number in digits, `inf`, `-inf` or `nan`.
+pub(crate) fn number(word: &str) -> Option<f64> {
+    let digits = word.trim_start_matches(['-', '+']);
+    let plain = digits.starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let named = ["inf", "infinity", "nan"]
+        .iter()
+        .any(|name| digits.eq_ignore_ascii_case(name));
+    (plain || named).then(|| word.parse().ok()).flatten()
+}

@@ -1,0 +1,9 @@
+//! FCL, the Fuzzy Control Language of IEC 61131-7, as jFuzzyLogic and fuzzylite write it.
+
+pub(crate) use read::read;
+pub(crate) use write::write;
+
+mod lex;
+mod read;
+mod term;
+mod write;

@@ -1,0 +1,226 @@
+//! From a model to FCL: points and numbers as IEC 61131-7 has them, curves as jFuzzyLogic names them.
+
+use fuzzy::{
+    Findings, Model,
+    model::{Activation, Aggregation, MembershipFunction, NoRuleFires, Term, Variable},
+};
+
+use crate::{
+    Format, Losses, Written,
+    blocks::{self, Rules},
+    names::{self, Allowed},
+    paper::{Paper, numbers, one_line},
+    rules, shapes, words,
+};
+
+const NAMES: Allowed = Allowed {
+    more: &[],
+    keywords: &[
+        "if",
+        "is",
+        "then",
+        "and",
+        "or",
+        "with",
+        "not",
+        "any",
+        "very",
+        "somewhat",
+        "seldom",
+        "extremely",
+        "real",
+        "term",
+        "rule",
+        "range",
+        "method",
+        "default",
+        "act",
+        "accu",
+        "nc",
+    ],
+};
+
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
+    let mut paper = Paper::new(Format::Fcl, losses);
+    let model = names::plain(model, &NAMES, &mut paper);
+    let name = identifier(&model.name);
+    if let Some(description) = &model.description {
+        paper.line(format!(
+            "(* {} *)",
+            one_line(&description.replace("*)", ""))
+        ));
+    }
+    paper.line(format!("FUNCTION_BLOCK {name}\n\nVAR_INPUT"));
+    for input in &model.inputs {
+        paper.line(format!("  {} : REAL;", input.name));
+    }
+    paper.line("END_VAR\n\nVAR_OUTPUT");
+    for output in &model.outputs {
+        paper.line(format!("  {} : REAL;", output.variable.name));
+    }
+    paper.line("END_VAR");
+    for input in &model.inputs {
+        paper.line(format!("\nFUZZIFY {}", input.name));
+        terms(&mut paper, input);
+        paper.line("END_FUZZIFY");
+    }
+    for output in &model.outputs {
+        let name = &output.variable.name;
+        paper.line(format!("\nDEFUZZIFY {name}"));
+        terms(&mut paper, &output.variable);
+        let word = paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
+        paper.line(format!("  METHOD : {word};"));
+        // The sum of singletons weighs each rule.
+        let aggregation = match words::is_weighted(output.defuzzifier) {
+            true => Aggregation::Sum,
+            false => output.aggregation.unwrap_or(model.operators.aggregation),
+        };
+        let word = paper.word(words::AGGREGATIONS, aggregation, "the aggregation");
+        paper.line(format!("  ACCU : {word};"));
+        match output.when_no_rule_fires {
+            NoRuleFires::Value(value) => paper.line(format!("  DEFAULT := {value};")),
+            NoRuleFires::Previous(None) => paper.line("  DEFAULT := NC;"),
+            NoRuleFires::Previous(Some(_)) => {
+                let message = format!("`{name}` keeps its value, and has a first one");
+                paper.loss("no-rule-fires", message, "FCL has `NC` or a value");
+            }
+            NoRuleFires::Undefined | NoRuleFires::Error => {}
+        }
+        if output.clamp {
+            let message = format!("`{name}` is clamped to its range");
+            paper.loss("clamp", message, "FCL does not clamp");
+        }
+        paper.line("END_DEFUZZIFY");
+        if output.samples.is_some() {
+            let message = format!("the output `{name}` is sampled, which FCL does not say");
+            paper.note("sampled", message, "each program samples in its own way");
+        }
+    }
+    let mut number = 0;
+    for block in blocks::of(&model) {
+        rule_block(&mut paper, &block, &mut number);
+    }
+    paper.line("\nEND_FUNCTION_BLOCK");
+    paper.finish()
+}
+
+fn terms(paper: &mut Paper, variable: &Variable) {
+    paper.line(format!(
+        "  RANGE := ({} .. {});",
+        variable.low, variable.high
+    ));
+    for term in &variable.terms {
+        if let Some(shape) = shape(paper, term) {
+            paper.line(format!("  TERM {} := {shape};", term.name));
+        }
+    }
+}
+
+fn shape(paper: &mut Paper, term: &Term) -> Option<String> {
+    use MembershipFunction as Of;
+    let height = term.height;
+    let points = |points: &[(f64, f64)]| {
+        let written = points
+            .iter()
+            .map(|&(x, y)| format!("({x}, {})", y * height));
+        Some(written.collect::<Vec<_>>().join(" "))
+    };
+    match term.membership_function {
+        Of::Triangle { left, peak, right } => {
+            points(&edges(&[(left, 0.0), (peak, 1.0), (right, 0.0)]))
+        }
+        Of::Trapezoid {
+            left,
+            left_top,
+            right_top,
+            right,
+        } => points(&edges(&[
+            (left, 0.0),
+            (left_top, 1.0),
+            (right_top, 1.0),
+            (right, 0.0),
+        ])),
+        Of::LeftShoulder { top, foot } => points(&[(top, 1.0), (foot, 0.0)]),
+        Of::RightShoulder { foot, top } => points(&[(foot, 0.0), (top, 1.0)]),
+        Of::Rectangle { left, right } => {
+            points(&[(left, 0.0), (left, 1.0), (right, 1.0), (right, 0.0)])
+        }
+        Of::Piecewise { points: ref all } => points(all),
+        Of::Singleton { at } | Of::Constant { value: at } if height == 1.0 => Some(at.to_string()),
+        ref other => {
+            let name = &term.name;
+            let written = shapes::write(Format::Fcl, other).or_else(|| {
+                let written = shapes::write(Format::Fll, other)?;
+                let message = format!(
+                    "only fuzzylite reads the shape `{}`, of the term `{name}`",
+                    written.0
+                );
+                paper.note("not-in-iec", message, "write it as points: `piecewise`");
+                Some(written)
+            });
+            if written.is_none() || height != 1.0 {
+                let message = format!("the term `{name}` has a shape or a height that FCL has not");
+                paper.loss("no-shape", message, "write it as points: `piecewise`");
+            }
+            written.map(|(shape, parameters)| format!("{shape} {}", numbers(&parameters)))
+        }
+    }
+}
+
+/// The points without a second one at the same place and height, as the shoulder of a triangle has.
+fn edges(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut points = points.to_vec();
+    points.dedup();
+    points
+}
+
+fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
+    let operators = block.operators;
+    if !block.enabled {
+        return;
+    }
+    if block.activation != Activation::General {
+        let message = format!("the rules `{}` do not all fire", block.name);
+        paper.loss("activation", message, "FCL has no activation methods");
+    }
+    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
+    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
+    let implication = paper.word(
+        words::CONJUNCTIONS,
+        operators.implication,
+        "the implication",
+    );
+    let name = identifier(block.name);
+    paper.line(format!(
+        "\nRULEBLOCK {name}\n  AND : {and};\n  OR : {or};\n  ACT : {implication};"
+    ));
+    for (index, rule) in &block.rules {
+        match rules::write(&rule.rule, operators, ", ") {
+            Some(rules) => {
+                for rule in rules {
+                    *number += 1;
+                    paper.line(format!("  RULE {number} : {};", keywords(&rule)));
+                }
+            }
+            None => {
+                let message = format!("rule {index} has a NOT before brackets");
+                paper.loss("not", message, "write NOT before the terms");
+            }
+        }
+    }
+    paper.line("END_RULEBLOCK");
+}
+
+fn identifier(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    name.chars().map(plain).collect()
+}
+
+/// The keywords in capitals, as IEC 61131-7 writes them.
+fn keywords(rule: &str) -> String {
+    let words = rule.split(' ').map(|word| match word {
+        "if" | "is" | "and" | "or" | "then" | "with" | "not" => word.to_uppercase(),
+        _ => word.to_owned(),
+    });
+    words.collect::<Vec<_>>().join(" ")
+}

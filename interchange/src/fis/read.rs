@@ -1,0 +1,346 @@
+//! From FIS to a model.
+
+use fuzzy::{
+    diagnostic::nearest,
+    format::{Document, TermSpans, VariableSpans},
+    model::{Aggregation, Defuzzifier, Output, Variable},
+};
+
+use super::{rules, term};
+use crate::{Format, Losses, draft::Draft, shapes, words};
+
+/// `[Name]` and its lines.
+pub(super) struct Section<'t> {
+    name: &'t str,
+    entries: Vec<Entry<'t>>,
+}
+
+/// `Key=value`; a line without `=` is all value.
+struct Entry<'t> {
+    key: &'t str,
+    value: &'t str,
+}
+
+impl<'t> Section<'t> {
+    fn get(&self, key: &str) -> Option<&'t str> {
+        let is_key = |entry: &&Entry<'_>| entry.key.eq_ignore_ascii_case(key);
+        self.entries.iter().find(is_key).map(|entry| entry.value)
+    }
+
+    /// The number behind a name: 2 of `Input2`.
+    fn index(&self, word: &str) -> Option<usize> {
+        let (start, number) = self.name.split_at_checked(word.len())?;
+        start
+            .eq_ignore_ascii_case(word)
+            .then(|| number.parse().ok())
+            .flatten()
+    }
+
+    fn numbered<'s>(sections: &'s [Section<'t>], word: &str) -> Vec<&'s Section<'t>> {
+        let mut found: Vec<(usize, &Section<'_>)> = sections
+            .iter()
+            .filter_map(|section| Some((section.index(word)?, section)))
+            .collect();
+        found.sort_by_key(|&(index, _)| index);
+        found.into_iter().map(|(_, section)| section).collect()
+    }
+}
+
+pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
+    let mut draft = Draft::new(text, losses);
+    let sections = sections(&mut draft);
+    let system = sections
+        .iter()
+        .find(|s| s.name.eq_ignore_ascii_case("System"));
+    let Some(system) = system else {
+        let message = "there is no section `[System]`".into();
+        draft.error(
+            "fis-syntax",
+            &text[..0],
+            message,
+            "a FIS begins with `[System]`",
+        );
+        return draft.finish();
+    };
+    draft.model.name = unquoted(system.get("Name").unwrap_or("unnamed")).into();
+    let weighted = kind(&mut draft, system);
+    operators(&mut draft, system, weighted);
+    let inputs = Section::numbered(&sections, "Input");
+    let names: Vec<&str> = inputs.iter().map(|input| name(input)).collect();
+    for section in &inputs {
+        if let Some((variable, spans)) = variable(&mut draft, section, &names, false) {
+            draft.model.inputs.push(variable);
+            draft.spans.inputs.push(spans);
+        }
+    }
+    let defuzzifier = defuzzifier(&mut draft, system, weighted);
+    for section in Section::numbered(&sections, "Output") {
+        if let Some((variable, spans)) = variable(&mut draft, section, &names, weighted) {
+            // fuzzylite writes Tsukamoto's kind in this way.
+            let defuzzifier = match variable.terms.iter().any(shapes::is_computed) {
+                false if defuzzifier == Defuzzifier::WeightedAverage => Defuzzifier::Tsukamoto,
+                _ => defuzzifier,
+            };
+            draft
+                .model
+                .outputs
+                .push(Output::new(variable).defuzzifier(defuzzifier));
+            draft.spans.outputs.push(spans);
+        }
+    }
+    // Rules name terms by number, so the variables must all be there.
+    if !draft.has_errors() {
+        counts(&mut draft, system, names.len());
+        let section = sections
+            .iter()
+            .find(|s| s.name.eq_ignore_ascii_case("Rules"));
+        for entry in section.into_iter().flat_map(|section| &section.entries) {
+            rules::read(&mut draft, entry.value);
+        }
+    }
+    draft.finish()
+}
+
+fn name<'t>(section: &Section<'t>) -> &'t str {
+    section.get("Name").map_or(section.name, unquoted)
+}
+
+/// A word without its quotes.
+pub(super) fn unquoted(word: &str) -> &str {
+    word.trim().trim_matches(['\'', '"'])
+}
+
+fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
+    let mut sections: Vec<Section<'t>> = vec![];
+    for line in draft.text.lines() {
+        let line =
+            without_comment(line).trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
+        if line.is_empty() {
+            continue;
+        }
+        if let Some(name) = line
+            .strip_prefix('[')
+            .and_then(|line| line.strip_suffix(']'))
+        {
+            if name.chars().all(|c| c.is_ascii_alphanumeric()) {
+                sections.push(Section {
+                    name,
+                    entries: vec![],
+                });
+                continue;
+            }
+        }
+        let Some(section) = sections.last_mut() else {
+            let message = format!("`{line}` stands in no section");
+            draft.error("fis-syntax", line, message, "a FIS begins with `[System]`");
+            continue;
+        };
+        let rules = section.name.eq_ignore_ascii_case("Rules");
+        let (key, value) = match line.split_once('=') {
+            Some((key, value)) if !rules => (key.trim(), value.trim()),
+            _ if rules => ("", line),
+            _ => {
+                let message = format!("`{line}` is no line of FIS");
+                draft.error("fis-syntax", line, message, "each line reads `Key=value`");
+                continue;
+            }
+        };
+        section.entries.push(Entry { key, value });
+    }
+    sections
+}
+
+/// The line up to `%`, `#` or `//` outside quotes.
+fn without_comment(line: &str) -> &str {
+    let mut quoted = false;
+    for (at, c) in line.char_indices() {
+        match c {
+            '\'' => quoted = !quoted,
+            '%' | '#' if !quoted => return &line[..at],
+            '/' if !quoted && line[at..].starts_with("//") => return &line[..at],
+            _ => {}
+        }
+    }
+    line
+}
+
+/// Whether the system is Sugeno's.
+fn kind(draft: &mut Draft<'_>, system: &Section<'_>) -> bool {
+    let word = system.get("Type").unwrap_or("mamdani");
+    match unquoted(word).to_ascii_lowercase().as_str() {
+        "mamdani" => false,
+        "sugeno" => true,
+        other => {
+            let message = match other.contains("type2") {
+                true => format!("`{other}` has type-2 fuzzy sets, which a rule set cannot hold"),
+                false => format!("unknown type `{other}`"),
+            };
+            let help = "`mamdani` and `sugeno` can be read";
+            draft.error("unknown-word", word, message, help);
+            false
+        }
+    }
+}
+
+fn operators(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) {
+    if let Some(and) = word(draft, system, "AndMethod", words::CONJUNCTIONS) {
+        draft.model.operators.and = and;
+    }
+    if let Some(or) = word(draft, system, "OrMethod", words::DISJUNCTIONS) {
+        draft.model.operators.or = or;
+    }
+    if weighted {
+        // MATLAB multiplies and sums in Sugeno systems, whatever these keys say.
+        if let Some(word) = system
+            .get("AggMethod")
+            .filter(|word| unquoted(word) != "sum")
+        {
+            let message = format!("`AggMethod={word}` has no effect in a Sugeno system");
+            draft.note(
+                "no-effect",
+                word,
+                message,
+                "MATLAB sums, and so does this rule set",
+            );
+        }
+        return;
+    }
+    if let Some(implication) = word(draft, system, "ImpMethod", words::CONJUNCTIONS) {
+        draft.model.operators.implication = implication;
+    }
+    if let Some(aggregation) = word(draft, system, "AggMethod", words::AGGREGATIONS) {
+        draft.model.operators.aggregation = match aggregation {
+            // MATLAB cuts the sum at 1 nowhere, Octave does not either.
+            Aggregation::Sum => Aggregation::Sum,
+            other => other,
+        };
+    }
+}
+
+fn word<T: Copy>(
+    draft: &mut Draft<'_>,
+    system: &Section<'_>,
+    key: &str,
+    known: &'static words::Words<T>,
+) -> Option<T> {
+    let written = system.get(key)?;
+    let word = unquoted(written);
+    if word.is_empty() {
+        return None;
+    }
+    let value = words::value(known, Format::Fis, word);
+    if value.is_none() {
+        let known = words::all(known, Format::Fis);
+        let help = match nearest(word, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!(
+                "functions of your own cannot be read; known are {}",
+                known.join(", ")
+            ),
+        };
+        let message = format!("unknown `{key}` `{word}`");
+        draft.error("unknown-word", written, message, &help);
+    }
+    value
+}
+
+fn defuzzifier(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) -> Defuzzifier {
+    let fallback = match weighted {
+        true => Defuzzifier::WeightedAverage,
+        false => Defuzzifier::Centroid,
+    };
+    let Some(value) = word(draft, system, "DefuzzMethod", words::DEFUZZIFIERS) else {
+        return fallback;
+    };
+    let is_weighted = words::is_weighted(value);
+    if is_weighted != weighted {
+        let written = system.get("DefuzzMethod").unwrap_or(system.name);
+        let message = format!("`DefuzzMethod={written}` does not fit the type of the system");
+        let help = "`wtaver` and `wtsum` are for Sugeno systems, the others for Mamdani's";
+        draft.error("wrong-method", written, message, help);
+    }
+    value
+}
+
+fn variable(
+    draft: &mut Draft<'_>,
+    section: &Section<'_>,
+    inputs: &[&str],
+    weighted: bool,
+) -> Option<(Variable, VariableSpans)> {
+    let name = name(section);
+    let mut spans = VariableSpans::default();
+    spans.name = draft.span(name);
+    let Some(range) = section.get("Range") else {
+        let message = format!("the variable `{name}` has no range");
+        draft.error("no-range", name, message, "add `Range=[LOW HIGH]`");
+        return None;
+    };
+    spans.range = draft.span(range);
+    let ends = bracketed(range);
+    let [low, high] = ends[..] else {
+        let message = format!("`{range}` is no range");
+        draft.error("no-range", range, message, "write `Range=[0 10]`");
+        return None;
+    };
+    let (low, high) = draft.range(range, low, high, weighted)?;
+    let mut variable = Variable::new(name, low, high);
+    for entry in &section.entries {
+        let number = entry
+            .key
+            .split_at_checked(2)
+            .filter(|(mf, _)| mf.eq_ignore_ascii_case("MF"));
+        if number.is_none_or(|(_, index)| index.parse::<usize>().is_err()) {
+            continue;
+        }
+        if let Some((mut term, term_spans)) = term::read(draft, entry.value, inputs) {
+            term.name = distinct(draft, &variable, term.name, &term_spans);
+            variable.terms.push(term);
+            spans.terms.push(term_spans);
+        }
+    }
+    Some((variable, spans))
+}
+
+/// A name that no other term of the variable has. Rules of FIS know terms by number, so names may be alike.
+fn distinct(draft: &mut Draft<'_>, variable: &Variable, name: String, spans: &TermSpans) -> String {
+    let taken = |name: &str| variable.terms.iter().any(|term| term.name == name);
+    if !taken(&name) {
+        return name;
+    }
+    let free = (2..).map(|number| format!("{name}_{number}"));
+    let Some(free) = free.into_iter().find(|name| !taken(name)) else {
+        return name;
+    };
+    let message = format!("`{}` has another term `{name}`", variable.name);
+    let part = draft.text.get(spans.name.clone()).unwrap_or_default();
+    draft.note(
+        "renamed",
+        part,
+        message,
+        &format!("this one becomes `{free}`"),
+    );
+    free
+}
+
+/// The words between brackets, divided by blanks or commas.
+pub(super) fn bracketed(text: &str) -> Vec<&str> {
+    let inner = text.trim().trim_start_matches('[').trim_end_matches(']');
+    let words = inner.split(|c: char| c.is_whitespace() || c == ',' || c == ';');
+    words.filter(|word| !word.is_empty()).collect()
+}
+
+/// Says where the file has another number of variables than it announces.
+fn counts(draft: &mut Draft<'_>, system: &Section<'_>, inputs: usize) {
+    let outputs = draft.model.outputs.len();
+    for (key, found) in [("NumInputs", inputs), ("NumOutputs", outputs)] {
+        let Some(written) = system.get(key) else {
+            continue;
+        };
+        if written.parse() != Ok(found) {
+            let message = format!("`{key}` is {written}, but the file has {found}");
+            let help = "the rules are read with the variables that the file has";
+            draft.warning("wrong-count", written, message, help);
+        }
+    }
+}

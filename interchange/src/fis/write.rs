@@ -1,0 +1,279 @@
+//! From a model to FIS, as MATLAB reads it.
+
+use fuzzy::{
+    Findings, Model,
+    model::{Activation, Defuzzifier, MembershipFunction, NoRuleFires, Rule, Term, Variable},
+    rule::{Condition, Hedge, Name},
+};
+
+use crate::{
+    Format, Losses, Written, conditions,
+    paper::{Paper, numbers, one_line},
+    shapes, words,
+};
+
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
+    let mut paper = Paper::new(Format::Fis, losses);
+    system(&mut paper, model);
+    for (index, input) in model.inputs.iter().enumerate() {
+        paper.line(format!("\n[Input{}]", index + 1));
+        variable(&mut paper, input, model);
+    }
+    for (index, output) in model.outputs.iter().enumerate() {
+        paper.line(format!("\n[Output{}]", index + 1));
+        variable(&mut paper, &output.variable, model);
+        let name = &output.variable.name;
+        if !matches!(
+            output.when_no_rule_fires,
+            NoRuleFires::Undefined | NoRuleFires::Error
+        ) {
+            let message = format!("`{name}` has a value where no rule fires, which FIS cannot say");
+            paper.loss(
+                "no-rule-fires",
+                message,
+                "MATLAB gives the middle of the range",
+            );
+        }
+        if output.clamp || output.aggregation.is_some() {
+            let message = format!("`{name}` is clamped, or has an aggregation of its own");
+            paper.loss(
+                "own",
+                message,
+                "FIS has one aggregation, and does not clamp",
+            );
+        }
+        if output.samples.is_some() {
+            let message = format!("the output `{name}` is sampled, which FIS does not say");
+            paper.note(
+                "sampled",
+                message,
+                "MATLAB samples 101 places unless told otherwise",
+            );
+        }
+    }
+    if !model.blocks.is_empty() || model.activation != Activation::General {
+        let message = "the rules stand in blocks, or do not all fire".into();
+        paper.loss(
+            "blocks",
+            message,
+            "FIS has no blocks and no activation methods",
+        );
+    }
+    paper.line("\n[Rules]");
+    for (index, rule) in model.rules.iter().enumerate() {
+        match line(rule, model) {
+            Ok(line) => paper.line(line),
+            Err(what) => {
+                let message = format!("rule {} {what}", index + 1);
+                let help = "a rule of FIS joins one term of each input by AND alone or OR alone";
+                paper.loss("rule", message, help);
+            }
+        }
+    }
+    paper.finish()
+}
+
+fn system(paper: &mut Paper, model: &Model) {
+    let first = model
+        .outputs
+        .first()
+        .map_or(Defuzzifier::Centroid, |output| output.defuzzifier);
+    if model
+        .outputs
+        .iter()
+        .any(|output| output.defuzzifier != first)
+    {
+        let message = "the outputs have different defuzzifiers".into();
+        paper.loss(
+            "two-defuzzifiers",
+            message,
+            "write a rule set for each output",
+        );
+    }
+    let weighted = words::is_weighted(first);
+    let operators = model.operators;
+    let quoted = |text: &str| format!("'{}'", one_line(&text.replace('\'', "")));
+    paper.line("[System]");
+    paper.line(format!("Name={}", quoted(&model.name)));
+    paper.line(format!(
+        "Type='{}'",
+        if weighted { "sugeno" } else { "mamdani" }
+    ));
+    paper.line("Version=2.0");
+    paper.line(format!("NumInputs={}", model.inputs.len()));
+    paper.line(format!("NumOutputs={}", model.outputs.len()));
+    paper.line(format!("NumRules={}", model.rules.len()));
+    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
+    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
+    let implication = paper.word(
+        words::CONJUNCTIONS,
+        operators.implication,
+        "the implication",
+    );
+    let aggregation = paper.word(
+        words::AGGREGATIONS,
+        operators.aggregation,
+        "the aggregation",
+    );
+    paper.line(format!("AndMethod='{and}'"));
+    paper.line(format!("OrMethod='{or}'"));
+    paper.line(format!(
+        "ImpMethod='{}'",
+        if weighted { "prod" } else { implication }
+    ));
+    paper.line(format!(
+        "AggMethod='{}'",
+        if weighted { "sum" } else { aggregation }
+    ));
+    let defuzzifier = paper.word(words::DEFUZZIFIERS, first, "the defuzzifier");
+    paper.line(format!("DefuzzMethod='{defuzzifier}'"));
+    let known = ["min", "max", "prod", "probor", "sum"];
+    for word in [and, or, implication, aggregation] {
+        if !known.contains(&word) {
+            let message = format!("MATLAB has no method `{word}`");
+            paper.note("not-in-matlab", message, "Octave and fuzzylite read it");
+        }
+    }
+}
+
+fn variable(paper: &mut Paper, variable: &Variable, model: &Model) {
+    paper.line(format!(
+        "Name='{}'",
+        one_line(&variable.name.replace('\'', ""))
+    ));
+    paper.line(format!("Range=[{} {}]", variable.low, variable.high));
+    paper.line(format!("NumMFs={}", variable.terms.len()));
+    for (index, term) in variable.terms.iter().enumerate() {
+        let Some((shape, parameters)) = shape(paper, term, variable, model) else {
+            continue;
+        };
+        let name = one_line(&term.name.replace('\'', ""));
+        let parameters = numbers(&parameters);
+        paper.line(format!("MF{}='{name}':'{shape}',[{parameters}]", index + 1));
+    }
+}
+
+fn shape(
+    paper: &mut Paper,
+    term: &Term,
+    variable: &Variable,
+    model: &Model,
+) -> Option<(&'static str, Vec<f64>)> {
+    use MembershipFunction as Of;
+    if term.height != 1.0 {
+        let message = format!("the term `{}` has the height {}", term.name, term.height);
+        paper.loss("height", message, "all terms of FIS are 1 high");
+    }
+    // What MATLAB lacks is written with a shape that is equal within the range.
+    let written = match term.membership_function {
+        Of::LeftShoulder { top, foot } => Some((
+            "trapmf",
+            vec![variable.low.min(top), variable.low.min(top), top, foot],
+        )),
+        Of::RightShoulder { foot, top } => Some((
+            "trapmf",
+            vec![foot, top, variable.high.max(top), variable.high.max(top)],
+        )),
+        Of::Rectangle { left, right } => Some(("trapmf", vec![left, left, right, right])),
+        Of::Constant { value } => Some(("constant", vec![value])),
+        Of::Linear {
+            ref coefficients,
+            constant,
+        } => {
+            let of = |name: &str| coefficients.iter().find(|(input, _)| input == name);
+            let each = model
+                .inputs
+                .iter()
+                .map(|input| of(&input.name).map_or(0.0, |(_, c)| *c));
+            Some(("linear", each.chain([constant]).collect()))
+        }
+        Of::Piecewise { ref points } => Some((
+            "discretemf",
+            points.iter().flat_map(|&(x, y)| [x, y]).collect(),
+        )),
+        ref other => shapes::write(Format::Fis, other),
+    };
+    match written {
+        None => {
+            let message = format!("the term `{}` has a shape that FIS has not", term.name);
+            paper.loss("no-shape", message, "write it as points: `piecewise`");
+        }
+        Some((name @ ("discretemf" | "cosinemf" | "spikemf" | "concavemf"), _)) => {
+            let message = format!("MATLAB has no shape `{name}`, of the term `{}`", term.name);
+            paper.note("not-in-matlab", message, "fuzzylite reads it");
+        }
+        Some(_) => {}
+    }
+    written
+}
+
+/// `1 -2, 3 (0.5) : 1`
+fn line(rule: &Rule, model: &Model) -> Result<String, &'static str> {
+    let rule = &rule.rule;
+    let condition = conditions::without_not(&rule.condition, model.operators);
+    let condition = condition.ok_or("has a NOT before brackets")?;
+    let (parts, connective) = match &condition {
+        Condition::And(parts) => (parts.as_slice(), 1),
+        Condition::Or(parts) => (parts.as_slice(), 2),
+        one => (std::slice::from_ref(one), 1),
+    };
+    let mut inputs = vec![0_i64; model.inputs.len()];
+    for part in parts {
+        let Condition::Is(proposition) = part else {
+            return Err("joins AND and OR");
+        };
+        let sign = match proposition.hedges[..] {
+            [] => 1,
+            [Hedge::Not] => -1,
+            _ => return Err("has a hedge besides NOT"),
+        };
+        let index = model
+            .inputs
+            .iter()
+            .position(|input| input.name == proposition.variable.text);
+        let index = index.ok_or("has a condition about an output")?;
+        let variable = model.inputs.get(index).ok_or("names no input")?;
+        let number = inputs.get_mut(index).ok_or("names no input")?;
+        if *number != 0 {
+            return Err("names an input twice");
+        }
+        let term = proposition.term.as_ref().ok_or("names no term")?;
+        *number = sign * number_of(variable, term)?;
+    }
+    let mut outputs = vec![0_i64; model.outputs.len()];
+    for consequent in &rule.consequents {
+        if !consequent.hedges.is_empty() {
+            return Err("has a hedge in its conclusion");
+        }
+        let is = |output: &fuzzy::model::Output| output.variable.name == consequent.output.text;
+        let index = model.outputs.iter().position(is).ok_or("names no output")?;
+        let output = model.outputs.get(index).ok_or("names no output")?;
+        let number = outputs.get_mut(index).ok_or("names no output")?;
+        if *number != 0 {
+            return Err("concludes two terms of one output");
+        }
+        *number = number_of(&output.variable, &consequent.term)?;
+    }
+    let joined = |numbers: &[i64]| {
+        numbers
+            .iter()
+            .map(i64::to_string)
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    Ok(format!(
+        "{}, {} ({}) : {connective}",
+        joined(&inputs),
+        joined(&outputs),
+        rule.weight
+    ))
+}
+
+/// The number of a term, from 1.
+fn number_of(variable: &Variable, term: &Name) -> Result<i64, &'static str> {
+    let index = variable
+        .terms
+        .iter()
+        .position(|known| known.name == term.text);
+    index.map(|index| index as i64 + 1).ok_or("names no term")
+}

@@ -1,0 +1,456 @@
+//! From FLL to a model.
+
+use fuzzy::{
+    diagnostic::nearest,
+    format::{Document, RuleSpans, VariableSpans},
+    model::{
+        Aggregation, Block, Defuzzifier, Model, NoRuleFires, Output, Rule, Sampling, SamplingRule,
+        Variable,
+    },
+};
+
+use super::{activation, handover, term};
+use crate::{Format, Losses, blocks, draft::Draft, rules, shapes, words};
+
+/// A section and its lines.
+struct Section<'t> {
+    kind: Kind,
+    /// The name behind the section's word.
+    name: &'t str,
+    entries: Vec<Entry<'t>>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Engine,
+    Input,
+    Output,
+    Rules,
+}
+
+/// `key: value`.
+#[derive(Clone, Copy)]
+struct Entry<'t> {
+    key: &'t str,
+    value: &'t str,
+}
+
+impl Kind {
+    fn of(word: &str) -> Option<Kind> {
+        Some(match word {
+            "Engine" => Kind::Engine,
+            "InputVariable" => Kind::Input,
+            "OutputVariable" => Kind::Output,
+            "RuleBlock" => Kind::Rules,
+            _ => return None,
+        })
+    }
+
+    /// The keys of a section; those of fuzzylite 5 stand last.
+    fn keys(self) -> &'static [&'static str] {
+        match self {
+            Kind::Engine => &["description"],
+            Kind::Input => &["description", "enabled", "range", "lock-range", "term"],
+            Kind::Output => &[
+                "description",
+                "enabled",
+                "range",
+                "lock-range",
+                "aggregation",
+                "defuzzifier",
+                "default",
+                "lock-previous",
+                "term",
+                "accumulation",
+                "lock-valid",
+            ],
+            Kind::Rules => &[
+                "description",
+                "enabled",
+                "conjunction",
+                "disjunction",
+                "implication",
+                "activation",
+                "rule",
+            ],
+        }
+    }
+}
+
+impl<'t> Section<'t> {
+    /// The value of the last line of a key.
+    fn get(&self, key: &str) -> Option<&'t str> {
+        let of_key = self.entries.iter().rev().find(|entry| entry.key == key);
+        of_key.map(|entry| entry.value)
+    }
+
+    fn all(&self, key: &'static str) -> impl Iterator<Item = &'t str> {
+        let of_key = self.entries.iter().filter(move |entry| entry.key == key);
+        of_key.map(|entry| entry.value)
+    }
+}
+
+pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
+    let mut draft = Draft::new(text, losses);
+    let sections = sections(&mut draft);
+    let of = |kind| sections.iter().filter(move |section| section.kind == kind);
+    let engine = of(Kind::Engine).next();
+    draft.model.name = engine.map_or("", |engine| engine.name).to_owned();
+    if draft.model.name.is_empty() {
+        draft.model.name = "unnamed".into();
+    }
+    draft.model.description = engine.and_then(description);
+    let inputs: Vec<&str> = of(Kind::Input).map(|input| input.name).collect();
+    for section in of(Kind::Input) {
+        if let Some((variable, spans)) = variable(&mut draft, section, &inputs) {
+            draft.model.inputs.push(variable);
+            draft.spans.inputs.push(spans);
+        }
+    }
+    for section in of(Kind::Output) {
+        output(&mut draft, section, &inputs);
+    }
+    blocks(&mut draft, &of(Kind::Rules).collect::<Vec<_>>());
+    aggregate(&mut draft, &of(Kind::Output).collect::<Vec<_>>());
+    handover::replace(&mut draft);
+    draft.finish()
+}
+
+fn description(section: &Section<'_>) -> Option<String> {
+    section
+        .get("description")
+        .filter(|text| !text.is_empty())
+        .map(str::to_owned)
+}
+
+/// The sections of a text. Lines before the first one, and lines that are no `key: value`, are errors.
+fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
+    let mut sections: Vec<Section<'t>> = vec![];
+    for line in draft.text.lines() {
+        let line = line.split('#').next().unwrap_or("");
+        let line = line.trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
+        if line.is_empty() {
+            continue;
+        }
+        let Some((key, value)) = line.split_once(':') else {
+            let message = format!("`{line}` is no line of FLL");
+            let help = "each line reads `key: value`, and a comment begins with `#`";
+            draft.error("fll-syntax", line, message, help);
+            continue;
+        };
+        let (key, value) = (key.trim(), value.trim());
+        if let Some(kind) = Kind::of(key) {
+            sections.push(Section {
+                kind,
+                name: value,
+                entries: vec![],
+            });
+            continue;
+        }
+        let Some(section) = sections.last_mut() else {
+            let message = format!("`{key}` stands in no section");
+            let help = "a file begins with `Engine: NAME`";
+            draft.error("fll-syntax", key, message, help);
+            continue;
+        };
+        if section.kind.keys().contains(&key) {
+            section.entries.push(Entry { key, value });
+        } else {
+            let known = section.kind.keys().iter().copied();
+            let help = match nearest(key, known) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => "it is left out".into(),
+            };
+            let message = format!("unknown key `{key}`");
+            draft.warning("unknown-key", key, message, &help);
+        }
+    }
+    sections
+}
+
+/// Whether a section counts: those that are not enabled do not.
+fn is_enabled(draft: &mut Draft<'_>, section: &Section<'_>) -> bool {
+    flag(draft, section, "enabled").unwrap_or(true)
+}
+
+fn flag(draft: &mut Draft<'_>, section: &Section<'_>, key: &str) -> Option<bool> {
+    let word = section.get(key)?;
+    match word {
+        "true" => Some(true),
+        "false" => Some(false),
+        _ => {
+            let message = format!("`{word}` is neither `true` nor `false`");
+            draft.error("not-a-flag", word, message, "write `true` or `false`");
+            None
+        }
+    }
+}
+
+fn variable(
+    draft: &mut Draft<'_>,
+    section: &Section<'_>,
+    inputs: &[&str],
+) -> Option<(Variable, VariableSpans)> {
+    let mut spans = VariableSpans::default();
+    spans.name = draft.span(section.name);
+    if !is_enabled(draft, section) {
+        let message = format!("the variable `{}` is not enabled", section.name);
+        let help = "take it out of the file, or enable it";
+        draft.loss("not-enabled", section.name, message, help);
+    }
+    let Some(range) = section.get("range") else {
+        let message = format!("the variable `{}` has no range", section.name);
+        draft.error("no-range", section.name, message, "add `range: LOW HIGH`");
+        return None;
+    };
+    spans.range = draft.span(range);
+    let mut ends = range.split_whitespace();
+    let (Some(low), Some(high), None) = (ends.next(), ends.next(), ends.next()) else {
+        let message = format!("`{range}` is no range");
+        draft.error(
+            "no-range",
+            range,
+            message,
+            "write two numbers: `range: 0 10`",
+        );
+        return None;
+    };
+    let computed = section
+        .get("defuzzifier")
+        .is_some_and(|word| word.starts_with("Weighted"));
+    let (low, high) = draft.range(range, low, high, computed)?;
+    let mut variable = Variable::new(section.name, low, high);
+    // Computed values read the inputs, a degree its own variable.
+    let own = (!computed).then_some(section.name);
+    variable.description = description(section);
+    for written in section.all("term") {
+        if let Some((term, span)) = term::read(draft, written, inputs, own) {
+            // A rule finds the first term of a name.
+            if variable.terms.iter().any(|known| known.name == term.name) {
+                let message = format!("`{}` has a term `{}` before", section.name, term.name);
+                draft.note(
+                    "never-used",
+                    written,
+                    message,
+                    "no rule finds this one, and it is left out",
+                );
+                continue;
+            }
+            variable.terms.push(term);
+            spans.terms.push(span);
+        }
+    }
+    Some((variable, spans))
+}
+
+fn output(draft: &mut Draft<'_>, section: &Section<'_>, inputs: &[&str]) {
+    let Some((variable, mut spans)) = variable(draft, section, inputs) else {
+        return;
+    };
+    let mut output = Output::new(variable);
+    if let Some(written) = section.get("defuzzifier") {
+        spans.samples = draft.span(written);
+        defuzzifier(draft, written, &mut output);
+    }
+    if let Some(word) = section.get("default").filter(|word| !word.is_empty()) {
+        spans.default = draft.span(word);
+        output.when_no_rule_fires = match draft.number(word) {
+            Some(value) if !value.is_nan() => NoRuleFires::Value(value),
+            _ => NoRuleFires::Undefined,
+        };
+    }
+    let maxima = matches!(
+        output.defuzzifier,
+        Defuzzifier::SmallestOfMaxima | Defuzzifier::MeanOfMaxima | Defuzzifier::LargestOfMaxima
+    );
+    if maxima && output.when_no_rule_fires == NoRuleFires::Undefined {
+        let (low, high) = (output.variable.low, output.variable.high);
+        let value = match output.defuzzifier {
+            Defuzzifier::SmallestOfMaxima => low,
+            Defuzzifier::LargestOfMaxima => high,
+            _ => 0.5 * (low + high),
+        };
+        output.when_no_rule_fires = NoRuleFires::Value(value);
+        let message = format!(
+            "where no rule fires, fuzzylite gives `{}` the value {value}",
+            section.name
+        );
+        let help = "take `when_no_rule_fires` out of the rule set to leave it undefined";
+        draft.note("no-rule-fires", section.name, message, help);
+    }
+    if ["lock-previous", "lock-valid"]
+        .into_iter()
+        .any(|key| flag(draft, section, key) == Some(true))
+    {
+        output.when_no_rule_fires = NoRuleFires::Previous(match output.when_no_rule_fires {
+            NoRuleFires::Value(value) => Some(value),
+            _ => None,
+        });
+    }
+    // Fuzzy sets have their values inside the range anyway.
+    output.clamp =
+        words::is_weighted(output.defuzzifier) && flag(draft, section, "lock-range") == Some(true);
+    draft.model.outputs.push(output);
+    draft.spans.outputs.push(spans);
+}
+
+/// `Centroid 100`, `WeightedAverage Automatic`.
+fn defuzzifier(draft: &mut Draft<'_>, written: &str, output: &mut Output) {
+    let mut parts = written.split_whitespace();
+    let word = parts.next().unwrap_or("");
+    let Some(known) = words::value(words::DEFUZZIFIERS, Format::Fll, word) else {
+        let known = words::all(words::DEFUZZIFIERS, Format::Fll);
+        unknown(draft, "defuzzifier", word, written, known);
+        return;
+    };
+    output.defuzzifier = known;
+    let weighted = words::is_weighted(known);
+    if weighted {
+        // fuzzylite tells Tsukamoto's kind from the terms.
+        if known == Defuzzifier::WeightedAverage
+            && !output.variable.terms.iter().any(shapes::is_computed)
+        {
+            output.defuzzifier = Defuzzifier::Tsukamoto;
+        }
+        return;
+    }
+    let Some(part) = parts.next() else {
+        return;
+    };
+    match part.parse() {
+        Ok(samples) => {
+            output.samples = Some(Sampling {
+                samples,
+                rule: SamplingRule::Midpoint,
+            });
+        }
+        Err(_) => {
+            let message = format!("`{part}` is no number of samples");
+            let help = "write `defuzzifier: Centroid 100`";
+            draft.error("no-samples", part, message, help);
+        }
+    }
+}
+
+/// An operator of a word in a section, and whether it is there.
+fn operator<T: Copy>(
+    draft: &mut Draft<'_>,
+    section: &Section<'_>,
+    key: &'static str,
+    words: &words::Words<T>,
+) -> Option<T> {
+    let word = section.get(key)?;
+    if word.is_empty() || word == "none" {
+        return None;
+    }
+    let value = words::value(words, Format::Fll, word);
+    if value.is_none() {
+        unknown(draft, key, word, word, words::all(words, Format::Fll));
+    }
+    value
+}
+
+fn unknown(draft: &mut Draft<'_>, what: &str, word: &str, part: &str, known: Vec<&str>) {
+    let help = match nearest(word, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("known are {}", known.join(", ")),
+    };
+    let message = format!("unknown {what} `{word}`");
+    draft.error("unknown-word", part, message, &help);
+}
+
+/// The rules of all blocks.
+fn blocks(draft: &mut Draft<'_>, sections: &[&Section<'_>]) {
+    let mut blocks = vec![];
+    for (index, section) in sections.iter().enumerate() {
+        let mut block = Block::new(section.name);
+        block.description = description(section);
+        block.enabled = flag(draft, section, "enabled").unwrap_or(true);
+        let and = operator(draft, section, "conjunction", words::CONJUNCTIONS);
+        block.and = and.unwrap_or_default();
+        let or = operator(draft, section, "disjunction", words::DISJUNCTIONS);
+        block.or = or.unwrap_or_default();
+        // In fuzzylite 5 the activation was what the implication is now.
+        let old = section
+            .get("activation")
+            .filter(|word| words::value(words::CONJUNCTIONS, Format::Fll, word).is_some());
+        let key = match old {
+            Some(_) => "activation",
+            None => "implication",
+        };
+        let implication = operator(draft, section, key, words::CONJUNCTIONS);
+        block.implication = implication.unwrap_or_default();
+        if let Some(word) = section
+            .get("activation")
+            .filter(|word| old.is_none() && !word.is_empty())
+        {
+            match activation::read(word) {
+                Some(activation) => block.activation = activation,
+                None => unknown(
+                    draft,
+                    "activation",
+                    word,
+                    word,
+                    activation::METHODS.to_vec(),
+                ),
+            }
+        }
+        for written in section.all("rule") {
+            let Some(rule) = rules::read(draft, &rules::words(written)) else {
+                continue;
+            };
+            let mut spans = RuleSpans::default();
+            spans.whole = draft.span(written);
+            draft.spans.rules.push(spans);
+            draft.model.rules.push(Rule {
+                block: index,
+                ..Rule::from(rule)
+            });
+        }
+        blocks.push(block);
+    }
+    blocks::settle(&mut draft.model, blocks);
+}
+
+/// The aggregation of each output.
+fn aggregate(draft: &mut Draft<'_>, outputs: &[&Section<'_>]) {
+    let mut found = vec![];
+    for section in outputs {
+        let key = match section.get("accumulation") {
+            Some(_) => "accumulation",
+            None => "aggregation",
+        };
+        let aggregation = operator(draft, section, key, words::AGGREGATIONS);
+        let output = draft.model.outputs.get(found.len());
+        let weighted = output.is_some_and(|output| words::is_weighted(output.defuzzifier));
+        let joins = weighted && !matches!(aggregation, None | Some(Aggregation::Sum));
+        if joins && concludes_twice(&draft.model, section.name) {
+            let message = format!(
+                "several rules conclude one term of `{}`, and its aggregation joins them",
+                section.name
+            );
+            let part = section.get(key).unwrap_or(section.name);
+            draft.loss(
+                "joined",
+                part,
+                message,
+                "write `aggregation: none`, which weighs each rule",
+            );
+        }
+        found.push(aggregation.filter(|_| !weighted));
+    }
+    blocks::aggregate(&mut draft.model, &found);
+}
+
+/// Whether two rules conclude the same term of an output.
+fn concludes_twice(model: &Model, output: &str) -> bool {
+    let mut terms = vec![];
+    let consequents = model.rules.iter().flat_map(|rule| &rule.rule.consequents);
+    for consequent in consequents.filter(|consequent| consequent.output.text == output) {
+        if terms.contains(&&consequent.term.text) {
+            return true;
+        }
+        terms.push(&consequent.term.text);
+    }
+    false
+}

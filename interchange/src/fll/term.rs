@@ -1,0 +1,118 @@
+//! Terms of FLL: `NAME Shape PARAMETER...`, with a height behind the parameters.
+
+use fuzzy::{
+    diagnostic::nearest,
+    format::TermSpans,
+    model::{MembershipFunction, Term},
+};
+
+use crate::{Format, draft::Draft, formula, shapes};
+
+/// Shapes whose number of parameters is not fixed.
+const OTHERS: [&str; 5] = ["Discrete", "Constant", "Linear", "Function", "Binary"];
+
+pub(super) fn read(
+    draft: &mut Draft<'_>,
+    written: &str,
+    inputs: &[&str],
+    own: Option<&str>,
+) -> Option<(Term, TermSpans)> {
+    let mut words = written.split_whitespace();
+    let (Some(name), Some(shape)) = (words.next(), words.next()) else {
+        let message = format!("`{written}` is no term");
+        let help = "write a name, a shape and its parameters: `term: low Triangle 0 1 2`";
+        draft.error("no-term", written, message, help);
+        return None;
+    };
+    let mut spans = TermSpans::default();
+    spans.name = draft.span(name);
+    if shape == "Function" {
+        let at = draft.span(shape).end - draft.span(written).start;
+        let text = written.get(at..).unwrap_or_default();
+        let membership_function = formula::read(draft, &formula::words(text), own)?;
+        let term = Term {
+            name: name.to_owned(),
+            membership_function,
+            height: 1.0,
+        };
+        return Some((term, spans));
+    }
+    let mut numbers = vec![];
+    for word in words {
+        numbers.push(draft.number(word)?);
+        spans.parameters.push(draft.span(word));
+    }
+    let (function, used) = match shape {
+        "Discrete" => points(&numbers),
+        "Constant" => (
+            MembershipFunction::Constant {
+                value: *numbers.first().unwrap_or(&f64::NAN),
+            },
+            1,
+        ),
+        "Linear" => (linear(&numbers, inputs), numbers.len()),
+        "Binary" => (binary(&numbers), 2),
+        _ => {
+            let Some((known, count)) = shapes::named(Format::Fll, shape) else {
+                let help = match nearest(shape, shapes::names(Format::Fll).chain(OTHERS)) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => "see fuzzylite's list of terms".into(),
+                };
+                let message = format!("unknown shape `{shape}`");
+                draft.error("unknown-shape", shape, message, &help);
+                return None;
+            };
+            (shapes::read(Format::Fll, known, &numbers)?, count)
+        }
+    };
+    if numbers.len() < used || numbers.len() > used + 1 {
+        let message = format!(
+            "`{shape}` has {used} parameters and a height, found {} numbers",
+            numbers.len()
+        );
+        draft.error("parameter-count", shape, message, "count the numbers");
+        return None;
+    }
+    let height = numbers.get(used).copied().unwrap_or(1.0);
+    if let Some(span) = spans.parameters.get(used) {
+        spans.height = span.clone();
+    }
+    spans.parameters.truncate(used);
+    Some((
+        Term {
+            name: name.to_owned(),
+            membership_function: function,
+            height,
+        },
+        spans,
+    ))
+}
+
+/// `x y x y ...`, and a height where a number is left over.
+fn points(numbers: &[f64]) -> (MembershipFunction, usize) {
+    let pairs = numbers.chunks_exact(2).map(|pair| (pair[0], pair[1]));
+    let points: Vec<(f64, f64)> = pairs.collect();
+    let used = 2 * points.len();
+    (MembershipFunction::Piecewise { points }, used)
+}
+
+/// A coefficient for each input, then the constant; what is missing is 0.
+fn linear(numbers: &[f64], inputs: &[&str]) -> MembershipFunction {
+    let coefficients = inputs.iter().zip(numbers);
+    let coefficients = coefficients
+        .filter(|&(_, &coefficient)| coefficient != 0.0)
+        .map(|(input, &coefficient)| ((*input).to_owned(), coefficient));
+    MembershipFunction::Linear {
+        coefficients: coefficients.collect(),
+        constant: numbers.get(inputs.len()).copied().unwrap_or(0.0),
+    }
+}
+
+/// A step up at a place, or down where the direction is `-inf`.
+fn binary(numbers: &[f64]) -> MembershipFunction {
+    let at = numbers.first().copied().unwrap_or(f64::NAN);
+    match numbers.get(1).is_some_and(|&direction| direction > at) {
+        true => MembershipFunction::RightShoulder { foot: at, top: at },
+        false => MembershipFunction::LeftShoulder { top: at, foot: at },
+    }
+}

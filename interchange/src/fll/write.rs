@@ -1,0 +1,193 @@
+//! From a model to FLL, as fuzzylite 7 writes it.
+
+use fuzzy::{
+    Findings, Model,
+    model::{Defuzzifier, MembershipFunction, NoRuleFires, Output, Term, Variable},
+};
+
+use super::activation;
+use crate::{
+    Format, Losses, Written,
+    blocks::{self, Rules},
+    names::{self, Allowed},
+    paper::{Paper, numbers, one_line},
+    rules, shapes, words,
+};
+
+const NAMES: Allowed = Allowed {
+    more: &['.'],
+    keywords: &[
+        "if",
+        "is",
+        "then",
+        "and",
+        "or",
+        "with",
+        "not",
+        "any",
+        "very",
+        "somewhat",
+        "seldom",
+        "extremely",
+    ],
+};
+
+/// The samples that stand for an exact integral.
+const SAMPLES: usize = 1000;
+
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
+    let mut paper = Paper::new(Format::Fll, losses);
+    let model = names::plain(model, &NAMES, &mut paper);
+    paper.line(format!("Engine: {}", one_line(&model.name)));
+    description(&mut paper, model.description.as_deref());
+    for input in &model.inputs {
+        paper.line(format!("InputVariable: {}", input.name));
+        variable(&mut paper, input);
+        // A rule set takes values outside the range as the nearest inside.
+        paper.line("  lock-range: true");
+        for term in &input.terms {
+            self::term(&mut paper, term, &model);
+        }
+    }
+    for output in &model.outputs {
+        self::output(&mut paper, output, &model);
+    }
+    for block in blocks::of(&model) {
+        rule_block(&mut paper, &block);
+    }
+    paper.finish()
+}
+
+fn description(paper: &mut Paper, text: Option<&str>) {
+    if let Some(text) = text {
+        paper.line(format!("  description: {}", one_line(text)));
+    }
+}
+
+fn variable(paper: &mut Paper, variable: &Variable) {
+    description(paper, variable.description.as_deref());
+    paper.line("  enabled: true");
+    paper.line(format!("  range: {} {}", variable.low, variable.high));
+}
+
+fn output(paper: &mut Paper, output: &Output, model: &Model) {
+    paper.line(format!("OutputVariable: {}", output.variable.name));
+    variable(paper, &output.variable);
+    paper.line(format!("  lock-range: {}", output.clamp));
+    let computed = match output.defuzzifier {
+        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => Some("TakagiSugeno"),
+        Defuzzifier::Tsukamoto => Some("Tsukamoto"),
+        _ => None,
+    };
+    let aggregation = match computed {
+        Some(_) => "none",
+        None => paper.word(
+            words::AGGREGATIONS,
+            output.aggregation.unwrap_or(model.operators.aggregation),
+            "the aggregation",
+        ),
+    };
+    paper.line(format!("  aggregation: {aggregation}"));
+    let word = paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
+    let detail = match (computed, output.samples) {
+        (Some(kind), _) => kind.to_owned(),
+        (None, Some(sampling)) => sampling.samples.to_string(),
+        (None, None) => {
+            let message = format!(
+                "fuzzylite samples the output `{}` at {SAMPLES} places",
+                output.variable.name
+            );
+            paper.note("sampled", message, "the rule set integrates exactly");
+            SAMPLES.to_string()
+        }
+    };
+    paper.line(format!("  defuzzifier: {word} {detail}"));
+    let default = match output.when_no_rule_fires {
+        NoRuleFires::Value(value) | NoRuleFires::Previous(Some(value)) => value.to_string(),
+        NoRuleFires::Undefined | NoRuleFires::Previous(None) => "nan".into(),
+        NoRuleFires::Error => {
+            let message = format!(
+                "the output `{}` is nan where no rule fires, not an error",
+                output.variable.name
+            );
+            paper.note("no-error", message, "fuzzylite has no such error");
+            "nan".into()
+        }
+    };
+    paper.line(format!("  default: {default}"));
+    let keeps = matches!(output.when_no_rule_fires, NoRuleFires::Previous(_));
+    paper.line(format!("  lock-previous: {keeps}"));
+    for term in &output.variable.terms {
+        self::term(paper, term, model);
+    }
+}
+
+fn term(paper: &mut Paper, term: &Term, model: &Model) {
+    use MembershipFunction as Of;
+    let written = match &term.membership_function {
+        Of::Piecewise { points } => {
+            let flat: Vec<f64> = points.iter().flat_map(|&(x, y)| [x, y]).collect();
+            Some(("Discrete", flat))
+        }
+        Of::Constant { value } => Some(("Constant", vec![*value])),
+        Of::Linear {
+            coefficients,
+            constant,
+        } => {
+            let of = |name: &str| coefficients.iter().find(|(input, _)| input == name);
+            let each = model
+                .inputs
+                .iter()
+                .map(|input| of(&input.name).map_or(0.0, |(_, c)| *c));
+            Some(("Linear", each.chain([*constant]).collect()))
+        }
+        other => shapes::write(Format::Fll, other),
+    };
+    let Some((shape, mut parameters)) = written else {
+        let message = format!(
+            "the term `{}` is a formula, or a singleton among fuzzy sets",
+            term.name
+        );
+        paper.loss("no-shape", message, "write it as points: `piecewise`");
+        return;
+    };
+    if term.height != 1.0 {
+        parameters.push(term.height);
+    }
+    paper.line(format!(
+        "  term: {} {shape} {}",
+        term.name,
+        numbers(&parameters)
+    ));
+}
+
+fn rule_block(paper: &mut Paper, block: &Rules<'_>) {
+    let operators = block.operators;
+    paper.line(format!("RuleBlock: {}", one_line(block.name)));
+    paper.line(format!("  enabled: {}", block.enabled));
+    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
+    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
+    let implication = paper.word(
+        words::CONJUNCTIONS,
+        operators.implication,
+        "the implication",
+    );
+    paper.line(format!("  conjunction: {and}"));
+    paper.line(format!("  disjunction: {or}"));
+    paper.line(format!("  implication: {implication}"));
+    paper.line(format!(
+        "  activation: {}",
+        activation::write(block.activation)
+    ));
+    for (number, rule) in &block.rules {
+        match rules::write(&rule.rule, operators, " and ") {
+            Some(rules) => rules
+                .iter()
+                .for_each(|rule| paper.line(format!("  rule: {rule}"))),
+            None => {
+                let message = format!("rule {number} has a NOT before brackets");
+                paper.loss("not", message, "fuzzylite has `not` before a term only");
+            }
+        }
+    }
+}

@@ -1,0 +1,415 @@
+//! From FML to a model.
+
+use fuzzy::{
+    diagnostic::nearest,
+    format::{Document, RuleSpans, VariableSpans},
+    model::{Aggregation, Block, Defuzzifier, NoRuleFires, Output, Rule, Variable},
+    rule::{self, Condition, Consequent, Hedge, Name, Proposition},
+};
+use roxmltree::Node;
+
+use super::term;
+use crate::{Format, Losses, blocks, draft::Draft, words};
+
+/// The namespace of the standard's schema.
+pub(super) const NAMESPACE: &str = "http://www.ieee1855.org";
+
+/// FML's hedges that mean what a rule set's do.
+pub(super) const HEDGES: [(&str, Hedge); 6] = [
+    ("not", Hedge::Not),
+    ("very", Hedge::Very),
+    ("somewhat", Hedge::Somewhat),
+    ("intensify", Hedge::Extremely),
+    ("seldom", Hedge::Seldom),
+    ("any", Hedge::Any),
+];
+
+pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
+    let mut draft = Draft::new(text, losses);
+    let document = match roxmltree::Document::parse(text) {
+        Ok(document) => document,
+        Err(error) => {
+            let at = error.pos();
+            let line = text
+                .lines()
+                .nth(at.row.saturating_sub(1) as usize)
+                .unwrap_or_default();
+            let message = format!("this is no XML: {error}").to_lowercase();
+            draft.error("xml-syntax", line, message, "mend the XML first");
+            return draft.finish();
+        }
+    };
+    let root = document.root_element();
+    draft.model.name = attribute(root, "name").unwrap_or("unnamed").to_owned();
+    let mut reader = Reader {
+        // In the older form `left` and `right` say where the slope is, in the standard where the degree is 1.
+        right_is_high: root.tag_name().namespace() == Some(NAMESPACE),
+        aggregations: vec![],
+        blocks: vec![],
+        draft,
+    };
+    for base in children(root, &["knowledgeBase"]) {
+        reader.variables(base);
+    }
+    for base in root.children().filter(Node::is_element) {
+        reader.rule_base(base);
+    }
+    blocks::aggregate(&mut reader.draft.model, &reader.aggregations);
+    blocks::settle(&mut reader.draft.model, reader.blocks);
+    reader.draft.finish()
+}
+
+struct Reader<'t> {
+    draft: Draft<'t>,
+    right_is_high: bool,
+    /// Of each output.
+    aggregations: Vec<Option<Aggregation>>,
+    blocks: Vec<Block>,
+}
+
+/// An attribute; case does not count.
+pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    node.attributes()
+        .find(|attribute| attribute.name().eq_ignore_ascii_case(name))
+        .map(|attribute| attribute.value())
+}
+
+/// The opening tag of an element, as it stands in the text.
+pub(super) fn tag<'t>(text: &'t str, node: Node<'_, '_>) -> &'t str {
+    let element = text.get(node.range()).unwrap_or_default();
+    element
+        .find('>')
+        .and_then(|end| element.get(..=end))
+        .unwrap_or(element)
+}
+
+/// The elements below a node of one of some names.
+pub(super) fn children<'a, 'i>(
+    node: Node<'a, 'i>,
+    names: &'static [&'static str],
+) -> impl Iterator<Item = Node<'a, 'i>> {
+    node.children().filter(move |child| {
+        let name = child.tag_name().name();
+        child.is_element() && names.iter().any(|known| known.eq_ignore_ascii_case(name))
+    })
+}
+
+/// The text of the first element of a name.
+fn text_of<'a>(node: Node<'a, '_>, name: &'static str) -> Option<&'a str> {
+    node.children()
+        .find(|child| child.tag_name().name().eq_ignore_ascii_case(name))
+        .and_then(|child| child.text())
+        .map(str::trim)
+}
+
+impl Reader<'_> {
+    fn variables(&mut self, base: Node<'_, '_>) {
+        let all = ["fuzzyVariable", "tskVariable", "tsukamotoVariable"];
+        let is_output = |node: &Node<'_, '_>| {
+            attribute(*node, "type").is_some_and(|word| word.eq_ignore_ascii_case("output"))
+        };
+        for node in children(base, &["fuzzyVariable"]).filter(|node| !is_output(node)) {
+            if let Some((variable, spans)) = self.variable(node) {
+                self.draft.model.inputs.push(variable);
+                self.draft.spans.inputs.push(spans);
+            }
+        }
+        for node in base.children().filter(Node::is_element) {
+            match node.tag_name().name() {
+                "fuzzyVariable" if is_output(&node) => self.output(node),
+                "tskVariable" => self.tsk(node),
+                "fuzzyVariable" => {}
+                other => {
+                    let message = format!("variables of the kind `{other}` cannot be read");
+                    let help = match nearest(other, all) {
+                        Some(near) if near != other => format!("did you mean `{near}`?"),
+                        _ => "fuzzyVariable and tskVariable can".into(),
+                    };
+                    let part = tag(self.draft.text, node);
+                    self.draft.error("unknown-element", part, message, &help);
+                }
+            }
+        }
+    }
+
+    /// The number in an attribute; `None` where it has none, or with an error where it is no number.
+    fn number(&mut self, node: Node<'_, '_>, name: &str) -> Option<f64> {
+        let written = attribute(node, name)?;
+        let number = crate::draft::number(written.trim());
+        if number.is_none() {
+            let message = format!("`{name}` is `{written}`, which is not a number");
+            let part = tag(self.draft.text, node);
+            self.draft
+                .error("not-a-number", part, message, "write digits");
+        }
+        number
+    }
+
+    fn variable(&mut self, node: Node<'_, '_>) -> Option<(Variable, VariableSpans)> {
+        let part = tag(self.draft.text, node);
+        let Some(name) = attribute(node, "name") else {
+            self.draft.error(
+                "no-name",
+                part,
+                "the variable has no name".into(),
+                "add `name=\"...\"`",
+            );
+            return None;
+        };
+        let ends = (
+            self.number(node, "domainleft"),
+            self.number(node, "domainright"),
+        );
+        let (Some(low), Some(high)) = ends else {
+            let message = format!("the variable `{name}` has no range");
+            let help = "add `domainleft` and `domainright`";
+            self.draft.error("no-range", part, message, help);
+            return None;
+        };
+        let mut variable = Variable::new(name, low, high);
+        variable.unit = attribute(node, "scale")
+            .filter(|scale| !scale.is_empty() && *scale != "null")
+            .map(str::to_owned);
+        let mut spans = VariableSpans::default();
+        spans.name = self.draft.span(part);
+        spans.range = spans.name.clone();
+        for node in children(node, &["fuzzyTerm"]) {
+            if let Some((term, span)) =
+                term::read(&mut self.draft, node, self.right_is_high, (low, high))
+            {
+                variable.terms.push(term);
+                spans.terms.push(span);
+            }
+        }
+        Some((variable, spans))
+    }
+
+    fn output(&mut self, node: Node<'_, '_>) {
+        let Some((variable, spans)) = self.variable(node) else {
+            return;
+        };
+        let mut output = Output::new(variable);
+        if let Some(defuzzifier) = self.word(node, "defuzzifier", words::DEFUZZIFIERS) {
+            output.defuzzifier = defuzzifier;
+        }
+        if let Some(value) = self.number(node, "defaultValue") {
+            output.when_no_rule_fires = NoRuleFires::Value(value);
+        }
+        let aggregation = self.word(node, "accumulation", words::AGGREGATIONS);
+        self.aggregations
+            .push(Some(aggregation.unwrap_or_default()));
+        self.draft.model.outputs.push(output);
+        self.draft.spans.outputs.push(spans);
+    }
+
+    /// A Takagi-Sugeno output: its terms have a constant, then a coefficient for each input.
+    fn tsk(&mut self, node: Node<'_, '_>) {
+        let part = tag(self.draft.text, node);
+        let name = attribute(node, "name").unwrap_or_default();
+        let low = self.number(node, "domainleft").unwrap_or(0.0);
+        let high = self.number(node, "domainright").unwrap_or(1.0);
+        let mut output =
+            Output::new(Variable::new(name, low, high)).defuzzifier(Defuzzifier::WeightedAverage);
+        if let Some(value) = self.number(node, "defaultValue") {
+            output.when_no_rule_fires = NoRuleFires::Value(value);
+        }
+        let mut spans = VariableSpans::default();
+        spans.name = self.draft.span(part);
+        spans.range = spans.name.clone();
+        let inputs = self
+            .draft
+            .model
+            .inputs
+            .iter()
+            .map(|input| input.name.clone());
+        let inputs: Vec<String> = inputs.collect();
+        for node in children(node, &["tskTerm"]) {
+            if let Some((term, span)) = term::tsk(&mut self.draft, node, &inputs) {
+                output.variable.terms.push(term);
+                spans.terms.push(span);
+            }
+        }
+        self.aggregations.push(None);
+        self.draft.model.outputs.push(output);
+        self.draft.spans.outputs.push(spans);
+    }
+
+    fn word<T: Copy>(
+        &mut self,
+        node: Node<'_, '_>,
+        key: &str,
+        known: &'static words::Words<T>,
+    ) -> Option<T> {
+        let word = attribute(node, key)?;
+        let value = words::value(known, Format::Fml, word);
+        if value.is_none() {
+            let known = words::all(known, Format::Fml);
+            let help = match nearest(word, known.iter().copied()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("known are {}", known.join(", ")),
+            };
+            let message = format!("unknown `{key}` `{word}`");
+            let part = tag(self.draft.text, node);
+            self.draft.error("unknown-word", part, message, &help);
+        }
+        value
+    }
+
+    /// The operators of a rule base or a rule; those of the base where a rule names none.
+    fn operators(&mut self, node: Node<'_, '_>, base: &Block) -> Block {
+        let and = self.word(node, "andMethod", words::CONJUNCTIONS);
+        let or = self.word(node, "orMethod", words::DISJUNCTIONS);
+        let implication = self.word(node, "activationMethod", words::CONJUNCTIONS);
+        Block {
+            and: and.unwrap_or(base.and),
+            or: or.unwrap_or(base.or),
+            implication: implication.unwrap_or(base.implication),
+            ..base.clone()
+        }
+    }
+
+    fn rule_base(&mut self, base: Node<'_, '_>) {
+        match base.tag_name().name() {
+            "mamdaniRuleBase" | "ruleBase" | "tskRuleBase" => {}
+            "knowledgeBase" => return,
+            other => {
+                let message = format!("`{other}` cannot be read");
+                let help = "mamdaniRuleBase and tskRuleBase can";
+                let part = tag(self.draft.text, base);
+                self.draft.loss("unknown-element", part, message, help);
+                return;
+            }
+        }
+        let block = self.operators(
+            base,
+            &Block::new(attribute(base, "name").unwrap_or_default()),
+        );
+        for node in children(base, &["rule", "tskRule"]) {
+            let Some(rule) = self.rule(node) else {
+                continue;
+            };
+            let own = self.operators(node, &block);
+            let joins = matches!(rule.condition, Condition::And(_) | Condition::Or(_));
+            if own.implication != block.implication || joins && own != block {
+                let part = tag(self.draft.text, node);
+                let message = "the rule has operators of its own".into();
+                let help = "give it a rule base of its own";
+                self.draft.loss("own-operators", part, message, help);
+            }
+            let mut spans = RuleSpans::default();
+            spans.whole = node.range();
+            self.draft.spans.rules.push(spans);
+            self.draft.model.rules.push(Rule {
+                block: self.blocks.len(),
+                ..Rule::from(rule)
+            });
+        }
+        self.blocks.push(block);
+    }
+
+    fn rule(&mut self, node: Node<'_, '_>) -> Option<rule::Rule> {
+        let part = tag(self.draft.text, node);
+        let mut conditions = vec![];
+        for clause in children(node, &["antecedent"]).flat_map(|a| children(a, &["clause"])) {
+            conditions.push(Condition::Is(self.clause(clause)?));
+        }
+        let mut consequents = vec![];
+        for consequent in children(node, &["consequent", "tskConsequent"]) {
+            if let Some(other) = children(consequent, &["else", "tskElse"]).next() {
+                let part = tag(self.draft.text, other);
+                let message = "the rule has another conclusion where it does not hold".into();
+                self.draft
+                    .loss("else", part, message, "write a rule of its own");
+            }
+            // The older form has no `then` around its clauses.
+            let then = children(consequent, &["then", "tskThen"])
+                .next()
+                .unwrap_or(consequent);
+            for clause in children(then, &["clause", "tskClause"]) {
+                let Proposition {
+                    variable,
+                    hedges,
+                    term,
+                } = self.clause(clause)?;
+                if let Some(hedge) = hedges.first() {
+                    let message = format!("a hedge, `{}`, stands in a conclusion", hedge.word());
+                    let part = tag(self.draft.text, clause);
+                    self.draft.loss(
+                        "hedge-in-conclusion",
+                        part,
+                        message,
+                        "conclude a term of its own",
+                    );
+                }
+                consequents.push(Consequent {
+                    output: variable,
+                    hedges: vec![],
+                    term: term?,
+                });
+            }
+        }
+        if conditions.is_empty() || consequents.is_empty() {
+            let message = "the rule has no antecedent or no consequent".into();
+            self.draft
+                .error("rule-syntax", part, message, "give it a clause in each");
+            return None;
+        }
+        let or = attribute(node, "connector").is_some_and(|word| word.eq_ignore_ascii_case("or"));
+        let condition = match (conditions.len(), or) {
+            (1, _) => conditions.remove(0),
+            (_, true) => Condition::Or(conditions),
+            (_, false) => Condition::And(conditions),
+        };
+        let weight = self.number(node, "weight").unwrap_or(1.0);
+        Some(rule::Rule {
+            condition,
+            consequents,
+            weight,
+        })
+    }
+
+    /// `<clause modifier="very"><variable>food</variable><term>rancid</term></clause>`
+    fn clause(&mut self, node: Node<'_, '_>) -> Option<Proposition> {
+        let part = tag(self.draft.text, node);
+        let span = self.draft.span(part);
+        let (Some(variable), Some(term)) = (text_of(node, "variable"), text_of(node, "term"))
+        else {
+            let message = "the clause names no variable or no term".into();
+            self.draft.error(
+                "rule-syntax",
+                part,
+                message,
+                "add `<variable>` and `<term>`",
+            );
+            return None;
+        };
+        let mut hedges = vec![];
+        if let Some(word) = attribute(node, "modifier").filter(|word| !word.is_empty()) {
+            match HEDGES
+                .iter()
+                .find(|(known, _)| known.eq_ignore_ascii_case(word))
+            {
+                Some(&(_, hedge)) => hedges.push(hedge),
+                None => {
+                    let message = format!("the modifier `{word}` has no counterpart");
+                    let known = HEDGES.map(|(word, _)| word).join(", ");
+                    self.draft.loss(
+                        "unknown-hedge",
+                        part,
+                        message,
+                        &format!("known are {known}"),
+                    );
+                }
+            }
+        }
+        let name = |text: &str| Name {
+            text: text.to_owned(),
+            span: span.clone(),
+        };
+        Some(Proposition {
+            variable: name(variable),
+            hedges,
+            term: Some(name(term)),
+        })
+    }
+}

@@ -1,0 +1,389 @@
+//! From a model to FML, as IEEE 1855's schema has it.
+
+use fuzzy::{
+    Findings, Model,
+    model::{
+        Activation, Defuzzifier, MembershipFunction, NoRuleFires, Operators, Output, Rule, Term,
+        Variable,
+    },
+    rule::{Condition, Hedge, Proposition},
+};
+use quick_xml::{
+    Writer,
+    events::{BytesDecl, BytesText, Event},
+};
+
+use super::read::{HEDGES, NAMESPACE};
+use crate::{
+    Format, Losses, Written,
+    blocks::{self, Rules},
+    conditions,
+    paper::Paper,
+    words,
+};
+
+/// An element with attributes and content.
+struct Element {
+    name: &'static str,
+    attributes: Vec<(String, String)>,
+    content: Content,
+}
+
+enum Content {
+    Elements(Vec<Element>),
+    Text(String),
+}
+
+impl Element {
+    fn new(name: &'static str) -> Self {
+        Element {
+            name,
+            attributes: vec![],
+            content: Content::Elements(vec![]),
+        }
+    }
+
+    fn text(name: &'static str, text: impl Into<String>) -> Self {
+        Element {
+            content: Content::Text(text.into()),
+            ..Element::new(name)
+        }
+    }
+
+    fn with(mut self, key: impl Into<String>, value: impl ToString) -> Self {
+        self.attributes.push((key.into(), value.to_string()));
+        self
+    }
+
+    fn push(&mut self, child: Element) {
+        if let Content::Elements(children) = &mut self.content {
+            children.push(child);
+        }
+    }
+
+    fn of(mut self, children: impl IntoIterator<Item = Element>) -> Self {
+        children.into_iter().for_each(|child| self.push(child));
+        self
+    }
+
+    fn write(&self, writer: &mut Writer<Vec<u8>>) -> std::io::Result<()> {
+        let attributes = self
+            .attributes
+            .iter()
+            .map(|(key, value)| (key.as_str(), value.as_str()));
+        let element = writer.create_element(self.name).with_attributes(attributes);
+        match &self.content {
+            Content::Text(text) => element.write_text_content(BytesText::new(text))?,
+            Content::Elements(children) if children.is_empty() => element.write_empty()?,
+            Content::Elements(children) => element.write_inner_content(|writer| {
+                children.iter().try_for_each(|child| child.write(writer))
+            })?,
+        };
+        Ok(())
+    }
+}
+
+pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
+    let mut paper = Paper::new(Format::Fml, losses);
+    let mut base = Element::new("knowledgeBase");
+    for input in &model.inputs {
+        base.push(variable(&mut paper, input, "input"));
+    }
+    for output in &model.outputs {
+        base.push(self::output(&mut paper, output, model));
+    }
+    let is_weighted = |output: &Output| words::is_weighted(output.defuzzifier);
+    let weighted = model.outputs.iter().any(is_weighted);
+    if weighted && !model.outputs.iter().all(is_weighted) {
+        let message = "some outputs are weighted, others are not".into();
+        paper.loss("two-kinds", message, "write a rule set for each kind");
+    }
+    let enabled = blocks::of(model).into_iter().filter(|block| block.enabled);
+    let bases: Vec<Element> = enabled
+        .map(|block| rule_base(&mut paper, &block, weighted))
+        .collect();
+    let root = Element::new("fuzzySystem")
+        .with("xmlns", NAMESPACE)
+        .with("name", &model.name)
+        .of([base].into_iter().chain(bases));
+    let mut writer = Writer::new_with_indent(vec![], b' ', 2);
+    let declaration = Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None));
+    let written = writer
+        .write_event(declaration)
+        .and_then(|()| root.write(&mut writer));
+    match written.map(|()| String::from_utf8(writer.into_inner())) {
+        Ok(Ok(text)) => paper.line(text),
+        _ => paper.loss(
+            "xml",
+            "the XML cannot be written".into(),
+            "report it as a bug",
+        ),
+    }
+    paper.finish()
+}
+
+fn variable(paper: &mut Paper, variable: &Variable, kind: &str) -> Element {
+    let mut element = Element::new("fuzzyVariable")
+        .with("name", &variable.name)
+        .with("scale", variable.unit.as_deref().unwrap_or_default())
+        .with("domainleft", variable.low)
+        .with("domainright", variable.high)
+        .with("type", kind);
+    for term in &variable.terms {
+        if let Some(shape) = shape(paper, term, variable) {
+            let term = Element::new("fuzzyTerm")
+                .with("name", &term.name)
+                .with("complement", false);
+            element.push(term.of([shape]));
+        }
+    }
+    element
+}
+
+fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
+    let name = &output.variable.name;
+    if output.samples.is_some() {
+        let message = format!("the output `{name}` is sampled, which FML does not say");
+        paper.note("sampled", message, "each program samples in its own way");
+    }
+    let mut element = match output.defuzzifier {
+        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => {
+            if output.defuzzifier == Defuzzifier::WeightedSum {
+                let message = format!("the output `{name}` is a weighted sum");
+                paper.loss("no-method", message, "FML has the weighted average alone");
+            }
+            tsk(output, model)
+        }
+        _ => {
+            let element = variable(paper, &output.variable, "output");
+            let accumulation = paper.word(
+                words::AGGREGATIONS,
+                output.aggregation.unwrap_or(model.operators.aggregation),
+                "the aggregation",
+            );
+            let defuzzifier =
+                paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
+            element
+                .with("accumulation", accumulation)
+                .with("defuzzifier", defuzzifier)
+        }
+    };
+    match output.when_no_rule_fires {
+        NoRuleFires::Value(value) => element = element.with("defaultValue", value),
+        NoRuleFires::Previous(_) => {
+            let message = format!("`{name}` keeps its value where no rule fires");
+            paper.loss("no-rule-fires", message, "FML has a value or none");
+        }
+        NoRuleFires::Undefined | NoRuleFires::Error => {}
+    }
+    if output.clamp {
+        let message = format!("`{name}` is clamped to its range");
+        paper.loss("clamp", message, "FML does not clamp");
+    }
+    element
+}
+
+/// A Takagi-Sugeno output: the constant of each term, then a coefficient for each input.
+fn tsk(output: &Output, model: &Model) -> Element {
+    let variable = &output.variable;
+    let mut element = Element::new("tskVariable")
+        .with("name", &variable.name)
+        .with("scale", variable.unit.as_deref().unwrap_or_default())
+        .with("domainleft", variable.low)
+        .with("domainright", variable.high)
+        .with("type", "output")
+        .with("combination", "WA");
+    for term in &variable.terms {
+        let (values, order) = match &term.membership_function {
+            MembershipFunction::Linear {
+                coefficients,
+                constant,
+            } => {
+                let of = |name: &str| coefficients.iter().find(|(input, _)| input == name);
+                let each = model
+                    .inputs
+                    .iter()
+                    .map(|input| of(&input.name).map_or(0.0, |(_, c)| *c));
+                ([*constant].into_iter().chain(each).collect(), 1)
+            }
+            MembershipFunction::Constant { value }
+            | MembershipFunction::Singleton { at: value } => (vec![*value], 0),
+            _ => (vec![], 0),
+        };
+        let values = values
+            .iter()
+            .map(|value: &f64| Element::text("tskValue", value.to_string()));
+        let term = Element::new("tskTerm")
+            .with("name", &term.name)
+            .with("order", order);
+        element.push(term.of(values));
+    }
+    element
+}
+
+fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element> {
+    use MembershipFunction as Of;
+    let numbered = |name: &'static str, parameters: &[f64]| {
+        let with = |element: Element, (index, value): (usize, &f64)| {
+            element.with(format!("param{}", index + 1), value)
+        };
+        Some(parameters.iter().enumerate().fold(Element::new(name), with))
+    };
+    let name = &term.name;
+    if term.height != 1.0 {
+        let message = format!("the term `{name}` has the height {}", term.height);
+        paper.loss("height", message, "all terms of FML are 1 high");
+    }
+    let (low, high) = (variable.low, variable.high);
+    let shape = match term.membership_function {
+        Of::Triangle { left, peak, right } => numbered("triangularShape", &[left, peak, right]),
+        Of::Trapezoid {
+            left,
+            left_top,
+            right_top,
+            right,
+        } => numbered("trapezoidShape", &[left, left_top, right_top, right]),
+        Of::Gaussian { mean, sd } => numbered("gaussianShape", &[mean, sd]),
+        Of::Gaussian2 {
+            left_mean,
+            right_mean,
+            left_sd,
+            ..
+        } if right_mean >= high => numbered("rightGaussianShape", &[left_mean, left_sd]),
+        Of::Gaussian2 {
+            left_mean,
+            right_mean,
+            right_sd,
+            ..
+        } if left_mean <= low => numbered("leftGaussianShape", &[right_mean, right_sd]),
+        Of::RightShoulder { foot, top } => numbered("rightLinearShape", &[foot, top]),
+        Of::LeftShoulder { top, foot } => numbered("leftLinearShape", &[top, foot]),
+        Of::Rectangle { left, right } => numbered("rectangularShape", &[left, right]),
+        Of::Singleton { at } => numbered("singletonShape", &[at]),
+        Of::SShape { foot, top } => numbered("sShape", &[foot, top]),
+        Of::ZShape { top, foot } => numbered("zShape", &[top, foot]),
+        Of::PiShape {
+            left,
+            left_top,
+            right_top,
+            right,
+        } if left_top == right_top && right - right_top == left_top - left => {
+            numbered("piShape", &[left, left_top])
+        }
+        Of::Piecewise { ref points } => {
+            let points = points
+                .iter()
+                .map(|(x, y)| Element::new("point").with("x", x).with("y", y));
+            Some(
+                Element::new("pointSetShape")
+                    .with("interpolationMethod", "linear")
+                    .of(points),
+            )
+        }
+        _ => None,
+    };
+    if shape.is_none() {
+        let message = format!("the term `{name}` has a shape that FML has not");
+        paper.loss("no-shape", message, "write it as points: `piecewise`");
+    }
+    shape
+}
+
+fn rule_base(paper: &mut Paper, block: &Rules<'_>, weighted: bool) -> Element {
+    let operators = block.operators;
+    if block.activation != Activation::General {
+        let message = format!("the rules `{}` do not all fire", block.name);
+        paper.loss("activation", message, "FML has no activation methods");
+    }
+    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
+    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
+    let implication = paper.word(
+        words::CONJUNCTIONS,
+        operators.implication,
+        "the implication",
+    );
+    let kind = match weighted {
+        true => "tskRuleBase",
+        false => "mamdaniRuleBase",
+    };
+    let mut base = Element::new(kind)
+        .with("name", block.name)
+        .with("activationMethod", implication)
+        .with("andMethod", and)
+        .with("orMethod", or);
+    for (number, rule) in &block.rules {
+        match self::rule(rule, *number, operators, weighted) {
+            Ok(element) => base.push(element.with("andMethod", and).with("orMethod", or)),
+            Err(what) => {
+                let message = format!("rule {number} {what}");
+                let help = "a rule of FML joins its clauses by AND alone or OR alone";
+                paper.loss("rule", message, help);
+            }
+        }
+    }
+    base
+}
+
+fn rule(
+    rule: &Rule,
+    number: usize,
+    operators: Operators,
+    weighted: bool,
+) -> Result<Element, &'static str> {
+    let rule = &rule.rule;
+    let condition = conditions::without_not(&rule.condition, operators);
+    let condition = condition.ok_or("has a NOT before brackets")?;
+    let (parts, connector) = match &condition {
+        Condition::And(parts) => (parts.as_slice(), "and"),
+        Condition::Or(parts) => (parts.as_slice(), "or"),
+        one => (std::slice::from_ref(one), "and"),
+    };
+    let mut antecedent = Element::new("antecedent");
+    for part in parts {
+        let Condition::Is(proposition) = part else {
+            return Err("joins AND and OR");
+        };
+        antecedent.push(clause(proposition)?);
+    }
+    if rule
+        .consequents
+        .iter()
+        .any(|consequent| !consequent.hedges.is_empty())
+    {
+        return Err("has a hedge in its conclusion");
+    }
+    let names = match weighted {
+        true => ["tskRule", "tskConsequent", "tskThen", "tskClause"],
+        false => ["rule", "consequent", "then", "clause"],
+    };
+    let then = Element::new(names[2]).of(rule.consequents.iter().map(|consequent| {
+        Element::new(names[3]).of([
+            Element::text("variable", &consequent.output.text),
+            Element::text("term", &consequent.term.text),
+        ])
+    }));
+    Ok(Element::new(names[0])
+        .with("name", format!("rule{number}"))
+        .with("connector", connector)
+        .with("weight", rule.weight)
+        .of([antecedent, Element::new(names[1]).of([then])]))
+}
+
+fn clause(proposition: &Proposition) -> Result<Element, &'static str> {
+    let term = proposition.term.as_ref().ok_or("names no term")?;
+    let clause = Element::new("clause");
+    let clause = match proposition.hedges[..] {
+        [] => clause,
+        [hedge] => {
+            let word = HEDGES
+                .iter()
+                .find(|(_, known): &&(_, Hedge)| *known == hedge);
+            clause.with("modifier", word.ok_or("has a hedge that FML has not")?.0)
+        }
+        _ => return Err("has two hedges before a term"),
+    };
+    Ok(clause.of([
+        Element::text("variable", &proposition.variable.text),
+        Element::text("term", &term.text),
+    ]))
+}

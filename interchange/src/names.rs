@@ -1,0 +1,120 @@
+//! Names that a format can write.
+
+use std::collections::BTreeMap;
+
+use fuzzy::{
+    Model,
+    model::{MembershipFunction, Variable},
+    rule::{Condition, Name, Rule},
+};
+
+use crate::paper::Paper;
+
+/// What a format takes as a name.
+pub(crate) struct Allowed {
+    /// Characters besides letters, digits and `_`.
+    pub(crate) more: &'static [char],
+    /// Words that are no names, in lower case.
+    pub(crate) keywords: &'static [&'static str],
+}
+
+impl Allowed {
+    /// The name itself, or one like it that the format takes and that is not taken.
+    fn name(&self, name: &str, taken: &[String]) -> String {
+        let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_' || self.more.contains(&c);
+        let mut plain: String = name
+            .chars()
+            .map(|c| if is_letter(c) { c } else { '_' })
+            .collect();
+        let begins = plain.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+        let keyword = self.keywords.contains(&plain.to_lowercase().as_str());
+        if !begins || keyword {
+            plain.insert(0, '_');
+        }
+        let is_taken = |name: &String| taken.contains(name);
+        if is_taken(&plain) {
+            let mut others = (2..).map(|number| format!("{plain}_{number}"));
+            plain = others.find(|name| !is_taken(name)).unwrap_or_default();
+        }
+        plain
+    }
+}
+
+/// The model with names that a format takes; a note tells those that change.
+pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Model {
+    let mut model = model.clone();
+    let mut variables: BTreeMap<String, (String, BTreeMap<String, String>)> = BTreeMap::new();
+    let mut taken = vec![];
+    let mut rename = |variable: &mut Variable| {
+        let name = allowed.name(&variable.name, &taken);
+        taken.push(name.clone());
+        let mut terms = BTreeMap::new();
+        let mut names = vec![];
+        for term in &mut variable.terms {
+            let name = allowed.name(&term.name, &names);
+            names.push(name.clone());
+            note(paper, &term.name, &name);
+            terms.insert(std::mem::replace(&mut term.name, name.clone()), name);
+        }
+        note(paper, &variable.name, &name);
+        let before = std::mem::replace(&mut variable.name, name.clone());
+        variables.insert(before, (name, terms));
+    };
+    model.inputs.iter_mut().for_each(&mut rename);
+    for output in &mut model.outputs {
+        rename(&mut output.variable);
+    }
+    for output in &mut model.outputs {
+        for term in &mut output.variable.terms {
+            if let MembershipFunction::Linear { coefficients, .. } = &mut term.membership_function {
+                for (input, _) in coefficients {
+                    if let Some((name, _)) = variables.get(input) {
+                        input.clone_from(name);
+                    }
+                }
+            }
+        }
+    }
+    let change = |variable: &mut Name, term: Option<&mut Name>| {
+        if let Some((name, terms)) = variables.get(&variable.text) {
+            if let Some((term, name)) =
+                term.and_then(|term| Some((terms.get(&term.text)?.clone(), term)))
+            {
+                name.text = term;
+            }
+            variable.text.clone_from(name);
+        }
+    };
+    for rule in &mut model.rules {
+        names_of(&mut rule.rule, &change);
+    }
+    model
+}
+
+fn note(paper: &mut Paper, before: &str, after: &str) {
+    if before != after {
+        let message = format!("the name `{before}` becomes `{after}`");
+        paper.note(
+            "renamed",
+            message,
+            "the format takes letters, digits and `_`",
+        );
+    }
+}
+
+fn names_of(rule: &mut Rule, change: &impl Fn(&mut Name, Option<&mut Name>)) {
+    in_condition(&mut rule.condition, change);
+    for consequent in &mut rule.consequents {
+        change(&mut consequent.output, Some(&mut consequent.term));
+    }
+}
+
+fn in_condition(condition: &mut Condition, change: &impl Fn(&mut Name, Option<&mut Name>)) {
+    match condition {
+        Condition::Is(proposition) => change(&mut proposition.variable, proposition.term.as_mut()),
+        Condition::Not(inner) => in_condition(inner, change),
+        Condition::And(parts) | Condition::Or(parts) => {
+            parts.iter_mut().for_each(|part| in_condition(part, change));
+        }
+    }
+}

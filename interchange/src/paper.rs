@@ -1,0 +1,86 @@
+//! A text that is being written, and what it cannot carry.
+
+use fuzzy::{Diagnostic, Findings};
+
+use crate::{
+    Format, Losses, Written,
+    words::{self, Words},
+};
+
+/// A text that is being written.
+pub(crate) struct Paper {
+    pub(crate) text: String,
+    format: Format,
+    losses: Losses,
+    findings: Vec<Diagnostic>,
+}
+
+impl Paper {
+    pub(crate) fn new(format: Format, losses: Losses) -> Self {
+        Paper {
+            text: String::new(),
+            format,
+            losses,
+            findings: vec![],
+        }
+    }
+
+    pub(crate) fn line(&mut self, line: impl AsRef<str>) {
+        self.text.push_str(line.as_ref());
+        self.text.push('\n');
+    }
+
+    /// Something that the format cannot say: an error, or a warning where losses are accepted.
+    pub(crate) fn loss(&mut self, code: &'static str, message: String, help: &str) {
+        let finding = match self.losses {
+            Losses::Refuse => Diagnostic::error(code, 0..0, message),
+            Losses::Accept => Diagnostic::warning(code, 0..0, message),
+        };
+        self.findings.push(finding.help(help));
+    }
+
+    /// Something that is said in another way.
+    pub(crate) fn note(&mut self, code: &'static str, message: String, help: &str) {
+        self.findings
+            .push(Diagnostic::note(code, 0..0, message).help(help));
+    }
+
+    /// The word of the format for an operator or a defuzzifier, which `what` names.
+    pub(crate) fn word<T: Copy + PartialEq>(
+        &mut self,
+        words: &Words<T>,
+        value: T,
+        what: &str,
+    ) -> &'static str {
+        words::word(words, self.format, value).unwrap_or_else(|| {
+            let message = format!("{} has no word for {what}", self.format.name());
+            self.loss("no-word", message, "take another one");
+            words::all(words, self.format)
+                .first()
+                .copied()
+                .unwrap_or_default()
+        })
+    }
+
+    pub(crate) fn finish(self) -> Result<Written, Findings> {
+        let findings = Findings(self.findings);
+        match findings.has_errors() {
+            true => Err(findings),
+            false => Ok(Written {
+                text: self.text,
+                findings,
+            }),
+        }
+    }
+}
+
+/// A name on one line, for formats where a line ends a description.
+pub(crate) fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Numbers with blanks between.
+pub(crate) fn numbers(numbers: &[f64]) -> String {
+    let written: Vec<String> = numbers.iter().map(f64::to_string).collect();
+    written.join(" ")
+}

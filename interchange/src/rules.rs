@@ -1,0 +1,278 @@
+//! Rules in words, as FLL and FCL write them: `if a is very x and (b is y or c is not z) then d is w with 0.5`.
+
+use fuzzy::{
+    model::Operators,
+    rule::{Condition, Consequent, Hedge, Name, Proposition, Rule},
+};
+
+use crate::{conditions, draft::Draft};
+
+/// How deep brackets may be nested.
+const DEEPEST: usize = 100;
+
+/// A rule of words and brackets, which are parts of the text of `draft`; `None` with a finding where it cannot be read.
+pub(crate) fn read(draft: &mut Draft<'_>, words: &[&str]) -> Option<Rule> {
+    let end = words.last().map_or("", |word| &word[word.len()..]);
+    let mut reader = Reader {
+        draft,
+        words,
+        next: 0,
+        depth: 0,
+        end,
+    };
+    reader.rule()
+}
+
+/// Words and brackets.
+pub(crate) fn words(text: &str) -> Vec<&str> {
+    let mut words = vec![];
+    let mut rest = text.trim_start();
+    while let Some(first) = rest.chars().next() {
+        let length = match first {
+            '(' | ')' | ',' => 1,
+            _ => rest
+                .find(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | ','))
+                .unwrap_or(rest.len()),
+        };
+        let (word, after) = rest.split_at(length);
+        words.push(word);
+        rest = after.trim_start();
+    }
+    words
+}
+
+struct Reader<'r, 't, 'd> {
+    draft: &'d mut Draft<'t>,
+    words: &'r [&'r str],
+    next: usize,
+    depth: usize,
+    /// The end of the rule, where something is missing.
+    end: &'r str,
+}
+
+impl<'r> Reader<'r, '_, '_> {
+    fn peek(&self) -> Option<&'r str> {
+        self.words.get(self.next).copied()
+    }
+
+    fn is(&self, keyword: &str) -> bool {
+        self.peek()
+            .is_some_and(|word| word.eq_ignore_ascii_case(keyword))
+    }
+
+    /// Steps over a keyword where it stands next.
+    fn take(&mut self, keyword: &str) -> bool {
+        let is = self.is(keyword);
+        self.next += usize::from(is);
+        is
+    }
+
+    fn expect(&mut self, keyword: &str) -> Option<()> {
+        if self.take(keyword) {
+            return Some(());
+        }
+        self.unexpected(&format!("`{keyword}`"))
+    }
+
+    fn unexpected<T>(&mut self, expected: &str) -> Option<T> {
+        let (part, found) = match self.peek() {
+            Some(word) => (word, format!("found `{word}`")),
+            None => (self.end, "the rule ends".into()),
+        };
+        let message = format!("expected {expected}, {found}");
+        let help = "a rule reads `if INPUT is TERM and INPUT is TERM then OUTPUT is TERM`";
+        self.draft.error("rule-syntax", part, message, help);
+        None
+    }
+
+    fn name(&mut self, what: &str) -> Option<Name> {
+        match self.peek() {
+            Some(word) if !is_keyword(word) => {
+                self.next += 1;
+                Some(Name {
+                    text: word.to_owned(),
+                    span: self.draft.span(word),
+                })
+            }
+            _ => self.unexpected(what),
+        }
+    }
+
+    fn rule(&mut self) -> Option<Rule> {
+        self.expect("if")?;
+        let condition = self.any_of()?;
+        self.expect("then")?;
+        let (mut consequents, mut hedges) = (vec![], vec![]);
+        loop {
+            let (output, own, term) = self.proposition("an output")?;
+            let Some(term) = term else {
+                return self.unexpected("a term");
+            };
+            // fuzzylite hands a hedged strength on to the conclusions behind.
+            hedges.splice(0..0, own);
+            consequents.push(Consequent {
+                output,
+                hedges: hedges.clone(),
+                term,
+            });
+            if !self.take("and") && !self.take(",") {
+                break;
+            }
+        }
+        let mut weight = 1.0;
+        if self.take("with") {
+            let Some(word) = self.peek() else {
+                return self.unexpected("a weight");
+            };
+            weight = self.draft.number(word)?;
+            self.next += 1;
+        }
+        match self.peek() {
+            Some(_) => self.unexpected("the end of the rule"),
+            None => Some(Rule {
+                condition,
+                consequents,
+                weight,
+            }),
+        }
+    }
+
+    fn any_of(&mut self) -> Option<Condition> {
+        let mut parts = vec![self.all_of()?];
+        while self.take("or") {
+            parts.push(self.all_of()?);
+        }
+        Some(joined(parts, Condition::Or))
+    }
+
+    fn all_of(&mut self) -> Option<Condition> {
+        let mut parts = vec![self.condition()?];
+        while self.take("and") {
+            parts.push(self.condition()?);
+        }
+        Some(joined(parts, Condition::And))
+    }
+
+    fn condition(&mut self) -> Option<Condition> {
+        if self.depth > DEEPEST {
+            return self.unexpected(&format!("at most {DEEPEST} brackets"));
+        }
+        self.depth += 1;
+        let condition = if self.take("not") {
+            Condition::Not(Box::new(self.condition()?))
+        } else if self.take("(") {
+            let inner = self.any_of()?;
+            self.expect(")")?;
+            inner
+        } else {
+            let (variable, hedges, term) = self.proposition("an input")?;
+            Condition::Is(Proposition {
+                variable,
+                hedges,
+                term,
+            })
+        };
+        self.depth -= 1;
+        Some(condition)
+    }
+
+    /// `variable is hedge* term`. A hedge that no term follows is the term, but for `any`, which needs none.
+    fn proposition(&mut self, what: &str) -> Option<(Name, Vec<Hedge>, Option<Name>)> {
+        let variable = self.name(what)?;
+        self.expect("is")?;
+        let mut hedges = vec![];
+        while let Some(word) = self.peek() {
+            let hedge = Hedge::ALL
+                .into_iter()
+                .find(|hedge| hedge.word().eq_ignore_ascii_case(word));
+            let last = self.words.get(self.next + 1);
+            let ends = last.is_none_or(|word| is_keyword(word) || matches!(*word, ")" | ","));
+            match hedge {
+                Some(hedge) if !ends || hedge == Hedge::Any => hedges.push(hedge),
+                _ => break,
+            }
+            self.next += 1;
+            if hedge == Some(Hedge::Any) && ends {
+                return Some((variable, hedges, None));
+            }
+        }
+        let term = self.name("a term")?;
+        Some((variable, hedges, Some(term)))
+    }
+}
+
+fn is_keyword(word: &str) -> bool {
+    ["if", "is", "and", "or", "then", "with", "(", ")", ","]
+        .iter()
+        .any(|keyword| keyword.eq_ignore_ascii_case(word))
+}
+
+fn joined(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> Condition {
+    match parts.len() {
+        1 => parts.remove(0),
+        _ => join(parts),
+    }
+}
+
+/// A rule in words that [`read`] reads, or several of the same condition where conclusions have hedges of their own. `None`
+/// where a NOT stands before brackets that it cannot be taken into.
+pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<Vec<String>> {
+    let condition = conditions::without_not(&rule.condition, operators)?;
+    let mut start = String::from("if ");
+    push(&mut start, &condition, false);
+    let weight = match rule.weight == 1.0 {
+        true => String::new(),
+        false => format!(" with {}", rule.weight),
+    };
+    let (plain, hedged): (Vec<_>, Vec<_>) =
+        rule.consequents.iter().partition(|c| c.hedges.is_empty());
+    let plain: Vec<String> = plain.into_iter().map(conclusion).collect();
+    let conclusions = (!plain.is_empty()).then(|| plain.join(and));
+    let conclusions = conclusions
+        .into_iter()
+        .chain(hedged.into_iter().map(conclusion));
+    Some(
+        conclusions
+            .map(|conclusion| format!("{start} then {conclusion}{weight}"))
+            .collect(),
+    )
+}
+
+fn conclusion(consequent: &Consequent) -> String {
+    let mut text = format!("{} is", consequent.output.text);
+    push_term(&mut text, &consequent.hedges, Some(&consequent.term));
+    text
+}
+
+fn push_term(text: &mut String, hedges: &[Hedge], term: Option<&Name>) {
+    let hedges = hedges.iter().map(|hedge| hedge.word().to_lowercase());
+    for word in hedges.chain(term.map(|term| term.text.clone())) {
+        text.push(' ');
+        text.push_str(&word);
+    }
+}
+
+fn push(text: &mut String, condition: &Condition, inside: bool) {
+    let (parts, word) = match condition {
+        Condition::And(parts) => (parts, " and "),
+        Condition::Or(parts) => (parts, " or "),
+        Condition::Not(_) => return,
+        Condition::Is(proposition) => {
+            text.push_str(&format!("{} is", proposition.variable.text));
+            push_term(text, &proposition.hedges, proposition.term.as_ref());
+            return;
+        }
+    };
+    if inside {
+        text.push('(');
+    }
+    for (index, part) in parts.iter().enumerate() {
+        if index > 0 {
+            text.push_str(word);
+        }
+        push(text, part, true);
+    }
+    if inside {
+        text.push(')');
+    }
+}

@@ -1,0 +1,329 @@
+//! The spellings of membership functions whose parameters are a fixed number of numbers.
+
+use fuzzy::model::{MembershipFunction, Term};
+
+use crate::Format;
+
+/// A shape as fuzzylite orders its parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shape {
+    Triangle,
+    Trapezoid,
+    Rectangle,
+    /// `[start, end]`: rises from 0 at `start` to 1 at `end`, or falls where `end` is smaller.
+    Ramp,
+    /// `[end, start]`: a ramp, its end first.
+    RampBack,
+    Gaussian,
+    /// `[mean, sd, mean, sd]`.
+    Gaussian2,
+    Bell,
+    Sigmoid,
+    /// `[left, rising, falling, right]`.
+    SigmoidDifference,
+    /// `[left, rising, falling, right]`.
+    SigmoidProduct,
+    SShape,
+    ZShape,
+    PiShape,
+    Cosine,
+    /// `[half width, center]`.
+    HalfCosine,
+    Spike,
+    Concave,
+    Arc,
+    SemiEllipse,
+}
+
+/// A shape, its names, and for each parameter of FIS and FCL the index of that of FLL.
+struct Spelling {
+    shape: Shape,
+    /// In FIS, FLL and FCL; of several names, divided by `|`, the first is written.
+    names: [&'static str; 3],
+    fis: &'static [usize],
+    fcl: &'static [usize],
+}
+
+const IN_ORDER: [usize; 4] = [0, 1, 2, 3];
+
+const SPELLINGS: &[Spelling] = &{
+    use Shape::*;
+    const fn same(shape: Shape, count: usize, names: [&'static str; 3]) -> Spelling {
+        let order = IN_ORDER.split_at(count).0;
+        Spelling {
+            shape,
+            names,
+            fis: order,
+            fcl: order,
+        }
+    }
+    [
+        same(Triangle, 3, ["trimf", "Triangle", "TRIAN"]),
+        same(Trapezoid, 4, ["trapmf", "Trapezoid", "TRAPE"]),
+        same(Rectangle, 2, ["rectmf", "Rectangle", ""]),
+        same(Ramp, 2, ["linsmf|rampmf", "Ramp", ""]),
+        same(RampBack, 2, ["linzmf", "", ""]),
+        Spelling {
+            shape: Gaussian,
+            names: ["gaussmf", "Gaussian", "GAUSS"],
+            fis: &[1, 0],
+            fcl: &[0, 1],
+        },
+        Spelling {
+            shape: Gaussian2,
+            names: ["gauss2mf", "GaussianProduct", "GAUSS2"],
+            fis: &[1, 0, 3, 2],
+            fcl: &[0, 1, 2, 3],
+        },
+        Spelling {
+            shape: Bell,
+            names: ["gbellmf", "Bell", "GBELL"],
+            fis: &[1, 2, 0],
+            fcl: &[1, 2, 0],
+        },
+        Spelling {
+            shape: Sigmoid,
+            names: ["sigmf", "Sigmoid", "SIGM"],
+            fis: &[1, 0],
+            fcl: &[1, 0],
+        },
+        Spelling {
+            shape: SigmoidDifference,
+            names: ["dsigmf", "SigmoidDifference", "DSIGM"],
+            fis: &[1, 0, 2, 3],
+            fcl: &[1, 0, 2, 3],
+        },
+        Spelling {
+            shape: SigmoidProduct,
+            names: ["psigmf", "SigmoidProduct", ""],
+            fis: &[1, 0, 2, 3],
+            fcl: &[1, 0, 2, 3],
+        },
+        same(SShape, 2, ["smf", "SShape", ""]),
+        same(ZShape, 2, ["zmf", "ZShape", ""]),
+        same(PiShape, 4, ["pimf", "PiShape", ""]),
+        same(Cosine, 2, ["cosinemf", "Cosine", ""]),
+        same(HalfCosine, 2, ["", "", "COSINE"]),
+        same(Spike, 2, ["spikemf", "Spike", ""]),
+        same(Concave, 2, ["concavemf", "Concave", ""]),
+        same(Arc, 2, ["", "Arc", ""]),
+        same(SemiEllipse, 2, ["", "SemiEllipse", ""]),
+    ]
+};
+
+impl Spelling {
+    fn names(&self, format: Format) -> impl Iterator<Item = &'static str> {
+        let names = self.names.get(format as usize).copied().unwrap_or("");
+        names.split('|').filter(|name| !name.is_empty())
+    }
+
+    fn order(&self, format: Format) -> &'static [usize] {
+        match format {
+            Format::Fis => self.fis,
+            Format::Fcl => self.fcl,
+            Format::Fll | Format::Fml => IN_ORDER.get(..self.fis.len()).unwrap_or(&[]),
+        }
+    }
+}
+
+/// Whether a term is a number that is computed from the inputs, and no fuzzy set.
+pub(crate) fn is_computed(term: &Term) -> bool {
+    matches!(
+        term.membership_function,
+        MembershipFunction::Constant { .. }
+            | MembershipFunction::Linear { .. }
+            | MembershipFunction::Function { .. }
+    )
+}
+
+/// The shape of a name in a format, and how many parameters it has there.
+pub(crate) fn named(format: Format, name: &str) -> Option<(Shape, usize)> {
+    let is = |known: &str| known.eq_ignore_ascii_case(name);
+    let spelling = SPELLINGS.iter().find(|s| s.names(format).any(is))?;
+    Some((spelling.shape, spelling.order(format).len()))
+}
+
+/// All names of a format.
+pub(crate) fn names(format: Format) -> impl Iterator<Item = &'static str> + Clone {
+    SPELLINGS
+        .iter()
+        .filter_map(move |spelling| spelling.names(format).next())
+}
+
+/// The membership function of a shape, from its parameters in the order of a format.
+pub(crate) fn read(format: Format, shape: Shape, written: &[f64]) -> Option<MembershipFunction> {
+    use MembershipFunction as To;
+    let spelling = SPELLINGS.iter().find(|known| known.shape == shape)?;
+    let mut p = [0.0; 4];
+    for (&to, &value) in spelling.order(format).iter().zip(written) {
+        *p.get_mut(to)? = value;
+    }
+    Some(match (shape, p) {
+        (Shape::Triangle, [left, peak, right, _]) => match (left.is_finite(), right.is_finite()) {
+            (false, true) => To::LeftShoulder {
+                top: peak,
+                foot: right,
+            },
+            (true, false) => To::RightShoulder {
+                foot: left,
+                top: peak,
+            },
+            _ => To::Triangle { left, peak, right },
+        },
+        (Shape::Trapezoid, [left, left_top, right_top, right]) => {
+            match (left.is_finite(), right.is_finite()) {
+                (false, true) => To::LeftShoulder {
+                    top: right_top,
+                    foot: right,
+                },
+                (true, false) => To::RightShoulder {
+                    foot: left,
+                    top: left_top,
+                },
+                _ => To::Trapezoid {
+                    left,
+                    left_top,
+                    right_top,
+                    right,
+                },
+            }
+        }
+        (Shape::Rectangle, [left, right, ..]) => To::Rectangle { left, right },
+        (Shape::Ramp, [start, end, ..]) | (Shape::RampBack, [end, start, ..]) => {
+            match start <= end {
+                true => To::RightShoulder {
+                    foot: start,
+                    top: end,
+                },
+                false => To::LeftShoulder {
+                    top: end,
+                    foot: start,
+                },
+            }
+        }
+        (Shape::Gaussian, [mean, sd, ..]) => To::Gaussian { mean, sd },
+        (Shape::Gaussian2, [left_mean, left_sd, right_mean, right_sd]) => To::Gaussian2 {
+            left_mean,
+            left_sd,
+            right_mean,
+            right_sd,
+        },
+        (Shape::Bell, [center, width, slope, _]) => To::Bell {
+            center,
+            width,
+            slope,
+        },
+        (Shape::Sigmoid, [inflection, slope, ..]) => To::Sigmoid { inflection, slope },
+        (Shape::SigmoidDifference, [left, rising, falling, right]) => To::SigmoidDifference {
+            left_inflection: left,
+            left_slope: rising,
+            right_inflection: right,
+            right_slope: falling,
+        },
+        (Shape::SigmoidProduct, [left, rising, falling, right]) => To::SigmoidProduct {
+            left_inflection: left,
+            left_slope: rising,
+            right_inflection: right,
+            right_slope: falling,
+        },
+        // MATLAB turns an S whose ends are swapped into a step between them; so does fuzzylite.
+        (Shape::SShape, [foot, top, ..]) => To::SShape { foot, top },
+        (Shape::ZShape, [top, foot, ..]) => To::ZShape { top, foot },
+        (Shape::PiShape, [left, left_top, right_top, right]) => To::PiShape {
+            left,
+            left_top,
+            right_top,
+            right,
+        },
+        (Shape::Cosine, [center, width, ..]) => To::Cosine { center, width },
+        (Shape::HalfCosine, [half, center, ..]) => To::Cosine {
+            center,
+            width: 2.0 * half,
+        },
+        (Shape::Spike, [center, width, ..]) => To::Spike { center, width },
+        (Shape::Concave, [inflection, end, ..]) => To::Concave { inflection, end },
+        (Shape::Arc, [start, end, ..]) => To::Arc { start, end },
+        (Shape::SemiEllipse, [left, right, ..]) => To::SemiEllipse { left, right },
+    })
+}
+
+/// The name and parameters of a membership function in a format; `None` where it has no such shape.
+pub(crate) fn write(
+    format: Format,
+    function: &MembershipFunction,
+) -> Option<(&'static str, Vec<f64>)> {
+    use MembershipFunction as From;
+    let (shape, p) = match *function {
+        From::Triangle { left, peak, right } => (Shape::Triangle, [left, peak, right, 0.0]),
+        From::Trapezoid {
+            left,
+            left_top,
+            right_top,
+            right,
+        } => (Shape::Trapezoid, [left, left_top, right_top, right]),
+        From::Rectangle { left, right } => (Shape::Rectangle, [left, right, 0.0, 0.0]),
+        From::RightShoulder { foot, top } => (Shape::Ramp, [foot, top, 0.0, 0.0]),
+        From::LeftShoulder { top, foot } if format == Format::Fis => {
+            (Shape::RampBack, [top, foot, 0.0, 0.0])
+        }
+        From::LeftShoulder { top, foot } => (Shape::Ramp, [foot, top, 0.0, 0.0]),
+        From::Gaussian { mean, sd } => (Shape::Gaussian, [mean, sd, 0.0, 0.0]),
+        From::Gaussian2 {
+            left_mean,
+            left_sd,
+            right_mean,
+            right_sd,
+        } => (Shape::Gaussian2, [left_mean, left_sd, right_mean, right_sd]),
+        From::Bell {
+            center,
+            width,
+            slope,
+        } => (Shape::Bell, [center, width, slope, 0.0]),
+        From::Sigmoid { inflection, slope } => (Shape::Sigmoid, [inflection, slope, 0.0, 0.0]),
+        From::SigmoidDifference {
+            left_inflection,
+            left_slope,
+            right_inflection,
+            right_slope,
+        } => (
+            Shape::SigmoidDifference,
+            [left_inflection, left_slope, right_slope, right_inflection],
+        ),
+        From::SigmoidProduct {
+            left_inflection,
+            left_slope,
+            right_inflection,
+            right_slope,
+        } => (
+            Shape::SigmoidProduct,
+            [left_inflection, left_slope, right_slope, right_inflection],
+        ),
+        From::SShape { foot, top } => (Shape::SShape, [foot, top, 0.0, 0.0]),
+        From::ZShape { top, foot } => (Shape::ZShape, [top, foot, 0.0, 0.0]),
+        From::PiShape {
+            left,
+            left_top,
+            right_top,
+            right,
+        } => (Shape::PiShape, [left, left_top, right_top, right]),
+        From::Cosine { center, width } if format == Format::Fcl => {
+            (Shape::HalfCosine, [0.5 * width, center, 0.0, 0.0])
+        }
+        From::Cosine { center, width } => (Shape::Cosine, [center, width, 0.0, 0.0]),
+        From::Spike { center, width } => (Shape::Spike, [center, width, 0.0, 0.0]),
+        From::Concave { inflection, end } => (Shape::Concave, [inflection, end, 0.0, 0.0]),
+        From::Arc { start, end } => (Shape::Arc, [start, end, 0.0, 0.0]),
+        From::SemiEllipse { left, right } => (Shape::SemiEllipse, [left, right, 0.0, 0.0]),
+        _ => return None,
+    };
+    let spelling = SPELLINGS.iter().find(|known| known.shape == shape)?;
+    let name = spelling.names(format).next()?;
+    let order = spelling.order(format);
+    Some((
+        name,
+        order
+            .iter()
+            .filter_map(|&from| p.get(from).copied())
+            .collect(),
+    ))
+}

@@ -1,0 +1,251 @@
+//! What the readers say of mistakes, and that no text makes them panic.
+
+use interchange::{Format, Losses};
+
+const FLL: &str = "# A fan that follows the heat.
+Engine: fan
+InputVariable: heat
+  range: 0 40
+  term: low Ramp 20 10
+  term: high Gaussian 30 5 0.5
+OutputVariable: speed
+  range: 0 9
+  aggregation: Maximum
+  defuzzifier: Centroid 100
+  default: 4.5
+  term: slow Triangle 0 2 4
+  term: fast Discrete 5 0 7 1 9 0
+RuleBlock:
+  conjunction: AlgebraicProduct
+  disjunction: Maximum
+  implication: Minimum
+  activation: General
+  rule: if heat is low or (heat is very high and heat is not low) then speed is slow # at night
+  rule: if heat is any then speed is fast with 0.5
+";
+
+const FIS: &str = "% A tip
+[System]
+Name='tip'
+Type='sugeno'
+NumInputs=2
+NumOutputs=1
+NumRules=2
+AndMethod='prod'
+OrMethod='probor'
+DefuzzMethod='wtaver'
+[Input1]
+Name='service'
+Range=[0 10]
+NumMFs=2
+MF1='poor':'gaussmf',[1.5 0]
+MF2='good':'zmf',[5 10 0 0]
+[Input2]
+Name='food'
+Range=[0 10]
+NumMFs=1
+MF1='bad':'trapmf',[-1 0 1 3]
+[Output1]
+Name='tip'
+Range=[0 30]
+NumMFs=2
+MF1='low':'constant',[5]
+MF2='high':'linear',[1 2 3]
+[Rules]
+1 -1, 1 (1) : 2 % the guest is angry
+2 0, 2 (0.5) : 1
+";
+
+const FCL: &str = "(* A crane *)
+FUNCTION_BLOCK crane
+VAR_INPUT distance : REAL; END_VAR
+VAR_OUTPUT power : REAL; END_VAR
+FUZZIFY distance
+  TERM near := (0, 1) (10, 0);
+  TERM far := GAUSS 20 5;
+  RANGE := (0 .. 20);
+END_FUZZIFY
+DEFUZZIFY power
+  TERM low := -12; TERM high := 27.5;
+  METHOD : COGS;
+  DEFAULT := 0;
+END_DEFUZZIFY
+RULEBLOCK first
+  AND : MIN;
+  RULE 1 : IF distance IS NOT far THEN power IS low; // slow down
+  RULE 2 : IF distance IS far THEN power IS high WITH 0.5;
+END_RULEBLOCK
+END_FUNCTION_BLOCK
+";
+
+const FML: &str = r#"<?xml version="1.0"?>
+<fuzzySystem xmlns="http://www.ieee1855.org" name="fan">
+  <knowledgeBase>
+    <fuzzyVariable name="heat" domainleft="0" domainright="40" scale="C" type="input">
+      <fuzzyTerm name="low"><leftLinearShape param1="10" param2="20"/></fuzzyTerm>
+      <fuzzyTerm name="high"><rightGaussianShape param1="30" param2="5"/></fuzzyTerm>
+    </fuzzyVariable>
+    <fuzzyVariable name="speed" domainleft="0" domainright="9" type="output" accumulation="MAX" defuzzifier="COG" defaultValue="0">
+      <fuzzyTerm name="slow"><triangularShape param1="0" param2="2" param3="4"/></fuzzyTerm>
+      <fuzzyTerm name="fast"><pointSetShape><point x="5" y="0"/><point x="7" y="1"/></pointSetShape></fuzzyTerm>
+    </fuzzyVariable>
+  </knowledgeBase>
+  <mamdaniRuleBase name="r" andMethod="MIN" orMethod="MAX" activationMethod="MIN">
+    <rule name="1" connector="and" weight="0.5">
+      <antecedent><clause modifier="very"><variable>heat</variable><term>low</term></clause></antecedent>
+      <consequent><then><clause><variable>speed</variable><term>slow</term></clause></then></consequent>
+    </rule>
+  </mamdaniRuleBase>
+</fuzzySystem>
+"#;
+
+const TEXTS: [(Format, &str); 4] = [
+    (Format::Fis, FIS),
+    (Format::Fll, FLL),
+    (Format::Fcl, FCL),
+    (Format::Fml, FML),
+];
+
+#[test]
+fn each_format_becomes_a_rule_set() {
+    let mut read = String::new();
+    for (format, text) in TEXTS {
+        assert_eq!(Format::of(text), Some(format));
+        let document = interchange::read(text, format, Losses::Refuse)
+            .unwrap_or_else(|findings| panic!("{}: {findings}", format.name()));
+        fuzzy::Engine::new(&document.model).unwrap_or_else(|findings| panic!("{findings}"));
+        read += &format!(
+            "{}\n{}\n{}\n",
+            format.name(),
+            document.warnings,
+            fuzzy::yaml::to_string(&document.model)
+        );
+    }
+    insta::assert_snapshot!(read);
+}
+
+/// A mistake is a part of a text that is replaced.
+#[test]
+fn mistakes_are_told_with_their_place() {
+    let mistakes = [
+        (Format::Fis, "'wtaver'", "'centroid'"),
+        (Format::Fis, "'gaussmf',[1.5 0]", "'gausmf',[1.5 0]"),
+        (Format::Fis, "[1.5 0]", "[1.5]"),
+        (Format::Fis, "[1.5 0]", "[1.5 pi/4]"),
+        (Format::Fis, "'prod'", "'myand'"),
+        (Format::Fis, "'sugeno'", "'mamtype2'"),
+        (Format::Fis, "1 -1, 1 (1) : 2", "1 -2, 1 (1) : 2"),
+        (Format::Fis, "1 -1, 1 (1) : 2", "1, 1 (1) : 2"),
+        (Format::Fis, "1 -1, 1 (1) : 2", "1 -1, -1 (1) : 2"),
+        (Format::Fis, "1 -1, 1 (1) : 2", "1.3 -1, 1 (1) : 2"),
+        (Format::Fis, "1 -1, 1 (1) : 2", "1 -1, 1 (1) : 3"),
+        (Format::Fis, "Range=[0 10]", "Range=[0]"),
+        (Format::Fll, "Gaussian 30", "Gausian 30"),
+        (Format::Fll, "Gaussian 30 5 0.5", "Gaussian 30"),
+        (Format::Fll, "range: 0 40", "rang: 0 40"),
+        (Format::Fll, "Maximum\n  defuzz", "Maxmum\n  defuzz"),
+        (Format::Fll, "and heat", "heat"),
+        (Format::Fll, "if heat is any then", "if heat is any the"),
+        (
+            Format::Fll,
+            "  range: 0 40",
+            "  enabled: false\n  range: 0 40",
+        ),
+        (Format::Fll, "Centroid 100", "Centroid many"),
+        (Format::Fll, "(heat is very", "((heat is very"),
+        (Format::Fcl, "GAUSS 20 5", "GAUS 20 5"),
+        (Format::Fcl, "GAUSS 20 5", "GAUSS 20"),
+        (Format::Fcl, "(10, 0)", "(10 0)"),
+        (Format::Fcl, "COGS", "COGGS"),
+        (Format::Fcl, "DEFAULT := 0", "DEFAULT := NC"),
+        (Format::Fcl, "FUZZIFY distance", "FUZZIFY distanse"),
+        (
+            Format::Fcl,
+            "END_FUNCTION_BLOCK\n",
+            "END_FUNCTION_BLOCK\nFUNCTION_BLOCK b\n",
+        ),
+        (Format::Fcl, "THEN power IS low", "power IS low"),
+        (Format::Fml, "leftLinearShape", "leftLinerShape"),
+        (Format::Fml, "param1=\"10\"", "param1=\"ten\""),
+        (
+            Format::Fml,
+            "domainleft=\"0\" domainright=\"40\"",
+            "domainleft=\"0\"",
+        ),
+        (Format::Fml, "\"very\"", "\"slightly\""),
+        (Format::Fml, "\"COG\"", "\"COF\""),
+        (Format::Fml, "</fuzzySystem>", ""),
+        (Format::Fml, "mamdaniRuleBase", "anYaRuleBase"),
+    ];
+    let mut told = String::new();
+    for (format, before, after) in mistakes {
+        let (_, text) = TEXTS.iter().find(|(known, _)| *known == format).unwrap();
+        assert!(text.contains(before), "{before}");
+        let text = text.replace(before, after);
+        let findings = match interchange::read(&text, format, Losses::Refuse) {
+            Ok(document) => document.warnings,
+            Err(findings) => findings,
+        };
+        assert!(!findings.0.is_empty(), "{before} -> {after}");
+        told += &format!("{}: {before:?} -> {after:?}\n{findings}\n\n", format.name());
+    }
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn what_a_rule_set_cannot_say_is_a_warning_where_losses_are_accepted() {
+    let text = FLL.replace("  range: 0 40", "  enabled: false\n  range: 0 40");
+    assert!(interchange::read(&text, Format::Fll, Losses::Refuse).is_err());
+    let document = interchange::read(&text, Format::Fll, Losses::Accept).unwrap();
+    assert_eq!(document.warnings.0[0].code, "not-enabled");
+}
+
+/// Bytes of each text are replaced, doubled, cut out and swapped.
+#[test]
+fn no_damage_makes_a_reader_panic() {
+    let mut state = 7_u64;
+    let mut random = move |below: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below.max(1)
+    };
+    let pieces = [
+        "", "(", ")", ";", ":=", "..", "-", "1e999", "'", "\"", "<", "/>", "[", "\n", "if", "not",
+        "\u{e4}", "RULE", "END",
+    ];
+    let mut readable = 0;
+    for (format, text) in TEXTS {
+        for _ in 0..5_000 {
+            let mut damaged = text.to_owned();
+            for _ in 0..=random(3) {
+                let places: Vec<usize> = damaged.char_indices().map(|(at, _)| at).collect();
+                let (a, b) = (random(places.len()), random(places.len()));
+                let (start, end) = (
+                    places[a.min(b)],
+                    places[a.max(b)].min(places[a.min(b)] + random(40)),
+                );
+                let end = (start..=end)
+                    .rev()
+                    .find(|&at| damaged.is_char_boundary(at))
+                    .unwrap_or(start);
+                let piece = match random(3) {
+                    0 => damaged[start..end].repeat(2),
+                    _ => pieces[random(pieces.len())].to_owned(),
+                };
+                damaged.replace_range(start..end, &piece);
+            }
+            for losses in [Losses::Refuse, Losses::Accept] {
+                let Ok(document) = interchange::read(&damaged, format, losses) else {
+                    continue;
+                };
+                readable += 1;
+                for format in Format::ALL {
+                    let _ = interchange::write(&document.model, format, losses);
+                }
+            }
+            let _ = Format::of(&damaged);
+        }
+    }
+    assert!(readable > 1_000, "{readable}");
+}

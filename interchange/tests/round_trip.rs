@@ -1,0 +1,118 @@
+//! What is written is read again, and gives the same values.
+
+use fuzzy::{Engine, Model};
+use interchange::{Format, Losses};
+
+/// Rule sets of this repository that formats can say.
+const SETS: [(&str, &str); 4] = [
+    ("flagred", include_str!("../../flagred/rules/flagred.yaml")),
+    (
+        "flagred-paper",
+        include_str!("../../flagred/rules/flagred-paper.yaml"),
+    ),
+    ("takagi-sugeno", TAKAGI_SUGENO),
+    ("curves", CURVES),
+];
+
+const TAKAGI_SUGENO: &str = "
+fuzzy: 1
+name: tip
+inputs:
+  service: {range: [0, 10], terms: {poor: {gaussian: {mean: 0, sd: 2}}, good: {gaussian: {mean: 10, sd: 2}}}}
+  food: {range: [0, 10], partition: [bad, fair, fine]}
+outputs:
+  tip:
+    range: [0, 30]
+    defuzzifier: weighted_average
+    terms: {low: {constant: 5}, high: {linear: {service: 1.5, food: -0.25, constant: 8}}}
+operators: {and: product, or: probabilistic_sum}
+rules:
+  - IF service IS poor AND food IS bad THEN tip IS low
+  - IF service IS NOT poor OR food IS fine THEN tip IS high WITH 0.5
+";
+
+const CURVES: &str = "
+fuzzy: 1
+name: 'every curve'
+inputs:
+  'the x':
+    range: [0, 10]
+    terms:
+      low: {z_shape: [0, 5]}
+      middle: {pi_shape: [2, 4, 4, 6]}
+      high: {s_shape: [5, 10]}
+      'very': {trapezoid: [1, 2, 3, 4]}
+outputs:
+  y:
+    range: [0, 100]
+    samples: {midpoint: 1000}
+    terms:
+      low: {left_shoulder: [10, 40]}
+      middle: {triangle: [20, 50, 80]}
+      high: {piecewise: [[60, 0], [90, 1]]}
+rules:
+  - IF 'the x' IS low THEN y IS low
+  - IF 'the x' IS middle OR 'the x' IS very 'very' THEN y IS middle
+  - IF 'the x' IS high THEN y IS high
+";
+
+fn same_values(before: &Model, after: &Model, context: &str) {
+    let engines = [before, after]
+        .map(|model| Engine::new(model).unwrap_or_else(|f| panic!("{context}: {f}")));
+    let mut seed = 1_u64;
+    for _ in 0..500 {
+        let inputs: Vec<f64> = before
+            .inputs
+            .iter()
+            .map(|input| {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                input.low + (input.high - input.low) * (seed >> 11) as f64 / (1_u64 << 53) as f64
+            })
+            .collect();
+        let [before, after] = engines
+            .each_ref()
+            .map(|engine| engine.evaluate(&inputs).unwrap());
+        for (before, after) in before.iter().zip(&after) {
+            let difference = match (before.value(), after.value()) {
+                (Some(before), Some(after)) => (before - after).abs(),
+                (before, after) => panic!("{context}: {inputs:?}: {before:?} {after:?}"),
+            };
+            assert!(
+                difference < 1e-9,
+                "{context}: {inputs:?}: {before:?} {after:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_written_is_read_again_and_gives_the_same_values() {
+    let mut refused = String::new();
+    for (name, text) in SETS {
+        let model: Model = text
+            .parse()
+            .unwrap_or_else(|findings| panic!("{name}: {findings}"));
+        for format in Format::ALL {
+            let context = format!("{name}.{}", format.ending());
+            let written = match interchange::write(&model, format, Losses::Refuse) {
+                Ok(written) => written,
+                Err(findings) => {
+                    refused.push_str(&format!("{context}\n{findings}\n"));
+                    continue;
+                }
+            };
+            assert_eq!(Format::of(&written.text), Some(format), "{context}");
+            let document = interchange::read(&written.text, format, Losses::Refuse)
+                .unwrap_or_else(|findings| panic!("{context}: {findings}\n{}", written.text));
+            let mut again = document.model;
+            if format == Format::Fll || model.outputs.iter().any(|output| output.samples.is_some())
+            {
+                for (before, after) in model.outputs.iter().zip(&mut again.outputs) {
+                    after.samples = before.samples;
+                }
+            }
+            same_values(&model, &again, &context);
+        }
+    }
+    insta::assert_snapshot!(refused);
+}
