@@ -7,10 +7,12 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
-use flagred_benches::{four_inputs, gaussians, points, published, tipper};
+use flagred_benches::{
+    four_inputs, gaussians, larsen, overlapping, points, published, takagi_sugeno, tipper,
+};
 use fuzzy::engine::Outcome;
 use fuzzy::map::{DecisionMap, Grid};
-use fuzzy::model::{MembershipFunction, Model, Variable};
+use fuzzy::model::{Defuzzifier, Implication, MembershipFunction, Model, Variable};
 use fuzzy::{Engine, rule::Condition, rule::Rule};
 
 const POINTS: usize = 1024;
@@ -20,6 +22,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("a", tipper()),
         ("bw", published(true)),
         ("c", four_inputs()),
+        ("t", takagi_sugeno()),
+        ("o", overlapping()),
+        ("l", larsen()),
         ("g", gaussians(5)),
     ];
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -61,8 +66,13 @@ fn fll(model: &Model) -> String {
             v.low, v.high
         );
         if let Some(output) = model.outputs.iter().find(|o| o.variable.name == v.name) {
-            let _ = output;
-            text += "  aggregation: Maximum\n  defuzzifier: Centroid 100\n  default: nan\n  lock-previous: false\n";
+            text += match output.defuzzifier {
+                Defuzzifier::WeightedAverage => {
+                    "  aggregation: none\n  defuzzifier: WeightedAverage\n"
+                }
+                _ => "  aggregation: Maximum\n  defuzzifier: Centroid 100\n",
+            };
+            text += "  default: nan\n  lock-previous: false\n";
         }
         for term in &v.terms {
             let shape = match term.membership_function {
@@ -77,10 +87,26 @@ fn fll(model: &Model) -> String {
                 } => {
                     format!("Trapezoid {left} {left_top} {right_top} {right}")
                 }
+                MembershipFunction::LeftShoulder { top, foot } => {
+                    format!("Trapezoid {} {} {top} {foot}", v.low - 0.1, v.low)
+                }
                 MembershipFunction::RightShoulder { foot, top } => {
                     format!("Trapezoid {foot} {top} {} {}", v.high, v.high + 0.1)
                 }
                 MembershipFunction::Gaussian { mean, sd } => format!("Gaussian {mean} {sd}"),
+                MembershipFunction::Linear {
+                    ref coefficients,
+                    constant,
+                } => {
+                    let of = |input: &Variable| {
+                        let found = coefficients.iter().find(|(name, _)| *name == input.name);
+                        found
+                            .map_or(0.0, |(_, coefficient)| *coefficient)
+                            .to_string()
+                    };
+                    let all: Vec<String> = model.inputs.iter().map(of).collect();
+                    format!("Linear {} {constant}", all.join(" "))
+                }
                 ref other => format!("{other:?}"),
             };
             text += &format!("  term: {} {shape}\n", term.name);
@@ -97,7 +123,13 @@ fn fll(model: &Model) -> String {
             variable(&output.variable)
         );
     }
-    text += "RuleBlock: rules\n  enabled: true\n  conjunction: Minimum\n  disjunction: Maximum\n  implication: Minimum\n  activation: General\n";
+    let implication = match model.operators.implication {
+        Implication::Product => "AlgebraicProduct",
+        _ => "Minimum",
+    };
+    text += &format!(
+        "RuleBlock: rules\n  enabled: true\n  conjunction: Minimum\n  disjunction: Maximum\n  implication: {implication}\n  activation: General\n"
+    );
     for rule in &model.rules {
         text += &format!("  rule: {}\n", sentence(&rule.rule));
     }

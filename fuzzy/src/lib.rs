@@ -32,7 +32,8 @@
 //!
 //! - [`yaml::parse`] reads a rule set with the span of each part; [`Findings`] are all errors of a text or model.
 //! - [`Model::builder`] makes a model in code; [`rule`] is the rule language.
-//! - [`Engine::evaluate_with`] evaluates without allocation, [`map`] evaluates a grid.
+//! - [`Engine::evaluate_with`] evaluates into outcomes of the caller: use it in loops, where the allocations of
+//!   [`Engine::evaluate`] take longer than the evaluation. [`map`] evaluates a grid.
 //! - `check` analyses a rule set: gaps, contradictions, jumps. `learn` makes rules from data.
 //!
 //! # Features

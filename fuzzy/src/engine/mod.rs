@@ -187,6 +187,8 @@ impl Engine {
 
     /// Evaluates one value for each input, in the order of the model, and gives one outcome for each output.
     ///
+    /// It allocates memory, which takes longer than a small evaluation: in a loop use [`Engine::evaluate_with`].
+    ///
     /// A value outside its input's range is clamped to it, and the outcome says so.
     /// A value that is NaN or infinite makes every outcome [`State::InputNotFinite`].
     ///
