@@ -64,10 +64,10 @@ impl Singletons {
             return None;
         }
         let highest = places().map(|(_, degree)| degree).fold(0.0, f64::max);
-        let top = places().filter(|(_, degree)| *degree == highest);
+        let mut top = places().filter(|(_, degree)| *degree == highest);
         Some(match defuzzifier {
-            Defuzzifier::SmallestOfMaxima => top.clone().next()?.0,
-            Defuzzifier::LargestOfMaxima => top.last()?.0,
+            Defuzzifier::SmallestOfMaxima => top.next()?.0,
+            Defuzzifier::LargestOfMaxima => top.next_back()?.0,
             Defuzzifier::MeanOfMaxima => {
                 let count = top.clone().count() as f64;
                 top.map(|(x, _)| x / count).sum()

@@ -307,7 +307,8 @@ impl Stage {
                 strengths: vec![0.0; strengths],
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
-            workspace: Workspace::new(strengths, strengths + cuts.max().unwrap_or(0)),
+            // A term passes two levels of its implication, each rising and falling.
+            workspace: Workspace::new(strengths, 5 * strengths + cuts.max().unwrap_or(0)),
         }
     }
 

@@ -8,7 +8,7 @@ mod code;
 mod parse;
 #[cfg(feature = "alloc")]
 mod print;
-#[cfg(all(test, feature = "alloc"))]
+#[cfg(test)]
 mod tests;
 
 #[cfg(feature = "alloc")]

@@ -159,7 +159,7 @@ pub(super) fn is_plain_name(name: &str) -> bool {
 }
 
 /// Takes the operator if it stands here.
-fn operator<'a>(rest: &'a str, operation: Operation) -> Option<&'a str> {
+fn operator(rest: &str, operation: Operation) -> Option<&str> {
     let symbol = operation.word();
     let rest = after_space(rest);
     if symbol.starts_with(begins_name) {
