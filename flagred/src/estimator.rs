@@ -394,7 +394,12 @@ impl Memory {
 mod tests {
     use super::*;
     use crate::shipped;
-    use fuzzy::model::Defuzzifier;
+    use fuzzy::model::{Sampling, SamplingRule};
+
+    const SAMPLED: Sampling = Sampling {
+        samples: 100,
+        rule: SamplingRule::Midpoint,
+    };
 
     #[test]
     fn a_risk_is_a_percentage() {
@@ -427,7 +432,7 @@ mod tests {
     fn an_output_without_a_closed_form_makes_no_plan() {
         let profile = shipped::flagred_paper().profile().clone();
         let mut rules = shipped::flagred_paper_rules();
-        rules.outputs[0].defuzzifier = Defuzzifier::Bisector;
+        rules.outputs[0].samples = Some(SAMPLED);
         let estimator = Estimator::new(&profile, &rules).unwrap();
         assert!(estimator.at(&[0.3, 0.1]).is_some());
         let output = "risk".into();
@@ -465,7 +470,7 @@ mod tests {
             assert!(is_filled || explained.outputs[1].value == Some(risk.risk_pct));
         }
         assert_eq!(estimator.plan().unwrap().check(), Ok(()));
-        rules.outputs[0].defuzzifier = Defuzzifier::Bisector;
+        rules.outputs[0].samples = Some(SAMPLED);
         let estimator = Estimator::new(&profile, &rules).unwrap();
         let output = "strain".into();
         assert_eq!(

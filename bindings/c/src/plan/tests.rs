@@ -259,7 +259,18 @@ fn estimators() -> Vec<Estimator> {
     let mut estimators = vec![shipped::flagred(), shipped::flagred_paper()];
     for outputs in [MAMDANI, SUGENO] {
         for rules in [DENSE, PROGRAMS] {
-            let rules = format!("fuzzy: 1\nname: t\n{INPUTS}{outputs}rules:\n{rules}");
+            let mut rules = format!("fuzzy: 1\nname: t\n{INPUTS}{outputs}rules:\n{rules}");
+            // Few rules have no table.
+            for (b, c) in ["low", "medium", "high"]
+                .iter()
+                .flat_map(|b| [(b, "low"), (b, "medium"), (b, "high")])
+            {
+                for (a, risk) in [("low", "low"), ("high", "high")] {
+                    rules +=
+                        &format!("  - IF a IS {a} AND b IS {b} AND c IS {c} THEN risk IS {risk}\n");
+                    rules += &format!("  - IF a IS {a} AND c IS {c} THEN risk IS {risk}\n");
+                }
+            }
             let profile = "flagred: 1\nname: t\nrules: t\nwindow_s: 0.5\nwarm_up_s: 0.2\nmin_samples: 2\ninputs:\n  a: {mean: motor_margin}\n  \
                 b: {std: motor_command}\n  c: {last: wind}\n";
             let profile: Profile = profile.parse().unwrap();
