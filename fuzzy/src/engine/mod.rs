@@ -305,7 +305,7 @@ impl Stage {
                 strengths: vec![0.0; strengths],
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
-            workspace: Workspace::new(strengths, strengths + cuts.max().unwrap_or(0)),
+            workspace: Workspace::new(strengths, 4 * strengths + cuts.max().unwrap_or(0)),
         }
     }
 
