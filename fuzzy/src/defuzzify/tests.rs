@@ -12,7 +12,7 @@ fn model(
 ) -> Model {
     let mut variable = Variable::new("y", low, high);
     for (i, (shape, _)) in terms.iter().enumerate() {
-        variable = variable.term(&format!("t{i}"), shape.clone());
+        variable = variable.term(format!("t{i}"), shape.clone());
     }
     let mut output = Output::new(variable);
     output.defuzzifier = defuzzifier;
