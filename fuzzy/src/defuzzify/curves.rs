@@ -44,7 +44,7 @@ impl Curves {
 
     /// The most cuts of an evaluation.
     pub(crate) fn workspace(&self) -> usize {
-        self.cuts.len() + self.terms.len() * self.terms.len()
+        self.cuts.len() + 4 * self.terms.len() * self.terms.len()
     }
 
     /// Whether a term is 0 all over the range.
@@ -89,14 +89,24 @@ impl Curves {
                 cuts.push(x);
             }
         }
-        let landmarks = cuts.len();
-        for i in 1..landmarks {
-            let (Some(&a), Some(&b)) = (cuts.get(i - 1), cuts.get(i)) else {
-                break;
-            };
-            self.kinks(strengths, joint, (a, b), cuts, most_cuts);
+        // Terms pass their levels first: between these each activated term is smooth, and two cross once at most.
+        for kinks in [Curves::levels, Curves::crossings] {
+            let landmarks = cuts.len();
+            for i in 1..landmarks {
+                let (Some(&a), Some(&b)) = (cuts.get(i - 1), cuts.get(i)) else {
+                    break;
+                };
+                let between = (a.next_up(), b.next_down());
+                kinks(self, strengths, joint, &mut |f: &dyn Fn(f64) -> f64| {
+                    let (a, b) = between;
+                    let (fa, fb) = (f(a), f(b));
+                    if fa * fb < 0.0 && cuts.len() < most_cuts {
+                        cuts.push(root(a, b, f));
+                    }
+                });
+            }
+            cuts.sort_unstable_by(f64::total_cmp);
         }
-        cuts.sort_unstable_by(f64::total_cmp);
         let degree = |x: f64| self.degree(strengths, joint, x);
         for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
             if from < to {
@@ -112,37 +122,26 @@ impl Curves {
         }
     }
 
-    /// Adds a cut where, between two cuts, the set has a kink or a step: a term passes a level of its implication, two terms
-    /// cross, or the sum of two reaches 1. A kink may be missed, because curves meet twice between two cuts or because memory
-    /// is short. Then the integration takes longer, and is as exact.
-    fn kinks(
-        &self,
-        strengths: Strengths<'_>,
-        joint: Joint,
-        (a, b): (f64, f64),
-        cuts: &mut Vec<f64>,
-        most_cuts: usize,
-    ) {
-        let (a, b) = (a.next_up(), b.next_down());
-        let mut cut_at_sign_change = |f: &dyn Fn(f64) -> f64| {
-            let (fa, fb) = (f(a), f(b));
-            if fa * fb < 0.0 && cuts.len() < most_cuts {
-                cuts.push(root(a, b, f));
+    /// Cuts where a term passes a level of its implication.
+    fn levels(&self, strengths: Strengths<'_>, joint: Joint, cut_at_sign_change: Cut<'_>) {
+        for (index, term) in self.terms.iter().enumerate() {
+            for &strength in strengths.of(index).iter().filter(|h| **h > 0.0) {
+                for level in levels(joint.implication, strength).into_iter().flatten() {
+                    cut_at_sign_change(&|x| term.membership(x) - level);
+                }
             }
-        };
+        }
+    }
+
+    /// Cuts where two terms cross, or the sum of two reaches 1. A kink may be missed, because curves meet twice between two cuts
+    /// or because memory is short. Then the integration takes longer, and is as exact.
+    fn crossings(&self, strengths: Strengths<'_>, joint: Joint, cut_at_sign_change: Cut<'_>) {
         let Joint {
             implication,
             aggregation,
         } = joint;
         let fired = |index: usize| strengths.of(index).iter().filter(|h| **h > 0.0).copied();
         let terms = || self.terms.iter().enumerate();
-        for (index, term) in terms() {
-            for strength in fired(index) {
-                for level in levels(implication, strength).into_iter().flatten() {
-                    cut_at_sign_change(&|x| term.membership(x) - level);
-                }
-            }
-        }
         if let Aggregation::Maximum | Aggregation::NilpotentMaximum = aggregation {
             let activated = |index: usize, term: &Term, x: f64| {
                 let membership = term.membership(x);
@@ -174,6 +173,9 @@ impl Curves {
         }
     }
 }
+
+/// Adds a cut where a function changes its sign between two cuts.
+type Cut<'a> = &'a mut dyn FnMut(&dyn Fn(f64) -> f64);
 
 /// The degrees of membership at which an activated term has a kink or a step.
 fn levels(implication: Implication, strength: f64) -> [Option<f64>; 2] {
