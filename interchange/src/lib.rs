@@ -112,7 +112,7 @@ impl Format {
             Some(Format::Fis)
         } else if starts("FUNCTION_BLOCK") || starts("VAR_INPUT") {
             Some(Format::Fcl)
-        } else if starts("Engine:") || starts("InputVariable:") {
+        } else if starts("Engine:") {
             Some(Format::Fll)
         } else {
             None

@@ -2,7 +2,7 @@
 
 use fuzzy::Engine;
 use fuzzy::engine::Outcome;
-use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Implication, Model};
+use fuzzy::model::{Aggregation, Conjunction, Defuzzifier, Implication, MembershipFunction, Model};
 
 /// The rule sets of the conformance corpus: every shape, hedge, operator and kind of output.
 fn models() -> Vec<Model> {
@@ -75,15 +75,23 @@ fn no_evaluation_allocates() {
             model.operators.aggregation = aggregation;
             assert_no_allocation(&model);
         }
-        let weighted = |defuzzifier: Defuzzifier| {
-            matches!(
-                defuzzifier,
-                Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
-            )
+        // Weighted numbers have no maxima, and singletons no area to halve.
+        let is_set = |output: &fuzzy::model::Output| {
+            let is_singleton = |term: &fuzzy::model::Term| {
+                matches!(
+                    term.membership_function,
+                    MembershipFunction::Singleton { .. }
+                )
+            };
+            let weighted = matches!(
+                output.defuzzifier,
+                Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum | Defuzzifier::Tsukamoto
+            );
+            !weighted && !output.variable.terms.iter().any(is_singleton)
         };
         for defuzzifier in [Defuzzifier::Bisector, Defuzzifier::MeanOfMaxima] {
             for output in &mut model.outputs {
-                if !weighted(output.defuzzifier) {
+                if is_set(output) {
                     output.defuzzifier = defuzzifier;
                 }
             }

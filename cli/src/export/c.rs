@@ -116,7 +116,7 @@ impl Arrays {
         let kind = match array.item {
             "f64" => "double".to_owned(),
             "u32" => "uint32_t".to_owned(),
-            item => format!("flagred_{}", item.to_lowercase()),
+            item => format!("flagred_{}", snake_case(item)),
         };
         let items = array.items.iter().map(|item| initialiser(item));
         self.add(&kind, field, items.collect());
@@ -258,4 +258,16 @@ fn identifier(name: &str) -> String {
 fn line(out: &mut String, line: &str) {
     // Writing into a string cannot fail.
     let _ = writeln!(out, "{line}");
+}
+
+/// `set_term` of `SetTerm`.
+fn snake_case(name: &str) -> String {
+    let mut snake = String::new();
+    for letter in name.chars() {
+        if letter.is_ascii_uppercase() && !snake.is_empty() {
+            snake.push('_');
+        }
+        snake.push(letter.to_ascii_lowercase());
+    }
+    snake
 }

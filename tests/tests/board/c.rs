@@ -94,6 +94,8 @@ fn the_header_has_the_arrays_of_a_table() {
     let arrays = table::arrays!(list!).map(|(array, item)| match item {
         "f64" => format!("FLAGRED_ARRAY(double, {array})"),
         "u32" => format!("FLAGRED_ARRAY(uint32_t, {array})"),
+        "FuzzySet" => format!("FLAGRED_ARRAY(flagred_fuzzy_set, {array})"),
+        "SetTerm" => format!("FLAGRED_ARRAY(flagred_set_term, {array})"),
         item => format!("FLAGRED_ARRAY(flagred_{}, {array})", item.to_lowercase()),
     });
     let header = include_str!("../../../bindings/c/include/flagred.h");
