@@ -23,9 +23,9 @@ pub(crate) enum Shape {
     SigmoidDifference,
     /// `[left, rising, falling, right]`.
     SigmoidProduct,
-    SShape,
-    ZShape,
-    PiShape,
+    S,
+    Z,
+    Pi,
     Cosine,
     /// `[half width, center]`.
     HalfCosine,
@@ -99,9 +99,9 @@ const SPELLINGS: &[Spelling] = &{
             fis: &[1, 0, 2, 3],
             fcl: &[1, 0, 2, 3],
         },
-        same(SShape, 2, ["smf", "SShape", ""]),
-        same(ZShape, 2, ["zmf", "ZShape", ""]),
-        same(PiShape, 4, ["pimf", "PiShape", ""]),
+        same(S, 2, ["smf", "SShape", ""]),
+        same(Z, 2, ["zmf", "ZShape", ""]),
+        same(Pi, 4, ["pimf", "PiShape", ""]),
         same(Cosine, 2, ["cosinemf", "Cosine", ""]),
         same(HalfCosine, 2, ["", "", "COSINE"]),
         same(Spike, 2, ["spikemf", "Spike", ""]),
@@ -227,9 +227,9 @@ pub(crate) fn read(format: Format, shape: Shape, written: &[f64]) -> Option<Memb
             right_slope: falling,
         },
         // MATLAB turns an S whose ends are swapped into a step between them; so does fuzzylite.
-        (Shape::SShape, [foot, top, ..]) => To::SShape { foot, top },
-        (Shape::ZShape, [top, foot, ..]) => To::ZShape { top, foot },
-        (Shape::PiShape, [left, left_top, right_top, right]) => To::PiShape {
+        (Shape::S, [foot, top, ..]) => To::SShape { foot, top },
+        (Shape::Z, [top, foot, ..]) => To::ZShape { top, foot },
+        (Shape::Pi, [left, left_top, right_top, right]) => To::PiShape {
             left,
             left_top,
             right_top,
@@ -298,14 +298,14 @@ pub(crate) fn write(
             Shape::SigmoidProduct,
             [left_inflection, left_slope, right_slope, right_inflection],
         ),
-        From::SShape { foot, top } => (Shape::SShape, [foot, top, 0.0, 0.0]),
-        From::ZShape { top, foot } => (Shape::ZShape, [top, foot, 0.0, 0.0]),
+        From::SShape { foot, top } => (Shape::S, [foot, top, 0.0, 0.0]),
+        From::ZShape { top, foot } => (Shape::Z, [top, foot, 0.0, 0.0]),
         From::PiShape {
             left,
             left_top,
             right_top,
             right,
-        } => (Shape::PiShape, [left, left_top, right_top, right]),
+        } => (Shape::Pi, [left, left_top, right_top, right]),
         From::Cosine { center, width } if format == Format::Fcl => {
             (Shape::HalfCosine, [0.5 * width, center, 0.0, 0.0])
         }

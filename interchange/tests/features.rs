@@ -1,6 +1,14 @@
 //! The table of docs/interchange.md: what each format says of a rule set. Every cell is measured: the rule set is written,
 //! read again, and both are compared. `UPDATE_DOCUMENTS=1` writes the table.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail by panics, and tell what fails"
+)]
+
 use std::{fs, path::Path};
 
 use fuzzy::{Engine, Model};

@@ -1,5 +1,13 @@
 //! What the readers say of mistakes, and that no text makes them panic.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail by panics, and tell what fails"
+)]
+
 use interchange::{Format, Losses};
 
 const FLL: &str = "# A fan that follows the heat.

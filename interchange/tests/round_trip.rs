@@ -1,5 +1,13 @@
 //! What is written is read again, and gives the same values.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail by panics, and tell what fails"
+)]
+
 use fuzzy::{Engine, Model};
 use interchange::{Format, Losses};
 

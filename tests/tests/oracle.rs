@@ -178,7 +178,7 @@ fn variable(rng: &mut Rng, name: &str, terms: usize) -> Variable {
 fn condition(rng: &mut Rng, inputs: &[Variable]) -> Condition {
     let mut parts = inputs.iter().map(|input| {
         let term = format!("t{}", rng.usize(0..input.terms.len()));
-        let condition = Condition::is(&*input.name, &*term);
+        let condition = Condition::is(&input.name, &term);
         if rng.u8(0..6) == 0 {
             Condition::Not(Box::new(condition))
         } else {
@@ -237,7 +237,6 @@ fn model(seed: u64, all_maxima: bool) -> Option<Model> {
         or: OR[rng.usize(0..OR.len())],
         implication: IMPLICATION[rng.usize(0..IMPLICATION.len())],
         aggregation: AGGREGATION[rng.usize(0..AGGREGATION.len())],
-        ..Operators::default()
     };
     let implication = &mut model.operators.implication;
     let is_common = matches!(*implication, Conjunction::Minimum | Conjunction::Product);
@@ -297,7 +296,7 @@ fn compare(first: u64, models: usize, all_maxima: bool) -> Tally {
                     let error = (value - exact).abs() / range;
                     tally.worst = tally.worst.max(error);
                     // Written so that no number is wrong, too.
-                    if !(error <= 1e-9) {
+                    if error.is_nan() || error > 1e-9 {
                         tally.wrong.push(format!(
                             "seed {seed} at {point:?}: {value}, not {exact} ({error:e} of the range), {:?} {:?}",
                             output.defuzzifier, model.operators

@@ -118,17 +118,16 @@ fn sections<'t>(draft: &mut Draft<'t>) -> Vec<Section<'t>> {
         if line.is_empty() {
             continue;
         }
-        if let Some(name) = line
+        let inner = line
             .strip_prefix('[')
-            .and_then(|line| line.strip_suffix(']'))
-        {
-            if name.chars().all(|c| c.is_ascii_alphanumeric()) {
-                sections.push(Section {
-                    name,
-                    entries: vec![],
-                });
-                continue;
-            }
+            .and_then(|line| line.strip_suffix(']'));
+        let is_name = |name: &&str| name.chars().all(|c| c.is_ascii_alphanumeric());
+        if let Some(name) = inner.filter(is_name) {
+            sections.push(Section {
+                name,
+                entries: vec![],
+            });
+            continue;
         }
         let Some(section) = sections.last_mut() else {
             let message = format!("`{line}` stands in no section");
