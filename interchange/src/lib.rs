@@ -136,7 +136,7 @@ pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Find
     }
 }
 
-/// What [`write`] makes.
+/// What [`write()`] makes.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Written {

@@ -27,6 +27,7 @@ macro_rules! operations {
             $(pub(crate) const $name: Operation = Operation($number);)+
 
             /// All that have operands: the name, and how many operands.
+            #[cfg(feature = "alloc")]
             pub(crate) const ALL: &[(Operation, &str, usize)] = &[
                 $((Operation($number), $word, [$(stringify!($operand)),*].len())),+
             ];
@@ -104,6 +105,7 @@ fn truth(holds: bool) -> f64 {
     f64::from(u8::from(holds))
 }
 
+#[cfg(feature = "alloc")]
 impl Operation {
     pub(crate) fn with(self, operand: f64) -> Instruction {
         [f64::from(self.0), operand]

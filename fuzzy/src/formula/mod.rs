@@ -19,7 +19,9 @@ use core::{ops::Range, str::FromStr};
 #[cfg(feature = "alloc")]
 use crate::diagnostic::Diagnostic;
 
-pub(crate) use code::{Instruction, Operation, evaluate};
+pub(crate) use code::evaluate;
+#[cfg(feature = "alloc")]
+pub(crate) use code::{Instruction, Operation};
 
 /// A formula over the values of variables.
 ///
