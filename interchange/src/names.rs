@@ -12,8 +12,10 @@ use crate::paper::Paper;
 
 /// What a format takes as a name.
 pub(crate) struct Allowed {
-    /// Characters besides letters, digits and `_`.
-    pub(crate) more: &'static [char],
+    /// Characters; others become `_`.
+    pub(crate) is_letter: fn(char) -> bool,
+    /// The first one.
+    pub(crate) is_first: fn(char) -> bool,
     /// Words that are no names, in lower case.
     pub(crate) keywords: &'static [&'static str],
 }
@@ -21,12 +23,9 @@ pub(crate) struct Allowed {
 impl Allowed {
     /// The name itself, or one like it that the format takes and that is not taken.
     fn name(&self, name: &str, taken: &[String]) -> String {
-        let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_' || self.more.contains(&c);
-        let mut plain: String = name
-            .chars()
-            .map(|c| if is_letter(c) { c } else { '_' })
-            .collect();
-        let begins = plain.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+        let letter = |c: char| if (self.is_letter)(c) { c } else { '_' };
+        let mut plain: String = name.trim().chars().map(letter).collect();
+        let begins = plain.starts_with(self.is_first);
         let keyword = self.keywords.contains(&plain.to_lowercase().as_str());
         if !begins || keyword {
             plain.insert(0, '_');
@@ -38,6 +37,21 @@ impl Allowed {
         }
         plain
     }
+}
+
+/// Letters, digits and `_`.
+pub(crate) fn is_plain(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}
+
+/// A letter or `_`.
+pub(crate) fn is_plain_first(c: char) -> bool {
+    c.is_ascii_alphabetic() || c == '_'
+}
+
+/// What can stand in a line and in XML.
+pub(crate) fn is_printable(c: char) -> bool {
+    !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}')
 }
 
 /// The model with names that a format takes; a note tells those that change.
@@ -97,7 +111,7 @@ fn note(paper: &mut Paper, before: &str, after: &str) {
         paper.note(
             "renamed",
             message,
-            "the format takes letters, digits and `_`",
+            "the format cannot write all of it, or has it already",
         );
     }
 }

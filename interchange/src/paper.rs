@@ -4,6 +4,7 @@ use fuzzy::{Diagnostic, Findings};
 
 use crate::{
     Format, Losses, Written,
+    names::is_printable,
     words::{self, Words},
 };
 
@@ -74,9 +75,11 @@ impl Paper {
     }
 }
 
-/// A name on one line, for formats where a line ends a description.
+/// A text on one line, without control characters.
 pub(crate) fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let words = text.split(|c: char| c.is_whitespace() || !is_printable(c));
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    words.join(" ")
 }
 
 /// Numbers with blanks between.

@@ -14,7 +14,8 @@ use crate::{
 };
 
 const NAMES: Allowed = Allowed {
-    more: &[],
+    is_letter: names::is_plain,
+    is_first: names::is_plain_first,
     keywords: &[
         "if",
         "is",

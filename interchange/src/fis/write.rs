@@ -8,12 +8,21 @@ use fuzzy::{
 
 use crate::{
     Format, Losses, Written, conditions,
+    names::{self, Allowed},
     paper::{Paper, numbers, one_line},
     shapes, words,
 };
 
+/// Quotes end a name, and `:` follows one.
+const NAMES: Allowed = Allowed {
+    is_letter: |c| names::is_printable(c) && !matches!(c, '\'' | ':'),
+    is_first: names::is_printable,
+    keywords: &[],
+};
+
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
     let mut paper = Paper::new(Format::Fis, losses);
+    let model = &names::plain(model, &NAMES, &mut paper);
     system(&mut paper, model);
     for (index, input) in model.inputs.iter().enumerate() {
         paper.line(format!("\n[Input{}]", index + 1));

@@ -15,7 +15,8 @@ use crate::{
 };
 
 const NAMES: Allowed = Allowed {
-    more: &['.'],
+    is_letter: |c| names::is_plain(c) || c == '.',
+    is_first: names::is_plain_first,
     keywords: &[
         "if",
         "is",

@@ -18,7 +18,8 @@ use crate::{
     Format, Losses, Written,
     blocks::{self, Rules},
     conditions,
-    paper::Paper,
+    names::{self, Allowed},
+    paper::{Paper, one_line},
     words,
 };
 
@@ -83,8 +84,15 @@ impl Element {
     }
 }
 
+const NAMES: Allowed = Allowed {
+    is_letter: names::is_printable,
+    is_first: names::is_printable,
+    keywords: &[],
+};
+
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
     let mut paper = Paper::new(Format::Fml, losses);
+    let model = &names::plain(model, &NAMES, &mut paper);
     let mut base = Element::new("knowledgeBase");
     for input in &model.inputs {
         base.push(variable(&mut paper, input, "input"));
@@ -104,7 +112,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         .collect();
     let root = Element::new("fuzzySystem")
         .with("xmlns", NAMESPACE)
-        .with("name", &model.name)
+        .with("name", one_line(&model.name))
         .of([base].into_iter().chain(bases));
     let mut writer = Writer::new_with_indent(vec![], b' ', 2);
     let declaration = Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None));
@@ -125,7 +133,10 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
 fn variable(paper: &mut Paper, variable: &Variable, kind: &str) -> Element {
     let mut element = Element::new("fuzzyVariable")
         .with("name", &variable.name)
-        .with("scale", variable.unit.as_deref().unwrap_or_default())
+        .with(
+            "scale",
+            one_line(variable.unit.as_deref().unwrap_or_default()),
+        )
         .with("domainleft", variable.low)
         .with("domainright", variable.high)
         .with("type", kind);
@@ -188,7 +199,10 @@ fn tsk(output: &Output, model: &Model) -> Element {
     let variable = &output.variable;
     let mut element = Element::new("tskVariable")
         .with("name", &variable.name)
-        .with("scale", variable.unit.as_deref().unwrap_or_default())
+        .with(
+            "scale",
+            one_line(variable.unit.as_deref().unwrap_or_default()),
+        )
         .with("domainleft", variable.low)
         .with("domainright", variable.high)
         .with("type", "output")
@@ -307,7 +321,7 @@ fn rule_base(paper: &mut Paper, block: &Rules<'_>, weighted: bool) -> Element {
         false => "mamdaniRuleBase",
     };
     let mut base = Element::new(kind)
-        .with("name", block.name)
+        .with("name", one_line(block.name))
         .with("activationMethod", implication)
         .with("andMethod", and)
         .with("orMethod", or);

@@ -14,7 +14,7 @@ pub mod seeds;
 mod session;
 
 pub use logs::{check, csv, flight_log, report};
-pub use rule_sets::{profile, rule, rule_set};
+pub use rule_sets::{other_programs, profile, rule, rule_set};
 pub use session::session;
 
 use std::sync::LazyLock;
@@ -34,7 +34,7 @@ pub struct Target {
 }
 
 /// All of them, apart from the plans of C, which `tests/c/damage.c` damages.
-pub const TARGETS: [Target; 7] = [
+pub const TARGETS: [Target; 8] = [
     Target {
         name: "flight_log",
         body: flight_log,
@@ -69,13 +69,19 @@ pub const TARGETS: [Target; 7] = [
         name: "rule_set",
         body: rule_set,
         seeds: seeds::rule_sets,
+        share: 5,
+    },
+    Target {
+        name: "other_programs",
+        body: other_programs,
+        seeds: seeds::other_programs,
         share: 10,
     },
     Target {
         name: "rule",
         body: rule,
         seeds: seeds::rules,
-        share: 10,
+        share: 5,
     },
 ];
 

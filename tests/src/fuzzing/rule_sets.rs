@@ -3,9 +3,38 @@
 use flagred::monitor::{Craft, Monitor, Sample};
 use flagred_cli::fuzzing::{Profile, checked};
 use fuzzy::Engine;
+use interchange::{Format, Losses};
 
 use super::assert_harmless;
 use crate::board::{findings, told};
+
+/// Any text in any format of other programs: it is a model that is written in all of them and read again, or findings inside the
+/// text.
+pub fn other_programs(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    let Some(format) = Format::of(text) else {
+        return;
+    };
+    for losses in [Losses::Refuse, Losses::Accept] {
+        let (model, findings) = match interchange::read(text, format, losses) {
+            Ok(document) => (Some(document.model), document.warnings),
+            Err(findings) => (None, findings),
+        };
+        for finding in &findings.0 {
+            assert!(text.get(finding.span.clone()).is_some(), "{finding:?}");
+        }
+        for format in Format::ALL {
+            let written = model
+                .as_ref()
+                .map(|model| interchange::write(model, format, losses));
+            let Some(Ok(written)) = written else { continue };
+            let again = interchange::read(&written.text, format, Losses::Accept);
+            assert!(again.is_ok(), "{}\n{}", again.unwrap_err(), written.text);
+        }
+    }
+}
 
 /// What parts a profile from its rule set.
 pub(super) const PARTED: &str = "\n---\n";

@@ -134,6 +134,21 @@ pub fn rule_sets() -> Vec<Vec<u8>> {
     texts.map(|text| text.as_bytes().to_vec()).to_vec()
 }
 
+/// Rule sets as other programs write them.
+pub fn other_programs() -> Vec<Vec<u8>> {
+    let models = rule_sets().into_iter().map(|bytes| {
+        let text = String::from_utf8(bytes).unwrap();
+        fuzzy::yaml::parse(&text).unwrap().model
+    });
+    let written = models.flat_map(|model| {
+        interchange::Format::ALL.map(|format| {
+            let written = interchange::write(&model, format, interchange::Losses::Accept);
+            written.unwrap().text.into_bytes()
+        })
+    });
+    written.collect()
+}
+
 /// Rules.
 pub fn rules() -> Vec<Vec<u8>> {
     let texts = [

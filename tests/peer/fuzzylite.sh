@@ -1,0 +1,11 @@
+#!/bin/sh
+# Asks fuzzylite's Python library for the values of rule sets that are written for it. Exits with 3 where there is no Python.
+set -eu
+cd "$(dirname "$0")/../.."
+venv=target/fuzzylite
+if [ ! -x "$venv/bin/pip" ] && ! python3 -m venv "$venv"; then
+  echo "fuzzylite was not asked: it takes python3 with venv (Debian: apt-get install python3-venv)" >&2
+  exit 3
+fi
+"$venv/bin/pip" install --quiet "numpy<2" "pyfuzzylite==8.0.6"
+FLAGRED_PYTHON="$PWD/$venv/bin/python" cargo test -p flagred-tests --test fuzzylite -- --ignored
