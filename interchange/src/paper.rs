@@ -1,6 +1,6 @@
 //! A text that is being written, and what it cannot carry.
 
-use fuzzy::{Diagnostic, Findings};
+use fuzzy::{Diagnostic, Findings, model::Operators};
 
 use crate::{
     Format, Losses, Written,
@@ -61,6 +61,19 @@ impl Paper {
                 .copied()
                 .unwrap_or_default()
         })
+    }
+
+    /// The words for AND, OR and the implication.
+    pub(crate) fn operators(&mut self, operators: Operators) -> [&'static str; 3] {
+        [
+            self.word(words::CONJUNCTIONS, operators.and, "AND"),
+            self.word(words::DISJUNCTIONS, operators.or, "OR"),
+            self.word(
+                words::CONJUNCTIONS,
+                operators.implication,
+                "the implication",
+            ),
+        ]
     }
 
     pub(crate) fn finish(self) -> Result<Written, Findings> {

@@ -1,6 +1,6 @@
 //! The spellings of membership functions whose parameters are a fixed number of numbers.
 
-use fuzzy::model::{MembershipFunction, Term};
+use fuzzy::model::{MembershipFunction, Model, Term};
 
 use crate::Format;
 
@@ -134,6 +134,26 @@ pub(crate) fn is_computed(term: &Term) -> bool {
             | MembershipFunction::Linear { .. }
             | MembershipFunction::Function { .. }
     )
+}
+
+/// A linear function, from a coefficient for each input and then the constant; what is missing is 0.
+pub(crate) fn linear(numbers: &[f64], inputs: &[&str]) -> MembershipFunction {
+    let coefficients = inputs.iter().zip(numbers);
+    let coefficients = coefficients
+        .filter(|&(_, &coefficient)| coefficient != 0.0)
+        .map(|(input, &coefficient)| ((*input).to_owned(), coefficient));
+    MembershipFunction::Linear {
+        coefficients: coefficients.collect(),
+        constant: numbers.get(inputs.len()).copied().unwrap_or(0.0),
+    }
+}
+
+/// The coefficient of each input of a model.
+pub(crate) fn coefficients(named: &[(String, f64)], model: &Model) -> impl Iterator<Item = f64> {
+    model.inputs.iter().map(|input| {
+        let own = named.iter().find(|(name, _)| *name == input.name);
+        own.map_or(0.0, |(_, coefficient)| *coefficient)
+    })
 }
 
 /// The shape of a name in a format, and how many parameters it has there.

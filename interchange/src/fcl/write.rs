@@ -184,13 +184,7 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
         let message = format!("the rules `{}` do not all fire", block.name);
         paper.loss("activation", message, "FCL has no activation methods");
     }
-    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
-    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
-    let implication = paper.word(
-        words::CONJUNCTIONS,
-        operators.implication,
-        "the implication",
-    );
+    let [and, or, implication] = paper.operators(operators);
     let name = identifier(block.name);
     paper.line(format!(
         "\nRULEBLOCK {name}\n  AND : {and};\n  OR : {or};\n  ACT : {implication};"

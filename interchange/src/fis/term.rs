@@ -38,7 +38,7 @@ pub(super) fn read(
             let value = numbers.first().copied().unwrap_or(f64::NAN);
             (MembershipFunction::Constant { value }, 1)
         }
-        "linear" => (linear(&numbers, inputs), inputs.len() + 1),
+        "linear" => (shapes::linear(&numbers, inputs), inputs.len() + 1),
         "discretemf" => {
             let pairs = numbers.chunks_exact(2).map(|pair| (pair[0], pair[1]));
             let points = pairs.collect();
@@ -90,16 +90,4 @@ pub(super) fn read(
         height: 1.0,
     };
     Some((term, spans))
-}
-
-/// A coefficient for each input, then the constant.
-fn linear(numbers: &[f64], inputs: &[&str]) -> MembershipFunction {
-    let coefficients = inputs.iter().zip(numbers);
-    let coefficients = coefficients
-        .filter(|&(_, &coefficient)| coefficient != 0.0)
-        .map(|(input, &coefficient)| ((*input).to_owned(), coefficient));
-    MembershipFunction::Linear {
-        coefficients: coefficients.collect(),
-        constant: numbers.get(inputs.len()).copied().unwrap_or(0.0),
-    }
 }

@@ -112,13 +112,7 @@ fn system(paper: &mut Paper, model: &Model) {
     paper.line(format!("NumInputs={}", model.inputs.len()));
     paper.line(format!("NumOutputs={}", model.outputs.len()));
     paper.line(format!("NumRules={}", model.rules.len()));
-    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
-    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
-    let implication = paper.word(
-        words::CONJUNCTIONS,
-        operators.implication,
-        "the implication",
-    );
+    let [and, or, implication] = paper.operators(operators);
     let aggregation = paper.word(
         words::AGGREGATIONS,
         operators.aggregation,
@@ -189,11 +183,7 @@ fn shape(
             ref coefficients,
             constant,
         } => {
-            let of = |name: &str| coefficients.iter().find(|(input, _)| input == name);
-            let each = model
-                .inputs
-                .iter()
-                .map(|input| of(&input.name).map_or(0.0, |(_, c)| *c));
+            let each = shapes::coefficients(coefficients, model);
             Some(("linear", each.chain([constant]).collect()))
         }
         Of::Piecewise { ref points } => Some((

@@ -50,7 +50,7 @@ pub(super) fn read(
             },
             1,
         ),
-        "Linear" => (linear(&numbers, inputs), numbers.len()),
+        "Linear" => (shapes::linear(&numbers, inputs), numbers.len()),
         "Binary" => (binary(&numbers), 2),
         _ => {
             let Some((known, count)) = shapes::named(Format::Fll, shape) else {
@@ -94,18 +94,6 @@ fn points(numbers: &[f64]) -> (MembershipFunction, usize) {
     let points: Vec<(f64, f64)> = pairs.collect();
     let used = 2 * points.len();
     (MembershipFunction::Piecewise { points }, used)
-}
-
-/// A coefficient for each input, then the constant; what is missing is 0.
-fn linear(numbers: &[f64], inputs: &[&str]) -> MembershipFunction {
-    let coefficients = inputs.iter().zip(numbers);
-    let coefficients = coefficients
-        .filter(|&(_, &coefficient)| coefficient != 0.0)
-        .map(|(input, &coefficient)| ((*input).to_owned(), coefficient));
-    MembershipFunction::Linear {
-        coefficients: coefficients.collect(),
-        constant: numbers.get(inputs.len()).copied().unwrap_or(0.0),
-    }
 }
 
 /// A step up at a place, or down where the direction is `-inf`.

@@ -135,11 +135,7 @@ fn term(paper: &mut Paper, term: &Term, model: &Model) {
             coefficients,
             constant,
         } => {
-            let of = |name: &str| coefficients.iter().find(|(input, _)| input == name);
-            let each = model
-                .inputs
-                .iter()
-                .map(|input| of(&input.name).map_or(0.0, |(_, c)| *c));
+            let each = shapes::coefficients(coefficients, model);
             Some(("Linear", each.chain([*constant]).collect()))
         }
         other => shapes::write(Format::Fll, other),
@@ -166,13 +162,7 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>) {
     let operators = block.operators;
     paper.line(format!("RuleBlock: {}", one_line(block.name)));
     paper.line(format!("  enabled: {}", block.enabled));
-    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
-    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
-    let implication = paper.word(
-        words::CONJUNCTIONS,
-        operators.implication,
-        "the implication",
-    );
+    let [and, or, implication] = paper.operators(operators);
     paper.line(format!("  conjunction: {and}"));
     paper.line(format!("  disjunction: {or}"));
     paper.line(format!("  implication: {implication}"));

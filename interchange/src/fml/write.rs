@@ -20,7 +20,7 @@ use crate::{
     conditions,
     names::{self, Allowed},
     paper::{Paper, one_line},
-    words,
+    shapes, words,
 };
 
 /// An element with attributes and content.
@@ -213,11 +213,7 @@ fn tsk(output: &Output, model: &Model) -> Element {
                 coefficients,
                 constant,
             } => {
-                let of = |name: &str| coefficients.iter().find(|(input, _)| input == name);
-                let each = model
-                    .inputs
-                    .iter()
-                    .map(|input| of(&input.name).map_or(0.0, |(_, c)| *c));
+                let each = shapes::coefficients(coefficients, model);
                 ([*constant].into_iter().chain(each).collect(), 1)
             }
             MembershipFunction::Constant { value }
@@ -309,13 +305,7 @@ fn rule_base(paper: &mut Paper, block: &Rules<'_>, weighted: bool) -> Element {
         let message = format!("the rules `{}` do not all fire", block.name);
         paper.loss("activation", message, "FML has no activation methods");
     }
-    let and = paper.word(words::CONJUNCTIONS, operators.and, "AND");
-    let or = paper.word(words::DISJUNCTIONS, operators.or, "OR");
-    let implication = paper.word(
-        words::CONJUNCTIONS,
-        operators.implication,
-        "the implication",
-    );
+    let [and, or, implication] = paper.operators(operators);
     let kind = match weighted {
         true => "tskRuleBase",
         false => "mamdaniRuleBase",
