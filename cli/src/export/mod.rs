@@ -107,12 +107,7 @@ fn to_program(arguments: &Arguments, format: Format) -> Result<Exit, Failure> {
         true => Losses::Accept,
         false => Losses::Refuse,
     };
-    let tell = |findings: &fuzzy::Findings| {
-        findings
-            .0
-            .iter()
-            .for_each(|finding| say(&finding.to_string()))
-    };
+    let tell = |findings: &fuzzy::Findings| findings.to_string().lines().for_each(say);
     match interchange::write(&document.model, format, losses) {
         Ok(written) => {
             tell(&written.findings);
