@@ -49,11 +49,6 @@ pub(crate) fn is_plain_first(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 
-/// What can stand in a line and in XML.
-pub(crate) fn is_printable(c: char) -> bool {
-    !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}')
-}
-
 /// The model with names that a format takes; a note tells those that change.
 pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Model {
     let mut model = model.clone();

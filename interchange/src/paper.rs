@@ -4,8 +4,7 @@ use fuzzy::{Diagnostic, Findings, model::Operators};
 
 use crate::{
     Format, Losses, Written,
-    names::is_printable,
-    words::{self, Words},
+    words::{self, Words, is_printable},
 };
 
 /// A text that is being written.

@@ -157,6 +157,11 @@ pub(crate) const DEFUZZIFIERS: &Words<Defuzzifier> = &[
     (Defuzzifier::Tsukamoto, ["", "WeightedAverage", "", ""]),
 ];
 
+/// What can stand in a line and in XML.
+pub(crate) fn is_printable(c: char) -> bool {
+    !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}')
+}
+
 /// Whether a word is a name without quotes: a letter, then letters, digits and `_`.
 pub(crate) fn is_name(word: &str) -> bool {
     let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';

@@ -15,8 +15,8 @@ use crate::{
 
 /// Quotes end a name, and `:` follows one.
 const NAMES: Allowed = Allowed {
-    is_letter: |c| names::is_printable(c) && !matches!(c, '\'' | ':'),
-    is_first: names::is_printable,
+    is_letter: |c| words::is_printable(c) && !matches!(c, '\'' | ':'),
+    is_first: words::is_printable,
     keywords: &[],
 };
 

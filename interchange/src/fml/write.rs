@@ -85,8 +85,8 @@ impl Element {
 }
 
 const NAMES: Allowed = Allowed {
-    is_letter: names::is_printable,
-    is_first: names::is_printable,
+    is_letter: words::is_printable,
+    is_first: words::is_printable,
     keywords: &[],
 };
 
