@@ -4,10 +4,14 @@ use std::ops::Range;
 
 use fuzzy::{
     Diagnostic, Findings, Model,
+    diagnostic::nearest,
     format::{Document, Spans},
 };
 
-use crate::{Losses, comments};
+use crate::{
+    Format, Losses, comments,
+    words::{self, Words},
+};
 
 /// A model that is being read from a text.
 pub(crate) struct Draft<'t> {
@@ -77,6 +81,42 @@ impl<'t> Draft<'t> {
             );
         }
         number
+    }
+
+    /// The value of a word; `part` is the part of the text to show where it has none. `what` says in a message what it should
+    /// name.
+    pub(crate) fn word<T: Copy>(
+        &mut self,
+        format: Format,
+        words: &Words<T>,
+        what: &str,
+        (word, part): (&str, &str),
+    ) -> Option<T> {
+        let value = words::value(words, format, word);
+        if value.is_none() {
+            self.unknown_word(format, what, (word, part), &words::all(words, format));
+        }
+        value
+    }
+
+    /// A word that is none of those known.
+    pub(crate) fn unknown_word(
+        &mut self,
+        format: Format,
+        what: &str,
+        (word, part): (&str, &str),
+        known: &[&str],
+    ) {
+        let known_words = format!("known are {}", known.join(", "));
+        let help = match nearest(word, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if format == Format::Fis => {
+                format!("functions of your own cannot be read; {known_words}")
+            }
+            None => known_words,
+        };
+        let message = format!("unknown {what} `{word}`");
+        self.error("unknown-word", part, message, &help);
     }
 
     /// The ends of a range. An output that computes its values needs none, so `0 0` becomes a range around it.

@@ -3,6 +3,7 @@
 pub(crate) use read::read;
 pub(crate) use write::write;
 
+mod extent;
 mod lex;
 mod read;
 mod term;

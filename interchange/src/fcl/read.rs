@@ -9,7 +9,7 @@ use fuzzy::{
     },
 };
 
-use super::{lex, term};
+use super::{extent::extent, lex, term};
 use crate::{Format, Losses, blocks, conditions::dual, draft::Draft, rules, words};
 
 pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
@@ -350,17 +350,8 @@ impl<'r, 't> Reader<'r, 't> {
         if word.eq_ignore_ascii_case("none") {
             return None;
         }
-        let value = words::value(known, Format::Fcl, word);
-        if value.is_none() {
-            let known = words::all(known, Format::Fcl);
-            let help = match nearest(word, known.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("known are {}", known.join(", ")),
-            };
-            let message = format!("unknown `{key}` `{word}`");
-            self.draft.error("unknown-word", word, message, &help);
-        }
-        value
+        self.draft
+            .word(Format::Fcl, known, &format!("`{key}`"), (word, word))
     }
 
     fn rules(&mut self) {
@@ -457,16 +448,10 @@ impl<'r, 't> Reader<'r, 't> {
                     .warning("no-terms", name, message, "it is left out");
             }
         }
-        for input in 0..self.draft.model.inputs.len() {
+        for input in &mut self.draft.model.inputs {
             // An input that is not fuzzified is there for formulas.
-            if let Some(variable) = self
-                .draft
-                .model
-                .inputs
-                .get_mut(input)
-                .filter(|input| input.low.is_nan())
-            {
-                (variable.low, variable.high) = (0.0, 1.0);
+            if input.low.is_nan() {
+                (input.low, input.high) = (0.0, 1.0);
             }
         }
         self.draft.finish()
@@ -483,66 +468,4 @@ fn is_section(word: &str) -> bool {
     ]
     .iter()
     .any(|section| section.eq_ignore_ascii_case(word))
-}
-
-/// Between where a membership function changes; flanks without an end are cut where they are below 0.0002.
-fn extent(function: &MembershipFunction) -> (f64, f64) {
-    use MembershipFunction as Of;
-    match *function {
-        Of::Triangle { left, right, .. }
-        | Of::Trapezoid { left, right, .. }
-        | Of::PiShape { left, right, .. }
-        | Of::Rectangle { left, right } => (left, right),
-        Of::LeftShoulder { top, foot } | Of::ZShape { top, foot } => (top, foot),
-        Of::RightShoulder { foot, top } | Of::SShape { foot, top } => (foot, top),
-        Of::Singleton { at } | Of::Constant { value: at } => (at, at),
-        Of::Piecewise { ref points } => {
-            let first = points.first().map_or(0.0, |point| point.0);
-            (first, points.last().map_or(first, |point| point.0))
-        }
-        Of::Gaussian { mean, sd } => (mean - 4.0 * sd, mean + 4.0 * sd),
-        Of::Gaussian2 {
-            left_mean,
-            left_sd,
-            right_mean,
-            right_sd,
-        } => (left_mean - 4.0 * left_sd, right_mean + 4.0 * right_sd),
-        Of::Bell {
-            center,
-            width,
-            slope,
-        } => {
-            let half = width * 5000_f64.powf(0.5 / slope);
-            (center - half, center + half)
-        }
-        Of::Sigmoid { inflection, slope } => around(inflection, slope),
-        Of::SigmoidDifference {
-            left_inflection,
-            left_slope,
-            right_inflection,
-            right_slope,
-        }
-        | Of::SigmoidProduct {
-            left_inflection,
-            left_slope,
-            right_inflection,
-            right_slope,
-        } => {
-            let (left, right) = (
-                around(left_inflection, left_slope),
-                around(right_inflection, right_slope),
-            );
-            (left.0.min(right.0), left.1.max(right.1))
-        }
-        Of::Cosine { center, width } | Of::Spike { center, width } => {
-            (center - 0.5 * width, center + 0.5 * width)
-        }
-        Of::Concave { inflection, end } => (inflection.min(end), inflection.max(end)),
-        _ => (f64::INFINITY, f64::NEG_INFINITY),
-    }
-}
-
-fn around(inflection: f64, slope: f64) -> (f64, f64) {
-    let half = 8.5 / slope.abs();
-    (inflection - half, inflection + half)
 }

@@ -1,9 +1,8 @@
 //! From FIS to a model.
 
 use fuzzy::{
-    diagnostic::nearest,
     format::{Document, TermSpans, VariableSpans},
-    model::{Aggregation, Defuzzifier, Output, Variable},
+    model::{Defuzzifier, Output, Variable},
 };
 
 use super::{rules, term};
@@ -208,11 +207,7 @@ fn operators(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) {
         draft.model.operators.implication = implication;
     }
     if let Some(aggregation) = word(draft, system, "AggMethod", words::AGGREGATIONS) {
-        draft.model.operators.aggregation = match aggregation {
-            // MATLAB cuts the sum at 1 nowhere, Octave does not either.
-            Aggregation::Sum => Aggregation::Sum,
-            other => other,
-        };
+        draft.model.operators.aggregation = aggregation;
     }
 }
 
@@ -227,20 +222,7 @@ fn word<T: Copy>(
     if word.is_empty() {
         return None;
     }
-    let value = words::value(known, Format::Fis, word);
-    if value.is_none() {
-        let known = words::all(known, Format::Fis);
-        let help = match nearest(word, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!(
-                "functions of your own cannot be read; known are {}",
-                known.join(", ")
-            ),
-        };
-        let message = format!("unknown `{key}` `{word}`");
-        draft.error("unknown-word", written, message, &help);
-    }
-    value
+    draft.word(Format::Fis, known, &format!("`{key}`"), (word, written))
 }
 
 fn defuzzifier(draft: &mut Draft<'_>, system: &Section<'_>, weighted: bool) -> Defuzzifier {

@@ -298,9 +298,8 @@ fn output(draft: &mut Draft<'_>, section: &Section<'_>, inputs: &[&str]) {
 fn defuzzifier(draft: &mut Draft<'_>, written: &str, output: &mut Output) {
     let mut parts = written.split_whitespace();
     let word = parts.next().unwrap_or("");
-    let Some(known) = words::value(words::DEFUZZIFIERS, Format::Fll, word) else {
-        let known = words::all(words::DEFUZZIFIERS, Format::Fll);
-        unknown(draft, "defuzzifier", word, written, known);
+    let words = words::DEFUZZIFIERS;
+    let Some(known) = draft.word(Format::Fll, words, "defuzzifier", (word, written)) else {
         return;
     };
     output.defuzzifier = known;
@@ -343,20 +342,7 @@ fn operator<T: Copy>(
     if word.is_empty() || word == "none" {
         return None;
     }
-    let value = words::value(words, Format::Fll, word);
-    if value.is_none() {
-        unknown(draft, key, word, word, words::all(words, Format::Fll));
-    }
-    value
-}
-
-fn unknown(draft: &mut Draft<'_>, what: &str, word: &str, part: &str, known: Vec<&str>) {
-    let help = match nearest(word, known.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("known are {}", known.join(", ")),
-    };
-    let message = format!("unknown {what} `{word}`");
-    draft.error("unknown-word", part, message, &help);
+    draft.word(Format::Fll, words, key, (word, word))
 }
 
 /// The rules of all blocks.
@@ -365,7 +351,7 @@ fn blocks(draft: &mut Draft<'_>, sections: &[&Section<'_>]) {
     for (index, section) in sections.iter().enumerate() {
         let mut block = Block::new(section.name);
         block.description = description(section);
-        block.enabled = flag(draft, section, "enabled").unwrap_or(true);
+        block.enabled = is_enabled(draft, section);
         let and = operator(draft, section, "conjunction", words::CONJUNCTIONS);
         block.and = and.unwrap_or_default();
         let or = operator(draft, section, "disjunction", words::DISJUNCTIONS);
@@ -386,13 +372,14 @@ fn blocks(draft: &mut Draft<'_>, sections: &[&Section<'_>]) {
         {
             match activation::read(word) {
                 Some(activation) => block.activation = activation,
-                None => unknown(
-                    draft,
-                    "activation",
-                    word,
-                    word,
-                    activation::METHODS.to_vec(),
-                ),
+                None => {
+                    draft.unknown_word(
+                        Format::Fll,
+                        "activation",
+                        (word, word),
+                        &activation::METHODS,
+                    );
+                }
             }
         }
         for written in section.all("rule") {

@@ -241,18 +241,9 @@ impl Reader<'_> {
         known: &'static words::Words<T>,
     ) -> Option<T> {
         let word = attribute(node, key)?;
-        let value = words::value(known, Format::Fml, word);
-        if value.is_none() {
-            let known = words::all(known, Format::Fml);
-            let help = match nearest(word, known.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("known are {}", known.join(", ")),
-            };
-            let message = format!("unknown `{key}` `{word}`");
-            let part = tag(self.draft.text, node);
-            self.draft.error("unknown-word", part, message, &help);
-        }
-        value
+        let part = tag(self.draft.text, node);
+        self.draft
+            .word(Format::Fml, known, &format!("`{key}`"), (word, part))
     }
 
     /// The operators of a rule base or a rule; those of the base where a rule names none.

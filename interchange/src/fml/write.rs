@@ -130,8 +130,9 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     paper.finish()
 }
 
-fn variable(paper: &mut Paper, variable: &Variable, kind: &str) -> Element {
-    let mut element = Element::new("fuzzyVariable")
+/// A variable without its terms.
+fn variable_element(name: &'static str, variable: &Variable, kind: &str) -> Element {
+    Element::new(name)
         .with("name", &variable.name)
         .with(
             "scale",
@@ -139,7 +140,11 @@ fn variable(paper: &mut Paper, variable: &Variable, kind: &str) -> Element {
         )
         .with("domainleft", variable.low)
         .with("domainright", variable.high)
-        .with("type", kind);
+        .with("type", kind)
+}
+
+fn variable(paper: &mut Paper, variable: &Variable, kind: &str) -> Element {
+    let mut element = variable_element("fuzzyVariable", variable, kind);
     for term in &variable.terms {
         if let Some(shape) = shape(paper, term, variable) {
             let term = Element::new("fuzzyTerm")
@@ -197,16 +202,7 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
 /// A Takagi-Sugeno output: the constant of each term, then a coefficient for each input.
 fn tsk(output: &Output, model: &Model) -> Element {
     let variable = &output.variable;
-    let mut element = Element::new("tskVariable")
-        .with("name", &variable.name)
-        .with(
-            "scale",
-            one_line(variable.unit.as_deref().unwrap_or_default()),
-        )
-        .with("domainleft", variable.low)
-        .with("domainright", variable.high)
-        .with("type", "output")
-        .with("combination", "WA");
+    let mut element = variable_element("tskVariable", variable, "output").with("combination", "WA");
     for term in &variable.terms {
         let (values, order) = match &term.membership_function {
             MembershipFunction::Linear {
