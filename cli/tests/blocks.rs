@@ -1,29 +1,11 @@
 //! Rule blocks, activation methods and previous values, through the commands.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use std::{fmt::Write as _, path::Path, process::Command};
+mod common;
 
-fn flagred(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_flagred"))
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (
-        output.status.code(),
-        text(output.stdout),
-        text(output.stderr),
-    )
-}
+use std::fmt::Write as _;
 
-fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        std::fs::write(folder.path().join(name), text).unwrap();
-    }
-    folder
-}
+use common::{flagred, folder};
 
 /// No rule fires from 20 to 25 °C.
 const FAN: &str = "

@@ -1,30 +1,9 @@
 //! Rule sets whose outputs read other outputs, through the commands.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use std::{path::Path, process::Command};
+mod common;
 
-/// Runs a command in a folder with the rule set `fan.yaml`, and returns its exit code, what it prints and its errors.
-fn flagred(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_flagred"))
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (
-        output.status.code(),
-        text(output.stdout),
-        text(output.stderr),
-    )
-}
-
-fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        std::fs::write(folder.path().join(name), text).unwrap();
-    }
-    folder
-}
+use common::{flagred, folder};
 
 /// `fan` reads `comfort`, which has a value below 30 °C alone.
 const FAN: &str = "
