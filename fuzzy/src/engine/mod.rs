@@ -17,6 +17,7 @@ mod chain;
 mod compile;
 mod error;
 mod explain;
+mod explanation;
 mod lanes;
 mod literal;
 mod named;
@@ -27,7 +28,7 @@ mod sequence;
 pub(crate) use crate::table::operators;
 pub use crate::table::{Outcome, State};
 pub use error::EvaluateError;
-pub use explain::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share};
+pub use explanation::{Degree, ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share};
 pub use raising::Said;
 pub use sequence::Sequence;
 

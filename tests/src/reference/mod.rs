@@ -9,5 +9,6 @@ pub mod inputs;
 pub mod integral;
 pub mod levels;
 pub mod rules;
+mod shapes;
 pub mod window;
 pub mod yaw;

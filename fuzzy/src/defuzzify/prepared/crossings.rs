@@ -1,0 +1,114 @@
+//! Where two flanks cross, whatever the firing strengths of their terms are.
+
+use alloc::{vec, vec::Vec};
+
+use super::{degree, stretches::LEVEL};
+use crate::model::Implication;
+use crate::table::numeric::root;
+use crate::table::{Flank, Kind};
+
+/// Two flanks where both are.
+pub(super) struct Couple<'f> {
+    a: &'f Flank,
+    b: &'f Flank,
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
+/// Points at which two flanks that run in the same direction are compared, besides their cuts.
+const COMPARED: usize = 24;
+
+impl<'f> Couple<'f> {
+    pub(super) fn new(a: &'f Flank, b: &'f Flank) -> Self {
+        Couple {
+            a,
+            b,
+            from: a.from.max(b.from),
+            to: a.to.min(b.to),
+        }
+    }
+
+    /// Adds the cuts that make the two cross at most at cuts (minimum), or at most once between two (product).
+    pub(super) fn cuts(&self, seeds: [&[f64]; 2], implication: Implication, cuts: &mut Vec<f64>) {
+        let direction = |flank: &Flank| match () {
+            () if flank.is_level() => 0,
+            () if flank.rises() => 1,
+            () => -1,
+        };
+        let alike = direction(self.a) * direction(self.b) > 0;
+        let is_straight = |flank: &Flank| flank.kind == Kind::PIECEWISE;
+        let points = if alike && !(is_straight(self.a) && is_straight(self.b)) {
+            self.points(seeds)
+        } else {
+            vec![self.from, self.to]
+        };
+        match implication {
+            Implication::Minimum => self.crossings(&points, cuts),
+            _ => self.turns_of_ratio(&points, cuts),
+        }
+    }
+
+    fn points(&self, seeds: [&[f64]; 2]) -> Vec<f64> {
+        let (from, to) = (self.from, self.to);
+        let even = |i: usize| from + (to - from) * (i as f64 / COMPARED as f64);
+        let mut points: Vec<f64> = (1..COMPARED).map(even).collect();
+        points.extend(seeds.into_iter().flatten());
+        points.retain(|x| from < *x && *x < to);
+        points.extend([from, to]);
+        points.sort_by(f64::total_cmp);
+        points.dedup();
+        points
+    }
+
+    fn crossings(&self, points: &[f64], cuts: &mut Vec<f64>) {
+        let mut before: Option<(f64, f64)> = None;
+        for &x in points {
+            let (a, b) = (degree(self.a, x), degree(self.b, x));
+            let difference = a - b;
+            if libm::fabs(difference) <= LEVEL * a.max(b) {
+                continue;
+            }
+            if let Some((last, other)) = before
+                && (other > 0.0) != (difference > 0.0)
+            {
+                cuts.push(root(last, x, |x| degree(self.a, x) - degree(self.b, x)));
+            }
+            before = Some((x, difference));
+        }
+    }
+
+    fn turns_of_ratio(&self, points: &[f64], cuts: &mut Vec<f64>) {
+        let ratio = |x: f64| libm::log(degree(self.a, x)) - libm::log(degree(self.b, x));
+        let ratios: Vec<(f64, f64)> = points
+            .iter()
+            .map(|x| (*x, ratio(*x)))
+            .filter(|(_, ratio)| ratio.is_finite())
+            .collect();
+        for window in ratios.windows(3) {
+            let [(from, left), (_, middle), (to, right)] = *window else {
+                continue;
+            };
+            let turns = (middle - left) * (right - middle) < 0.0;
+            let clearly = libm::fabs(middle - left).min(libm::fabs(right - middle)) > 1e-12;
+            if turns && clearly {
+                cuts.push(turning_point(from, to, middle > left, ratio));
+            }
+        }
+    }
+}
+
+/// Where a function with one maximum (or minimum) between two values has it: by the golden section, to a part in a million.
+fn turning_point(from: f64, to: f64, is_maximum: bool, f: impl Fn(f64) -> f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let f = |x: f64| if is_maximum { f(x) } else { -f(x) };
+    let (mut from, mut to) = (from, to);
+    for _ in 0..30 {
+        let width = GOLDEN * (to - from);
+        if f(to - width) > f(from + width) {
+            to = from + width;
+        } else {
+            from = to - width;
+        }
+    }
+    0.5 * (from + to)
+}

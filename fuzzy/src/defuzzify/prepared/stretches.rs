@@ -1,0 +1,198 @@
+//! Terms cut into stretches that only rise, only fall or are level, and the knots of curved ones.
+
+use alloc::{vec, vec::Vec};
+
+use super::{MOST_KNOTS, Measure};
+use crate::defuzzify::maxima::turns;
+use crate::defuzzify::polyline::limits;
+use crate::model::Term;
+use crate::table::numeric::gauss;
+use crate::table::{Flank, Kind, Knot};
+
+/// A part of a term that only rises, only falls or is level.
+pub(super) struct Stretch {
+    /// Its ends, and the cuts between.
+    pub(super) cuts: Vec<f64>,
+    pub(super) left: f64,
+    pub(super) right: f64,
+    pub(super) is_curved: bool,
+}
+
+pub(super) fn straight(
+    mut corners: Vec<(f64, f64)>,
+    height: f64,
+    low: f64,
+    high: f64,
+) -> Vec<Stretch> {
+    for corner in &mut corners {
+        corner.1 *= height;
+    }
+    let mut cuts: Vec<f64> = corners.iter().map(|corner| corner.0).collect();
+    cuts.retain(|x| low < *x && *x < high);
+    cuts.insert(0, low);
+    cuts.push(high);
+    cuts.dedup();
+    let ends = cuts.iter().zip(cuts.iter().skip(1));
+    let stretches = ends.map(|(&from, &to)| {
+        let (left, right) = limits(&corners, from, to);
+        Stretch {
+            cuts: vec![from, to],
+            left,
+            right,
+            is_curved: false,
+        }
+    });
+    stretches
+        .filter(|s| s.left > 0.0 || s.right > 0.0)
+        .collect()
+}
+
+/// A curve whose degrees differ by less over a stretch is level there.
+pub(super) const LEVEL: f64 = 4e-16;
+
+pub(super) fn curved(term: &Term, low: f64, high: f64) -> Vec<Stretch> {
+    let f = |x: f64| term.membership(x);
+    let mut cuts = term.membership_function.cuts();
+    cuts.retain(|x| low < *x && *x < high);
+    cuts.extend([low, high]);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    // These may turn anywhere.
+    if let Kind::SIGMOID_DIFFERENCE | Kind::SIGMOID_PRODUCT | Kind::GAUSSIAN2 =
+        term.membership_function.kind().0
+    {
+        let mut turning = Vec::new();
+        for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
+            let width = to - from;
+            let mut found = |part: f64| turning.push(from + width * part);
+            turns(&|part| f(from + width * part), 0.0, &mut found);
+            turns(
+                &|part| -f(from + width * part),
+                f64::NEG_INFINITY,
+                &mut found,
+            );
+        }
+        cuts.extend(turning);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+    }
+    // Just inside, past a step at the cut.
+    let inside = |x: f64, next: f64| {
+        let (here, there) = (f(x), f(next));
+        if libm::fabs(here - there) > 1e-9 {
+            there
+        } else {
+            here
+        }
+    };
+    let mut stretches: Vec<Stretch> = Vec::new();
+    for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
+        let (left, right) = (inside(from, from.next_up()), inside(to, to.next_down()));
+        let middle = f(from + 0.5 * (to - from));
+        let near = |a: f64, b: f64| libm::fabs(a - b) <= LEVEL * a.max(b);
+        let is_level = near(left, right) && near(left, middle);
+        if is_level && middle <= 0.0 {
+            continue;
+        }
+        if let Some(last) = stretches.last_mut()
+            && last.cuts.last() == Some(&from)
+            && last.right == left
+            && if is_level {
+                !last.is_curved && last.left == middle
+            } else {
+                last.is_curved && (last.left < last.right) == (left < right)
+            }
+        {
+            last.cuts.push(to);
+            last.right = right;
+            continue;
+        }
+        stretches.push(Stretch {
+            cuts: vec![from, to],
+            left: if is_level { middle } else { left },
+            right: if is_level { middle } else { right },
+            is_curved: !is_level,
+        });
+    }
+    stretches
+}
+
+/// The knots of a curved flank, so close to each other that Gauss-Legendre is exact between them.
+pub(super) fn knots(flank: &Flank, cuts: &[f64], measure: Measure) -> Option<Vec<Knot>> {
+    let mut cuts = cuts.to_vec();
+    if flank.right < flank.left {
+        cuts.reverse();
+    }
+    let integral = |a: f64, b: f64| {
+        let (area, moment) = gauss(|x| flank.degree(x), a.min(b), a.max(b), measure.origin);
+        (area / measure.unit, moment / measure.unit)
+    };
+    let narrowest = (flank.to - flank.from) * libm::exp2(-44.0);
+    let foot = Knot {
+        x: cuts.first().copied()?,
+        ..Knot::default()
+    };
+    let mut knots = vec![foot];
+    let mut sum = foot;
+    // The next stretch from the foot is the last one.
+    let mut open: Vec<(f64, f64)> = cuts
+        .iter()
+        .zip(cuts.iter().skip(1))
+        .map(|(a, b)| (*a, *b))
+        .collect();
+    open.reverse();
+    while let Some((a, b)) = open.pop() {
+        // Not in the middle: a symmetric kink there would go unseen.
+        let middle = a + 0.43 * (b - a);
+        let (whole, left, right) = (integral(a, b), integral(a, middle), integral(middle, b));
+        let halves = left.0 + right.0;
+        let error = libm::fabs(halves - whole.0);
+        let known = sum.area + halves + 1e-290;
+        let mut add = |x: f64, (area, moment): (f64, f64)| {
+            sum = Knot {
+                x,
+                area: sum.area + area,
+                moment: sum.moment + moment,
+            };
+            knots.push(sum);
+        };
+        if error <= 4e-15 * known || libm::fabs(b - a) <= narrowest {
+            add(b, whole);
+        } else if error <= 1e-11 * known {
+            // The parts are exact to 0.57^16 of that.
+            add(middle, left);
+            add(b, right);
+        } else {
+            open.extend([(middle, b), (a, middle)]);
+        }
+        if knots.len() > MOST_KNOTS {
+            return None;
+        }
+    }
+    Some(fewer(knots, |a, b| integral(a, b).0))
+}
+
+/// Leaves out knots that are not needed.
+fn fewer(knots: Vec<Knot>, area: impl Fn(f64, f64) -> f64) -> Vec<Knot> {
+    let mut kept: Vec<Knot> = Vec::new();
+    let mut last: Option<Knot> = None;
+    for knot in knots {
+        match (kept.last(), last) {
+            (Some(from), Some(last)) => {
+                // The tail is asked for anywhere up to the knot, and a symmetric kink cancels at the knot itself.
+                let agree = [0.37, 0.71, 1.0].into_iter().all(|part| {
+                    let x = last.x + part * (knot.x - last.x);
+                    let known = last.area - from.area + area(last.x, x);
+                    libm::fabs(area(from.x, x) - known) <= 4e-15 * (last.area + known)
+                });
+                if !agree {
+                    kept.push(last);
+                }
+            }
+            _ => kept.push(knot),
+        }
+        last = Some(knot);
+    }
+    kept.extend(last);
+    kept
+}

@@ -1,0 +1,158 @@
+//! The values at which a prepared set is highest.
+
+use super::{Prepared, Section, SetDefuzzifier, SetTerm};
+use crate::table::Flank;
+use crate::table::operators::{larger, smaller};
+
+impl Prepared<'_> {
+    /// The smallest, the mean or the largest value at which the maximum is highest.
+    pub(super) fn maxima(&self, strengths: &[f64]) -> Option<f64> {
+        // Where its term has its highest degree, cut or scaled.
+        let top = |term: &SetTerm, strength: f64| {
+            if self.scales {
+                strength * term.highest
+            } else {
+                smaller(strength, term.highest)
+            }
+        };
+        let terms = || self.terms.iter().zip(strengths);
+        let highest = terms().fold(0.0, |most, (term, &h)| larger(most, top(term, h)));
+        if highest <= 0.0 {
+            return None;
+        }
+        let mut maxima = Maxima::default();
+        for section in self.sections {
+            let mut spans = Spans::none_of(section);
+            let strands = section.first_strand as usize..section.end_strand as usize;
+            for strand in &self.strands[strands] {
+                let index = strand.strength as usize;
+                let (term, strength) = (&self.terms[index], strengths[index]);
+                if top(term, strength) < highest * (1.0 - TIE) {
+                    continue;
+                }
+                let level = if self.scales {
+                    term.highest
+                } else {
+                    smaller(strength, term.highest)
+                };
+                if larger(strand.left, strand.right) >= level * (1.0 - TIE) {
+                    spans.add(section, &self.flanks[strand.flank as usize], level);
+                }
+            }
+            spans.put(section, &mut maxima);
+        }
+        maxima.value(self.set.defuzzifier)
+    }
+}
+
+/// Degrees this close to the highest, relative to it, count as the highest: two rules that fire alike may differ by rounding.
+const TIE: f64 = 1e-12;
+
+/// Where terms are at their highest on a section: from its beginning to `left`, from `right` to its end, and at its ends.
+struct Spans {
+    left: f64,
+    right: f64,
+    at_beginning: bool,
+    at_end: bool,
+}
+
+impl Spans {
+    fn none_of(section: &Section) -> Self {
+        Spans {
+            left: section.from,
+            right: section.to,
+            at_beginning: false,
+            at_end: false,
+        }
+    }
+
+    /// Adds where a flank is at or above a level.
+    fn add(&mut self, section: &Section, flank: &Flank, level: f64) {
+        let (summit, high) = flank.summit();
+        if flank.is_level() {
+            self.left = section.to;
+        } else if high <= level {
+            // Nowhere but at the summit, however many digits of the degree beside it are the same.
+            self.at_beginning |= summit == section.from && high >= level * (1.0 - TIE);
+            self.at_end |= summit == section.to && high >= level * (1.0 - TIE);
+        } else {
+            let x = if smaller(flank.left, flank.right) >= level {
+                if flank.rises() { flank.from } else { flank.to }
+            } else {
+                flank.where_degree_is(level)
+            };
+            if flank.rises() {
+                self.right = larger(section.from, smaller(self.right, x));
+            } else {
+                self.left = smaller(section.to, larger(self.left, x));
+            }
+        }
+    }
+
+    fn put(&self, section: &Section, maxima: &mut Maxima) {
+        if self.at_beginning {
+            maxima.point(section.from);
+        }
+        if self.left >= self.right {
+            maxima.plateau(section.from, section.to);
+        } else {
+            if self.left > section.from {
+                maxima.plateau(section.from, self.left);
+            }
+            if self.right < section.to {
+                maxima.plateau(self.right, section.to);
+            }
+        }
+        if self.at_end {
+            maxima.point(section.to);
+        }
+    }
+}
+
+/// The values where a set is highest, from left to right.
+#[derive(Debug, Default, Clone, Copy)]
+pub(crate) struct Maxima {
+    smallest: Option<f64>,
+    largest: f64,
+    /// The length of all plateaus, and the mean of the values on them.
+    length: f64,
+    mean_of_plateaus: f64,
+    /// The number of single values, and their mean.
+    points: f64,
+    mean_of_points: f64,
+}
+
+impl Maxima {
+    pub(crate) fn point(&mut self, x: f64) {
+        if self.smallest.is_some() && x == self.largest {
+            return;
+        }
+        self.smallest = self.smallest.or(Some(x));
+        self.largest = x;
+        self.points += 1.0;
+        self.mean_of_points += (x - self.mean_of_points) / self.points;
+    }
+
+    pub(crate) fn plateau(&mut self, from: f64, to: f64) {
+        let width = to - from;
+        if width > 0.0 {
+            self.smallest = self.smallest.or(Some(from));
+            self.largest = to;
+            self.length += width;
+            // Sums of lengths times values are no numbers where the range is very wide or narrow.
+            let middle = from + 0.5 * width;
+            self.mean_of_plateaus += (middle - self.mean_of_plateaus) * (width / self.length);
+        }
+    }
+
+    /// The value; `None` of a set that is 0 everywhere.
+    pub(crate) fn value(self, defuzzifier: SetDefuzzifier) -> Option<f64> {
+        let smallest = self.smallest?;
+        Some(match defuzzifier {
+            SetDefuzzifier::SMALLEST_OF_MAXIMA => smallest,
+            SetDefuzzifier::LARGEST_OF_MAXIMA => self.largest,
+            _ if self.length > 0.0 => self.mean_of_plateaus,
+            _ => self.mean_of_points,
+        })
+    }
+}
