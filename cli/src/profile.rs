@@ -97,17 +97,24 @@ pub(crate) fn read(name: &str) -> Result<(Profile, String, Option<PathBuf>), Fai
     let shipped = shipped::PROFILES.iter().find(|known| known.name == name);
     let (text, folder) = match shipped {
         Some(known) => (known.text.to_owned(), None),
-        None => {
-            let text = read_text(path).map_err(|failure| {
-                failure.help(format!(
-                    "shipped profiles are {}",
-                    shipped::profile_names().join(" and ")
-                ))
-            })?;
-            (text, path.parent().map(Path::to_owned))
-        }
+        None => (file_text(path)?, path.parent().map(Path::to_owned)),
     };
     Ok((parse(name, &text)?, text, folder))
+}
+
+/// The text of a file that may be the misspelt name of a shipped profile.
+pub(crate) fn file_text(path: &Path) -> Result<String, Failure> {
+    read_text(path).map_err(|failure| {
+        failure.help(format!(
+            "shipped profiles are {}",
+            shipped::profile_names().join(" and ")
+        ))
+    })
+}
+
+/// Whether a profile of this name is shipped.
+pub(crate) fn is_shipped(name: &str) -> bool {
+    shipped::PROFILES.iter().any(|known| known.name == name)
 }
 
 fn parse(name: &str, text: &str) -> Result<Profile, Failure> {
