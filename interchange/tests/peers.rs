@@ -259,6 +259,72 @@ fn fcl_models_equal_jfuzzylogic() {
     assert!(compared > 3_000, "{compared}");
 }
 
+/// Every model that can be used is written in its own format and read again: the model is equal, or its values are.
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn models_are_written_back_and_read_again_as_they_were() {
+    let fll = fuzzylite("model.fll", "")
+        .into_iter()
+        .map(|(_, file, _)| file);
+    let others = ["fis", "fcl", "fml"].into_iter().flat_map(sorted);
+    let (mut equal, mut equal_values) = (0, 0);
+    for file in fll.chain(others) {
+        let Some(format) = file.extension().and_then(|ending| match ending.to_str()? {
+            "xml" => Some(Format::Fml),
+            ending => Format::ALL
+                .into_iter()
+                .find(|format| format.ending() == ending),
+        }) else {
+            continue;
+        };
+        let name = file.strip_prefix(models()).unwrap().display().to_string();
+        let read = |text: &str| interchange::read(text, format, Losses::Refuse);
+        let Ok(document) = read(&fs::read_to_string(&file).unwrap()) else {
+            continue;
+        };
+        let model = document.model;
+        let Ok(engine) = Engine::new(&model) else {
+            continue;
+        };
+        // Only fuzzylite has Tsukamoto's kind in FIS.
+        if name == "fis/tsukamoto_tsukamoto.fis" {
+            continue;
+        }
+        let written = interchange::write(&model, format, Losses::Refuse);
+        let written = written.unwrap_or_else(|findings| panic!("{name}: {findings}"));
+        let again = read(&written.text)
+            .unwrap_or_else(|findings| panic!("{name}: {findings}"))
+            .model;
+        if again == model {
+            equal += 1;
+            continue;
+        }
+        // FCL has points for triangles, FIS trapezoids for shoulders.
+        assert!(
+            format == Format::Fcl || name == "fis/mamdani_AllTerms.fis",
+            "{name}"
+        );
+        equal_values += 1;
+        let again = Engine::new(&again).unwrap();
+        for i in 0..500 {
+            let share = |k: usize| (f64::from(i) * 0.618 * (k + 1) as f64).fract();
+            let inputs = model.inputs.iter().enumerate();
+            let inputs: Vec<f64> = inputs
+                .map(|(k, input)| input.low + share(k) * (input.high - input.low))
+                .collect();
+            let [before, after] = [&engine, &again].map(|engine| engine.evaluate(&inputs).unwrap());
+            for (before, after) in before.iter().zip(&after) {
+                let same = match (before.value(), after.value()) {
+                    (Some(before), Some(after)) => (before - after).abs() < 1e-9,
+                    (before, after) => before == after,
+                };
+                assert!(same, "{name} at {inputs:?}: {before:?}, {after:?}");
+            }
+        }
+    }
+    assert_eq!((equal, equal_values), (46, 3));
+}
+
 /// FuzzyLogic.jl's tipper, by hand.
 #[test]
 #[ignore = "needs FLAGRED_SHARED"]
