@@ -86,10 +86,10 @@ pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Mode
                         *input = name(input);
                     }
                 }
-                MembershipFunction::Function { formula } => {
-                    if formula.variables().any(|known| name(known) != known) {
-                        *formula = formula::renamed(formula, name);
-                    }
+                MembershipFunction::Function { formula }
+                    if formula.variables().any(|known| name(known) != known) =>
+                {
+                    *formula = formula::renamed(formula, name);
                 }
                 _ => {}
             }
