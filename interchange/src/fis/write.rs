@@ -170,16 +170,17 @@ fn shape(
         let message = format!("the term `{}` has the height {}", term.name, term.height);
         paper.loss("height", message, "all terms of FIS are 1 high");
     }
-    // What MATLAB lacks is written with a shape that is equal within the range.
+    // What MATLAB lacks is written with a shape that is equal within the range. Octave takes no flank without a width.
+    let width = variable.high - variable.low;
     let written = match term.membership_function {
-        Of::LeftShoulder { top, foot } => Some((
-            "trapmf",
-            vec![variable.low.min(top), variable.low.min(top), top, foot],
-        )),
-        Of::RightShoulder { foot, top } => Some((
-            "trapmf",
-            vec![foot, top, variable.high.max(top), variable.high.max(top)],
-        )),
+        Of::LeftShoulder { top, foot } => {
+            let left = variable.low.min(top);
+            Some(("trapmf", vec![left - width, left, top, foot]))
+        }
+        Of::RightShoulder { foot, top } => {
+            let right = variable.high.max(top);
+            Some(("trapmf", vec![foot, top, right, right + width]))
+        }
         Of::Rectangle { left, right } => Some(("trapmf", vec![left, left, right, right])),
         Of::Constant { value } => Some(("constant", vec![value])),
         Of::Linear {
