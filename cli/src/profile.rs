@@ -5,11 +5,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use ::report::findings::is_meant_as_rules;
 use flagred::{estimator::Estimator, profile::Profile, shipped};
 use fuzzy::{Findings, Model, tree::Value};
 
 use crate::{
-    diagnostics::{is_meant_as_rules, read_text, refuse, show},
+    diagnostics::{read_text, refuse, show},
     failure::Failure,
     rule_set,
 };
