@@ -6,11 +6,11 @@ use std::{
     path::Path,
 };
 
-use ::report::findings::{self, Style};
 use fuzzy::{
     diagnostic::{Diagnostic, Findings},
     yaml::LARGEST_BYTES,
 };
+use report::diagnostics::{self, Style};
 
 use crate::failure::Failure;
 
@@ -21,7 +21,7 @@ pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: boo
         advice: command,
         all: "`flagred check --json` lists them",
     };
-    findings::draw(findings, file, text, style)
+    diagnostics::draw(findings, file, text, style)
 }
 
 /// The command that helps with a finding: the engine knows no commands.

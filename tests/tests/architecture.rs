@@ -64,7 +64,7 @@ fn every_package_stands_on_those_below_it_alone() {
         ("flightlog", &[]),
         ("interchange", &["fuzzy"]),
         ("flagred", &["flightlog", "fuzzy"]),
-        ("report", &["fuzzy", "interchange"]),
+        ("report", &["flagred", "flightlog", "fuzzy", "interchange"]),
         (
             "cli",
             &["flagred", "flightlog", "fuzzy", "interchange", "report"],

@@ -26,7 +26,7 @@ pub struct Style {
 ///
 /// # Example
 /// ```
-/// use report::findings::{Style, draw};
+/// use report::diagnostics::{Style, draw};
 ///
 /// let text = "fuzzy: 1\nnam: kettle\n";
 /// let findings = fuzzy::yaml::parse(text).unwrap_err();
@@ -126,20 +126,7 @@ fn report<'a>(
     vec![group]
 }
 
-/// Whether a text is a rule set of another program, or a line of it begins with a key that only rule sets and profiles have.
-/// No other file is quoted: it may hold secrets, and be named by somebody else.
-pub fn is_meant_as_rules(text: &str) -> bool {
-    let mut lines = text.lines();
-    interchange::Format::of(text).is_some()
-        || lines.any(|line| {
-            let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);
-            ["fuzzy", "flagred", "inputs", "outputs", "rules"]
-                .iter()
-                .any(|key| {
-                    let rest = line.strip_prefix(key);
-                    rest.is_some_and(|rest| {
-                        rest.trim_start_matches(['"', '\'', ' ']).starts_with(':')
-                    })
-                })
-        })
+/// Whether a text is a rule set, of another program too, or a profile. No other file is quoted.
+fn is_meant_as_rules(text: &str) -> bool {
+    interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
 }
