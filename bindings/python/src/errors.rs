@@ -1,13 +1,16 @@
 //! Errors and findings as Python's: the classes are in `python/flagred/_errors.py`.
 
+use std::io;
+
 use fuzzy::{
     Findings,
     diagnostic::{Diagnostic, Severity},
 };
-use pyo3::{prelude::*, sync::PyOnceLock, types::PyType};
-use report::findings::{Style, draw};
+use pyo3::{exceptions::PyOSError, prelude::*, sync::PyOnceLock, types::PyType};
+use report::diagnostics::{Style, draw};
 
 pyo3::import_exception!(flagred._errors, DataError);
+pyo3::import_exception!(flagred._errors, LogError);
 pyo3::import_exception!(flagred._errors, RuleSetError);
 
 const STYLE: Style = Style {
@@ -22,6 +25,31 @@ pub(crate) fn data_error(message: impl std::fmt::Display, help: Option<String>) 
         Some(help) => DataError::new_err(format!("{message}\n  help: {help}")),
         None => DataError::new_err(message.to_string()),
     }
+}
+
+/// A [`LogError`] with what to do about it.
+pub(crate) fn log_error(message: impl std::fmt::Display, help: Option<&str>) -> PyErr {
+    match help {
+        Some(help) => LogError::new_err(format!("{message}\n  help: {help}")),
+        None => LogError::new_err(message.to_string()),
+    }
+}
+
+/// Why a file cannot be read, as `open` tells it.
+pub(crate) fn os_error(
+    py: Python<'_>,
+    error: &io::Error,
+    path: &str,
+    help: Option<&str>,
+) -> PyResult<PyErr> {
+    let help = help.map_or(String::new(), |help| format!("\n  help: {help}"));
+    Ok(match error.raw_os_error() {
+        Some(number) => {
+            let told = py.import("os")?.call_method1("strerror", (number,))?;
+            PyOSError::new_err((number, format!("{told}{help}"), path.to_owned()))
+        }
+        None => PyOSError::new_err(format!("`{path}` cannot be read: {error}{help}")),
+    })
 }
 
 /// A [`RuleSetError`] whose text is the drawn findings.

@@ -5,11 +5,15 @@
 
 mod arrays;
 mod arrow;
+mod assessment;
 mod errors;
 mod evaluate;
 mod explanation;
+mod flight;
 mod map;
+mod monitor;
 mod outcome;
+mod profile;
 mod rule_set;
 mod table;
 mod threads;
@@ -18,9 +22,13 @@ mod threads;
 mod _core {
     #[pymodule_export]
     use crate::{
+        assessment::AssessmentData,
         explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
+        flight::FlightData,
         map::DecisionMap,
+        monitor::{MonitorData, Update},
         outcome::{Outcome, Outcomes},
+        profile::Profile,
         rule_set::RuleSet,
         table::Table,
     };
