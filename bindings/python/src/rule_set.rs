@@ -16,12 +16,14 @@ use fuzzy::{
     engine::{Outcome as Raw, Scratch},
     format::{self, Document},
     map::Grid,
+    rule,
     tree::Node,
     validate, yaml,
 };
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::{
     IntoPyObjectExt,
+    exceptions::PyIndexError,
     prelude::*,
     sync::PyOnceLock,
     types::{PyDict, PyFloat, PyInt, PyString, PyTuple},
@@ -60,6 +62,8 @@ pub(crate) struct Compiled {
     pub(crate) engine: Engine,
     inputs: Vec<Py<PyString>>,
 }
+
+type RuleParts = (String, f64, Option<f64>, Option<u64>, Option<String>);
 
 /// What each thread keeps for single evaluations, of the rule sets it used last.
 struct Kept {
@@ -331,6 +335,33 @@ impl RuleSet {
 
     fn _name(&self) -> String {
         self.model(|model| model.name.clone())
+    }
+
+    fn _description(&self) -> Option<String> {
+        self.model(|model| model.description.clone())
+    }
+
+    fn _rule_count(&self) -> usize {
+        self.model(|model| model.rules.len())
+    }
+
+    /// Text, weight, confidence, support and note of a rule.
+    fn _rule(&self, index: usize) -> PyResult<RuleParts> {
+        let parts = |rule: &fuzzy::model::Rule| {
+            let text = rule.rule.to_string();
+            (text, rule.rule.weight, rule.confidence, rule.support, rule.note.clone())
+        };
+        let rule = self.model(|model| model.rules.get(index).map(parts));
+        rule.ok_or_else(|| PyIndexError::new_err("there is no such rule"))
+    }
+
+    /// The text of a rule with another weight.
+    #[staticmethod]
+    fn _weighted(py: Python<'_>, text: &str, weight: f64) -> PyResult<String> {
+        let rule = rule::parse(text).map_err(|finding| {
+            rule_set_error(py, &Findings::locate(vec![*finding], text), "<rule>", text)
+        });
+        Ok(rule?.with(weight).to_string())
     }
 
     /// The names of the inputs, in the order of their values.
