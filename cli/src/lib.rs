@@ -3,7 +3,6 @@
 //! Each command has a file; this one reads the command line and dispatches.
 
 mod assess;
-mod assessment;
 mod check;
 mod completions;
 mod convert;
@@ -30,9 +29,9 @@ mod output;
 mod parallel;
 mod plot;
 mod profile;
-mod report;
 mod rule_set;
 mod schema;
+mod steps;
 mod table;
 mod watch;
 

@@ -6,7 +6,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-const PACKAGES: [&str; 5] = ["fuzzy", "flagred", "flightlog", "interchange", "cli"];
+const PACKAGES: [&str; 6] = [
+    "fuzzy",
+    "flagred",
+    "flightlog",
+    "interchange",
+    "report",
+    "cli",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -57,7 +64,11 @@ fn every_package_stands_on_those_below_it_alone() {
         ("flightlog", &[]),
         ("interchange", &["fuzzy"]),
         ("flagred", &["flightlog", "fuzzy"]),
-        ("cli", &["flagred", "flightlog", "fuzzy", "interchange"]),
+        ("report", &["flagred", "flightlog", "fuzzy", "interchange"]),
+        (
+            "cli",
+            &["flagred", "flightlog", "fuzzy", "interchange", "report"],
+        ),
     ] {
         let manifest = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
         let (_, dependencies) = manifest.split_once("\n[dependencies]\n").unwrap();
@@ -73,6 +84,7 @@ fn every_package_stands_on_those_below_it_alone() {
                     "flagred",
                     "flagred-cli",
                     "interchange",
+                    "report",
                 ]
                 .contains(name)
             })
@@ -238,6 +250,7 @@ fn the_map_of_the_house_has_every_module_and_names_nothing_that_is_gone() {
         "flagred",
         "flightlog",
         "interchange",
+        "report",
         "cli",
         "tests",
     ]

@@ -9,7 +9,7 @@ use fuzzy::{
 };
 use maud::{Markup, PreEscaped, html};
 
-use super::panel::percent;
+use crate::panel::percent;
 
 /// Cells along each side of the map.
 const CELLS: usize = 48;

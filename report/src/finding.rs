@@ -10,21 +10,22 @@ use fuzzy::{Model, drawing::number};
 
 /// What a finding is told with.
 #[derive(Clone, Copy)]
-pub(crate) struct Teller<'a> {
+pub struct Teller<'a> {
     /// The rule set.
-    pub(crate) model: &'a Model,
+    pub model: &'a Model,
     /// The motors of the flight.
-    pub(crate) motors: &'a [Motor],
+    pub motors: &'a [Motor],
 }
 
 /// The findings of one cause.
-pub(crate) struct Line<'a> {
-    pub(crate) worst: &'a Finding,
+pub struct Line<'a> {
+    /// The gravest of them.
+    pub worst: &'a Finding,
     count: usize,
 }
 
 /// One line a cause, in the order of the findings: the gravest first.
-pub(crate) fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
+pub fn lines(findings: &[Finding]) -> Vec<Line<'_>> {
     let mut lines: Vec<Line<'_>> = Vec::new();
     for finding in findings {
         match lines.iter_mut().find(|line| is_same(line.worst, finding)) {
@@ -71,7 +72,7 @@ fn gravity(finding: &Finding) -> f64 {
 
 impl<'a> Teller<'a> {
     /// The findings of one cause: `3 times, worst 12.0 to 14.5 s: ...`. A notice holds until landing and has no span.
-    pub(crate) fn line(&self, line: &Line<'_>) -> String {
+    pub fn line(&self, line: &Line<'_>) -> String {
         let Line { worst, count } = line;
         let what = self.what(worst);
         match (*count, is_of_risk(worst)) {
@@ -83,13 +84,13 @@ impl<'a> Teller<'a> {
     }
 
     /// One finding: when, what, and its cause.
-    pub(crate) fn finding(&self, finding: &Finding) -> String {
+    pub fn finding(&self, finding: &Finding) -> String {
         format!("{}: {}", span(finding), self.what(finding))
     }
 
     /// What stands behind a finding: threshold, when its levels were raised, the description of the input, the margin of
     /// the motor.
-    pub(crate) fn details(&self, finding: &Finding) -> String {
+    pub fn details(&self, finding: &Finding) -> String {
         let mut text = format!(
             "threshold {:.0} %, raised at {:.1} s",
             finding.threshold_pct, finding.raised_s
@@ -115,7 +116,7 @@ impl<'a> Teller<'a> {
     }
 
     /// The motor that a finding names.
-    pub(crate) fn motor(&self, finding: &Finding) -> Option<&'a Motor> {
+    pub fn motor(&self, finding: &Finding) -> Option<&'a Motor> {
         finding.motor.and_then(|motor| self.motors.get(motor.motor))
     }
 
@@ -179,7 +180,7 @@ impl<'a> Teller<'a> {
 /// The cause of a finding in a few words, after a comma: `, unsteady_now violent`, `, lower limit, motor 2`, `, motor 2`.
 /// Texts to ground stations, lines and reports all have these words. Where there is no room for the last part, the first one
 /// is true alone.
-pub(crate) fn cause(finding: &Finding, motors: &[Motor]) -> [String; 2] {
+pub fn cause(finding: &Finding, motors: &[Motor]) -> [String; 2] {
     let motor = finding.motor.and_then(|named| motors.get(named.motor));
     let motor = motor.map(|motor| format!(", motor {}", motor.number));
     let motor = motor.unwrap_or_default();

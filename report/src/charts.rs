@@ -13,7 +13,7 @@ use fuzzy::{
 };
 
 /// The signals that a report draws besides those of the profile.
-pub(crate) const SIGNALS: [&str; 6] = [
+pub const SIGNALS: [&str; 6] = [
     "roll_des_deg",
     "roll_deg",
     "pitch_des_deg",

@@ -1,24 +1,21 @@
-//! A flight's assessment for programs: one JSON document, or a table of its steps.
-
-use std::io::Write;
+//! A flight's assessment for programs: one JSON document.
 
 use flagred::{
     estimator::Estimator,
-    flight::{Assessment, Finding, Step, Steps, Summary, Verdict},
+    flight::{Assessment, Finding, Steps, Summary, Verdict},
     verdict::VerdictSettings,
 };
 use flightlog::{Flight, Motor, Parameter, Range, Report};
 use serde::Serialize;
 
-use super::finding::Teller;
-use crate::{failure::Failure, output::cell};
+use crate::finding::Teller;
 
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.assess/1";
 
 /// `docs/json.md` and `cli/schemas/assess.json` describe it.
 #[derive(Serialize)]
-pub(crate) struct Document<'a> {
+pub struct Document<'a> {
     schema: &'static str,
     log: Log<'a>,
     vehicle: Vehicle<'a>,
@@ -61,7 +58,7 @@ struct Profile<'a> {
 
 /// A finding with the output of its motor, and in words.
 #[derive(Serialize)]
-pub(crate) struct FindingDocument<'a> {
+pub struct FindingDocument<'a> {
     #[serde(flatten)]
     finding: Finding,
     output: Option<&'a str>,
@@ -69,7 +66,8 @@ pub(crate) struct FindingDocument<'a> {
 }
 
 impl<'a> FindingDocument<'a> {
-    pub(crate) fn new(finding: &'a Finding, teller: Teller<'a>) -> Self {
+    /// A finding of the flight that the teller knows.
+    pub fn new(finding: &'a Finding, teller: Teller<'a>) -> Self {
         FindingDocument {
             output: teller.motor(finding).map(|motor| motor.output.as_str()),
             text: teller.finding(finding),
@@ -79,7 +77,7 @@ impl<'a> FindingDocument<'a> {
 }
 
 /// The finding with the autopilot's number of its motor, where it is not its place in the samples.
-pub(crate) fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
+pub fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
     let mut finding = finding.clone();
     if let Some(named) = &mut finding.found.motor
         && let Some(motor) = motors.get(named.motor)
@@ -90,7 +88,7 @@ pub(crate) fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
 }
 
 /// The document of one flight.
-pub(crate) fn document<'a>(
+pub fn document<'a>(
     name: &'a str,
     flight: &'a Flight,
     estimator: &'a Estimator,
@@ -133,59 +131,4 @@ pub(crate) fn document<'a>(
         steps: assessed.steps_by_name(),
         widened_step_s: assessed.widened_step_s,
     }
-}
-
-/// A step as columns and fields: margin and spread always, then what the rules said, then the rules' other inputs. What is
-/// unknown is an empty field.
-fn row<'a>(estimator: &'a Estimator, step: &Step) -> Vec<(&'a str, String)> {
-    let number = |value: Option<f64>| {
-        let known = value.filter(|value| value.is_finite());
-        known.map(|value| value.to_string()).unwrap_or_default()
-    };
-    let estimate = step.estimate;
-    let filled = estimate.map(|e| u8::from(e.filled_from.is_some()).to_string());
-    let mut row = vec![
-        ("t_s", number(Some(step.t_s))),
-        ("margin", number(step.margin)),
-        ("spread", number(step.spread)),
-        ("coverage", number(estimate.map(|e| e.coverage))),
-        ("filled", filled.unwrap_or_default()),
-        ("risk", number(estimate.map(|e| e.risk_pct))),
-        ("elevated_risk", number(step.elevated_risk_pct)),
-    ];
-    for (i, input) in estimator.profile().inputs.iter().enumerate() {
-        let field = number(step.inputs.get(i).copied());
-        match row.iter_mut().find(|(known, _)| *known == input.name) {
-            // A profile may define its margin or spread differently; the rules' is the one to show.
-            Some(known) => known.1 = field,
-            None => row.push((&input.name, field)),
-        }
-    }
-    row
-}
-
-/// Writes the steps of one flight as CSV; `log` becomes the first column where there are several flights.
-pub(crate) fn write_csv(
-    out: &mut impl Write,
-    log: Option<&str>,
-    head: bool,
-    estimator: &Estimator,
-    assessed: &Assessment,
-) -> Result<(), Failure> {
-    let mut table = csv::Writer::from_writer(out);
-    if head {
-        let columns = row(estimator, &Step::default());
-        let names = columns.iter().map(|(name, _)| cell(name));
-        let names = log.map(|_| "log".into()).into_iter().chain(names);
-        table.write_record(names.map(|name| name.into_owned()))?;
-    }
-    for step in &assessed.steps {
-        let fields = row(estimator, step).into_iter().map(|(_, field)| field);
-        table.write_record(
-            log.map(|log| cell(log).into_owned())
-                .into_iter()
-                .chain(fields),
-        )?;
-    }
-    Ok(table.flush()?)
 }

@@ -1,6 +1,11 @@
 //! The report of one flight, or a comparison of several, as one HTML file that needs nothing beside it.
 
-use flagred::flight::{Assessment, Peak, Verdict};
+use std::sync::Arc;
+
+use flagred::{
+    flight::{Assessment, Peak, Verdict},
+    loaded::Loaded,
+};
 use flightlog::Flight;
 use fuzzy::{
     Model,
@@ -8,13 +13,11 @@ use fuzzy::{
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{charts, decision, panel::panel};
 use crate::{
-    assessment::{
-        finding::{self, Teller},
-        words,
-    },
-    profile::Loaded,
+    charts, decision,
+    finding::{self, Teller},
+    panel::panel,
+    words,
 };
 
 const CHART_CSS: &str = include_str!("chart.css");
@@ -24,10 +27,13 @@ const PAGE_JS: &str = include_str!("page.js");
 const POLICY: &str = "default-src 'none';style-src 'unsafe-inline';script-src 'unsafe-inline'";
 
 /// One flight that was assessed.
-pub(crate) struct Subject {
-    pub(crate) name: String,
-    pub(crate) flight: Flight,
-    pub(crate) assessed: Assessment,
+pub struct Subject {
+    /// The name of its file.
+    pub name: String,
+    /// The flight.
+    pub flight: Arc<Flight>,
+    /// What is said of it.
+    pub assessed: Assessment,
 }
 
 impl Subject {
@@ -43,11 +49,12 @@ impl Subject {
 }
 
 /// The report of one flight.
-pub(crate) fn report(subject: &Subject, loaded: &Loaded) -> String {
+pub fn report(subject: &Subject, loaded: &Loaded) -> String {
     let Subject {
         flight, assessed, ..
     } = subject;
-    let (estimator, model) = (&loaded.estimator, &loaded.model);
+    let estimator = &loaded.estimator;
+    let model = estimator.model();
     let timeline = charts::timeline(flight, assessed);
     let stretch = timeline.stretch;
     let risk = charts::risk(assessed, estimator, stretch);
@@ -102,7 +109,7 @@ fn section(
 }
 
 /// A comparison of several flights on one scale of time.
-pub(crate) fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
+pub fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
     let timelines = subjects
         .iter()
         .map(|s| charts::timeline(&s.flight, &s.assessed));
@@ -146,7 +153,7 @@ pub(crate) fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
                 h2 { (badge(&subject.assessed.verdict)) " " (subject.title()) }
                 p.soft { (words::vehicle(&subject.flight)) }
                 @for note in words::notes(&subject.flight, &subject.assessed) { p.soft { (note) } }
-                (findings(subject, &loaded.model))
+                (findings(subject, loaded.estimator.model()))
                 @if let Some(risk) = charts::risk(&subject.assessed, &loaded.estimator, timeline.stretch) {
                     (panel(&risk, timeline, None))
                 }
@@ -158,7 +165,7 @@ pub(crate) fn comparison(subjects: &[Subject], loaded: &Loaded) -> String {
 }
 
 /// The risk over time as an SVG file; `None` where no risk is known.
-pub(crate) fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
+pub fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
     const STYLE: &str = "text{font:12px system-ui,sans-serif;fill:var(--soft)}.y{text-anchor:end}.x{text-anchor:middle}\
         .key{fill:var(--c)}.title{font-size:16px;font-weight:700;fill:var(--ink)}.verdict{font-size:16px;font-weight:700;fill:var(--c)}";
     let timeline = charts::timeline(&subject.flight, &subject.assessed);

@@ -11,13 +11,13 @@ use flagred::{
 use flightlog::Flight;
 use fuzzy::drawing::{number, over_time_text, visible};
 
-use super::finding::{self, Teller};
+use crate::finding::{self, Teller};
 
 /// Columns of the picture of risk over time.
 const PICTURE_COLUMNS: usize = 64;
 
 /// Writes the assessment of one flight: one line a cause, or every finding with its details.
-pub(crate) fn write(
+pub fn write(
     out: &mut impl Write,
     name: &str,
     flight: &Flight,
@@ -106,7 +106,7 @@ fn indented(out: &mut impl Write, text: &str) -> io::Result<()> {
 }
 
 /// The vehicle in a line: firmware, frame, motors and ranges.
-pub(crate) fn vehicle(flight: &Flight) -> String {
+pub fn vehicle(flight: &Flight) -> String {
     let mut parts = vec![flight.format.to_string()];
     parts.extend(flight.vehicle.firmware.clone());
     parts.extend(flight.vehicle.frame.clone());
@@ -128,7 +128,7 @@ pub(crate) fn vehicle(flight: &Flight) -> String {
 }
 
 /// The part of a range of commands that is used in flight.
-pub(crate) fn effective_range(effective: &flightlog::Range) -> String {
+pub fn effective_range(effective: &flightlog::Range) -> String {
     format!(
         "effective range {} to {} %",
         number(100.0 * effective.low, 1),
@@ -140,7 +140,7 @@ pub(crate) fn effective_range(effective: &flightlog::Range) -> String {
 const MOST_SPANS: usize = 12;
 
 /// The first of many spans, the others counted.
-pub(crate) fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
+pub fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> String {
     let first: Vec<String> = spans.by_ref().take(MOST_SPANS).collect();
     match spans.len() {
         0 => first.join(", "),
@@ -149,7 +149,7 @@ pub(crate) fn first_spans(mut spans: impl ExactSizeIterator<Item = String>) -> S
 }
 
 /// What the verdict does not rest on: limits that are none, and what is left out of a log that is too large.
-pub(crate) fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
+pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(doubt) = &flight.effective_doubt {
         notes.push(format!("the effective range is the whole range: {doubt}"));
@@ -181,7 +181,7 @@ pub(crate) fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
 const ONE_MESSAGE_BYTES: u64 = 256;
 
 /// What is wrong with a log that could be read in part.
-pub(crate) fn damage(report: &flightlog::Report) -> String {
+pub fn damage(report: &flightlog::Report) -> String {
     if report.truncated && report.bad_messages == 0 && report.skipped_bytes <= ONE_MESSAGE_BYTES {
         let (last, are) = match report.skipped_bytes {
             1 => ("last byte".to_owned(), "is"),
@@ -250,7 +250,8 @@ fn style(verdict: &Verdict) -> Style {
     }
 }
 
-pub(crate) fn level_style(level: Level) -> Style {
+/// The style of a level on a terminal.
+pub fn level_style(level: Level) -> Style {
     match level {
         Level::Good => AnsiColor::Green,
         Level::Info => AnsiColor::Cyan,
