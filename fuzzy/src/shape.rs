@@ -13,6 +13,8 @@ mod formula;
 #[cfg(feature = "alloc")]
 mod outline;
 mod place;
+#[cfg(feature = "alloc")]
+mod slope;
 mod smooth;
 mod straight;
 #[cfg(test)]
