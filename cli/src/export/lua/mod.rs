@@ -5,6 +5,7 @@
 
 mod frames;
 mod inputs;
+mod observed;
 mod rules;
 mod template;
 
