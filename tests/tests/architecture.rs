@@ -6,7 +6,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-const PACKAGES: [&str; 5] = ["fuzzy", "flagred", "flightlog", "interchange", "cli"];
+const PACKAGES: [&str; 6] = [
+    "fuzzy",
+    "flagred",
+    "flightlog",
+    "interchange",
+    "tuning",
+    "cli",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -56,8 +63,12 @@ fn every_package_stands_on_those_below_it_alone() {
         ("fuzzy", &[][..]),
         ("flightlog", &[]),
         ("interchange", &["fuzzy"]),
+        ("tuning", &["fuzzy"]),
         ("flagred", &["flightlog", "fuzzy"]),
-        ("cli", &["flagred", "flightlog", "fuzzy", "interchange"]),
+        (
+            "cli",
+            &["flagred", "flightlog", "fuzzy", "interchange", "tuning"],
+        ),
     ] {
         let manifest = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
         let (_, dependencies) = manifest.split_once("\n[dependencies]\n").unwrap();
@@ -73,6 +84,7 @@ fn every_package_stands_on_those_below_it_alone() {
                     "flagred",
                     "flagred-cli",
                     "interchange",
+                    "tuning",
                 ]
                 .contains(name)
             })

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::{TuneError, data::Data};
 
 /// Pulls numbers that the rows say nothing about to what they are; relative to the largest curvature.
-const RIDGE: f64 = 1e-9;
+const RIDGE: f64 = 1e-8;
 
 /// The rows whose firing strengths are held at a time.
 const ROWS: usize = 4096;

@@ -1,8 +1,9 @@
 //! Tunes fuzzy rule sets on data: peaks of partitions, parameters of membership functions, consequents and weights.
 //!
 //! The rules stay as they are, and so does what keeps them readable: the order of the terms of a variable, a least distance
-//! between their peaks, partitions whose degrees sum to 1, vertical edges, what touches the end of a range. These hold by
-//! construction: the search moves free numbers, each value of which makes such a model.
+//! between their peaks, partitions whose degrees sum to 1, vertical edges, what touches the end of a range; no width, slope or
+//! flank grows or shrinks by more than five times. These hold by construction: the search moves free numbers, each value of
+//! which makes such a model.
 //!
 //! [`tune`] makes a [`Loss`] small by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). With squared errors the
 //! consequents of a Takagi-Sugeno output are solved for at every step, as ANFIS does (Jang 1993). [`cross_validate`] tells

@@ -46,76 +46,70 @@ pub(crate) fn moved(before: &Model, after: &Model) -> Vec<Moved> {
 /// The numbers of a model, in the order in which it has them.
 pub fn numbers(model: &Model) -> Vec<Number> {
     let mut numbers = Vec::new();
-    visit(&mut model.clone(), &mut |number, _| numbers.push(number));
+    change(&mut model.clone(), &mut |number| {
+        let value = number.value;
+        numbers.push(number);
+        value
+    });
     numbers
 }
 
-/// The model with another value of the numbers of these indices in [`numbers`]. A value that a shape cannot have changes
+/// The model with another value of the numbers of these indices in [`numbers`]. Values that a shape cannot have change
 /// nothing.
 pub(crate) fn with(model: &Model, indices: &[usize], value: f64) -> Model {
     let mut model = model.clone();
-    let mut at = 0;
-    visit(&mut model, &mut |_, set| {
-        if indices.contains(&at) {
-            set(value);
-        }
-        at += 1;
+    let mut index = 0..;
+    change(&mut model, &mut |number| match index.next() {
+        Some(index) if indices.contains(&index) => value,
+        _ => number.value,
     });
     model
 }
 
-/// Goes through the numbers of a model; each can be set.
-fn visit(model: &mut Model, take: &mut dyn FnMut(Number, &mut dyn FnMut(f64))) {
+/// Gives each number of a model the value that `value` returns for it.
+fn change(model: &mut Model, value: &mut dyn FnMut(Number) -> f64) {
     let outputs = model.outputs.iter_mut().map(|output| &mut output.variable);
     for variable in model.inputs.iter_mut().chain(outputs) {
         match variable.partition_peaks() {
-            Some(peaks) => partition(variable, peaks, take),
+            Some(peaks) => partition(variable, &peaks, value),
             None => {
                 for term in &mut variable.terms {
-                    shape(&variable.name, term, take);
+                    shape(&variable.name, term, value);
                 }
             }
         }
     }
     for (i, rule) in model.rules.iter_mut().enumerate() {
-        let number = Number {
+        rule.rule.weight = value(Number {
             of: format!("rule {}", i + 1),
             name: "weight".into(),
             value: rule.rule.weight,
-        };
-        take(number, &mut |value| rule.rule.weight = value);
+        });
     }
 }
 
-fn partition(
-    variable: &mut Variable,
-    mut peaks: Vec<f64>,
-    take: &mut dyn FnMut(Number, &mut dyn FnMut(f64)),
-) {
-    let names: Vec<String> = variable
-        .terms
-        .iter()
-        .map(|term| term.name.clone())
-        .collect();
-    for (i, name) in names.iter().enumerate() {
-        let number = Number {
-            of: format!("{}.{name}", variable.name),
+fn partition(variable: &mut Variable, peaks: &[f64], value: &mut dyn FnMut(Number) -> f64) {
+    let terms = std::mem::take(&mut variable.terms);
+    let moved = terms.iter().zip(peaks).map(|(term, peak)| {
+        let moved = value(Number {
+            of: format!("{}.{}", variable.name, term.name),
             name: "peak".into(),
-            value: peaks[i],
-        };
-        take(number, &mut |value| peaks[i] = value);
-    }
-    variable.terms.clear();
-    let moved = names.iter().map(String::as_str).zip(peaks);
+            value: *peak,
+        });
+        (term.name.as_str(), moved)
+    });
+    let moved: Vec<(&str, f64)> = moved.collect();
     *variable = variable.clone().partition_at(moved);
 }
 
-fn shape(variable: &str, term: &mut Term, take: &mut dyn FnMut(Number, &mut dyn FnMut(f64))) {
+fn shape(variable: &str, term: &mut Term, value: &mut dyn FnMut(Number) -> f64) {
     let of = format!("{variable}.{}", term.name);
-    let number = |name: &str, value: f64| Number {
-        of: of.clone(),
-        name: name.into(),
-        value,
+    let mut moved = |name: &str, number: f64| {
+        value(Number {
+            of: of.clone(),
+            name: name.into(),
+            value: number,
+        })
     };
     if let MembershipFunction::Linear {
         coefficients,
@@ -123,20 +117,16 @@ fn shape(variable: &str, term: &mut Term, take: &mut dyn FnMut(Number, &mut dyn 
     } = &mut term.membership_function
     {
         for (input, coefficient) in coefficients {
-            take(number(input, *coefficient), &mut |value| {
-                *coefficient = value
-            });
+            *coefficient = moved(input, *coefficient);
         }
-        take(number("constant", *constant), &mut |value| {
-            *constant = value
-        });
+        *constant = moved("constant", *constant);
         return;
     }
     let parameters = term.membership_function.parameters();
-    let mut values: Vec<f64> = parameters.iter().map(|(.., value)| *value).collect();
-    for (i, (name, _, value)) in parameters.iter().enumerate() {
-        take(number(name, *value), &mut |value| values[i] = value);
-    }
+    let values = parameters
+        .iter()
+        .map(|(name, _, number)| moved(name, *number));
+    let values: Vec<f64> = values.collect();
     if let Ok(moved) = term.membership_function.with_parameters(&values) {
         term.membership_function = moved;
     }

@@ -49,12 +49,21 @@ struct Hung {
 enum Link {
     /// The anchor itself.
     Anchor,
-    /// A position: the parameter of this index and `exp(z)` times a distance. A distance of 0, a vertical edge, stays 0.
+    /// A position: the parameter of this index and [`factor`] times a distance. A distance of 0, a vertical edge, stays 0.
     Beyond(usize, f64),
-    /// A width or a slope: the number times `exp(z)`. A slope of 0 stays 0.
+    /// A width or a slope: the number times [`factor`]. A slope of 0 stays 0.
     Scale(f64),
     /// It does not move.
     Fixed(f64),
+}
+
+/// The most that a width, a slope or a distance from an anchor grows or shrinks by: one that vanishes is not readable.
+pub(crate) const MOST_FACTOR: f64 = 5.0;
+
+/// The factor of a free number: about `exp(z)`, between 1 / [`MOST_FACTOR`] and [`MOST_FACTOR`].
+fn factor(z: f64) -> f64 {
+    let most = MOST_FACTOR.ln();
+    (most * (z / most).tanh()).exp()
 }
 
 /// A weight of 1 begins here: at 1 itself it could not move.
@@ -400,11 +409,11 @@ impl Hung {
     /// The parameters for a place of the anchor and free numbers.
     fn moved(&self, anchor: f64, free: &[f64]) -> Vec<f64> {
         let mut z = free.iter();
-        let factor = |link: &Link| match link.is_free() {
-            true => z.next().map_or(1.0, |z| z.exp()),
+        let of_link = |link: &Link| match link.is_free() {
+            true => z.next().map_or(1.0, |z| factor(*z)),
             false => 1.0,
         };
-        let factors: Vec<f64> = self.parameters.iter().map(factor).collect();
+        let factors: Vec<f64> = self.parameters.iter().map(of_link).collect();
         let mut moved = vec![0.0; factors.len()];
         for &i in &self.outward {
             moved[i] = match self.parameters[i] {

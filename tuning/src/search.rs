@@ -14,7 +14,7 @@ use crate::{
 /// The step of a difference. All free numbers are of the order of 1.
 const DIFFERENCE: f64 = 1e-4;
 
-/// The longest step of a free number: at most about seven times as wide, or as far.
+/// The longest step of a free number. All are of the order of 1.
 const LONGEST: f64 = 2.0;
 
 /// A step that gains a smaller share of the loss is as good as none.
@@ -23,13 +23,16 @@ const LEAST_GAIN: f64 = 1e-7;
 /// So many poor steps end a search.
 const PATIENCE: u32 = 3;
 
+/// Is told the step and the point, and says whether to go on.
+pub(crate) type Watch<'a> = dyn FnMut(u32, &Point) -> Result<ControlFlow<()>, TuneError> + 'a;
+
 /// Searches from free numbers, for at most so many steps. `watch` is told each new best point, and can end the search.
 pub(crate) fn search(
     objective: &Objective<'_>,
     parameters: &Parameters,
     from: &[f64],
     iterations: u32,
-    watch: &mut dyn FnMut(u32, &Point) -> Result<ControlFlow<()>, TuneError>,
+    watch: &mut Watch<'_>,
 ) -> Result<(Point, ControlFlow<()>), TuneError> {
     let mut z = from.to_vec();
     let mut at = objective.fitted(parameters.model(&z))?;

@@ -1,4 +1,5 @@
 //! The example of ANFIS (Jang 1993): a chaotic series, predicted six steps ahead from four of its past values.
+#![allow(clippy::unwrap_used)]
 
 use std::ops::ControlFlow;
 
@@ -43,15 +44,27 @@ fn grid(low: f64, high: f64) -> Model {
     let names = ["x18", "x12", "x6", "x0"];
     let mut model = Model::builder("mackey-glass");
     for name in names {
-        let bell = |center| MembershipFunction::Bell { center, width: (high - low) / 2.0, slope: 2.0 };
-        model = model.input(Variable::new(name, low, high).term("low", bell(low)).term("high", bell(high)));
+        let bell = |center| MembershipFunction::Bell {
+            center,
+            width: (high - low) / 2.0,
+            slope: 2.0,
+        };
+        model = model.input(
+            Variable::new(name, low, high)
+                .term("low", bell(low))
+                .term("high", bell(high)),
+        );
     }
-    let mut output = Output::new(Variable::new("x", low, high)).defuzzifier(Defuzzifier::WeightedAverage);
+    let mut output =
+        Output::new(Variable::new("x", low, high)).defuzzifier(Defuzzifier::WeightedAverage);
     for cell in 0..16 {
         let coefficients = names.map(|name| (name.to_owned(), 0.0)).to_vec();
         output.variable = output.variable.term(
             format!("line_{cell}"),
-            MembershipFunction::Linear { coefficients, constant: 1.0 },
+            MembershipFunction::Linear {
+                coefficients,
+                constant: 0.0,
+            },
         );
         let is = |i: usize| {
             let term = if cell >> i & 1 == 1 { "high" } else { "low" };
@@ -69,7 +82,10 @@ fn rmse(model: &Model, data: &Data) -> f64 {
     let engine = Engine::new(model).unwrap();
     let columns: Vec<&[f64]> = data.inputs.iter().map(Vec::as_slice).collect();
     let outcomes = engine.evaluate_batch(&columns).unwrap();
-    let errors = outcomes.iter().zip(&data.truths).map(|(outcome, truth)| outcome.value().unwrap() - truth);
+    let errors = outcomes
+        .iter()
+        .zip(&data.truths)
+        .map(|(outcome, truth)| outcome.value().unwrap() - truth);
     (errors.map(|error| error * error).sum::<f64>() / data.truths.len() as f64).sqrt()
 }
 
@@ -78,8 +94,13 @@ fn the_chaotic_series_is_predicted_as_well_as_by_anfis() {
     let series = series(1200);
     let (training, checking) = (rows(&series, 118, 500), rows(&series, 618, 500));
     let all = training.inputs.iter().chain(&checking.inputs).flatten();
-    let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
-    let settings = Settings { iterations: 60, ..Settings::default() };
+    let (low, high) = all.fold((f64::MAX, f64::MIN), |(low, high), x| {
+        (low.min(*x), high.max(*x))
+    });
+    let settings = Settings {
+        iterations: 60,
+        ..Settings::default()
+    };
     let mut steps = 0;
     let tuned = tune(&grid(low, high), &training, &settings, &mut |_| {
         steps += 1;
@@ -87,6 +108,9 @@ fn the_chaotic_series_is_predicted_as_well_as_by_anfis() {
     })
     .unwrap();
     let checked = rmse(&tuned.model, &checking);
-    eprintln!("training {:.5}, checking {checked:.5} after {steps} steps", tuned.after);
+    eprintln!(
+        "training {:.5}, checking {checked:.5} after {steps} steps",
+        tuned.after
+    );
     assert!(checked <= 0.0025, "{checked}");
 }
