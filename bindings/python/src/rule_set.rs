@@ -349,7 +349,13 @@ impl RuleSet {
     fn _rule(&self, index: usize) -> PyResult<RuleParts> {
         let parts = |rule: &fuzzy::model::Rule| {
             let text = rule.rule.to_string();
-            (text, rule.rule.weight, rule.confidence, rule.support, rule.note.clone())
+            (
+                text,
+                rule.rule.weight,
+                rule.confidence,
+                rule.support,
+                rule.note.clone(),
+            )
         };
         let rule = self.model(|model| model.rules.get(index).map(parts));
         rule.ok_or_else(|| PyIndexError::new_err("there is no such rule"))
