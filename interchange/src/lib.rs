@@ -145,6 +145,18 @@ pub fn read_block(text: &str, name: &str, losses: Losses) -> Result<Document, Fi
     fcl::read(text, Some(name), losses)
 }
 
+/// Reads a rule set in whatever format it is: one of these, or YAML.
+///
+/// # Errors
+///
+/// As [`read`] without losses, and as [`fuzzy::yaml::parse`].
+pub fn document(text: &str) -> Result<Document, Findings> {
+    match Format::of(text) {
+        Some(format) => read(text, format, Losses::Refuse),
+        None => fuzzy::yaml::parse(text),
+    }
+}
+
 /// What [`write()`] makes.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
