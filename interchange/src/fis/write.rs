@@ -9,7 +9,7 @@ use fuzzy::{
 use crate::{
     Format, Losses, Written, conditions,
     names::{self, Allowed},
-    paper::{Paper, numbers, one_line},
+    paper::{Paper, named, numbers, one_line},
     shapes, words,
 };
 
@@ -166,8 +166,9 @@ fn shape(
     model: &Model,
 ) -> Option<(&'static str, Vec<f64>)> {
     use MembershipFunction as Of;
+    let name = named(term, variable);
     if term.height != 1.0 {
-        let message = format!("the term `{}` has the height {}", term.name, term.height);
+        let message = format!("the term {name} has the height {}", term.height);
         paper.loss("height", message, "all terms of FIS are 1 high");
     }
     // What MATLAB lacks is written with a shape that is equal within the range. Octave takes no flank without a width.
@@ -198,11 +199,11 @@ fn shape(
     };
     match written {
         None => {
-            let message = format!("the term `{}` has a shape that FIS has not", term.name);
+            let message = format!("the term {name} has a shape that FIS has not");
             paper.loss("no-shape", message, "write it as points: `piecewise`");
         }
-        Some((name @ ("discretemf" | "cosinemf" | "spikemf" | "concavemf"), _)) => {
-            let message = format!("MATLAB has no shape `{name}`, of the term `{}`", term.name);
+        Some((shape @ ("discretemf" | "cosinemf" | "spikemf" | "concavemf"), _)) => {
+            let message = format!("MATLAB has no shape `{shape}`, of the term {name}");
             paper.note("not-in-matlab", message, "fuzzylite reads it");
         }
         Some(_) => {}
