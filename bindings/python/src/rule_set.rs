@@ -349,7 +349,13 @@ impl RuleSet {
     fn _rule(&self, index: usize) -> PyResult<RuleParts> {
         let parts = |rule: &fuzzy::model::Rule| {
             let text = rule.rule.to_string();
-            (text, rule.rule.weight, rule.confidence, rule.support, rule.note.clone())
+            (
+                text,
+                rule.rule.weight,
+                rule.confidence,
+                rule.support,
+                rule.note.clone(),
+            )
         };
         let rule = self.model(|model| model.rules.get(index).map(parts));
         rule.ok_or_else(|| PyIndexError::new_err("there is no such rule"))
@@ -549,16 +555,16 @@ impl RuleSet {
         })?
     }
 
-    #[pyo3(signature = (*, coverage = 0.5, monotone = Vec::new()))]
+    #[pyo3(signature = (*, coverage = 0.5, monotone = None))]
     fn check<'py>(
         &self,
         py: Python<'py>,
         coverage: f64,
-        monotone: Vec<String>,
+        monotone: Option<Vec<String>>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let mut options = check::Options::default();
         options.coverage = coverage;
-        for claim in monotone {
+        for claim in monotone.unwrap_or_default() {
             let claim = claim.parse::<Monotone>();
             options
                 .monotone
