@@ -29,6 +29,7 @@ fn command(code: &str) -> Option<&'static str> {
     match code {
         "empty-file" => Some("`flagred new NAME` writes a rule set to start from"),
         "no-rules" => Some("`flagred learn` writes rules from data"),
+        "several-blocks" => Some("`flagred import --block NAME` writes one in YAML"),
         "not-monotone" => Some("`flagred explain` shows the rules that fire at a point"),
         _ => None,
     }

@@ -29,10 +29,12 @@ mod output;
 mod parallel;
 mod plot;
 mod profile;
+mod rows;
 mod rule_set;
 mod schema;
 mod steps;
 mod table;
+mod tune;
 mod watch;
 
 use std::process::ExitCode;
@@ -95,6 +97,9 @@ enum Command {
     /// Learn rules from a table of inputs and outputs
     #[command(after_help = help::LEARN)]
     Learn(learn::Arguments),
+    /// Move membership functions, consequents and weights of a rule set to fit a table of inputs and outputs
+    #[command(after_help = help::TUNE)]
+    Tune(tune::Arguments),
     /// Measure how well profiles predict attitude errors, compared with simple baselines
     #[command(after_help = help::EVALUATE)]
     Evaluate(evaluate::Arguments),
@@ -132,6 +137,7 @@ impl Command {
             Command::Plot(arguments) => plot::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
+            Command::Tune(arguments) => tune::run(&arguments),
             Command::Evaluate(arguments) => evaluate::run(&arguments),
             Command::Import(arguments) => import::run(&arguments),
             Command::Export(arguments) => export::run(&arguments),

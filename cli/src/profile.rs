@@ -53,13 +53,23 @@ pub(crate) fn rules(profile: &Profile, folder: Option<&Path>) -> Result<(String,
 
 /// The text of a profile, or of the rule set that it names.
 fn read_profile(profile: &str, path: &Path) -> Result<String, Failure> {
-    read_text(path).map_err(|failure| match path == Path::new(profile) {
-        true => {
-            let names = shipped::profile_names().join(" and ");
-            failure.help(format!("shipped profiles are {names}"))
-        }
-        false => failure,
+    match path == Path::new(profile) {
+        true => file_text(path),
+        false => read_text(path),
+    }
+}
+
+/// The text of a file that may be the misspelt name of a shipped profile.
+pub(crate) fn file_text(path: &Path) -> Result<String, Failure> {
+    read_text(path).map_err(|failure| {
+        let names = shipped::profile_names().join(" and ");
+        failure.help(format!("shipped profiles are {names}"))
     })
+}
+
+/// Whether a profile of this name is shipped.
+pub(crate) fn is_shipped(name: &str) -> bool {
+    shipped::PROFILES.iter().any(|known| known.name == name)
 }
 
 fn failure(error: LoadError<Failure>) -> Failure {

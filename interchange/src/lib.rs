@@ -131,9 +131,18 @@ pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Find
     match format {
         Format::Fis => fis::read(text, losses),
         Format::Fll => fll::read(text, losses),
-        Format::Fcl => fcl::read(text, losses),
+        Format::Fcl => fcl::read(text, None, losses),
         Format::Fml => fml::read(text, losses),
     }
+}
+
+/// Reads one function block of an FCL that has several, by its name.
+///
+/// # Errors
+///
+/// As [`read`]; and no function block has that name.
+pub fn read_block(text: &str, name: &str, losses: Losses) -> Result<Document, Findings> {
+    fcl::read(text, Some(name), losses)
 }
 
 /// Reads a rule set in whatever format it is: one of these, or YAML.

@@ -127,6 +127,6 @@ fn report<'a>(
 }
 
 /// Whether a text is a rule set, of another program too, or a profile. No other file is quoted.
-fn is_meant_as_rules(text: &str) -> bool {
+pub fn is_meant_as_rules(text: &str) -> bool {
     interchange::Format::of(text).is_some() || flagred::loaded::is_meant_as_rules(text)
 }

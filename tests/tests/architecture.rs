@@ -6,12 +6,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-const PACKAGES: [&str; 6] = [
+const PACKAGES: [&str; 7] = [
     "fuzzy",
     "flagred",
     "flightlog",
     "interchange",
     "report",
+    "tuning",
     "cli",
 ];
 
@@ -63,11 +64,19 @@ fn every_package_stands_on_those_below_it_alone() {
         ("fuzzy", &[][..]),
         ("flightlog", &[]),
         ("interchange", &["fuzzy"]),
+        ("tuning", &["fuzzy"]),
         ("flagred", &["flightlog", "fuzzy"]),
         ("report", &["flagred", "flightlog", "fuzzy", "interchange"]),
         (
             "cli",
-            &["flagred", "flightlog", "fuzzy", "interchange", "report"],
+            &[
+                "flagred",
+                "flightlog",
+                "fuzzy",
+                "interchange",
+                "report",
+                "tuning",
+            ],
         ),
     ] {
         let manifest = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
@@ -85,6 +94,7 @@ fn every_package_stands_on_those_below_it_alone() {
                     "flagred-cli",
                     "interchange",
                     "report",
+                    "tuning",
                 ]
                 .contains(name)
             })

@@ -8,6 +8,7 @@ use fuzzy::{
 use crate::{
     Format, Losses, Written,
     blocks::{self, Rules},
+    formula,
     names::{self, Allowed},
     paper::{Paper, numbers, one_line},
     rules, shapes, words,
@@ -148,6 +149,15 @@ fn shape(paper: &mut Paper, term: &Term) -> Option<String> {
         }
         Of::Piecewise { points: ref all } => points(all),
         Of::Singleton { at } | Of::Constant { value: at } if height == 1.0 => Some(at.to_string()),
+        Of::Function { ref formula } if height == 1.0 => {
+            let message = format!(
+                "the term `{}` is a formula, which IEC 61131-7 has not",
+                term.name
+            );
+            let help = "jFuzzyLogic reads it in outputs with `COGS`";
+            paper.note("not-in-iec", message, help);
+            Some(format!("FUNCTION {}", formula::write(formula, None)))
+        }
         ref other => {
             let name = &term.name;
             let written = shapes::write(Format::Fcl, other).or_else(|| {

@@ -102,6 +102,9 @@ fn system(paper: &mut Paper, model: &Model) {
     let weighted = words::is_weighted(first);
     let operators = model.operators;
     let quoted = |text: &str| format!("'{}'", one_line(&text.replace('\'', "")));
+    if let Some(description) = &model.description {
+        paper.line(format!("% {}", one_line(description)));
+    }
     paper.line("[System]");
     paper.line(format!("Name={}", quoted(&model.name)));
     paper.line(format!(

@@ -8,7 +8,7 @@ use fuzzy::{
 
 use crate::draft::Draft;
 
-pub(super) fn replace(draft: &mut Draft<'_>) {
+pub(crate) fn replace(draft: &mut Draft<'_>) {
     for index in 0..draft.model.rules.len() {
         let Some(rule) = draft.model.rules.get(index) else {
             return;

@@ -273,18 +273,20 @@ fn hedged(hedges: &[Hedge], mut x: f64) -> f64 {
     x
 }
 
+/// Operators with a step take what is so close to it for it.
+const ROUNDING: f64 = 1e-12;
+
 fn and(operator: Conjunction, a: f64, b: f64) -> f64 {
     match operator {
         Conjunction::Minimum => a.min(b),
         Conjunction::Product => a * b,
         Conjunction::BoundedDifference => (a + b - 1.0).max(0.0),
-        Conjunction::Drastic if a == 1.0 => b,
-        Conjunction::Drastic if b == 1.0 => a,
+        Conjunction::Drastic if a.max(b) >= 1.0 - ROUNDING => a.min(b),
         Conjunction::Drastic => 0.0,
         Conjunction::Einstein => a * b / (2.0 - (a + b - a * b)),
         Conjunction::Hamacher if a + b == 0.0 => 0.0,
         Conjunction::Hamacher => a * b / (a + b - a * b),
-        Conjunction::NilpotentMinimum if a + b > 1.0 => a.min(b),
+        Conjunction::NilpotentMinimum if a + b - 1.0 > ROUNDING || a.max(b) == 1.0 => a.min(b),
         Conjunction::NilpotentMinimum => 0.0,
     }
 }
@@ -294,13 +296,12 @@ fn or(operator: Disjunction, a: f64, b: f64) -> f64 {
         Disjunction::Maximum => a.max(b),
         Disjunction::ProbabilisticSum => a + b - a * b,
         Disjunction::BoundedSum => (a + b).min(1.0),
-        Disjunction::Drastic if a == 0.0 => b,
-        Disjunction::Drastic if b == 0.0 => a,
+        Disjunction::Drastic if a.min(b) <= ROUNDING => a.max(b),
         Disjunction::Drastic => 1.0,
         Disjunction::Einstein => (a + b) / (1.0 + a * b),
         Disjunction::Hamacher if a == 1.0 || b == 1.0 => 1.0,
         Disjunction::Hamacher => (a + b - 2.0 * a * b) / (1.0 - a * b),
-        Disjunction::NilpotentMaximum if a + b < 1.0 => a.max(b),
+        Disjunction::NilpotentMaximum if 1.0 - a - b > ROUNDING || a.min(b) == 0.0 => a.max(b),
         Disjunction::NilpotentMaximum => 1.0,
     }
 }
