@@ -1,7 +1,10 @@
 //! Random models over all shapes, norms, implications, aggregations and defuzzifiers, held against formulas and integrals that
 //! are not the engine's.
 
+use std::process::Command;
+
 use fastrand::Rng;
+use flagred_tests::Folder;
 use flagred_tests::reference::{integral, rules};
 use fuzzy::Engine;
 use fuzzy::map::{DecisionMap, Grid};
@@ -10,6 +13,7 @@ use fuzzy::model::{
     Output, Variable,
 };
 use fuzzy::rule::{Condition, Rule};
+use serde_json::json;
 
 const AND: [Conjunction; 7] = [
     Conjunction::Minimum,
@@ -31,25 +35,29 @@ const OR: [Disjunction; 7] = [
     Disjunction::NilpotentMaximum,
 ];
 
-/// The commonest twice. A drastic implication leaves sets without area, and there is no more to integrate.
-const IMPLICATION: [Conjunction; 8] = [
+/// The commonest more often.
+const IMPLICATION: [Conjunction; 11] = [
     Conjunction::Minimum,
     Conjunction::Minimum,
+    Conjunction::Minimum,
+    Conjunction::Product,
     Conjunction::Product,
     Conjunction::Product,
     Conjunction::BoundedDifference,
+    Conjunction::Drastic,
     Conjunction::Einstein,
     Conjunction::Hamacher,
     Conjunction::NilpotentMinimum,
 ];
 
-const AGGREGATION: [Aggregation; 9] = [
+const AGGREGATION: [Aggregation; 10] = [
     Aggregation::Maximum,
     Aggregation::Maximum,
     Aggregation::Maximum,
     Aggregation::Sum,
     Aggregation::ProbabilisticSum,
     Aggregation::BoundedSum,
+    Aggregation::Drastic,
     Aggregation::Einstein,
     Aggregation::Hamacher,
     Aggregation::NilpotentMaximum,
@@ -83,7 +91,7 @@ fn shape(rng: &mut Rng, low: f64, high: f64) -> MembershipFunction {
     let other = width * between(rng, 0.02, 0.4);
     // Steeper ones are level to the last digit, and maxima hang on rounding.
     let steep = between(rng, 4.0, 25.0) / width * if rng.bool() { 1.0 } else { -1.0 };
-    match rng.u8(0..18) {
+    match rng.u8(0..21) {
         0 => MembershipFunction::Triangle {
             left: a,
             peak: b,
@@ -153,6 +161,12 @@ fn shape(rng: &mut Rng, low: f64, high: f64) -> MembershipFunction {
             inflection: b,
             end: if rng.bool() { c } else { a },
         },
+        17 => MembershipFunction::Arc {
+            start: b,
+            end: if rng.bool() { c } else { a },
+        },
+        18 => MembershipFunction::SemiEllipse { left: b, right: c },
+        19 => MembershipFunction::Constant { value: rng.f64() },
         _ => MembershipFunction::Gaussian {
             mean: inside,
             sd: spread,
@@ -194,8 +208,8 @@ fn condition(rng: &mut Rng, inputs: &[Variable]) -> Condition {
     })
 }
 
-/// A model of a seed, with maxima under all implications or those that are right today; `None` where the terms that it draws are refused.
-fn model(seed: u64, all_maxima: bool) -> Option<Model> {
+/// The model of a seed; `None` where the terms that it draws are refused.
+fn model(seed: u64) -> Option<Model> {
     let rng = &mut Rng::with_seed(seed);
     let inputs: Vec<Variable> = (0..rng.usize(1..4))
         .map(|i| {
@@ -238,16 +252,6 @@ fn model(seed: u64, all_maxima: bool) -> Option<Model> {
         implication: IMPLICATION[rng.usize(0..IMPLICATION.len())],
         aggregation: AGGREGATION[rng.usize(0..AGGREGATION.len())],
     };
-    let implication = &mut model.operators.implication;
-    let is_common = matches!(*implication, Conjunction::Minimum | Conjunction::Product);
-    let maxima = [
-        Defuzzifier::SmallestOfMaxima,
-        Defuzzifier::MeanOfMaxima,
-        Defuzzifier::LargestOfMaxima,
-    ];
-    if !all_maxima && !is_common && maxima.contains(&model.outputs[0].defuzzifier) {
-        *implication = Conjunction::Minimum;
-    }
     fuzzy::validate(&model, &fuzzy::format::Spans::default())
         .is_empty()
         .then_some(model)
@@ -268,19 +272,31 @@ struct Tally {
     wrong: Vec<String>,
 }
 
-/// Compares so many models, at three points each. `first` is the first seed.
-fn compare(first: u64, models: usize, all_maxima: bool) -> Tally {
+/// So many models with three points each, from a seed on.
+fn models(first: u64, count: usize) -> impl Iterator<Item = (u64, Model, Vec<Vec<f64>>)> {
+    let models = (first..).filter_map(|seed| Some((seed, model(seed)?)));
+    models.take(count).map(|(seed, model)| {
+        let rng = &mut Rng::with_seed(seed);
+        let points = (0..3).map(|_| point(rng, &model)).collect();
+        (seed, model, points)
+    })
+}
+
+/// The same model with slightly smaller weights.
+fn with_rounding(model: &Model) -> Model {
+    let mut model = model.clone();
+    for rule in &mut model.rules {
+        rule.rule.weight *= 1.0 - 1e-15;
+    }
+    model
+}
+
+/// Compares so many models from a seed on.
+fn compare(first: u64, count: usize) -> Tally {
     let mut tally = Tally::default();
-    let mut seed = first;
-    while tally.models < models {
-        seed += 1;
-        let Some(model) = model(seed, all_maxima) else {
-            continue;
-        };
+    for (seed, model, points) in models(first, count) {
         tally.models += 1;
         let engine = Engine::new(&model).unwrap();
-        let rng = &mut Rng::with_seed(seed);
-        let points: Vec<Vec<f64>> = (0..3).map(|_| point(rng, &model)).collect();
         let output = &model.outputs[0];
         let mut range = output.variable.high - output.variable.low;
         if let Defuzzifier::WeightedSum | Defuzzifier::WeightedAverage = output.defuzzifier {
@@ -288,26 +304,26 @@ fn compare(first: u64, models: usize, all_maxima: bool) -> Tally {
         }
         for point in &points {
             let value = engine.evaluate(point).unwrap()[0].value();
-            let exact = rules::evaluate_with(&model, point, &integral::defuzzify)[0];
-            match (value, exact) {
-                (_, Some(exact)) if exact.is_nan() => tally.ill_conditioned += 1,
-                (Some(value), Some(exact)) => {
-                    tally.values += 1;
-                    let error = (value - exact).abs() / range;
-                    tally.worst = tally.worst.max(error);
-                    // Written so that no number is wrong, too.
-                    if error.is_nan() || error > 1e-9 {
-                        tally.wrong.push(format!(
-                            "seed {seed} at {point:?}: {value}, not {exact} ({error:e} of the range), {:?} {:?}",
-                            output.defuzzifier, model.operators
-                        ));
-                    }
-                }
-                (None, None) => tally.values += 1,
-                (value, exact) => tally.wrong.push(format!(
-                    "seed {seed} at {point:?}: {value:?}, not {exact:?}, {:?} {:?}",
+            let exact = |model: &Model| rules::evaluate_with(model, point, &integral::defuzzify)[0];
+            let error = |value: Option<f64>, exact: Option<f64>| match (value, exact) {
+                (Some(value), Some(exact)) => (value - exact).abs() / range,
+                (None, None) => 0.0,
+                _ => f64::INFINITY,
+            };
+            let is_right = |error: f64| error <= 1e-9;
+            let expected = exact(&model);
+            let found = error(value, expected);
+            if is_right(found) {
+                tally.values += 1;
+                tally.worst = tally.worst.max(found);
+            } else if is_right(error(expected, exact(&with_rounding(&model)))) {
+                tally.wrong.push(format!(
+                    "seed {seed} at {point:?}: {value:?}, not {expected:?} ({found:e} of the range), {:?} {:?}",
                     output.defuzzifier, model.operators
-                )),
+                ));
+            } else {
+                // Hangs on the last digit of the firing strengths.
+                tally.ill_conditioned += 1;
             }
         }
         same_bits(&model, &engine, &points);
@@ -353,25 +369,45 @@ fn assert_right(tally: &Tally) {
         tally.wrong.len(),
         tally.wrong.join("\n")
     );
-    // Most must have been compared.
-    assert!(20 * tally.ill_conditioned < tally.values, "{tally:?}");
+    // Nearly all must have been compared.
+    assert!(500 * tally.ill_conditioned <= tally.values, "{tally:?}");
 }
 
 #[test]
-fn some_models() {
-    assert_right(&compare(0, 60, false));
+fn two_thousand_models() {
+    assert_right(&compare(1_000_000, 2000));
 }
 
-/// `cargo test --release -p flagred-tests --test oracle -- --ignored --nocapture`
+/// `cargo test --release -p flagred-tests --test oracle -- --ignored twenty_thousand`
 #[test]
 #[ignore = "minutes"]
-fn two_thousand_models() {
-    assert_right(&compare(1_000_000, 2000, false));
+fn twenty_thousand_models() {
+    assert_right(&compare(2_000_000, 20_000));
 }
 
-/// Fails today: some 90 of 6,000 values, nearly all under the nilpotent minimum.
+const PEER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peer/mpmath_peer.py");
+
+/// `FLAGRED_PYTHON` names a Python that has mpmath.
 #[test]
-#[ignore = "maxima under other implications than minimum and product are not exact yet"]
-fn maxima_under_all_implications() {
-    assert_right(&compare(1_000_000, 2000, true));
+#[ignore = "needs Python with mpmath: tests/peer/mpmath.sh"]
+fn mpmath_computes_the_values_of_two_hundred_models() {
+    let lines = models(1_000_000, 200).map(|(seed, model, points)| {
+        let engine = Engine::new(&model).unwrap();
+        let value = |point: &Vec<f64>| engine.evaluate(point).unwrap()[0].value();
+        let values: Vec<Option<f64>> = points.iter().map(value).collect();
+        let case = json!({"seed": seed, "model": model, "points": points, "values": values});
+        case.to_string() + "\n"
+    });
+    let folder = Folder::new();
+    folder.file("models.jsonl", lines.collect::<String>());
+    let python = std::env::var("FLAGRED_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let output = Command::new(python)
+        .arg(PEER)
+        .arg(folder.path().join("models.jsonl"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stdout).unwrap();
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{told}{errors}");
+    assert!(told.contains("600 values, 0 wrong"), "{told}");
 }
