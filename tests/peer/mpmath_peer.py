@@ -6,6 +6,7 @@ python mpmath_peer.py FILE: each line of the file is an object with a rule set, 
 import json
 import re
 import sys
+from multiprocessing import Pool
 
 from mpmath import cos, exp, mp, mpf, pi, sqrt
 from mpmath.calculus.quadrature import GaussLegendre
@@ -443,32 +444,41 @@ def evaluate(model, point, rounding=mpf(1)):
     return AggregatedSet(low, high, fired, operators["implication"], aggregation).value(defuzzifier)
 
 
+def compare(line):
+    """Compares the values of one line. Returns how many there are, what is wrong, and how many hang on rounding."""
+    case = json.loads(line)
+    model = case["model"]
+    ((_, output),) = model["outputs"].items()
+    defuzzifier = output.get("defuzzifier", "centroid")
+    low, high = output["range"]
+    width = 1 if defuzzifier.startswith("weighted") else high - low
+
+    def differ(a, b):
+        both = a is not None and b is not None
+        return not (abs(mpf(a) - b) <= LARGEST * width if both else a is b)
+
+    wrong, ill_conditioned = [], 0
+    for point, ours in zip(case["points"], case["values"]):
+        exact = evaluate(model, point)
+        if not differ(ours, exact):
+            continue
+        if differ(exact, evaluate(model, point, 1 - mpf("1e-15"))):
+            ill_conditioned += 1  # hangs on the last digit of the firing strengths
+            continue
+        told = exact and float(exact)
+        wrong.append(f"seed {case['seed']} at {point}: {ours}, not {told}, {defuzzifier} {model['operators']}")
+    return len(case["values"]), wrong, ill_conditioned
+
+
 def main(path):
     values = wrong = ill_conditioned = 0
-    for line in open(path):
-        case = json.loads(line)
-        model = case["model"]
-        ((_, output),) = model["outputs"].items()
-        low, high = output["range"]
-        width = 1 if output.get("defuzzifier", "").startswith("weighted") else high - low
-
-        def differ(a, b):
-            both = a is not None and b is not None
-            return not (abs(mpf(a) - b) <= LARGEST * width if both else a is b)
-
-        for point, ours in zip(case["points"], case["values"]):
-            exact = evaluate(model, point)
-            values += 1
-            if not differ(ours, exact):
-                continue
-            if differ(exact, evaluate(model, point, 1 - mpf("1e-15"))):
-                ill_conditioned += 1  # hangs on the last digit of the firing strengths
-                continue
-            wrong += 1
-            told = exact and float(exact)
-            print(f"seed {case['seed']} at {point}: {ours}, not {told}, {output.get('defuzzifier')} {model['operators']}", flush=True)
+    with open(path) as lines, Pool() as pool:
+        for count, told, undecided in pool.imap(compare, lines):
+            values, wrong, ill_conditioned = values + count, wrong + len(told), ill_conditioned + undecided
+            print(*told, sep="\n", end="\n" if told else "", flush=True)
     print(f"{values} values, {wrong} wrong, {ill_conditioned} ill-conditioned")
     return 1 if wrong or not values or 100 * ill_conditioned > values else 0
 
 
-sys.exit(main(sys.argv[1]))
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

@@ -13,6 +13,7 @@ use fuzzy::model::{
     Output, Variable,
 };
 use fuzzy::rule::{Condition, Rule};
+use fuzzy::table::{ClosedForm, Outcome, Partial, Scratch, Strongest};
 use serde_json::json;
 
 const AND: [Conjunction; 7] = [
@@ -268,6 +269,8 @@ struct Tally {
     models: usize,
     values: usize,
     ill_conditioned: usize,
+    /// Models with maxima whose exported arrays were compared.
+    exported_maxima: usize,
     worst: f64,
     wrong: Vec<String>,
 }
@@ -326,13 +329,44 @@ fn compare(first: u64, count: usize) -> Tally {
                 tally.ill_conditioned += 1;
             }
         }
-        same_bits(&model, &engine, &points);
+        let is_exported = same_bits(&model, &engine, &points);
+        let has_maxima = matches!(
+            output.defuzzifier,
+            Defuzzifier::SmallestOfMaxima
+                | Defuzzifier::MeanOfMaxima
+                | Defuzzifier::LargestOfMaxima
+        );
+        tally.exported_maxima += usize::from(is_exported && has_maxima);
     }
     tally
 }
 
-/// Batches and maps give the bits of single calls.
-fn same_bits(model: &Model, engine: &Engine, points: &[Vec<f64>]) {
+/// The value by the arrays that exports and the C library evaluate; `None` of an output that has no closed form there.
+fn by_table(engine: &Engine, point: &[f64]) -> Option<Outcome> {
+    let table = engine.table()?;
+    if table.outputs[0].form == ClosedForm::NONE {
+        return None;
+    }
+    let sizes = table.sizes;
+    let numbers = |count: u32| vec![0.0; count as usize];
+    let partials = |count: u32| vec![Partial::NONE; count as usize];
+    let mut scratch = Scratch {
+        values: &mut vec![0.0; point.len()],
+        degrees: &mut numbers(sizes.degrees),
+        alive: &mut partials(sizes.alive),
+        partial: &mut partials(sizes.partial),
+        next: &mut partials(sizes.partial),
+        stack: &mut numbers(sizes.stack),
+        strengths: &mut numbers(sizes.strengths),
+        strongest: &mut [Strongest::NONE],
+    };
+    let mut outcomes = [Outcome::UNDEFINED];
+    table.evaluate(&mut scratch, point, &mut outcomes);
+    Some(outcomes[0])
+}
+
+/// Batches, explanations, exported arrays and maps give the bits of single calls. Returns whether there are exported arrays.
+fn same_bits(model: &Model, engine: &Engine, points: &[Vec<f64>]) -> bool {
     let bits = |value: Option<f64>| value.map(f64::to_bits);
     let columns: Vec<Vec<f64>> = (0..model.inputs.len())
         .map(|input| points.iter().map(|point| point[input]).collect())
@@ -344,6 +378,9 @@ fn same_bits(model: &Model, engine: &Engine, points: &[Vec<f64>]) {
         assert_eq!(bits(outcome.value()), bits(single.value()), "{point:?}");
         let explained = engine.explain(point).unwrap();
         assert_eq!(bits(explained.outputs[0].value), bits(single.value()));
+        if let Some(exported) = by_table(engine, point) {
+            assert_eq!(exported, single, "{point:?}");
+        }
     }
     let mut grid = Grid::new(engine, 3).unwrap();
     for (name, x) in engine.input_names().zip(&points[0]).skip(1) {
@@ -356,6 +393,7 @@ fn same_bits(model: &Model, engine: &Engine, points: &[Vec<f64>]) {
         let single = engine.evaluate(&point).unwrap()[0];
         assert_eq!(bits(map.value(cell)), bits(single.value()), "{point:?}");
     }
+    by_table(engine, &points[0]).is_some()
 }
 
 fn assert_right(tally: &Tally) {
@@ -369,6 +407,7 @@ fn assert_right(tally: &Tally) {
         tally.wrong.len(),
         tally.wrong.join("\n")
     );
+    assert!(30 * tally.exported_maxima > tally.models, "{tally:?}");
     // Nearly all must have been compared.
     assert!(500 * tally.ill_conditioned <= tally.values, "{tally:?}");
 }
