@@ -258,8 +258,9 @@ impl<'m, const L: usize> Finding<'m, L> {
         }
         self.degrees.fill([0.0; L]);
         for (input, values) in table.inputs().iter().zip(self.values) {
-            let first = input.first_literal as usize;
-            degrees_in_rows(table, input, values, &mut self.degrees[first..]);
+            // In a damaged table an input without literals may begin anywhere.
+            let of_input = self.degrees.get_mut(input.first_literal as usize..);
+            degrees_in_rows(table, input, values, of_input.unwrap_or_default());
         }
     }
 }
