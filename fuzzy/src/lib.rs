@@ -70,6 +70,7 @@ pub mod learn;
 pub mod map;
 #[cfg(feature = "alloc")]
 pub mod model;
+mod rows;
 #[cfg(feature = "alloc")]
 pub mod rule;
 #[cfg(feature = "serde")]

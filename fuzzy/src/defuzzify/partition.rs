@@ -104,36 +104,6 @@ impl Partition {
     pub(crate) fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
-
-    /// The centroids of several sets at once, by the operations of a single set in the same order.
-    #[inline(always)]
-    pub(crate) fn centroids<const N: usize>(
-        &self,
-        strengths: &[[f64; N]],
-        origin: f64,
-    ) -> [f64; N] {
-        let (mut area, mut moment) = ([[0.0; N]; 2], [[0.0; N]; 2]);
-        for (pair, i) in self.pairs.iter().zip((0..).step_by(2)) {
-            let strengths: &[[f64; N]] = &strengths[i..i + 3];
-            for side in 0..2 {
-                let (here, right) = (&strengths[side], &strengths[side + 1]);
-                for lane in 0..N {
-                    let (a, m) = pair.add(side, here[lane], right[lane]);
-                    area[side][lane] += a;
-                    moment[side][lane] += m;
-                }
-            }
-        }
-        let mut centroids = [0.0; N];
-        for lane in 0..N {
-            let (area, moment) = (
-                area[0][lane] + area[1][lane],
-                moment[0][lane] + moment[1][lane],
-            );
-            centroids[lane] = origin + moment / area;
-        }
-        centroids
-    }
 }
 
 #[cfg(test)]
@@ -207,12 +177,12 @@ mod tests {
             let origin = 0.5 * (variable.low + variable.high);
             let strengths = &strengths[..count];
             let partition = Partition::new(&lines, count, origin, 1.0).unwrap();
-            let mut ranked = vec![0.0; partition.strengths()];
+            let mut ranked = vec![[0.0]; partition.strengths()];
             for (strength, rank) in strengths.iter().zip(partition.ranks()) {
-                ranked[*rank] = *strength;
+                ranked[*rank] = [*strength];
             }
-            let fast = Pair::integrals(partition.pairs(), &ranked);
-            let fast = centroid(fast.area, fast.moment, origin);
+            let [[area], [moment]] = Pair::integrals(partition.pairs(), &ranked);
+            let fast = centroid(area, moment, origin);
             let offsets: Vec<usize> = (0..=count).collect();
             let mut slow = Integrals::about(origin, 1.0);
             let joint = Joint {

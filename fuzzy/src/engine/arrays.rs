@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::literal::Literals;
-use super::rules::{Draft, Firing};
+use super::rules::{Draft, Firing, may_be_programs};
 use super::{CompiledOutput, Input as Range};
 use crate::defuzzify::{Method, Prepared};
 use crate::model::{
@@ -14,6 +14,9 @@ use crate::table::{
     Ends, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair, Point, Program,
     Section, SetTerm, Sizes, Step, Strand, Table, arrays, arrays_from_fields,
 };
+
+/// Above this number, a batch looks for the terms that are over 0.
+const MOST_FORMULAS: u32 = 32;
 
 macro_rules! define {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
@@ -76,16 +79,9 @@ impl OwnedTable {
         drafts: &[Draft],
         outputs: &[CompiledOutput],
     ) -> Self {
-        let mut table = OwnedTable {
-            and: firing.and,
-            or: firing.or,
-            least_strength: firing.least_strength,
-            ..OwnedTable::default()
-        };
-        let strengths = outputs.last().map_or(0, |output| output.strengths.end) as u32;
-        table.sizes.strengths = strengths + 1;
+        let mut table = OwnedTable::empty(firing, outputs);
         if firing.blocks.is_empty() {
-            table.rules(drafts, literals, strengths);
+            table.rules(drafts, literals, table.sizes.strengths - 1);
         } else {
             table.blocks(&firing.blocks, drafts);
         }
@@ -104,6 +100,44 @@ impl OwnedTable {
                 table.input(&none, range.low, range.high);
             }
         }
+        table
+    }
+
+    /// All rules as programs and all literals by their formulas, for several rows at once; `None` where a batch has no use for
+    /// that.
+    pub(super) fn programs_alone(
+        firing: &Firing,
+        inputs: &[Range],
+        literals: &[Literals],
+        drafts: &[Draft],
+        outputs: &[CompiledOutput],
+    ) -> Option<Self> {
+        let mut table = OwnedTable::empty(firing, outputs);
+        table.sizes.degrees = literals.iter().map(|literals| literals.count).sum();
+        let is_small = may_be_programs(drafts) && table.sizes.degrees <= MOST_FORMULAS;
+        if !is_small || !firing.blocks.is_empty() {
+            return None;
+        }
+        table.sizes.partial = 1;
+        for draft in drafts {
+            table.program(draft);
+        }
+        for (range, literals) in inputs.iter().zip(literals) {
+            table.input(literals, range.low, range.high);
+        }
+        Some(table)
+    }
+
+    /// The outputs, without inputs and rules.
+    fn empty(firing: &Firing, outputs: &[CompiledOutput]) -> Self {
+        let mut table = OwnedTable {
+            and: firing.and,
+            or: firing.or,
+            least_strength: firing.least_strength,
+            ..OwnedTable::default()
+        };
+        let strengths = outputs.last().map_or(0, |output| output.strengths.end);
+        table.sizes.strengths = strengths as u32 + 1;
         for output in outputs {
             table.output(output);
         }

@@ -3,7 +3,17 @@
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
-use super::{Engine, EvaluateError, Outcome, Scratch};
+use super::arrays::OwnedTable;
+use super::{Engine, EvaluateError, Outcome, Scratch, Stage, StageScratch};
+use crate::rows::each;
+use crate::table::{self, Results};
+
+/// The number of rows that are evaluated at once: several of the widest vectors, so that finding out what to do takes little
+/// of the time, and so few that the degrees stay in the cache.
+pub(crate) const ROWS: usize = 64;
+
+/// Fewer rows than this are evaluated one by one, which takes less time.
+const FEWEST_ROWS: usize = 16;
 
 /// The number of rows in a task.
 #[cfg(feature = "parallel")]
@@ -52,23 +62,32 @@ impl Engine {
         outcomes: &mut [Outcome],
     ) -> Result<(), EvaluateError> {
         let rows = self.fits_columns(columns, outcomes)?;
+        let outputs = self.outputs.len();
+        let task = |memory: &mut Memory, first: usize, outcomes: &mut [Outcome]| {
+            let range = first..first + outcomes.len() / outputs;
+            self.evaluate_rows(memory, columns, range, |rows, output, results| {
+                let place = (rows.start - first) * outputs + output;
+                let places = outcomes[place..].iter_mut().step_by(outputs);
+                for (row, place) in places.take(rows.len()).enumerate() {
+                    *place = results.outcome(row);
+                }
+            });
+        };
         #[cfg(feature = "parallel")]
         if rows > ROWS_A_TASK {
             use rayon::prelude::*;
             outcomes
-                .par_chunks_mut(ROWS_A_TASK * self.outputs.len())
+                .par_chunks_mut(ROWS_A_TASK * outputs)
                 .enumerate()
                 .for_each_init(
-                    || self.scratch(),
-                    |scratch, (task, outcomes)| {
-                        self.rows(scratch, columns, task * ROWS_A_TASK, outcomes);
-                    },
+                    || self.memory(),
+                    |memory, (index, outcomes)| task(memory, index * ROWS_A_TASK, outcomes),
                 );
             return Ok(());
         }
         #[cfg(not(feature = "parallel"))]
         let _ = rows;
-        self.rows(&mut self.scratch(), columns, 0, outcomes);
+        task(&mut self.memory(), 0, outcomes);
         Ok(())
     }
 
@@ -100,43 +119,158 @@ impl Engine {
         Ok(rows)
     }
 
-    /// Evaluates the rows that begin at index `first`, as many as `outcomes` holds.
-    fn rows(
-        &self,
-        scratch: &mut Scratch,
-        columns: &[&[f64]],
-        first: usize,
-        outcomes: &mut [Outcome],
-    ) {
-        let mut rows = outcomes.chunks_exact_mut(self.outputs.len());
-        let range = first..first + rows.len();
-        self.evaluate_rows(scratch, columns, range, |outcomes| {
-            if let Some(row) = rows.next() {
-                row.copy_from_slice(outcomes);
-            }
-        });
+    /// The working memory of [`Engine::evaluate_rows`].
+    pub(crate) fn memory(&self) -> Memory {
+        let stage = &self.first;
+        // Models that chain and those with rule blocks are evaluated row by row.
+        let is_plain = self.chain.is_none() && stage.arrays.blocks.is_empty();
+        Memory {
+            rows: is_plain.then(|| {
+                let arrays = stage.batch.as_ref().unwrap_or(&stage.arrays);
+                RowsScratch {
+                    stage: stage.scratch(arrays),
+                    of_row: vec![0.0; arrays.sizes.strengths as usize],
+                }
+            }),
+            row: self.scratch(),
+            values: vec![0.0; self.inputs.len()],
+            outcomes: vec![Outcome::default(); self.outputs.len()],
+            results: vec![Results::NONE; self.outputs.len()],
+        }
     }
 
-    /// Evaluates the rows of `range` and calls `put` with the outcomes of each row.
+    /// Evaluates the rows of `range`, several at once, and calls `put` with their indices, the index of an output and its
+    /// results.
     pub(crate) fn evaluate_rows(
         &self,
-        scratch: &mut Scratch,
+        memory: &mut Memory,
         columns: &[&[f64]],
         range: Range<usize>,
-        mut put: impl FnMut(&[Outcome]),
+        mut put: impl FnMut(Range<usize>, usize, &Results<ROWS>),
     ) {
-        if let (None, Some(lanes)) = (&self.chain, &self.first.lanes) {
-            lanes.rows(columns, range, |outcome| put(&[outcome]));
-            return;
-        }
-        let mut row = vec![0.0; columns.len()];
-        let mut outcomes = vec![Outcome::default(); self.outputs.len()];
-        for i in range {
-            for (value, column) in row.iter_mut().zip(columns) {
-                *value = column[i];
+        let Memory {
+            rows: several,
+            row: scratch,
+            values,
+            outcomes,
+            results,
+        } = memory;
+        for first in range.clone().step_by(ROWS) {
+            let rows = first..range.end.min(first + ROWS);
+            match several {
+                Some(several) if rows.len() >= FEWEST_ROWS => {
+                    self.first.results(several, columns, rows.clone(), results);
+                }
+                _ => {
+                    for row in rows.clone() {
+                        for (value, column) in values.iter_mut().zip(columns) {
+                            *value = column[row];
+                        }
+                        self.outcomes(scratch, values, outcomes);
+                        for (results, outcome) in results.iter_mut().zip(&*outcomes) {
+                            results.set(row - first, outcome);
+                        }
+                    }
+                }
             }
-            self.outcomes(scratch, &row, &mut outcomes);
-            put(&outcomes);
+            for (output, results) in results.iter().enumerate() {
+                put(rows.clone(), output, results);
+            }
         }
+    }
+}
+
+/// The working memory of a batch.
+pub(crate) struct Memory {
+    /// For several rows at once, where the model allows that.
+    rows: Option<RowsScratch>,
+    /// For one row, its values and its outcomes.
+    row: Scratch,
+    values: Vec<f64>,
+    outcomes: Vec<Outcome>,
+    /// One for each output.
+    results: Vec<Results<ROWS>>,
+}
+
+struct RowsScratch {
+    stage: StageScratch<ROWS>,
+    /// The firing strengths of one of the rows.
+    of_row: Vec<f64>,
+}
+
+/// The values of rows in a column. Rows that are missing are like the first one.
+#[inline(always)]
+fn rows_in(column: &[f64]) -> [f64; ROWS] {
+    <[f64; ROWS]>::try_from(column)
+        .unwrap_or_else(|_| each(|row| column.get(row).or(column.first()).map_or(0.0, |x| *x)))
+}
+
+impl Stage {
+    /// Evaluates rows, at least one and at most [`ROWS`], into the results of each output.
+    fn results(
+        &self,
+        memory: &mut RowsScratch,
+        columns: &[&[f64]],
+        rows: Range<usize>,
+        results: &mut [Results<ROWS>],
+    ) {
+        match &self.batch {
+            Some(arrays) => self.dispatch::<false>(arrays, memory, columns, rows, results),
+            None if self.has_cells_alone => {
+                self.dispatch::<true>(&self.arrays, memory, columns, rows, results);
+            }
+            None => self.dispatch::<false>(&self.arrays, memory, columns, rows, results),
+        }
+    }
+
+    /// Evaluates compiled for the widest vectors of the processor; the operations, and so the bits, stay the same.
+    fn dispatch<const CELLS: bool>(
+        &self,
+        arrays: &OwnedTable,
+        memory: &mut RowsScratch,
+        columns: &[&[f64]],
+        rows: Range<usize>,
+        results: &mut [Results<ROWS>],
+    ) {
+        #[cfg(feature = "simd")]
+        fearless_simd::dispatch!(
+            fearless_simd::Level::new(),
+            _ => self.evaluate_block::<CELLS>(arrays, memory, columns, rows, results)
+        );
+        #[cfg(not(feature = "simd"))]
+        self.evaluate_block::<CELLS>(arrays, memory, columns, rows, results);
+    }
+
+    #[inline(always)]
+    fn evaluate_block<const CELLS: bool>(
+        &self,
+        arrays: &OwnedTable,
+        memory: &mut RowsScratch,
+        columns: &[&[f64]],
+        rows: Range<usize>,
+        results: &mut [Results<ROWS>],
+    ) {
+        let RowsScratch { stage, of_row } = memory;
+        let StageScratch { table, workspace } = stage;
+        let mut results = results.iter_mut();
+        table::evaluate_rows::<_, _, _, _, ROWS, CELLS>(
+            arrays,
+            table,
+            columns.iter().map(|column| rows_in(&column[rows.clone()])),
+            |index, output, row, strengths| {
+                for (strength, strengths) in of_row.iter_mut().zip(strengths) {
+                    *strength = strengths[row];
+                }
+                let of_row = of_row.get(..strengths.len())?;
+                table::value_in_row(arrays, index, output, of_row, |index, strengths| {
+                    self.integrate(index, strengths, workspace)
+                })
+            },
+            |of_output| {
+                if let Some(results) = results.next() {
+                    *results = *of_output;
+                }
+            },
+        );
     }
 }

@@ -4,7 +4,6 @@ use alloc::{boxed::Box, collections::BTreeMap, string::String, sync::Arc, vec, v
 
 use super::arrays::OwnedTable;
 use super::chain::Chain;
-use super::lanes::Lanes;
 use super::literal::{Literal, Literals};
 use super::rules::{Draft, Firing};
 use super::{CompiledOutput, Engine, Input, NamedOutput, Stage};
@@ -16,7 +15,7 @@ use crate::model::{
     chain::stages, document::Spans,
 };
 use crate::rule::{Condition, Hedge, Proposition};
-use crate::table::{Action, Op, Step};
+use crate::table::{Action, Op, Step, has_cells_alone};
 use crate::validate::validate;
 
 impl Engine {
@@ -287,7 +286,7 @@ impl<'m> Compiler<'m> {
         }
         let mut first = 0;
         let mut inputs = Vec::new();
-        let mut literals = Vec::new();
+        let (mut literals, mut formulas) = (Vec::new(), Vec::new());
         for (variable, of_input) in model.inputs.iter().zip(&by_input) {
             let count = of_input.len() as u32;
             literals.push(Literals::new(
@@ -296,15 +295,15 @@ impl<'m> Compiler<'m> {
                 variable.low,
                 variable.high,
             ));
+            formulas.push(Literals::by_formula(first, of_input.clone()));
             first += count;
             inputs.push(Input::of(variable));
         }
-        let and = (firing.and, firing.least_strength);
-        let is_plain = firing.blocks.is_empty();
-        let lanes = is_plain.then(|| Lanes::new(and, &inputs, &by_input, &drafts, &outputs));
+        let arrays = OwnedTable::new(firing, &inputs, &literals, &drafts, &outputs);
         Stage {
-            lanes: lanes.flatten(),
-            arrays: OwnedTable::new(firing, &inputs, &literals, &drafts, &outputs),
+            batch: OwnedTable::programs_alone(firing, &inputs, &formulas, &drafts, &outputs),
+            has_cells_alone: has_cells_alone(&arrays),
+            arrays,
             outputs,
         }
     }

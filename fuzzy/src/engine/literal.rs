@@ -70,6 +70,18 @@ impl Literals {
         table
     }
 
+    /// All of them by their formulas, for several values at once.
+    pub(super) fn by_formula(first: u32, literals: Vec<Literal>) -> Self {
+        Literals {
+            first,
+            count: literals.len() as u32,
+            cuts: Vec::new(),
+            starts: Vec::from([0, 0]),
+            lines: Vec::new(),
+            curved: (0..).zip(literals).collect(),
+        }
+    }
+
     /// The lines over 0 on each interval.
     pub(super) fn intervals(&self) -> impl Iterator<Item = &[Line]> {
         let ends = self.starts.iter().zip(self.starts.iter().skip(1));
@@ -236,9 +248,9 @@ mod tests {
             all.push(literal(MembershipFunction::LeftShoulder { top: 0.2, foot: 0.6 }, &[Hedge::Very, Hedge::Not]));
             let mut owned = OwnedTable::default();
             owned.input(&Literals::new(0, all.clone(), 0.0, 1.0), 0.0, 1.0);
-            let mut degrees = vec![0.0; all.len()];
-            table::degrees(&owned, &owned.inputs[0], x, |literal, degree| degrees[literal as usize] = degree);
-            for (literal, degree) in all.iter().zip(degrees) {
+            let mut degrees = vec![[0.0]; all.len()];
+            table::degrees_in_rows(&owned, &owned.inputs[0], &[x], &mut degrees);
+            for (literal, [degree]) in all.iter().zip(degrees) {
                 let plain = literal.term.membership(x);
                 let expected = literal.hedges.iter().fold(plain, |degree, hedge| hedge.of(degree));
                 prop_assert_eq!(degree, expected, "{:?} at {}", literal, x);

@@ -9,16 +9,14 @@ use crate::model::{Model, NoRuleFires};
 use crate::table::{self, Buffers, Partial, Strongest, Table};
 use arrays::OwnedTable;
 use chain::Chain;
-use lanes::Lanes;
 
 mod arrays;
-mod batch;
+pub(crate) mod batch;
 mod chain;
 mod compile;
 mod error;
 mod explain;
 mod explanation;
-mod lanes;
 mod literal;
 mod named;
 mod raising;
@@ -69,8 +67,10 @@ struct Stage {
     outputs: Vec<CompiledOutput>,
     /// What is evaluated.
     arrays: OwnedTable,
-    /// The batch form of a common kind of model.
-    lanes: Option<Lanes>,
+    /// The same rules, all of them as programs, where a batch is faster with them.
+    batch: Option<OwnedTable>,
+    /// [`table::has_cells_alone`] of `arrays`.
+    has_cells_alone: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -118,8 +118,8 @@ pub struct Scratch {
 }
 
 #[derive(Debug, Clone)]
-struct StageScratch {
-    table: Buffers<Vec<f64>, Vec<Partial>, Vec<Strongest>>,
+struct StageScratch<const L: usize = 1> {
+    table: Buffers<Vec<[f64; L]>, Vec<Partial<L>>, Vec<Strongest<L>>>,
     /// For outputs that have no closed form.
     workspace: Workspace,
 }
@@ -160,7 +160,7 @@ impl Engine {
     pub fn scratch(&self) -> Scratch {
         let Some(chain) = &self.chain else {
             return Scratch {
-                first: self.first.scratch(),
+                first: self.first.scratch(&self.first.arrays),
                 later: Vec::new(),
                 values: Vec::new(),
                 own: Vec::new(),
@@ -168,9 +168,12 @@ impl Engine {
                 asked: 0,
             };
         };
-        let later = chain.later().iter().map(|later| later.stage.scratch());
+        let later = chain
+            .later()
+            .iter()
+            .map(|later| later.stage.scratch(&later.stage.arrays));
         Scratch {
-            first: self.first.scratch(),
+            first: self.first.scratch(&self.first.arrays),
             later: later.collect(),
             values: vec![0.0; self.inputs.len() + chain.most_reads()],
             own: vec![Outcome::default(); self.outputs.len()],
@@ -293,19 +296,20 @@ impl Engine {
 }
 
 impl Stage {
-    fn scratch(&self) -> StageScratch {
-        let sizes = self.arrays.sizes;
+    /// Working memory for an evaluation of `L` rows by these arrays.
+    fn scratch<const L: usize>(&self, arrays: &OwnedTable) -> StageScratch<L> {
+        let sizes = arrays.sizes;
         let strengths = sizes.strengths as usize;
         let cuts = self.outputs.iter().map(|output| output.defuzzify.cuts());
         StageScratch {
             table: Buffers {
-                values: vec![0.0; self.arrays.inputs.len()],
-                degrees: vec![0.0; sizes.degrees as usize],
+                values: vec![[0.0; L]; arrays.inputs.len()],
+                degrees: vec![[0.0; L]; sizes.degrees as usize],
                 alive: vec![Partial::NONE; sizes.alive as usize],
                 partial: vec![Partial::NONE; sizes.partial as usize],
                 next: vec![Partial::NONE; sizes.partial as usize],
-                stack: vec![0.0; sizes.stack as usize],
-                strengths: vec![0.0; strengths],
+                stack: vec![[0.0; L]; sizes.stack as usize],
+                strengths: vec![[0.0; L]; strengths],
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
             // A term passes two levels of its implication, each rising and falling.
@@ -315,16 +319,32 @@ impl Stage {
 
     #[inline(always)]
     fn outcomes(&self, scratch: &mut StageScratch, inputs: &[f64], outcomes: &mut [Outcome]) {
+        if self.has_cells_alone {
+            self.outcomes_by::<true>(scratch, inputs, outcomes);
+        } else {
+            self.outcomes_by::<false>(scratch, inputs, outcomes);
+        }
+    }
+
+    #[inline(never)]
+    fn outcomes_by<const CELLS: bool>(
+        &self,
+        scratch: &mut StageScratch,
+        inputs: &[f64],
+        outcomes: &mut [Outcome],
+    ) {
         let StageScratch {
             table: buffers,
             workspace,
         } = scratch;
-        table::evaluate(
+        let integrate =
+            |index: usize, strengths: &[f64]| self.integrate(index, strengths, workspace);
+        table::evaluate_row::<_, _, _, _, CELLS>(
             &self.arrays,
             buffers,
             inputs,
             outcomes,
-            |index, strengths| self.integrate(index, strengths, workspace),
+            integrate,
         );
     }
 

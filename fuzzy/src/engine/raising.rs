@@ -249,7 +249,7 @@ impl Scratch {
             None => Some(&self.first),
             Some(later) => self.later.get(later),
         };
-        stage.map_or(&[], |stage| &stage.table.degrees)
+        stage.map_or(&[], |stage| stage.table.degrees.as_flattened())
     }
 }
 

@@ -91,6 +91,23 @@ const MOST_ACTIONS_A_CELL: usize = 2;
 /// Up to this number of steps, computing all rules takes less time than finding those that fire.
 const MOST_STEPS_OF_FEW_RULES: usize = 64;
 
+/// Whether computing all rules takes less time than finding those that fire.
+fn are_few(drafts: &[Draft]) -> bool {
+    let steps: usize = drafts.iter().map(|draft| draft.steps.len()).sum();
+    steps <= MOST_STEPS_OF_FEW_RULES
+}
+
+/// Whether a batch computes all rules, each for several rows at once. The order of a sum of more than two numbers would
+/// differ from that of a single evaluation.
+pub(super) fn may_be_programs(drafts: &[Draft]) -> bool {
+    let actions = || drafts.iter().flat_map(|draft| &draft.actions);
+    let keeps_its_bits = |action: &Action| {
+        let same = actions().filter(|other| other.strength == action.strength);
+        action.sums == 0 || same.count() <= 2
+    };
+    are_few(drafts) && actions().all(keeps_its_bits)
+}
+
 impl OwnedTable {
     /// Adds the rules. The order of `drafts` does not depend on the order of the model's rules. `unused` is the index of the
     /// firing strength of no output.
@@ -99,8 +116,7 @@ impl OwnedTable {
             .iter()
             .filter_map(|draft| Some((draft.literals.as_deref()?, &*draft.actions)))
             .collect();
-        let steps: usize = drafts.iter().map(|draft| draft.steps.len()).sum();
-        let is_short = steps <= MOST_STEPS_OF_FEW_RULES;
+        let is_short = are_few(drafts);
         // Programs read all degrees, so that others may read them too.
         let is_plain = plain.len() == drafts.len();
         let has_table = (is_plain || !is_short) && self.dense(&plain, inputs).is_some();
@@ -122,7 +138,7 @@ impl OwnedTable {
             .iter()
             .filter(|draft| all_programs || draft.literals.is_none())
         {
-            self.program(draft, &draft.steps);
+            self.program(draft);
         }
     }
 
@@ -135,7 +151,8 @@ impl OwnedTable {
                 // The method takes each rule once, also where hedges make several programs of it.
                 let selects = block.activation != Activation::General;
                 let again = selects && latest.replace(draft.rule) == Some(draft.rule);
-                self.program(draft, if again { &[] } else { &draft.steps });
+                let steps = if again { &[][..] } else { &draft.steps };
+                self.program_of(draft, steps.iter().copied());
             }
             let end_program = self.programs.len() as u32;
             let span = (first_program, end_program);
@@ -149,7 +166,19 @@ impl OwnedTable {
         self.sizes.partial = self.sizes.partial.max(1);
     }
 
-    fn program(&mut self, draft: &Draft, steps: &[Step]) {
+    /// Adds a rule as a program. Literals of a plain AND are in the order of a table, for the same bits.
+    pub(super) fn program(&mut self, draft: &Draft) {
+        match &draft.literals {
+            Some(literals) => {
+                let ops = core::iter::once(Op::PUSH).chain(core::iter::repeat(Op::AND_LITERAL));
+                let steps = literals.iter().zip(ops);
+                self.program_of(draft, steps.map(|(&literal, op)| Step { op, literal }));
+            }
+            None => self.program_of(draft, draft.steps.iter().copied()),
+        }
+    }
+
+    fn program_of(&mut self, draft: &Draft, steps: impl Iterator<Item = Step>) {
         let (first_step, first_action) = (self.steps.len(), self.actions.len());
         let first_hedge = self.hedges.len();
         self.steps.extend(steps);
@@ -164,6 +193,7 @@ impl OwnedTable {
             first_hedge: first_hedge as u32,
             end_hedge: self.hedges.len() as u32,
         });
+        let steps = self.steps.get(first_step..).unwrap_or_default();
         let pushes = steps.iter().filter(|step| step.op == Op::PUSH);
         self.sizes.stack = self.sizes.stack.max(pushes.count() as u32);
     }

@@ -1,9 +1,12 @@
 //! Decision maps: the values, coverage and dominant rules of an engine on a grid.
 
 use alloc::{string::String, vec, vec::Vec};
+use core::ops::Range;
 
 use crate::Engine;
-use crate::engine::{EvaluateError, Outcome, Scratch};
+use crate::engine::EvaluateError;
+use crate::engine::batch::{Memory, ROWS};
+use crate::table::Results;
 
 mod grid;
 mod table;
@@ -52,7 +55,7 @@ struct Worker<'a> {
     engine: &'a Engine,
     grid: &'a Grid,
     output: usize,
-    scratch: Scratch,
+    memory: Memory,
     /// The coordinates along each axis.
     coordinates: Vec<Vec<f64>>,
     /// One column of coordinates for each input.
@@ -75,7 +78,7 @@ impl<'a> Worker<'a> {
             engine,
             grid,
             output,
-            scratch: engine.scratch(),
+            memory: engine.memory(),
             coordinates: coordinates.collect(),
             columns,
         }
@@ -103,18 +106,21 @@ impl<'a> Worker<'a> {
             }
         }
         let columns: Vec<&[f64]> = self.columns.iter().map(|column| &**column).collect();
-        let mut cells = values.iter_mut().zip(coverage).zip(dominant);
-        let range = 0..cells.len();
-        let put = |outcomes: &[Outcome]| {
-            let cell = cells.next().zip(outcomes.get(self.output));
-            if let Some((((value, coverage), dominant), outcome)) = cell {
-                *value = outcome.value().unwrap_or(f64::NAN);
-                *coverage = outcome.coverage;
-                *dominant = outcome.dominant.map_or(0, |rule| rule as u32 + 1);
+        let put = |rows: Range<usize>, output: usize, results: &Results<ROWS>| {
+            if output != self.output {
+                return;
+            }
+            let values = values[rows.clone()].iter_mut();
+            let cells = values.zip(&mut coverage[rows.clone()]);
+            let cells = cells.zip(&mut dominant[rows]).enumerate();
+            for (row, ((value, coverage), dominant)) in cells {
+                *value = results.value(row);
+                *coverage = results.coverage[row];
+                *dominant = results.dominant(row).map_or(0, |rule| rule + 1);
             }
         };
         self.engine
-            .evaluate_rows(&mut self.scratch, &columns, range, put);
+            .evaluate_rows(&mut self.memory, &columns, 0..cells, put);
     }
 }
 

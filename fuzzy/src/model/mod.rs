@@ -10,10 +10,8 @@ pub(crate) mod chain;
 pub(crate) mod document;
 mod partition;
 pub use crate::formula::Formula;
-#[cfg(feature = "serde")]
-pub(crate) use crate::shape::Role;
 pub(crate) use crate::shape::{Form, Parts};
-pub use crate::shape::{MembershipError, MembershipFunction};
+pub use crate::shape::{MembershipError, MembershipFunction, Role};
 pub use crate::table::{
     Activation, Aggregation, Comparison, Conjunction, Disjunction, Implication, LEAST_STRENGTH,
 };

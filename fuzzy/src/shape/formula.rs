@@ -3,6 +3,7 @@
 use libm::{cos, fabs, pow, sqrt};
 
 use crate::formula::evaluate;
+use crate::rows::each;
 
 use super::{
     exponential::exp_of_minus,
@@ -42,33 +43,53 @@ impl Kind {
     pub const SEMI_ELLIPSE: Kind = Kind(21);
     pub const FUNCTION: Kind = Kind(22);
 
-    /// The degree at `x` with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape, or the
-    /// code of a formula.
+    /// The degree at `x`: one of [`Kind::memberships`].
     pub(crate) fn membership(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
-        if x.is_nan() {
-            return 0.0;
-        }
+        let [degree] = self.memberships(parameters, points, &[x]);
+        degree
+    }
+
+    /// The degrees at several values with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape,
+    /// or the code of a formula. The commonest shapes take no branch, so that vectors hold several values.
+    #[inline(always)]
+    pub(crate) fn memberships<const L: usize>(
+        self,
+        parameters: &[f64; 4],
+        points: &[[f64; 2]],
+        values: &[f64; L],
+    ) -> [f64; L] {
         let [a, b, c, d] = *parameters;
-        into_unit(match self {
-            Kind::TRIANGLE => trapezoid(x, a, b, b, c),
-            Kind::TRAPEZOID => trapezoid(x, a, b, c, d),
-            Kind::LEFT_SHOULDER => falling(x, a, b),
-            Kind::RIGHT_SHOULDER => rising(x, a, b),
+        let degrees: [f64; L] = match self {
+            Kind::TRIANGLE => each(|i| trapezoid(values[i], a, b, b, c)),
+            Kind::TRAPEZOID => each(|i| trapezoid(values[i], a, b, c, d)),
+            Kind::LEFT_SHOULDER => each(|i| falling(values[i], a, b)),
+            Kind::RIGHT_SHOULDER => each(|i| rising(values[i], a, b)),
+            Kind::GAUSSIAN => each(|i| gaussian(values[i], a, b)),
+            Kind::SIGMOID => each(|i| sigmoid(values[i], a, b)),
+            Kind::S_SHAPE => each(|i| s_shape(values[i], a, b)),
+            Kind::Z_SHAPE => each(|i| z_shape(values[i], a, b)),
+            Kind::CONSTANT => [a; L],
+            _ => each(|i| self.other(parameters, points, values[i])),
+        };
+        each(|i| into_unit(if values[i].is_nan() { 0.0 } else { degrees[i] }))
+    }
+
+    /// The degree of a shape that takes branches.
+    #[inline(never)]
+    fn other(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
+        let [a, b, c, d] = *parameters;
+        match self {
             Kind::RECTANGLE => indicator(a <= x && x <= b),
             Kind::SINGLETON => indicator(x == a),
             Kind::PIECEWISE => along(points.iter().map(|[x, y]| (*x, *y)), x),
-            Kind::GAUSSIAN => gaussian(x, a, b),
             Kind::GAUSSIAN2 => {
                 let left = if x < a { gaussian(x, a, b) } else { 1.0 };
                 let right = if x > c { gaussian(x, c, d) } else { 1.0 };
                 left * right
             }
             Kind::BELL => 1.0 / (1.0 + pow(fabs((x - a) / b), 2.0 * c)),
-            Kind::SIGMOID => sigmoid(x, a, b),
             Kind::SIGMOID_DIFFERENCE => fabs(sigmoid(x, a, b) - sigmoid(x, c, d)),
             Kind::SIGMOID_PRODUCT => sigmoid(x, a, b) * sigmoid(x, c, d),
-            Kind::S_SHAPE => s_shape(x, a, b),
-            Kind::Z_SHAPE => z_shape(x, a, b),
             Kind::PI_SHAPE if x < b => s_shape(x, a, b),
             Kind::PI_SHAPE => z_shape(x, c, d),
             Kind::COSINE if fabs(x - a) <= 0.5 * b => {
@@ -82,10 +103,9 @@ impl Kind {
                 let t = (x - a) / (b - a);
                 2.0 * sqrt(t * (1.0 - t))
             }
-            Kind::CONSTANT => a,
             Kind::FUNCTION => evaluate(points, |_| x),
             _ => 0.0,
-        })
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! What curved shapes share: formulas, and where a flank passes levels of degree.
 
+use core::hint::select_unpredictable;
+
 #[cfg(feature = "alloc")]
 use alloc::{vec, vec::Vec};
 
@@ -15,31 +17,30 @@ pub(super) fn gaussian(x: f64, mean: f64, sd: f64) -> f64 {
     exp_of_minus(0.5 * z * z)
 }
 
+#[inline(always)]
 pub(super) fn sigmoid(x: f64, inflection: f64, slope: f64) -> f64 {
-    if slope == 0.0 {
-        return 0.5;
-    }
     // Of the falling side, so that no exponential is above 1.
     let t = slope * (x - inflection);
     let e = exp_of_minus(libm::fabs(t));
-    (if t >= 0.0 { 1.0 } else { e }) / (1.0 + e)
+    let degree = select_unpredictable(t >= 0.0, 1.0, e) / (1.0 + e);
+    select_unpredictable(slope == 0.0, 0.5, degree)
 }
 
 /// 0 up to `foot`, `2 t^2` to the middle, `1 - 2 (1 - t)^2` to `top`, with `t = (x - foot) / (top - foot)`.
+#[inline(always)]
 pub(super) fn s_shape(x: f64, foot: f64, top: f64) -> f64 {
     smooth_step(rising(x, foot, top))
 }
 
+#[inline(always)]
 pub(super) fn z_shape(x: f64, top: f64, foot: f64) -> f64 {
     smooth_step(falling(x, top, foot))
 }
 
+#[inline(always)]
 fn smooth_step(t: f64) -> f64 {
-    if t <= 0.5 {
-        2.0 * t * t
-    } else {
-        1.0 - 2.0 * (1.0 - t) * (1.0 - t)
-    }
+    let (below, above) = (2.0 * t * t, 1.0 - 2.0 * (1.0 - t) * (1.0 - t));
+    select_unpredictable(t <= 0.5, below, above)
 }
 
 /// Where a curve passes these degrees it is cut, so that no stretch hides a narrow term.

@@ -1,14 +1,12 @@
 //! What shapes made of straight lines share.
 
+use core::hint::select_unpredictable;
+
 /// Into [0, 1]; NaN, which only parameters that make no shape can give, becomes 0.
+#[inline(always)]
 pub(super) fn into_unit(degree: f64) -> f64 {
-    if degree >= 1.0 {
-        1.0
-    } else if degree > 0.0 {
-        degree
-    } else {
-        0.0
-    }
+    let degree = if degree > 0.0 { degree } else { 0.0 };
+    if degree < 1.0 { degree } else { 1.0 }
 }
 
 pub(super) fn indicator(inside: bool) -> f64 {
@@ -16,33 +14,32 @@ pub(super) fn indicator(inside: bool) -> f64 {
 }
 
 /// 0 up to `foot`, straight up to 1 at `top`; `foot = top` is a step that is 1 at `top`.
+#[inline(always)]
 pub(super) fn rising(x: f64, foot: f64, top: f64) -> f64 {
-    if x >= top {
-        1.0
-    } else if x <= foot {
-        0.0
-    } else {
-        (x - foot) / (top - foot)
-    }
+    part(x - foot, top - foot)
 }
 
 /// 1 up to `top`, straight down to 0 at `foot`; `foot = top` is a step that is 1 at `top`.
+#[inline(always)]
 pub(super) fn falling(x: f64, top: f64, foot: f64) -> f64 {
-    if x <= top {
-        1.0
-    } else if x >= foot {
-        0.0
-    } else {
-        (x - foot) / (top - foot)
-    }
+    part(foot - x, foot - top)
 }
 
+/// [`rising`] below `left_top`, [`falling`] above.
+#[inline(always)]
 pub(super) fn trapezoid(x: f64, left: f64, left_top: f64, right_top: f64, right: f64) -> f64 {
-    if x < left_top {
-        rising(x, left, left_top)
-    } else {
-        falling(x, right_top, right)
-    }
+    let rises = x < left_top;
+    let length = select_unpredictable(rises, x - left, right - x);
+    let run = select_unpredictable(rises, left_top - left, right - right_top);
+    part(length, run)
+}
+
+/// `length / run` into [0, 1], without a branch. At a step, where `run` is 0, it is infinite, and 1 where `length` is 0.
+#[inline(always)]
+fn part(length: f64, run: f64) -> f64 {
+    let part = length / run;
+    let part = if part < 1.0 { part } else { 1.0 };
+    if part > 0.0 { part } else { 0.0 }
 }
 
 /// Straight between the points, measured from the lower one so that small degrees are exact.

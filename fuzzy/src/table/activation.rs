@@ -82,7 +82,7 @@ impl Activation {
             } => first(count, at_least, least, rules.iter_mut().rev()),
             Activation::Highest { rules: count } => {
                 rules.sort_unstable_by(|a, b| {
-                    let strongest = b.degree.total_cmp(&a.degree);
+                    let strongest = b.degree[0].total_cmp(&a.degree[0]);
                     strongest.then(a.at.cmp(&b.at))
                 });
                 first(count, 0.0, least, rules.iter_mut());
@@ -90,17 +90,17 @@ impl Activation {
             }
             Activation::Lowest { rules: count } => {
                 rules.sort_unstable_by(|a, b| {
-                    let weakest = a.degree.total_cmp(&b.degree);
+                    let weakest = a.degree[0].total_cmp(&b.degree[0]);
                     weakest.then(a.at.cmp(&b.at))
                 });
                 first(count, 0.0, least, rules.iter_mut());
                 rules.sort_unstable_by_key(|rule| rule.at);
             }
             Activation::Proportional => {
-                let sum: f64 = rules.iter().map(|rule| rule.degree).sum();
+                let sum: f64 = rules.iter().map(|rule| rule.degree[0]).sum();
                 if sum > 0.0 {
                     for rule in rules {
-                        rule.degree /= sum;
+                        rule.degree[0] /= sum;
                     }
                 }
             }
@@ -109,8 +109,8 @@ impl Activation {
                 strength,
             } => {
                 for rule in rules {
-                    if !comparison.holds(rule.degree, strength, least) {
-                        rule.degree = 0.0;
+                    if !comparison.holds(rule.degree[0], strength, least) {
+                        rule.degree[0] = 0.0;
                     }
                 }
             }
@@ -122,11 +122,12 @@ impl Activation {
 fn first<'a>(count: u32, at_least: f64, least: f64, rules: impl Iterator<Item = &'a mut Partial>) {
     let mut left = count;
     for rule in rules {
-        let fires = rule.degree >= least && Comparison::AtLeast.holds(rule.degree, at_least, least);
+        let fires =
+            rule.degree[0] >= least && Comparison::AtLeast.holds(rule.degree[0], at_least, least);
         if fires && left > 0 {
             left -= 1;
         } else {
-            rule.degree = 0.0;
+            rule.degree[0] = 0.0;
         }
     }
 }
@@ -154,9 +155,11 @@ mod tests {
     /// The strengths with which rules of these strengths fire.
     fn after(activation: Activation, strengths: &[f64]) -> Vec<f64> {
         let rules = strengths.iter().zip(0..);
-        let mut rules: Vec<Partial> = rules.map(|(&degree, at)| Partial { degree, at }).collect();
+        let mut rules: Vec<Partial> = rules
+            .map(|(&degree, at)| Partial::new(degree, at))
+            .collect();
         activation.activate(1e-6, &mut rules);
-        rules.iter().map(|rule| rule.degree).collect()
+        rules.iter().map(|rule| rule.degree[0]).collect()
     }
 
     fn threshold(comparison: Comparison, strength: f64) -> Activation {

@@ -113,11 +113,11 @@ impl Block {
 
 /// Gives a rule that fires with a strength to `firing`, once the hedges of its consequents have changed it.
 #[inline(always)]
-pub(super) fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing: &mut impl Act) {
+fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing: &mut impl Act<1>) {
     let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
     let strength = hedges.iter().fold(strength, |x, hedge| hedge.of(x));
     let actions = program.first_action as usize..program.end_action as usize;
-    firing.act_with(&table.actions()[actions], strength);
+    firing.act_with(&table.actions()[actions], &[strength]);
 }
 
 /// Gives the rules of all blocks that fire to `firing`, with the strengths that the activation methods leave. `rules` has room
@@ -126,10 +126,10 @@ pub(super) fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing
 #[inline(never)]
 pub(super) fn fire_blocks<A: Arrays>(
     table: &A,
-    degrees: &[f64],
+    degrees: &[[f64; 1]],
     rules: &mut [Partial],
-    stack: &mut [f64],
-    firing: &mut impl Act,
+    stack: &mut [[f64; 1]],
+    firing: &mut impl Act<1>,
 ) {
     for block in table.blocks() {
         let (and, or) = block.operators();
@@ -140,27 +140,22 @@ pub(super) fn fire_blocks<A: Arrays>(
             let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
             // Without steps it is more of the rule before it.
             if !steps.is_empty() {
-                let degree = program.weight
-                    * run(
-                        steps,
-                        degrees,
-                        |a, b| and.of(a, b),
-                        |a, b| or.of(a, b),
-                        stack,
-                    );
-                rules[count] = Partial { degree, at };
+                let (and, or) = (|a, b| and.of(a, b), |a, b| or.of(a, b));
+                let [degree] = run(steps, degrees, and, or, stack);
+                rules[count] = Partial::new(program.weight * degree, at);
                 count += 1;
             }
         }
         let rules = &mut rules[..count];
         let least = table.least_strength();
         block.activation().activate(least, rules);
-        for rule in rules.iter().filter(|rule| rule.degree >= least) {
-            let programs = &table.programs()[rule.at as usize..block.end_program as usize];
+        let rules = rules.iter().map(Partial::parts);
+        for (strength, at) in rules.filter(|(strength, _)| *strength >= least) {
+            let programs = &table.programs()[at as usize..block.end_program as usize];
             let more = |program: &&Program| program.first_step == program.end_step;
             let others = programs.iter().skip(1).take_while(more);
             for program in programs.iter().take(1).chain(others) {
-                act(table, program, rule.degree, firing);
+                act(table, program, strength, firing);
             }
         }
     }

@@ -265,12 +265,12 @@ impl<'a> Chain<'a> {
             let mut scratch = fitted(scratch, &table)?;
             let rule = match sought {
                 Sought::Raises(value) => {
-                    raised_by(&table, &mut scratch, all, (own, value), |_, _| None)
+                    raised_by(&table, &mut scratch.rows(), all, (own, value), |_, _| None)
                 }
                 Sought::Concludes(number) => {
                     let curve = self.table.curves.get(self.first_conclusion() + number)?;
                     let degree = |x: f64| self.degree(curve, x);
-                    concluded_by(&table, &mut scratch, all, (own, degree), |_, _| None)
+                    concluded_by(&table, &mut scratch.rows(), all, (own, degree), |_, _| None)
                 }
             };
             return found(rules + rule?, scratch.degrees);
@@ -310,7 +310,10 @@ impl<'a> Chain<'a> {
             .hedges
             .get(span(curve.first_hedge, curve.end_hedge));
         match (points, hedges) {
-            (Some(points), Some(hedges)) => curve.degree(points, hedges, x),
+            (Some(points), Some(hedges)) => {
+                let [degree] = curve.degrees(points, hedges, &[x]);
+                degree
+            }
             _ => 0.0,
         }
     }

@@ -1,8 +1,13 @@
 //! Defuzzifiers with a closed form: from firing strengths to a number by a few sums.
 
-use super::operators::smaller;
+use core::hint::select_unpredictable;
+
+use libm::fabs;
+
+use super::operators::{larger, smaller};
 use super::{Arrays, Curve, Output, Point};
 use crate::formula::evaluate;
+use crate::rows::{each, joined};
 
 /// The closed form of a defuzzifier.
 #[doc(hidden)] // Exported data.
@@ -103,22 +108,27 @@ impl Pair {
         (area, alone - self.middle[side] * common)
     }
 
-    /// The area and moment of the aggregated set of a partition. Firing strengths are ordered from left to right.
+    /// The areas and moments of the aggregated sets of a partition. Firing strengths are ordered from left to right.
     #[inline(always)]
-    pub(crate) fn integrals(pairs: &[Pair], strengths: &[f64]) -> Moment {
-        let (mut area, mut moment) = ([0.0; 2], [0.0; 2]);
-        for (pair, i) in pairs.iter().zip((0..).step_by(2)) {
-            let strengths: &[f64] = &strengths[i..i + 3];
+    pub(crate) fn integrals<const L: usize>(
+        pairs: &[Pair],
+        mut strengths: &[[f64; L]],
+    ) -> [[f64; L]; 2] {
+        let (mut area, mut moment) = ([[0.0; L]; 2], [[0.0; L]; 2]);
+        for pair in pairs {
+            let Some((three, _)) = strengths.split_first_chunk::<3>() else {
+                break;
+            };
             for side in 0..2 {
-                let (a, m) = pair.add(side, strengths[side], strengths[side + 1]);
-                area[side] += a;
-                moment[side] += m;
+                for row in 0..L {
+                    let (a, m) = pair.add(side, three[side][row], three[side + 1][row]);
+                    area[side][row] += a;
+                    moment[side][row] += m;
+                }
             }
+            strengths = &strengths[2..];
         }
-        Moment {
-            area: area[0] + area[1],
-            moment: moment[0] + moment[1],
-        }
+        [area, moment].map(|[left, right]| joined(&left, &right, |a, b| a + b))
     }
 }
 
@@ -128,53 +138,64 @@ pub(crate) fn centroid(area: f64, moment: f64, origin: f64) -> Option<f64> {
     (area > 0.0).then(|| origin + moment / area)
 }
 
-/// The value of an output with a closed form; `None` where no rule fired.
+/// The values of an output with a closed form that is the same few sums in every row; NaN where no rule fired. `None` of
+/// another output.
 #[inline(always)]
-pub(super) fn closed<A: Arrays>(
+pub(super) fn closed<A: Arrays, const L: usize>(
+    table: &A,
+    output: &Output,
+    strengths: &[[f64; L]],
+    inputs: &[[f64; L]],
+) -> Option<[f64; L]> {
+    let range = output.first as usize..output.end as usize;
+    let [areas, moments] = match output.form {
+        ClosedForm::PARTITION => Pair::integrals(&table.pairs()[range], strengths),
+        ClosedForm::MOMENTS => {
+            let (mut areas, mut moments) = ([0.0; L], [0.0; L]);
+            for (Moment { area, moment }, strengths) in table.moments()[range].iter().zip(strengths)
+            {
+                for row in 0..L {
+                    areas[row] += strengths[row] * area;
+                    moments[row] += strengths[row] * moment;
+                }
+            }
+            [areas, moments]
+        }
+        // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
+        form @ (ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM) => {
+            let values = weighted(
+                form,
+                &table.consequents()[range],
+                (table.coefficients(), table.points()),
+                strengths,
+                inputs,
+            );
+            return Some(each(|row| output.clamped(values[row])));
+        }
+        _ => return None,
+    };
+    Some(each(|row| {
+        let value = output.origin() + moments[row] / areas[row];
+        let value = larger(output.low, smaller(output.high, value));
+        select_unpredictable(areas[row] > 0.0, value, f64::NAN)
+    }))
+}
+
+/// The value of an output with another closed form; `None` where no rule fired.
+pub(super) fn closed_in_row<A: Arrays>(
     table: &A,
     output: &Output,
     strengths: &[f64],
-    inputs: &[f64],
 ) -> Option<f64> {
-    let range = output.first as usize..output.end as usize;
-    let Moment { area, moment } = match output.form {
-        ClosedForm::PARTITION => Pair::integrals(&table.pairs()[range], strengths),
-        ClosedForm::MOMENTS => {
-            let mut sum = Moment {
-                area: 0.0,
-                moment: 0.0,
-            };
-            for (Moment { area, moment }, strength) in table.moments()[range].iter().zip(strengths)
-            {
-                sum.area += strength * area;
-                sum.moment += strength * moment;
-            }
-            sum
+    match output.form {
+        ClosedForm::CUT | ClosedForm::SCALED => super::set::value(table, output, strengths),
+        ClosedForm::TSUKAMOTO => {
+            let curves = &table.curves()[output.first as usize..output.end as usize];
+            let value = tsukamoto(output, curves, table.points(), strengths);
+            value.map(|value| output.clamped(value))
         }
-        ClosedForm::CUT | ClosedForm::SCALED => return super::set::value(table, output, strengths),
-        // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
-        form => {
-            let points = table.points();
-            let value = match form {
-                ClosedForm::TSUKAMOTO => {
-                    tsukamoto(output, &table.curves()[range], points, strengths)
-                }
-                _ => {
-                    let coefficients = (table.coefficients(), points);
-                    weighted(
-                        form,
-                        &table.consequents()[range],
-                        coefficients,
-                        strengths,
-                        inputs,
-                    )
-                }
-            };
-            return value.map(|value| output.clamped(value));
-        }
-    };
-    let value = centroid(area, moment, output.origin())?;
-    Some(super::larger(output.low, smaller(output.high, value)))
+        _ => None,
+    }
 }
 
 /// A place, or the end of the range on the side where it lies at infinity.
@@ -208,35 +229,51 @@ fn tsukamoto(
     (total > 0.0).then(|| sum / total)
 }
 
-/// `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; `None` where none is over 0, and where a formula has no value.
-fn weighted(
+/// `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; NaN where none is over 0, and where a formula has no value.
+#[inline(always)]
+fn weighted<const L: usize>(
     form: ClosedForm,
     consequents: &[Consequent],
     (coefficients, points): (&[Coefficient], &[Point]),
-    strengths: &[f64],
-    inputs: &[f64],
-) -> Option<f64> {
-    let (mut sum, mut total) = (0.0, 0.0);
-    for (consequent, &strength) in consequents.iter().zip(strengths) {
-        if strength > 0.0 {
-            let range = consequent.first as usize..consequent.end as usize;
-            let mut z = coefficients[range]
-                .iter()
-                .fold(consequent.constant, |z, c| {
-                    z + c.coefficient * inputs[c.input as usize]
-                });
-            let code = consequent.first_code as usize..consequent.end_code as usize;
-            if !code.is_empty() {
-                let value = |i: usize| inputs.get(i).copied().unwrap_or(f64::NAN);
-                z += evaluate(&points[code], value);
+    strengths: &[[f64; L]],
+    inputs: &[[f64; L]],
+) -> [f64; L] {
+    /// Up to this number it takes less time to compute all than to find those of rules that fire.
+    const FEW: usize = 16;
+    let (mut sums, mut totals) = ([0.0; L], [0.0; L]);
+    let are_few = consequents.len() <= FEW;
+    for (consequent, strengths) in consequents.iter().zip(strengths) {
+        let has_formula = consequent.first_code < consequent.end_code;
+        if (has_formula || !are_few) && strengths.iter().all(|strength| *strength <= 0.0) {
+            continue;
+        }
+        let mut z = [consequent.constant; L];
+        for c in &coefficients[consequent.first as usize..consequent.end as usize] {
+            let inputs = &inputs[c.input as usize];
+            for row in 0..L {
+                z[row] += c.coefficient * inputs[row];
             }
-            sum += strength * z;
-            total += strength;
+        }
+        if has_formula {
+            let code = &points[consequent.first_code as usize..consequent.end_code as usize];
+            for row in 0..L {
+                let value = |i: usize| inputs.get(i).map_or(f64::NAN, |inputs| inputs[row]);
+                z[row] += evaluate(code, value);
+            }
+        }
+        for row in 0..L {
+            // It may be infinite where the rule does not fire.
+            let z = select_unpredictable(strengths[row] > 0.0, z[row], 0.0);
+            sums[row] += strengths[row] * z;
+            totals[row] += strengths[row];
         }
     }
-    let value = match form {
-        ClosedForm::WEIGHTED_SUM => sum,
-        _ => sum / total,
-    };
-    (total > 0.0 && value.is_finite()).then_some(value)
+    each(|row| {
+        let value = match form {
+            ClosedForm::WEIGHTED_SUM => sums[row],
+            _ => sums[row] / totals[row],
+        };
+        let is_value = (totals[row] > 0.0) & (fabs(value) < f64::INFINITY);
+        select_unpredictable(is_value, value, f64::NAN)
+    })
 }

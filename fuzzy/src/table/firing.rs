@@ -1,102 +1,40 @@
-//! Fires all rules: plain ANDs from a table of cells or a trie, all others as programs.
-//!
-//! A firing strength of 0 has no effect, and 0 AND anything is 0. So a plain AND is followed only while its degree is over 0:
-//! with terms that sum to 1, that is 16 of the 625 rules of 4 inputs with 5 terms.
+//! Fires all rules: plain ANDs that a table or a trie finds, all others as programs.
 
+use core::hint::select_unpredictable;
 use core::ops::DerefMut;
 
-use super::blocks::{act, fire_blocks};
-use super::input::degrees;
+use super::blocks::fire_blocks;
+use super::conjunctions::{Cells, Partial, fire_dense, fire_trie, fire_uniform};
+use super::input::degrees_in_rows;
 use super::operators::{larger, smaller};
-use super::rules::{Action, Axis, Dimension, Op, Step};
-use super::{Arrays, Buffers, Conjunction, Conjunctions, Disjunction, Line};
+use super::results::number_of;
+use super::rules::{Action, Op, Step};
+use super::{Arrays, Buffers, Conjunction, Conjunctions, Disjunction};
+use crate::rows::{each, joined};
 
-/// The degree of the first literals of a plain AND, and the offset of the cell or the index of the node they lead to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Partial {
-    pub(super) degree: f64,
-    pub(super) at: u32,
-}
-
-impl Line {
-    /// Its degree at `x` and its offset among the cells.
-    #[inline(always)]
-    fn at(&self, x: f64) -> Partial {
-        Partial {
-            degree: self.degree(x),
-            at: self.literal,
-        }
-    }
-}
-
-impl Partial {
-    /// The strength of a rule and its index, as [`Activation`](super::Activation) takes them.
-    pub(crate) fn new(degree: f64, at: u32) -> Self {
-        Partial { degree, at }
-    }
-
-    /// The strength and the index.
-    pub(crate) fn parts(&self) -> (f64, u32) {
-        (self.degree, self.at)
-    }
-
-    /// No literal yet.
-    pub const NONE: Partial = Partial { degree: 0.0, at: 0 };
-}
-
-/// The strongest rule of an output: the bits of its firing strength above those of `u32::MAX` less its index. The bits of
-/// non-negative numbers are ordered as the numbers are. So the largest is the strongest rule, and the first in the model of
-/// several equally strong rules, in whatever order they fire. Finding it takes no branch.
+/// The strongest rule of an output in each of `L` rows: the first in the model of several equally strong rules, in whatever
+/// order they fire.
 #[derive(Debug, Clone, Copy)]
-pub struct Strongest(u128);
-
-impl Strongest {
-    /// No rule yet.
-    pub const NONE: Strongest = Strongest(0);
-
-    #[inline(always)]
-    fn or(self, strength: f64, rule: u32) -> Self {
-        let bits = u128::from(strength.to_bits()) << 32 | u128::from(u32::MAX - rule);
-        Strongest(if bits > self.0 { bits } else { self.0 })
-    }
-
-    /// The firing strength, and the index of the rule where it is over 0.
-    #[inline(always)]
-    pub(super) fn rule(self) -> (f64, Option<usize>) {
-        let strength = f64::from_bits((self.0 >> 32) as u64);
-        let rule = u32::MAX - self.0 as u32;
-        (strength, (strength > 0.0).then_some(rule as usize))
-    }
+pub struct Strongest<const L: usize = 1> {
+    pub(super) strength: [f64; L],
+    /// Its [number](number_of), infinite where there is none.
+    pub(super) rule: [f64; L],
 }
 
-impl Action {
-    /// Updates the firing strength and returns the strongest rule so far.
-    #[inline(always)]
-    fn act<const SUMS: bool>(
-        &self,
-        degree: f64,
-        least: f64,
-        strengths: &mut [f64],
-        strongest: Strongest,
-    ) -> Strongest {
-        self.act_with::<SUMS>(fires(self.weight * degree, least), strengths, strongest)
-    }
+impl<const L: usize> Strongest<L> {
+    /// No rule yet.
+    pub const NONE: Self = Strongest {
+        strength: [0.0; L],
+        rule: [f64::INFINITY; L],
+    };
 
-    /// As [`Action::act`], with a firing strength.
+    /// Takes no branch, which a processor could mispredict.
     #[inline(always)]
-    fn act_with<const SUMS: bool>(
-        &self,
-        strength: f64,
-        strengths: &mut [f64],
-        strongest: Strongest,
-    ) -> Strongest {
-        let kept = &mut strengths[self.strength as usize];
-        *kept = if SUMS && self.sums != 0 {
-            *kept + strength
-        } else {
-            larger(*kept, strength)
-        };
-        strongest.or(strength, self.rule)
+    fn or(&mut self, row: usize, strength: f64, rule: f64) {
+        let (top, first) = (self.strength[row], self.rule[row]);
+        let of_equal = select_unpredictable(strength == top, smaller(rule, first), first);
+        self.rule[row] = select_unpredictable(strength > top, rule, of_equal);
+        self.strength[row] = larger(strength, top);
     }
 }
 
@@ -107,71 +45,179 @@ pub(super) fn fires(strength: f64, least: f64) -> f64 {
 }
 
 /// What is done with the rules that fire.
-pub(super) trait Act {
-    /// Takes rules with the degree of their antecedent.
-    fn act(&mut self, actions: &[Action], degree: f64);
+pub(super) trait Act<const L: usize> {
+    /// Takes rules with the degree of their antecedent in a row.
+    fn act(&mut self, actions: &[Action], row: usize, degree: f64);
 
-    /// Takes rules with their firing strength, whatever their weights.
-    fn act_with(&mut self, actions: &[Action], strength: f64);
+    /// Takes rules with their firing strengths, whatever their weights.
+    fn act_with(&mut self, actions: &[Action], strengths: &[f64; L]);
 
-    /// Takes the rules of cells of a uniform table.
+    /// Takes the rules of cells of a uniform table, which are of no use afterwards.
     #[inline(always)]
-    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &[Partial]) {
+    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [Partial<L>]) {
         for cell in reached {
-            self.act(cells.actions_of(cell), cell.degree);
+            for row in 0..L {
+                self.act(cells.actions_of(cell.at[row]), row, cell.degree[row]);
+            }
         }
     }
 }
 
 /// The firing strengths and strongest rules that actions update.
-struct Firing<'m> {
+struct Firing<'m, const L: usize> {
     least: f64,
-    strengths: &'m mut [f64],
-    strongest: &'m mut [Strongest],
+    strengths: &'m mut [[f64; L]],
+    strongest: &'m mut [Strongest<L>],
+    /// The strongest program where there is one output, in registers: each rule would wait for memory.
+    one: Strongest<L>,
 }
 
-impl Act for Firing<'_> {
+impl<const L: usize> Firing<'_, L> {
+    /// All rules have fired.
     #[inline(always)]
-    fn act(&mut self, actions: &[Action], degree: f64) {
-        for action in actions {
-            let strongest = &mut self.strongest[action.output as usize];
-            *strongest = action.act::<true>(degree, self.least, self.strengths, *strongest);
-        }
-    }
-
-    #[inline(always)]
-    fn act_with(&mut self, actions: &[Action], strength: f64) {
-        for action in actions {
-            let strongest = &mut self.strongest[action.output as usize];
-            *strongest = action.act_with::<true>(strength, self.strengths, *strongest);
-        }
-    }
-
-    #[inline(always)]
-    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &[Partial]) {
-        if let ([strongest], 1, false) = (&mut *self.strongest, cells.actions_a_cell, cells.sums) {
-            let mut top = *strongest;
-            for cell in reached {
-                let action = &cells.actions[cell.at as usize];
-                top = action.act::<false>(cell.degree, self.least, self.strengths, top);
+    fn end(self) {
+        if let [strongest] = self.strongest {
+            let mut all = self.one;
+            for row in 0..L {
+                all.or(row, strongest.strength[row], strongest.rule[row]);
             }
-            *strongest = top;
+            *strongest = all;
+        }
+    }
+}
+
+impl<const L: usize> Act<L> for Firing<'_, L> {
+    #[inline(always)]
+    fn act(&mut self, actions: &[Action], row: usize, degree: f64) {
+        for action in actions {
+            let strength = fires(action.weight * degree, self.least);
+            let kept = &mut self.strengths[action.strength as usize][row];
+            *kept = if action.sums != 0 {
+                *kept + strength
+            } else {
+                larger(*kept, strength)
+            };
+            self.strongest[action.output as usize].or(row, strength, number_of(action.rule));
+        }
+    }
+
+    #[inline(always)]
+    fn act_with(&mut self, actions: &[Action], strengths: &[f64; L]) {
+        for action in actions {
+            let kept = &mut self.strengths[action.strength as usize];
+            let before = *kept;
+            *kept = if action.sums != 0 {
+                joined(&before, strengths, |a, b| a + b)
+            } else {
+                joined(&before, strengths, larger)
+            };
+            let rule = number_of(action.rule);
+            if self.strongest.len() == 1 {
+                for row in 0..L {
+                    self.one.or(row, strengths[row], rule);
+                }
+            } else {
+                let strongest = &mut self.strongest[action.output as usize];
+                for row in 0..L {
+                    strongest.or(row, strengths[row], rule);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [Partial<L>]) {
+        if let ([one], 1, false) = (&mut *self.strongest, cells.actions_a_cell, cells.sums) {
+            *one = fire_cells(cells, reached, self.strengths, self.least);
             return;
         }
         for cell in reached {
-            self.act(cells.actions_of(cell), cell.degree);
+            for row in 0..L {
+                self.act(cells.actions_of(cell.at[row]), row, cell.degree[row]);
+            }
         }
     }
 }
 
-/// Fires all rules on the values in the scratch memory into its firing strengths and strongest rules.
+/// Fires the rules of cells that have an action each, on one output, and returns the strongest.
 #[inline(always)]
-pub(super) fn fire<A, N, P, S>(table: &A, scratch: &mut Buffers<N, P, S>)
+fn fire_cells<const L: usize>(
+    cells: &Cells<'_>,
+    reached: &mut [Partial<L>],
+    strengths: &mut [[f64; L]],
+    least: f64,
+) -> Strongest<L> {
+    let mut strongest = Strongest::NONE;
+    for cell in &mut *reached {
+        for row in 0..L {
+            let action = &cells.actions[cell.at[row] as usize];
+            let strength = fires(action.weight * cell.degree[row], least);
+            let kept = &mut strengths[action.strength as usize][row];
+            *kept = larger(*kept, strength);
+            (cell.degree[row], cell.at[row]) = (strength, action.rule);
+        }
+        strongest.strength = joined(&strongest.strength, &cell.degree, larger);
+    }
+    for cell in &*reached {
+        for row in 0..L {
+            let is_strongest = cell.degree[row] == strongest.strength[row];
+            let rule = select_unpredictable(is_strongest, number_of(cell.at[row]), f64::INFINITY);
+            strongest.rule[row] = smaller(rule, strongest.rule[row]);
+        }
+    }
+    strongest
+}
+
+/// Whether a uniform table finds all rules.
+pub(crate) fn has_cells_alone<A: Arrays>(table: &A) -> bool {
+    let is_uniform = matches!(table.conjunctions(), Conjunctions::Uniform { .. });
+    is_uniform && table.programs().is_empty()
+}
+
+/// Fires all rules on the values in the scratch memory into its firing strengths and strongest rules. `CELLS` is
+/// [`has_cells_alone`]: the code for other tables would take registers from that of cells.
+#[inline(always)]
+pub(super) fn fire<A, N, P, S, const L: usize, const CELLS: bool>(
+    table: &A,
+    scratch: &mut Buffers<N, P, S>,
+) where
+    A: Arrays,
+    N: DerefMut<Target = [[f64; L]]>,
+    P: DerefMut<Target = [Partial<L>]>,
+    S: DerefMut<Target = [Strongest<L>]>,
+{
+    let (finding, mut firing) = ready(table, scratch);
+    fire_into::<A, L, CELLS>(table, finding, &mut firing);
+    if !CELLS {
+        firing.end();
+    }
+}
+
+/// As [`fire`], for rules of any kind in one row.
+#[inline(always)]
+pub(super) fn fire_row<A, N, P, S>(table: &A, scratch: &mut Buffers<N, P, S>)
 where
     A: Arrays,
-    N: DerefMut<Target = [f64]>,
+    N: DerefMut<Target = [[f64; 1]]>,
     P: DerefMut<Target = [Partial]>,
     S: DerefMut<Target = [Strongest]>,
+{
+    let (finding, mut firing) = ready(table, scratch);
+    fire_row_into(table, finding, &mut firing);
+    firing.end();
+}
+
+/// Nothing has fired yet.
+#[inline(always)]
+fn ready<'m, A, N, P, S, const L: usize>(
+    table: &A,
+    scratch: &'m mut Buffers<N, P, S>,
+) -> (Finding<'m, L>, Firing<'m, L>)
+where
+    A: Arrays,
+    N: DerefMut<Target = [[f64; L]]>,
+    P: DerefMut<Target = [Partial<L>]>,
+    S: DerefMut<Target = [Strongest<L>]>,
 {
     // Models with one output are the common case; this saves the call of `fill`.
     match &mut *scratch.strongest {
@@ -179,40 +225,56 @@ where
         all => all.fill(Strongest::NONE),
     }
     let (finding, strengths, strongest) = scratch.split();
-    strengths.fill(0.0);
-    let mut firing = Firing {
+    strengths.fill([0.0; L]);
+    let firing = Firing {
         least: table.least_strength(),
         strengths,
         strongest,
+        one: Strongest::NONE,
     };
-    fire_into(table, finding, &mut firing);
+    (finding, firing)
 }
 
 /// The memory in which the rules that fire are found.
-pub(super) struct Finding<'m> {
-    values: &'m [f64],
-    degrees: &'m mut [f64],
-    alive: &'m mut [Partial],
-    partial: &'m mut [Partial],
-    next: &'m mut [Partial],
-    stack: &'m mut [f64],
+pub(super) struct Finding<'m, const L: usize> {
+    values: &'m [[f64; L]],
+    degrees: &'m mut [[f64; L]],
+    alive: &'m mut [Partial<L>],
+    partial: &'m mut [Partial<L>],
+    next: &'m mut [Partial<L>],
+    stack: &'m mut [[f64; L]],
 }
 
-impl<'m> Finding<'m> {
-    pub(super) fn values(&self) -> &'m [f64] {
+impl<'m, const L: usize> Finding<'m, L> {
+    pub(super) fn values(&self) -> &'m [[f64; L]] {
         self.values
+    }
+
+    /// Writes the degrees of all literals, where rules read them by index.
+    #[inline(always)]
+    fn find_degrees<A: Arrays>(&mut self, table: &A) {
+        if self.degrees.is_empty() {
+            return;
+        }
+        self.degrees.fill([0.0; L]);
+        for (input, values) in table.inputs().iter().zip(self.values) {
+            let first = input.first_literal as usize;
+            degrees_in_rows(table, input, values, &mut self.degrees[first..]);
+        }
     }
 }
 
-impl<N, P, S> Buffers<N, P, S>
-where
-    N: DerefMut<Target = [f64]>,
-    P: DerefMut<Target = [Partial]>,
-    S: DerefMut<Target = [Strongest]>,
-{
+impl<N, P, S> Buffers<N, P, S> {
     /// The memory in which rules are found, and that of what they do.
     #[inline(always)]
-    pub(super) fn split(&mut self) -> (Finding<'_>, &mut [f64], &mut [Strongest]) {
+    pub(super) fn split<const L: usize>(
+        &mut self,
+    ) -> (Finding<'_, L>, &mut [[f64; L]], &mut [Strongest<L>])
+    where
+        N: DerefMut<Target = [[f64; L]]>,
+        P: DerefMut<Target = [Partial<L>]>,
+        S: DerefMut<Target = [Strongest<L>]>,
+    {
         let finding = Finding {
             values: &self.values,
             degrees: &mut self.degrees,
@@ -225,36 +287,46 @@ where
     }
 }
 
-/// Finds the rules that fire on the values, and gives them to `firing`.
+/// Finds the rules of any kind that fire on one row, and gives them to `firing`.
 #[inline(always)]
-pub(super) fn fire_into<A: Arrays>(table: &A, finding: Finding<'_>, firing: &mut impl Act) {
-    if !finding.degrees.is_empty() {
-        finding.degrees.fill(0.0);
-        for (input, &value) in table.inputs().iter().zip(finding.values) {
-            degrees(table, input, value, |literal, degree| {
-                finding.degrees[(input.first_literal + literal) as usize] = degree;
-            });
-        }
+pub(super) fn fire_row_into<A: Arrays>(
+    table: &A,
+    mut finding: Finding<'_, 1>,
+    firing: &mut impl Act<1>,
+) {
+    if table.blocks().is_empty() {
+        return fire_into::<A, 1, false>(table, finding, firing);
     }
-    if !table.blocks().is_empty() {
-        let Finding {
-            degrees,
-            partial,
-            stack,
-            ..
-        } = finding;
-        return fire_blocks(table, degrees, partial, stack, firing);
+    finding.find_degrees(table);
+    let Finding {
+        degrees,
+        partial,
+        stack,
+        ..
+    } = finding;
+    fire_blocks(table, degrees, partial, stack, firing);
+}
+
+/// Finds the rules that fire on the values where there are no blocks, and gives them to `firing`.
+#[inline(always)]
+fn fire_into<A: Arrays, const L: usize, const CELLS: bool>(
+    table: &A,
+    mut finding: Finding<'_, L>,
+    firing: &mut impl Act<L>,
+) {
+    if !CELLS {
+        finding.find_degrees(table);
     }
     // The common operators, so that the loops do not branch on the operator.
     match (table.and(), table.or()) {
         (Conjunction::Minimum, Disjunction::Maximum) => {
-            fire_with(table, smaller, larger, finding, firing);
+            fire_with::<A, L, CELLS>(table, smaller, larger, finding, firing);
         }
         (Conjunction::Product, or) => {
-            fire_with(table, |a, b| a * b, |a, b| or.of(a, b), finding, firing);
+            fire_with::<A, L, CELLS>(table, |a, b| a * b, |a, b| or.of(a, b), finding, firing);
         }
         (and, or) => {
-            fire_with(
+            fire_with::<A, L, CELLS>(
                 table,
                 |a, b| and.of(a, b),
                 |a, b| or.of(a, b),
@@ -266,12 +338,12 @@ pub(super) fn fire_into<A: Arrays>(table: &A, finding: Finding<'_>, firing: &mut
 }
 
 #[inline(always)]
-fn fire_with<A: Arrays>(
+fn fire_with<A: Arrays, const L: usize, const CELLS: bool>(
     table: &A,
     and: impl Fn(f64, f64) -> f64,
     or: impl Fn(f64, f64) -> f64,
-    finding: Finding<'_>,
-    firing: &mut impl Act,
+    finding: Finding<'_, L>,
+    firing: &mut impl Act<L>,
 ) {
     let Finding {
         values,
@@ -294,228 +366,63 @@ fn fire_with<A: Arrays>(
             };
             fire_uniform(table, &cells, values, partial, &and, firing);
         }
-        Conjunctions::Dense => {
+        Conjunctions::Dense if !CELLS => {
             fire_dense(table, values, (alive, partial, next), &and, firing);
         }
-        Conjunctions::Trie => fire_trie(table, degrees, partial, &and, firing),
+        Conjunctions::Trie if !CELLS && !table.nodes().is_empty() => {
+            for row in 0..L {
+                fire_trie(table, row, degrees, partial, &and, firing);
+            }
+        }
+        _ => {}
     }
+    if CELLS {
+        return;
+    }
+    let least = table.least_strength();
     for program in table.programs() {
         let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
-        let degree = run(steps, degrees, &and, &or, stack);
-        let strength = fires(program.weight * degree, table.least_strength());
-        if strength > 0.0 {
-            act(table, program, strength, firing);
+        let degrees = run(steps, degrees, &and, &or, stack);
+        let mut strengths = each(|row| fires(program.weight * degrees[row], least));
+        for hedge in &table.hedges()[program.first_hedge as usize..program.end_hedge as usize] {
+            strengths = each(|row| hedge.of(strengths[row]));
         }
+        let actions = program.first_action as usize..program.end_action as usize;
+        firing.act_with(&table.actions()[actions], &strengths);
     }
 }
 
+/// The degrees of an antecedent. `stack` holds at least the depth of the program.
 #[inline(always)]
-fn fire_uniform<A: Arrays>(
-    table: &A,
-    cells: &Cells<'_>,
-    values: &[f64],
-    partial: &mut [Partial],
-    and: impl Fn(f64, f64) -> f64,
-    firing: &mut impl Act,
-) {
-    let both = |p: Partial, q: Partial| Partial {
-        degree: and(p.degree, q.degree),
-        at: p.at + q.at,
-    };
-    if let [first, second] = table.axes() {
-        let [a, b] = at(table, first, values);
-        let [c, d] = at(table, second, values);
-        firing.act_in_cells(cells, &[both(a, c), both(b, c), both(a, d), both(b, d)]);
-        return;
-    }
-    partial[0] = Partial { degree: 1.0, at: 0 };
-    let mut count = 1;
-    for axis in table.axes() {
-        let [a, b] = at(table, axis, values);
-        let (first, others) = partial.split_at_mut(count);
-        for (cell, other) in first.iter_mut().zip(others) {
-            *other = both(*cell, b);
-            *cell = both(*cell, a);
-        }
-        count *= 2;
-    }
-    firing.act_in_cells(cells, &partial[..count]);
-}
-
-/// The degrees and offsets of the two lines on the interval that holds the axis' input.
-#[inline(always)]
-fn at<A: Arrays>(table: &A, axis: &Axis, values: &[f64]) -> [Partial; 2] {
-    let x = values[axis.input as usize];
-    let mut interval = 0;
-    let cuts = &table.cuts()[axis.first_cut as usize..axis.end_cut as usize];
-    for cuts in cuts.chunks_exact(4) {
-        for cut in cuts {
-            interval += usize::from(x >= *cut);
-        }
-    }
-    let first = axis.first_line as usize + 2 * interval;
-    let lines = &table.lines()[first..first + 2];
-    [lines[0].at(x), lines[1].at(x)]
-}
-
-/// Extends partial ANDs input by input. The last input acts at once.
-#[inline(always)]
-fn fire_dense<A: Arrays>(
-    table: &A,
-    values: &[f64],
-    (alive, mut partial, mut next): (&mut [Partial], &mut [Partial], &mut [Partial]),
-    and: impl Fn(f64, f64) -> f64,
-    firing: &mut impl Act,
-) {
-    let actions = |cell: usize| {
-        let (start, end) = (table.cells()[cell], table.cells()[cell + 1]);
-        &table.actions()[start as usize..end as usize]
-    };
-    let Some((last, others)) = table.dimensions().split_last() else {
-        firing.act(actions(0), 1.0);
-        return;
-    };
-    partial[0] = Partial { degree: 1.0, at: 0 };
-    let mut count = 1;
-    for dimension in others {
-        let alive_here = alive_terms(table, dimension, values, alive);
-        let mut widened = 0;
-        for cell in &partial[..count] {
-            for term in &alive[..alive_here] {
-                // Always written, but counted only where it is over 0: a branch would be mispredicted.
-                let degree = and(cell.degree, term.degree);
-                next[widened] = Partial {
-                    degree,
-                    at: cell.at + term.at,
-                };
-                widened += usize::from(degree > 0.0);
-            }
-        }
-        core::mem::swap(&mut partial, &mut next);
-        count = widened;
-    }
-    let alive_here = alive_terms(table, last, values, alive);
-    for cell in &partial[..count] {
-        for term in &alive[..alive_here] {
-            let degree = and(cell.degree, term.degree);
-            firing.act(actions((cell.at + term.at) as usize), degree);
-        }
-    }
-}
-
-/// Writes the degrees over 0 and their offsets, and returns their number.
-#[inline(always)]
-fn alive_terms<A: Arrays>(
-    table: &A,
-    dimension: &Dimension,
-    values: &[f64],
-    alive: &mut [Partial],
-) -> usize {
-    let input = dimension.input as usize;
-    let mut count = 0;
-    degrees(
-        table,
-        &table.inputs()[input],
-        values[input],
-        |literal, degree| {
-            alive[count] = Partial {
-                degree,
-                at: literal * dimension.stride,
-            };
-            count += usize::from(degree > 0.0);
-        },
-    );
-    if dimension.any != Dimension::NONE {
-        alive[count] = Partial {
-            degree: 1.0,
-            at: dimension.any * dimension.stride,
-        };
-        count += 1;
-    }
-    count
-}
-
-fn fire_trie<A: Arrays>(
-    table: &A,
-    degrees: &[f64],
-    path: &mut [Partial],
-    and: impl Fn(f64, f64) -> f64,
-    firing: &mut impl Act,
-) {
-    path[0] = Partial { degree: 1.0, at: 0 };
-    let mut open = 1usize;
-    // In a tree no node is reached twice. Where a damaged table is no tree, time stays bounded.
-    for _ in table.nodes() {
-        let Some(left) = open.checked_sub(1) else {
-            return;
-        };
-        open = left;
-        let Partial { degree, at } = path[open];
-        let node = &table.nodes()[at as usize];
-        let range = node.first_action as usize..node.end_action as usize;
-        firing.act(&table.actions()[range], degree);
-        for edge in &table.edges()[node.first_edge as usize..node.end_edge as usize] {
-            let both = and(degree, degrees[edge.literal as usize]);
-            // In a damaged table there may be no room.
-            if both > 0.0
-                && let Some(next) = path.get_mut(open)
-            {
-                *next = Partial {
-                    degree: both,
-                    at: edge.node,
-                };
-                open += 1;
-            }
-        }
-    }
-}
-
-/// The cells of a uniform table.
-pub(super) struct Cells<'a> {
-    actions: &'a [Action],
-    actions_a_cell: usize,
-    sums: bool,
-}
-
-impl Cells<'_> {
-    #[inline(always)]
-    fn actions_of(&self, cell: &Partial) -> &[Action] {
-        let first = cell.at as usize * self.actions_a_cell;
-        &self.actions[first..first + self.actions_a_cell]
-    }
-}
-
-/// The degree of an antecedent. `stack` holds at least the depth of the program.
-#[inline(always)]
-pub(super) fn run(
+pub(super) fn run<const L: usize>(
     steps: &[Step],
-    degrees: &[f64],
+    degrees: &[[f64; L]],
     and: impl Fn(f64, f64) -> f64,
     or: impl Fn(f64, f64) -> f64,
-    stack: &mut [f64],
-) -> f64 {
+    stack: &mut [[f64; L]],
+) -> [f64; L] {
     let mut depth = 0;
-    let mut top = 0.0;
+    let mut top = [0.0; L];
     for step in steps {
-        let degree = || degrees[step.literal as usize];
+        let degree = || &degrees[step.literal as usize];
         top = match step.op {
             Op::PUSH => {
                 stack[depth] = top;
                 depth += 1;
-                degree()
+                *degree()
             }
-            Op::AND_LITERAL => and(top, degree()),
-            Op::OR_LITERAL => or(top, degree()),
+            Op::AND_LITERAL => joined(&top, degree(), &and),
+            Op::OR_LITERAL => joined(&top, degree(), &or),
             Op::AND => {
                 depth -= 1;
-                and(stack[depth], top)
+                joined(&stack[depth], &top, &and)
             }
             Op::OR => {
                 depth -= 1;
-                or(stack[depth], top)
+                joined(&stack[depth], &top, &or)
             }
-            _ => 1.0 - top,
+            _ => each(|row| 1.0 - top[row]),
         };
     }
-    larger(0.0, smaller(1.0, top))
+    each(|row| larger(0.0, smaller(1.0, top[row])))
 }

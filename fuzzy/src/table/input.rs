@@ -2,6 +2,7 @@
 
 use super::operators::Hedge;
 use super::{Arrays, Kind};
+use crate::rows::each;
 
 /// An input: its range and its literals.
 #[doc(hidden)] // Exported data.
@@ -89,15 +90,33 @@ impl Line {
     }
 }
 
-/// Calls `visit` with the index, among the input's, and the degree of each literal that can be over 0 at `x`. The degree may
-/// be 0.
+/// Writes the degrees of the literals that can be over 0 at the values of each row.
 #[inline(always)]
-pub(crate) fn degrees<A: Arrays>(
+pub(crate) fn degrees_in_rows<A: Arrays, const L: usize>(
     table: &A,
     input: &Input,
-    x: f64,
-    mut visit: impl FnMut(u32, f64),
+    values: &[f64; L],
+    degrees: &mut [[f64; L]],
 ) {
+    if input.first_cut < input.end_cut {
+        for row in 0..L {
+            for line in lines(table, input, values[row]) {
+                degrees[line.literal as usize][row] = line.degree(values[row]);
+            }
+        }
+    } else if let Some(&x) = values.first() {
+        for line in lines(table, input, x) {
+            degrees[line.literal as usize] = each(|row| line.degree(values[row]));
+        }
+    }
+    for curve in curves(table, input) {
+        degrees[curve.literal as usize] = along(table, curve, values);
+    }
+}
+
+/// The lines on the interval that holds `x`.
+#[inline(always)]
+pub(super) fn lines<'t, A: Arrays>(table: &'t A, input: &Input, x: f64) -> &'t [Line] {
     let cuts = &table.cuts()[input.first_cut as usize..input.end_cut as usize];
     let interval: usize = if cuts.len() <= 16 {
         cuts.iter().map(|cut| usize::from(x >= *cut)).sum()
@@ -106,21 +125,39 @@ pub(crate) fn degrees<A: Arrays>(
     };
     let start = input.first_start as usize + interval;
     let (start, end) = (table.starts()[start], table.starts()[start + 1]);
-    for line in &table.lines()[start as usize..end as usize] {
-        visit(line.literal, line.degree(x));
-    }
-    for curve in &table.curves()[input.first_curve as usize..input.end_curve as usize] {
-        let points = &table.points()[curve.first_point as usize..curve.end_point as usize];
-        let hedges = &table.hedges()[curve.first_hedge as usize..curve.end_hedge as usize];
-        visit(curve.literal, curve.degree(points, hedges, x));
-    }
+    &table.lines()[start as usize..end as usize]
+}
+
+#[inline(always)]
+pub(super) fn curves<'t, A: Arrays>(table: &'t A, input: &Input) -> &'t [Curve] {
+    &table.curves()[input.first_curve as usize..input.end_curve as usize]
+}
+
+/// The degrees of a curve at the values of each row.
+#[inline(always)]
+pub(super) fn along<A: Arrays, const L: usize>(
+    table: &A,
+    curve: &Curve,
+    values: &[f64; L],
+) -> [f64; L] {
+    let points = &table.points()[curve.first_point as usize..curve.end_point as usize];
+    let hedges = &table.hedges()[curve.first_hedge as usize..curve.end_hedge as usize];
+    curve.degrees(points, hedges, values)
 }
 
 impl Curve {
-    // Takes arrays and not the table: passing the table would build it in memory for each evaluation.
     #[inline(always)]
-    pub(super) fn degree(&self, points: &[Point], hedges: &[Hedge], x: f64) -> f64 {
-        let degree = self.height * self.kind.membership(&self.parameters, points, x);
-        hedges.iter().fold(degree, |degree, hedge| hedge.of(degree))
+    pub(super) fn degrees<const L: usize>(
+        &self,
+        points: &[Point],
+        hedges: &[Hedge],
+        values: &[f64; L],
+    ) -> [f64; L] {
+        let degrees = self.kind.memberships(&self.parameters, points, values);
+        let mut degrees = each(|row| self.height * degrees[row]);
+        for hedge in hedges {
+            degrees = each(|row| hedge.of(degrees[row]));
+        }
+        degrees
     }
 }

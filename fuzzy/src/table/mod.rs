@@ -14,6 +14,7 @@ mod blocks;
 pub(crate) mod chain;
 mod check;
 mod closed;
+mod conjunctions;
 mod firing;
 pub(crate) mod flank;
 mod input;
@@ -21,6 +22,7 @@ pub(crate) mod numeric;
 pub(crate) mod operators;
 mod outcome;
 mod raising;
+mod results;
 mod rules;
 pub(crate) mod set;
 
@@ -32,10 +34,11 @@ pub use chain::{Chain, Ends, Sought, Stage, Values};
 pub use check::Damaged;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub(crate) use closed::{centroid, finite};
-pub use firing::{Partial, Strongest};
+pub use conjunctions::Partial;
+pub use firing::Strongest;
 pub use flank::{Flank, Knot};
 #[cfg(test)]
-pub(crate) use input::degrees;
+pub(crate) use input::degrees_in_rows;
 pub use input::{Curve, Input, Line, Point};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
@@ -44,10 +47,14 @@ pub use set::{FuzzySet, Section, SetDefuzzifier, SetTerm, Strand};
 
 pub use crate::shape::Kind;
 
-use closed::closed;
-use firing::fire;
+use crate::rows::each;
+use closed::{closed, closed_in_row};
+pub(crate) use firing::has_cells_alone;
+use firing::{fire, fire_row};
 use operators::{larger, smaller};
 pub(crate) use raising::{concluded_by, raised_by};
+use results::Given;
+pub(crate) use results::Results;
 
 /// How the rules that are plain ANDs of terms of different inputs are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -187,14 +194,31 @@ impl Table<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn evaluate(&self, scratch: &mut Scratch<'_>, inputs: &[f64], outcomes: &mut [Outcome]) {
-        evaluate(self, scratch, inputs, outcomes, |_, _| None);
+        evaluate_row::<_, _, _, _, false>(self, &mut scratch.rows(), inputs, outcomes, |_, _| None);
+    }
+}
+
+impl Scratch<'_> {
+    /// The same memory, as rows of one number.
+    #[inline(always)]
+    pub(crate) fn rows(&mut self) -> Buffers<&mut [[f64; 1]], &mut [Partial], &mut [Strongest]> {
+        Buffers {
+            values: self.values.as_chunks_mut().0,
+            degrees: self.degrees.as_chunks_mut().0,
+            alive: &mut *self.alive,
+            partial: &mut *self.partial,
+            next: &mut *self.next,
+            stack: self.stack.as_chunks_mut().0,
+            strengths: self.strengths.as_chunks_mut().0,
+            strongest: &mut *self.strongest,
+        }
     }
 }
 
 /// [`Table::evaluate`], with `integrate` giving the value of an output without a closed form from its index and its firing
-/// strengths.
+/// strengths. `CELLS` is [`has_cells_alone`].
 #[inline(always)]
-pub(crate) fn evaluate<A, N, P, S>(
+pub(crate) fn evaluate_row<A, N, P, S, const CELLS: bool>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
     inputs: &[f64],
@@ -202,66 +226,132 @@ pub(crate) fn evaluate<A, N, P, S>(
     mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
 ) where
     A: Arrays,
-    N: DerefMut<Target = [f64]>,
+    N: DerefMut<Target = [[f64; 1]]>,
     P: DerefMut<Target = [Partial]>,
     S: DerefMut<Target = [Strongest]>,
 {
-    let Some(clamped) = clamp(table, inputs, &mut scratch.values) else {
-        outcomes.fill(Outcome {
-            state: State::InputNotFinite,
-            ..Outcome::default()
-        });
-        return;
-    };
-    fire(table, scratch);
-    for (index, (output, outcome)) in table.outputs().iter().zip(outcomes).enumerate() {
-        let (coverage, dominant) = scratch.strongest[index].rule();
-        *outcome = Outcome {
-            state: state(table, index, output, coverage, scratch, &mut integrate),
-            coverage,
-            dominant,
-            clamped,
-        };
+    let inputs = inputs.as_chunks().0.iter().copied();
+    let given = clamp(table, inputs, &mut scratch.values);
+    if CELLS {
+        fire::<_, _, _, _, 1, CELLS>(table, scratch);
+    } else {
+        fire_row(table, scratch);
     }
+    let mut outcomes = outcomes.iter_mut();
+    results(
+        table,
+        scratch,
+        given,
+        |index, output, _, strengths| {
+            value_in_row(
+                table,
+                index,
+                output,
+                strengths.as_flattened(),
+                &mut integrate,
+            )
+        },
+        |results| {
+            if let Some(outcome) = outcomes.next() {
+                *outcome = results.outcome(0);
+            }
+        },
+    );
 }
 
-/// Clamps each value to the range of its input, and returns whether any was outside; `None` where one is not finite.
+/// Evaluates the values of each input in `L` rows, in a table without blocks, and calls `put` with the results for each
+/// output. `in_row` gives the value in one row of an output that [`closed`] does not know, from its index, the row and the
+/// firing strengths of all rows.
 #[inline(always)]
-fn clamp<A: Arrays>(table: &A, inputs: &[f64], clamped: &mut [f64]) -> Option<bool> {
-    let mut any = false;
-    for ((&value, input), clamped) in inputs.iter().zip(table.inputs()).zip(clamped) {
-        if !value.is_finite() {
-            return None;
-        }
-        *clamped = larger(input.low, smaller(input.high, value));
-        any |= *clamped != value;
-    }
-    Some(any)
+pub(crate) fn evaluate_rows<A, N, P, S, const L: usize, const CELLS: bool>(
+    table: &A,
+    scratch: &mut Buffers<N, P, S>,
+    inputs: impl Iterator<Item = [f64; L]>,
+    in_row: impl FnMut(usize, &Output, usize, &[[f64; L]]) -> Option<f64>,
+    put: impl FnMut(&Results<L>),
+) where
+    A: Arrays,
+    N: DerefMut<Target = [[f64; L]]>,
+    P: DerefMut<Target = [Partial<L>]>,
+    S: DerefMut<Target = [Strongest<L>]>,
+{
+    let given = clamp(table, inputs, &mut scratch.values);
+    fire::<_, _, _, _, L, CELLS>(table, scratch);
+    results(table, scratch, given, in_row, put);
 }
 
+/// The value in one row of an output that [`closed`] does not know; `None` where no rule fired. `integrate` is as in
+/// [`evaluate_row`].
 #[inline(always)]
-fn state<A: Arrays, N: DerefMut<Target = [f64]>, P, S>(
+pub(crate) fn value_in_row<A: Arrays>(
     table: &A,
     index: usize,
     output: &Output,
-    strongest: f64,
-    scratch: &Buffers<N, P, S>,
-    integrate: &mut impl FnMut(usize, &[f64]) -> Option<f64>,
-) -> State {
-    if strongest > 0.0 {
-        let range = output.first_strength as usize..output.end_strength as usize;
-        let strengths = &scratch.strengths[range];
-        let value = match output.form {
-            ClosedForm::NONE => integrate(index, strengths),
-            _ => closed(table, output, strengths, &scratch.values),
-        };
-        if let Some(value) = value {
-            return State::Defined(value);
-        }
+    strengths: &[f64],
+    mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
+) -> Option<f64> {
+    match output.form {
+        ClosedForm::NONE => integrate(index, strengths),
+        _ => closed_in_row(table, output, strengths),
     }
-    if output.default_value.is_nan() {
-        State::NoRuleFired
-    } else {
-        State::Default(output.default_value)
+}
+
+/// Clamps each value to the range of its input, also one that is not finite.
+#[inline(always)]
+fn clamp<A: Arrays, const L: usize>(
+    table: &A,
+    inputs: impl Iterator<Item = [f64; L]>,
+    values: &mut [[f64; L]],
+) -> Given<L> {
+    let mut given = Given {
+        clamped: [0; L],
+        infinite: [0; L],
+    };
+    for ((input, inside), values) in table.inputs().iter().zip(values).zip(inputs) {
+        // NaN becomes the upper end.
+        let nearest = each(|row| larger(smaller(values[row], input.high), input.low));
+        for row in 0..L {
+            given.clamped[row] |= u64::from(nearest[row] != values[row]);
+        }
+        for row in 0..L {
+            given.infinite[row] |= u64::from(!values[row].is_finite());
+        }
+        *inside = nearest;
+    }
+    given
+}
+
+/// Calls `put` with the results of the rules that have fired, for each output.
+#[inline(always)]
+fn results<A, N, P, S, const L: usize>(
+    table: &A,
+    scratch: &Buffers<N, P, S>,
+    given: Given<L>,
+    mut in_row: impl FnMut(usize, &Output, usize, &[[f64; L]]) -> Option<f64>,
+    mut put: impl FnMut(&Results<L>),
+) where
+    A: Arrays,
+    N: DerefMut<Target = [[f64; L]]>,
+    S: DerefMut<Target = [Strongest<L>]>,
+{
+    for (index, output) in table.outputs().iter().enumerate() {
+        let Strongest { strength, rule } = scratch.strongest[index];
+        let strengths = output.first_strength as usize..output.end_strength as usize;
+        let strengths = &scratch.strengths[strengths];
+        let values = closed(table, output, strengths, &scratch.values);
+        let values = values.unwrap_or_else(|| {
+            each(|row| {
+                let fires = strength[row] > 0.0;
+                let value = fires.then(|| in_row(index, output, row, strengths));
+                value.flatten().unwrap_or(f64::NAN)
+            })
+        });
+        put(&Results {
+            default_values: [output.default_value; L],
+            values,
+            coverage: strength,
+            rules: rule,
+            given,
+        });
     }
 }

@@ -3,8 +3,9 @@
 use core::ops::DerefMut;
 
 use super::closed::closed;
-use super::firing::{Act, Partial, Strongest, fire_into, fires};
-use super::{Action, Arrays, Buffers, ClosedForm, Output, Scratch, Table, clamp};
+use super::conjunctions::Partial;
+use super::firing::{Act, Strongest, fire_row_into, fires};
+use super::{Action, Arrays, Buffers, Output, Scratch, Table, clamp, value_in_row};
 
 impl Table<'_> {
     /// The index of the rule that raises an output most where it has a value, without allocating: of the rules that fire, the
@@ -21,7 +22,13 @@ impl Table<'_> {
         output: usize,
         value: f64,
     ) -> Option<usize> {
-        raised_by(self, scratch, inputs, (output, value), |_, _| None)
+        raised_by(
+            self,
+            &mut scratch.rows(),
+            inputs,
+            (output, value),
+            |_, _| None,
+        )
     }
 }
 
@@ -35,7 +42,7 @@ pub(crate) fn raised_by<A, N, P, S>(
 ) -> Option<usize>
 where
     A: Arrays,
-    N: DerefMut<Target = [f64]>,
+    N: DerefMut<Target = [[f64; 1]]>,
     P: DerefMut<Target = [Partial]>,
     S: DerefMut<Target = [Strongest]>,
 {
@@ -55,7 +62,7 @@ pub(crate) fn concluded_by<A, N, P, S>(
 ) -> Option<usize>
 where
     A: Arrays,
-    N: DerefMut<Target = [f64]>,
+    N: DerefMut<Target = [[f64; 1]]>,
     P: DerefMut<Target = [Partial]>,
     S: DerefMut<Target = [Strongest]>,
 {
@@ -74,25 +81,29 @@ fn most<A, N, P, S>(
 ) -> Option<usize>
 where
     A: Arrays,
-    N: DerefMut<Target = [f64]>,
+    N: DerefMut<Target = [[f64; 1]]>,
     P: DerefMut<Target = [Partial]>,
     S: DerefMut<Target = [Strongest]>,
 {
-    clamp(table, inputs, &mut scratch.values)?;
+    let inputs = inputs.as_chunks().0.iter().copied();
+    let given = clamp(table, inputs, &mut scratch.values);
+    if given.infinite != [0] {
+        return None;
+    }
     let of: &Output = table.outputs().get(output)?;
     let (finding, strengths, _) = scratch.split();
     let (values, first) = (finding.values(), of.first_strength);
     let strengths = strengths.get_mut(first as usize..of.end_strength as usize)?;
-    strengths.fill(0.0);
+    strengths.fill([0.0]);
     let score = |strength: u32| {
         // In a damaged table it may be one of another output.
         let index = strength.checked_sub(first)? as usize;
-        *strengths.get_mut(index)? = 1.0;
-        let alone = match of.form {
-            ClosedForm::NONE => integrate(output, strengths),
-            _ => closed(table, of, strengths, values),
+        *strengths.get_mut(index)? = [1.0];
+        let alone = match closed(table, of, strengths, values) {
+            Some([value]) => Some(value).filter(|value| !value.is_nan()),
+            None => value_in_row(table, output, of, strengths.as_flattened(), &mut integrate),
         };
-        *strengths.get_mut(index)? = 0.0;
+        *strengths.get_mut(index)? = [0.0];
         alone.map(&score)
     };
     let mut raising = Raising {
@@ -101,7 +112,7 @@ where
         score,
         most: None,
     };
-    fire_into(table, finding, &mut raising);
+    fire_row_into(table, finding, &mut raising);
     raising.most.map(|(_, rule)| rule as usize)
 }
 
@@ -115,15 +126,15 @@ struct Raising<F> {
     most: Option<(f64, u32)>,
 }
 
-impl<F: FnMut(u32) -> Option<f64>> Act for Raising<F> {
-    fn act(&mut self, actions: &[Action], degree: f64) {
+impl<F: FnMut(u32) -> Option<f64>> Act<1> for Raising<F> {
+    fn act(&mut self, actions: &[Action], _row: usize, degree: f64) {
         for action in actions {
             let strength = fires(action.weight * degree, self.least);
-            self.act_with(core::slice::from_ref(action), strength);
+            self.act_with(core::slice::from_ref(action), &[strength]);
         }
     }
 
-    fn act_with(&mut self, actions: &[Action], strength: f64) {
+    fn act_with(&mut self, actions: &[Action], &[strength]: &[f64; 1]) {
         for action in actions.iter().filter(|action| action.output == self.output) {
             if strength > 0.0
                 && let Some(score) = (self.score)(action.strength)

@@ -586,7 +586,15 @@ fn what_a_script_cannot_do_is_refused_with_what_it_can() {
         "terms: {low: {gaussian: {mean: 0, sd: 0.1}}, medium: {triangle: [0, 0.1, 0.2]}, high: {right_shoulder: [0.1, 0.2]}}",
     );
     let operator = rules.replace("and: minimum", "and: einstein");
-    let signal = profile.replace("{std: motor_command}", "{std: wind_m_s}");
+    let fed = |source: &str| profile.replace("{std: motor_command}", source);
+    let [signal, rate, median, percentile, exponential] = [
+        "{std: wind_m_s}",
+        "{rate: {max: motor_command}}",
+        "{median: {max: motor_command}}",
+        "{percentile: 90, of: {max: motor_command}}",
+        "{std: motor_command, time_constant_s: 3}",
+    ]
+    .map(fed);
     for (rules, profile, told) in [
         (
             curved.as_str(),
@@ -595,6 +603,22 @@ fn what_a_script_cannot_do_is_refused_with_what_it_can() {
         ),
         (&operator, &profile, "operator for AND"),
         (rules, &signal, "cannot read the signal `wind_m_s`"),
+        (rules, &rate, "cannot compute the statistic `rate`"),
+        (
+            rules,
+            &median,
+            "cannot compute the statistics `median` and `percentile`",
+        ),
+        (
+            rules,
+            &percentile,
+            "cannot compute the statistics `median` and `percentile`",
+        ),
+        (
+            rules,
+            &exponential,
+            "cannot compute windows with a `time_constant_s`",
+        ),
     ] {
         folder.file("odd-rules.yaml", rules);
         let output = flagred()

@@ -139,7 +139,77 @@ local function read_commands()
   end
 -- @end
 end
--- @put list_functions
+-- @if deviation_of
+
+local function deviation_of(list)
+  local mean, square = 0.0, 0.0
+  for i = 1, motors do
+    mean = mean + list[i]
+  end
+  mean = mean / motors
+  for i = 1, motors do
+    local d = list[i] - mean
+    square = square + d * d
+  end
+  return sqrt(square / motors)
+end
+-- @end
+-- @if highest_of
+
+local function highest_of(list)
+  return max(table.unpack(list, 1, motors))
+end
+-- @end
+-- @if lowest_of
+
+local function lowest_of(list)
+  return min(table.unpack(list, 1, motors))
+end
+-- @end
+-- @if mean_of
+
+local function mean_of(list)
+  local total = 0.0
+  for i = 1, motors do
+    total = total + list[i]
+  end
+  return total / motors
+end
+-- @end
+-- @if mean_square_of
+
+local function mean_square_of(list)
+  local total = 0.0
+  for i = 1, motors do
+    total = total + list[i] * list[i]
+  end
+  return total / motors
+end
+-- @end
+-- @if share_of_above
+
+local function share_of_above(list, limit)
+  local count = 0
+  for i = 1, motors do
+    if list[i] > limit then
+      count = count + 1
+    end
+  end
+  return count / motors
+end
+-- @end
+-- @if share_of_below
+
+local function share_of_below(list, limit)
+  local count = 0
+  for i = 1, motors do
+    if list[i] < limit then
+      count = count + 1
+    end
+  end
+  return count / motors
+end
+-- @end
 -- @if noise
 
 -- The noise of the commands, known when a bin is complete: of the steps between the means of bins.

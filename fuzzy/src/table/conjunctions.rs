@@ -1,0 +1,267 @@
+//! Finds the plain ANDs that fire, in a table of cells or a trie.
+//!
+//! A firing strength of 0 has no effect, and 0 AND anything is 0. So a plain AND is followed only while its degree is over 0:
+//! with terms that sum to 1, that is 16 of the 625 rules of 4 inputs with 5 terms.
+
+use super::Arrays;
+use super::firing::Act;
+use super::input::{along, curves, lines};
+use super::rules::{Action, Axis, Dimension};
+
+/// The degree of the first literals of a plain AND, and the offset of the cell or the index of the node they lead to, in each
+/// of `L` rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Partial<const L: usize = 1> {
+    pub(super) degree: [f64; L],
+    pub(super) at: [u32; L],
+}
+
+impl Partial {
+    /// The strength of a rule and its index, as [`Activation`](super::Activation) takes them.
+    pub(crate) fn new(degree: f64, at: u32) -> Self {
+        Partial {
+            degree: [degree],
+            at: [at],
+        }
+    }
+
+    /// The strength and the index.
+    pub(crate) fn parts(&self) -> (f64, u32) {
+        let ([degree], [at]) = (self.degree, self.at);
+        (degree, at)
+    }
+}
+
+impl<const L: usize> Partial<L> {
+    /// No literal yet.
+    pub const NONE: Self = Partial {
+        degree: [0.0; L],
+        at: [0; L],
+    };
+
+    /// No literal yet, which holds.
+    const START: Self = Partial {
+        degree: [1.0; L],
+        at: [0; L],
+    };
+
+    /// AND of both, by `and`.
+    #[inline(always)]
+    fn and(&self, other: &Self, and: impl Fn(f64, f64) -> f64) -> Self {
+        let mut both = Partial::NONE;
+        for row in 0..L {
+            both.degree[row] = and(self.degree[row], other.degree[row]);
+            both.at[row] = self.at[row] + other.at[row];
+        }
+        both
+    }
+
+    #[inline(always)]
+    fn set(&mut self, row: usize, degree: f64, at: u32) {
+        self.degree[row] = degree;
+        self.at[row] = at;
+    }
+}
+
+/// The cells of a uniform table.
+pub(super) struct Cells<'a> {
+    pub(super) actions: &'a [Action],
+    pub(super) actions_a_cell: usize,
+    pub(super) sums: bool,
+}
+
+impl Cells<'_> {
+    #[inline(always)]
+    pub(super) fn actions_of(&self, cell: u32) -> &[Action] {
+        let first = cell as usize * self.actions_a_cell;
+        &self.actions[first..first + self.actions_a_cell]
+    }
+}
+
+#[inline(always)]
+pub(super) fn fire_uniform<A: Arrays, const L: usize>(
+    table: &A,
+    cells: &Cells<'_>,
+    values: &[[f64; L]],
+    partial: &mut [Partial<L>],
+    and: impl Fn(f64, f64) -> f64,
+    firing: &mut impl Act<L>,
+) {
+    if let [first, second] = table.axes() {
+        let [a, b] = &at(table, first, values);
+        let [c, d] = &at(table, second, values);
+        let mut reached = [*a, *b, *a, *b];
+        for (cell, other) in reached.iter_mut().zip([c, c, d, d]) {
+            *cell = cell.and(other, &and);
+        }
+        firing.act_in_cells(cells, &mut reached);
+        return;
+    }
+    partial[0] = Partial::START;
+    let mut count = 1;
+    for axis in table.axes() {
+        let [a, b] = &at(table, axis, values);
+        let (first, others) = partial.split_at_mut(count);
+        for (cell, other) in first.iter_mut().zip(others) {
+            *other = cell.and(b, &and);
+            *cell = cell.and(a, &and);
+        }
+        count *= 2;
+    }
+    firing.act_in_cells(cells, &mut partial[..count]);
+}
+
+/// The degrees and offsets of the two lines on the interval that holds the axis' input.
+#[inline(always)]
+fn at<A: Arrays, const L: usize>(table: &A, axis: &Axis, values: &[[f64; L]]) -> [Partial<L>; 2] {
+    let values = &values[axis.input as usize];
+    let cuts = &table.cuts()[axis.first_cut as usize..axis.end_cut as usize];
+    let mut intervals = [0u64; L];
+    for cuts in cuts.chunks_exact(4) {
+        for cut in cuts {
+            for (interval, x) in intervals.iter_mut().zip(values) {
+                *interval += u64::from(*x >= *cut);
+            }
+        }
+    }
+    // Gathered first, so that the arithmetic is that of whole rows.
+    let mut gathered = [[[0.0; L]; 4]; 2];
+    let mut reached = [Partial::NONE; 2];
+    for row in 0..L {
+        let first = axis.first_line as usize + 2 * intervals[row] as usize;
+        let lines = &table.lines()[first..first + 2];
+        for side in 0..2 {
+            let line = &lines[side];
+            let [foot, run, base, rise] = &mut gathered[side];
+            (foot[row], run[row], base[row], rise[row]) =
+                (line.foot, line.run, line.base, line.rise);
+            reached[side].at[row] = line.literal;
+        }
+    }
+    for side in 0..2 {
+        let [foot, run, base, rise] = &gathered[side];
+        for row in 0..L {
+            let along = (values[row] - foot[row]) / run[row];
+            reached[side].degree[row] = base[row] + rise[row] * along;
+        }
+    }
+    reached
+}
+
+/// Extends partial ANDs input by input. The last input acts at once.
+#[inline(always)]
+pub(super) fn fire_dense<A: Arrays, const L: usize>(
+    table: &A,
+    values: &[[f64; L]],
+    (alive, mut partial, mut next): (&mut [Partial<L>], &mut [Partial<L>], &mut [Partial<L>]),
+    and: impl Fn(f64, f64) -> f64,
+    firing: &mut impl Act<L>,
+) {
+    let actions = |cell: u32| {
+        let cell = cell as usize;
+        let (start, end) = (table.cells()[cell], table.cells()[cell + 1]);
+        &table.actions()[start as usize..end as usize]
+    };
+    let Some((last, others)) = table.dimensions().split_last() else {
+        for row in 0..L {
+            firing.act(actions(0), row, 1.0);
+        }
+        return;
+    };
+    partial[0] = Partial::START;
+    let mut counts = [1; L];
+    for dimension in others {
+        let alive_here = alive_terms(table, dimension, values, alive);
+        for row in 0..L {
+            let mut widened = 0;
+            for cell in &partial[..counts[row]] {
+                for term in &alive[..alive_here[row]] {
+                    // Always written, but counted only where it is over 0: a branch would be mispredicted.
+                    let degree = and(cell.degree[row], term.degree[row]);
+                    next[widened].set(row, degree, cell.at[row] + term.at[row]);
+                    widened += usize::from(degree > 0.0);
+                }
+            }
+            counts[row] = widened;
+        }
+        core::mem::swap(&mut partial, &mut next);
+    }
+    let alive_here = alive_terms(table, last, values, alive);
+    for row in 0..L {
+        for cell in &partial[..counts[row]] {
+            for term in &alive[..alive_here[row]] {
+                let degree = and(cell.degree[row], term.degree[row]);
+                firing.act(actions(cell.at[row] + term.at[row]), row, degree);
+            }
+        }
+    }
+}
+
+/// Writes the degrees over 0 and their offsets, and returns their number in each row.
+#[inline(always)]
+fn alive_terms<A: Arrays, const L: usize>(
+    table: &A,
+    dimension: &Dimension,
+    values: &[[f64; L]],
+    alive: &mut [Partial<L>],
+) -> [usize; L] {
+    let input = &table.inputs()[dimension.input as usize];
+    let values = &values[dimension.input as usize];
+    let mut counts = [0; L];
+    let mut add = |row: usize, literal: u32, degree: f64| {
+        alive[counts[row]].set(row, degree, literal * dimension.stride);
+        counts[row] += usize::from(degree > 0.0);
+    };
+    for row in 0..L {
+        for line in lines(table, input, values[row]) {
+            add(row, line.literal, line.degree(values[row]));
+        }
+    }
+    for curve in curves(table, input) {
+        let degrees = along(table, curve, values);
+        for row in 0..L {
+            add(row, curve.literal, degrees[row]);
+        }
+    }
+    if dimension.any != Dimension::NONE {
+        for row in 0..L {
+            add(row, dimension.any, 1.0);
+        }
+    }
+    counts
+}
+
+/// Walks the trie in a row.
+#[inline(always)]
+pub(super) fn fire_trie<A: Arrays, const L: usize>(
+    table: &A,
+    row: usize,
+    degrees: &[[f64; L]],
+    path: &mut [Partial<L>],
+    and: impl Fn(f64, f64) -> f64,
+    firing: &mut impl Act<L>,
+) {
+    path[0] = Partial::START;
+    let mut open = 1usize;
+    // In a tree no node is reached twice. Where a damaged table is no tree, time stays bounded.
+    for _ in table.nodes() {
+        let Some(left) = open.checked_sub(1) else {
+            return;
+        };
+        open = left;
+        let (degree, at) = (path[open].degree[row], path[open].at[row]);
+        let node = &table.nodes()[at as usize];
+        let range = node.first_action as usize..node.end_action as usize;
+        firing.act(&table.actions()[range], row, degree);
+        for edge in &table.edges()[node.first_edge as usize..node.end_edge as usize] {
+            let both = and(degree, degrees[edge.literal as usize][row]);
+            // In a damaged table there may be no room.
+            if both > 0.0
+                && let Some(next) = path.get_mut(open)
+            {
+                next.set(row, both, edge.node);
+                open += 1;
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! The results of an evaluation of several rows, and each row's outcome.
+
+use super::{Outcome, State};
+
+/// The results for an output in `L` rows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Results<const L: usize> {
+    /// The values where no rule fires; NaN where the output is undefined there.
+    pub(crate) default_values: [f64; L],
+    /// The values that rules gave; NaN where they gave none.
+    pub(crate) values: [f64; L],
+    /// The largest firing strengths.
+    pub(crate) coverage: [f64; L],
+    /// The [numbers](number_of) of the rules with those strengths, infinite where none is over 0.
+    pub(crate) rules: [f64; L],
+    pub(crate) given: Given<L>,
+}
+
+/// What the inputs of `L` rows are. All are numbers as wide as the values, so that vectors hold as many.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Given<const L: usize> {
+    /// 1 where an input was outside its range, else 0.
+    pub(crate) clamped: [u64; L],
+    /// 1 where an input is NaN or infinite, else 0.
+    pub(crate) infinite: [u64; L],
+}
+
+/// The number of a rule, `2^52 + index`: as wide as a strength, so that vectors hold as many.
+#[inline(always)]
+pub(super) fn number_of(rule: u32) -> f64 {
+    f64::from_bits(0x4330 << 48 | u64::from(rule))
+}
+
+#[inline(always)]
+fn rule_of(number: f64) -> u32 {
+    number.to_bits() as u32
+}
+
+impl<const L: usize> Results<L> {
+    /// No row yet.
+    pub(crate) const NONE: Self = Results {
+        default_values: [f64::NAN; L],
+        values: [f64::NAN; L],
+        coverage: [0.0; L],
+        rules: [f64::INFINITY; L],
+        given: Given {
+            clamped: [0; L],
+            infinite: [0; L],
+        },
+    };
+
+    /// The value of a row that rules gave or that stands where no rule fires; NaN where it has none.
+    #[inline(always)]
+    pub(crate) fn value(&self, row: usize) -> f64 {
+        let value = self.values[row];
+        let value = if value.is_nan() {
+            self.default_values[row]
+        } else {
+            value
+        };
+        if self.given.infinite[row] != 0 {
+            f64::NAN
+        } else {
+            value
+        }
+    }
+
+    /// The rule with the largest firing strength of a row.
+    #[inline(always)]
+    pub(crate) fn dominant(&self, row: usize) -> Option<u32> {
+        (self.coverage[row] > 0.0).then_some(rule_of(self.rules[row]))
+    }
+
+    /// Takes the outcome of a row.
+    pub(crate) fn set(&mut self, row: usize, outcome: &Outcome) {
+        (self.values[row], self.default_values[row]) = (f64::NAN, f64::NAN);
+        match outcome.state {
+            State::Defined(value) => self.values[row] = value,
+            State::Default(value) | State::Previous(value) => self.default_values[row] = value,
+            State::NoRuleFired | State::InputNotFinite => {}
+        }
+        self.coverage[row] = outcome.coverage;
+        self.rules[row] = outcome
+            .dominant
+            .map_or(f64::INFINITY, |rule| number_of(rule as u32));
+        self.given.clamped[row] = u64::from(outcome.clamped);
+        self.given.infinite[row] = u64::from(outcome.state == State::InputNotFinite);
+    }
+
+    /// The outcome of a row.
+    #[inline(always)]
+    pub(crate) fn outcome(&self, row: usize) -> Outcome {
+        if self.given.infinite[row] != 0 {
+            return Outcome {
+                state: State::InputNotFinite,
+                ..Outcome::UNDEFINED
+            };
+        }
+        let value = self.values[row];
+        Outcome {
+            state: if !value.is_nan() {
+                State::Defined(value)
+            } else if self.default_values[row].is_nan() {
+                State::NoRuleFired
+            } else {
+                State::Default(self.default_values[row])
+            },
+            coverage: self.coverage[row],
+            dominant: self.dominant(row).map(|rule| rule as usize),
+            clamped: self.given.clamped[row] != 0,
+        }
+    }
+}
