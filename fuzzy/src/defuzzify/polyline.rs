@@ -287,19 +287,13 @@ fn join(
                     aggregate(aggregation, sum, Sloped { degree, slope })
                 })
             };
-            let degree = |t: f64| {
-                segments.iter().fold(0.0, |sum, segment| {
-                    let line = segment.left + (segment.right - segment.left) * t;
-                    aggregation.of(sum, line)
-                })
-            };
             visit(&Piece {
                 from: stretch.from,
                 to: stretch.to,
-                left: degree(0.0),
-                right: degree(1.0),
+                left: sloped(0.0).degree,
+                right: sloped(1.0).degree,
                 curve: Some(Curve {
-                    degree: &degree,
+                    degree: &|t| sloped(t).degree,
                     slope: &|t| sloped(t).slope,
                 }),
             });
