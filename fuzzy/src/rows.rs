@@ -14,12 +14,30 @@ pub(crate) fn each<const L: usize>(mut of_row: impl FnMut(usize) -> f64) -> [f64
     numbers
 }
 
-/// An operator on each row of two numbers.
+/// Writes a number for each row. Making an array first would fill it with zeros.
 #[inline(always)]
-pub(crate) fn joined<const L: usize>(
-    a: &[f64; L],
-    b: &[f64; L],
-    operator: impl Fn(f64, f64) -> f64,
-) -> [f64; L] {
-    each(|row| operator(a[row], b[row]))
+pub(crate) fn set<const L: usize>(numbers: &mut [f64; L], mut of_row: impl FnMut(usize) -> f64) {
+    for (row, number) in numbers.iter_mut().enumerate() {
+        *number = of_row(row);
+    }
+}
+
+/// Changes the number of each row.
+#[inline(always)]
+pub(crate) fn change<const L: usize>(numbers: &mut [f64; L], change: impl Fn(f64) -> f64) {
+    for number in numbers {
+        *number = change(*number);
+    }
+}
+
+/// Joins the numbers of each row with others.
+#[inline(always)]
+pub(crate) fn join<const L: usize>(
+    numbers: &mut [f64; L],
+    others: &[f64; L],
+    join: impl Fn(f64, f64) -> f64,
+) {
+    for (number, other) in numbers.iter_mut().zip(others) {
+        *number = join(*number, *other);
+    }
 }

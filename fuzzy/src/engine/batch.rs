@@ -252,7 +252,6 @@ impl Stage {
     ) {
         let RowsScratch { stage, of_row } = memory;
         let StageScratch { table, workspace } = stage;
-        let mut results = results.iter_mut();
         table::evaluate_rows::<_, _, _, _, ROWS, CELLS>(
             arrays,
             table,
@@ -266,11 +265,7 @@ impl Stage {
                     self.integrate(index, strengths, workspace)
                 })
             },
-            |of_output| {
-                if let Some(results) = results.next() {
-                    *results = *of_output;
-                }
-            },
+            results,
         );
     }
 }

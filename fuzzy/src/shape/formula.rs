@@ -3,7 +3,7 @@
 use libm::{cos, fabs, pow, sqrt};
 
 use crate::formula::evaluate;
-use crate::rows::each;
+use crate::rows::set;
 
 use super::{
     exponential::exp_of_minus,
@@ -45,33 +45,39 @@ impl Kind {
 
     /// The degree at `x`: one of [`Kind::memberships`].
     pub(crate) fn membership(self, parameters: &[f64; 4], points: &[[f64; 2]], x: f64) -> f64 {
-        let [degree] = self.memberships(parameters, points, &[x]);
+        let mut degrees = [0.0];
+        self.memberships(parameters, points, &[x], &mut degrees);
+        let [degree] = degrees;
         degree
     }
 
-    /// The degrees at several values with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise shape,
-    /// or the code of a formula. The commonest shapes take no branch, so that vectors hold several values.
+    /// Writes the degrees at several values with these parameters, in [0, 1] and never NaN; `points` are those of a piecewise
+    /// shape, or the code of a formula. The commonest shapes take no branch, so that vectors hold several values.
     #[inline(always)]
     pub(crate) fn memberships<const L: usize>(
         self,
         parameters: &[f64; 4],
         points: &[[f64; 2]],
         values: &[f64; L],
-    ) -> [f64; L] {
+        degrees: &mut [f64; L],
+    ) {
         let [a, b, c, d] = *parameters;
-        let degrees: [f64; L] = match self {
-            Kind::TRIANGLE => each(|i| trapezoid(values[i], a, b, b, c)),
-            Kind::TRAPEZOID => each(|i| trapezoid(values[i], a, b, c, d)),
-            Kind::LEFT_SHOULDER => each(|i| falling(values[i], a, b)),
-            Kind::RIGHT_SHOULDER => each(|i| rising(values[i], a, b)),
-            Kind::GAUSSIAN => each(|i| gaussian(values[i], a, b)),
-            Kind::SIGMOID => each(|i| sigmoid(values[i], a, b)),
-            Kind::S_SHAPE => each(|i| s_shape(values[i], a, b)),
-            Kind::Z_SHAPE => each(|i| z_shape(values[i], a, b)),
-            Kind::CONSTANT => [a; L],
-            _ => each(|i| self.other(parameters, points, values[i])),
-        };
-        each(|i| into_unit(if values[i].is_nan() { 0.0 } else { degrees[i] }))
+        let degree = |degree: f64, x: f64| into_unit(if x.is_nan() { 0.0 } else { degree });
+        let x = |row: usize| values[row];
+        match self {
+            Kind::TRIANGLE => set(degrees, |i| degree(trapezoid(x(i), a, b, b, c), x(i))),
+            Kind::TRAPEZOID => set(degrees, |i| degree(trapezoid(x(i), a, b, c, d), x(i))),
+            Kind::LEFT_SHOULDER => set(degrees, |i| degree(falling(x(i), a, b), x(i))),
+            Kind::RIGHT_SHOULDER => set(degrees, |i| degree(rising(x(i), a, b), x(i))),
+            Kind::GAUSSIAN => set(degrees, |i| degree(gaussian(x(i), a, b), x(i))),
+            Kind::SIGMOID => set(degrees, |i| degree(sigmoid(x(i), a, b), x(i))),
+            Kind::S_SHAPE => set(degrees, |i| degree(s_shape(x(i), a, b), x(i))),
+            Kind::Z_SHAPE => set(degrees, |i| degree(z_shape(x(i), a, b), x(i))),
+            Kind::CONSTANT => set(degrees, |i| degree(a, x(i))),
+            _ => set(degrees, |i| {
+                degree(self.other(parameters, points, x(i)), x(i))
+            }),
+        }
     }
 
     /// The degree of a shape that takes branches.

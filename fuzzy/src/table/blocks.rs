@@ -141,8 +141,9 @@ pub(super) fn fire_blocks<A: Arrays>(
             // Without steps it is more of the rule before it.
             if !steps.is_empty() {
                 let (and, or) = (|a, b| and.of(a, b), |a, b| or.of(a, b));
-                let [degree] = run(steps, degrees, and, or, stack);
-                rules[count] = Partial::new(program.weight * degree, at);
+                let mut degree = [0.0];
+                run(steps, degrees, (and, or), stack, &mut degree);
+                rules[count] = Partial::new(program.weight * degree[0], at);
                 count += 1;
             }
         }

@@ -311,8 +311,9 @@ impl<'a> Chain<'a> {
             .get(span(curve.first_hedge, curve.end_hedge));
         match (points, hedges) {
             (Some(points), Some(hedges)) => {
-                let [degree] = curve.degrees(points, hedges, &[x]);
-                degree
+                let mut degree = [0.0];
+                curve.degrees(points, hedges, &[x], &mut degree);
+                degree[0]
             }
             _ => 0.0,
         }

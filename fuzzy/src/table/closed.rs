@@ -7,7 +7,7 @@ use libm::fabs;
 use super::operators::{larger, smaller};
 use super::{Arrays, Curve, Output, Point};
 use crate::formula::evaluate;
-use crate::rows::{each, joined};
+use crate::rows::{change, join, set};
 
 /// The closed form of a defuzzifier.
 #[doc(hidden)] // Exported data.
@@ -128,7 +128,10 @@ impl Pair {
             }
             strengths = &strengths[2..];
         }
-        [area, moment].map(|[left, right]| joined(&left, &right, |a, b| a + b))
+        let ([mut areas, right], [mut moments, right_moments]) = (area, moment);
+        join(&mut areas, &right, |a, b| a + b);
+        join(&mut moments, &right_moments, |a, b| a + b);
+        [areas, moments]
     }
 }
 
@@ -138,18 +141,19 @@ pub(crate) fn centroid(area: f64, moment: f64, origin: f64) -> Option<f64> {
     (area > 0.0).then(|| origin + moment / area)
 }
 
-/// The values of an output with a closed form that is the same few sums in every row; NaN where no rule fired. `None` of
-/// another output.
+/// Writes the values of an output with a closed form that is the same few sums in every row; NaN where no rule fired. `false`
+/// for another output.
 #[inline(always)]
 pub(super) fn closed<A: Arrays, const L: usize>(
     table: &A,
     output: &Output,
     strengths: &[[f64; L]],
     inputs: &[[f64; L]],
-) -> Option<[f64; L]> {
+    values: &mut [f64; L],
+) -> bool {
     let range = output.first as usize..output.end as usize;
     match output.form {
-        ClosedForm::PARTITION => Some(partition(table, output, strengths)),
+        ClosedForm::PARTITION => partition(table, output, strengths, values),
         ClosedForm::MOMENTS => {
             let (mut areas, mut moments) = ([0.0; L], [0.0; L]);
             for (Moment { area, moment }, strengths) in table.moments()[range].iter().zip(strengths)
@@ -159,21 +163,18 @@ pub(super) fn closed<A: Arrays, const L: usize>(
                     moments[row] += strengths[row] * moment;
                 }
             }
-            Some(centroids(output, &areas, &moments))
+            set(values, |row| centroid_in(output, areas[row], moments[row]));
         }
         // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
         form @ (ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM) => {
-            let values = weighted(
-                form,
-                &table.consequents()[range],
-                (table.coefficients(), table.points()),
-                strengths,
-                inputs,
-            );
-            Some(each(|row| output.clamped(values[row])))
+            let (consequents, coefficients) = (&table.consequents()[range], table.coefficients());
+            let numbers = (consequents, coefficients, table.points());
+            weighted(form, numbers, strengths, inputs, values);
+            change(values, |value| output.clamped(value));
         }
-        _ => None,
+        _ => return false,
     }
+    true
 }
 
 /// [`closed`], apart from the code of partitions, from which it would take registers.
@@ -183,8 +184,9 @@ pub(super) fn closed_apart<A: Arrays, const L: usize>(
     output: &Output,
     strengths: &[[f64; L]],
     inputs: &[[f64; L]],
-) -> Option<[f64; L]> {
-    closed(table, output, strengths, inputs)
+    values: &mut [f64; L],
+) -> bool {
+    closed(table, output, strengths, inputs, values)
 }
 
 /// [`closed`] of a partition.
@@ -193,20 +195,19 @@ pub(super) fn partition<A: Arrays, const L: usize>(
     table: &A,
     output: &Output,
     strengths: &[[f64; L]],
-) -> [f64; L] {
+    values: &mut [f64; L],
+) {
     let pairs = &table.pairs()[output.first as usize..output.end as usize];
     let [areas, moments] = Pair::integrals(pairs, strengths);
-    centroids(output, &areas, &moments)
+    set(values, |row| centroid_in(output, areas[row], moments[row]));
 }
 
-/// The centroids of sets whose moments are measured from the middle of the range; NaN where one has no area.
+/// The centroid of a set whose moment is measured from the middle of the range; NaN where it has no area.
 #[inline(always)]
-fn centroids<const L: usize>(output: &Output, areas: &[f64; L], moments: &[f64; L]) -> [f64; L] {
-    each(|row| {
-        let value = output.origin() + moments[row] / areas[row];
-        let value = larger(output.low, smaller(output.high, value));
-        select_unpredictable(areas[row] > 0.0, value, f64::NAN)
-    })
+fn centroid_in(output: &Output, area: f64, moment: f64) -> f64 {
+    let value = output.origin() + moment / area;
+    let value = larger(output.low, smaller(output.high, value));
+    select_unpredictable(area > 0.0, value, f64::NAN)
 }
 
 /// The value of an output with another closed form; `None` where no rule fired.
@@ -257,26 +258,25 @@ fn tsukamoto(
     (total > 0.0).then(|| sum / total)
 }
 
-/// `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; NaN where none is over 0, and where a formula has no value.
+/// Writes `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; NaN where none is over 0, and where a formula has no value.
 #[inline(always)]
 fn weighted<const L: usize>(
     form: ClosedForm,
-    consequents: &[Consequent],
-    (coefficients, points): (&[Coefficient], &[Point]),
+    (consequents, coefficients, points): (&[Consequent], &[Coefficient], &[Point]),
     strengths: &[[f64; L]],
     inputs: &[[f64; L]],
-) -> [f64; L] {
-    let (mut sums, mut totals) = ([0.0; L], [0.0; L]);
+    values: &mut [f64; L],
+) {
+    let (mut sums, mut totals, mut z) = ([0.0; L], [0.0; L], [0.0; L]);
     for (consequent, strengths) in consequents.iter().zip(strengths) {
         if strengths.iter().all(|strength| *strength <= 0.0) {
             continue;
         }
-        let mut z = [consequent.constant; L];
+        z.fill(consequent.constant);
         for c in &coefficients[consequent.first as usize..consequent.end as usize] {
-            let inputs = &inputs[c.input as usize];
-            for row in 0..L {
-                z[row] += c.coefficient * inputs[row];
-            }
+            join(&mut z, &inputs[c.input as usize], |z, x| {
+                z + c.coefficient * x
+            });
         }
         let code = &points[consequent.first_code as usize..consequent.end_code as usize];
         if !code.is_empty() {
@@ -292,12 +292,12 @@ fn weighted<const L: usize>(
             totals[row] += strengths[row];
         }
     }
-    each(|row| {
+    set(values, |row| {
         let value = match form {
             ClosedForm::WEIGHTED_SUM => sums[row],
             _ => sums[row] / totals[row],
         };
         let is_value = (totals[row] > 0.0) & (fabs(value) < f64::INFINITY);
         select_unpredictable(is_value, value, f64::NAN)
-    })
+    });
 }

@@ -217,8 +217,9 @@ fn alive_terms<A: Arrays, const L: usize>(
             add(row, line.literal, line.degree(values[row]));
         }
     }
+    let mut degrees = [0.0; L];
     for curve in curves(table, input) {
-        let degrees = along(table, curve, values);
+        along(table, curve, values, &mut degrees);
         for row in 0..L {
             add(row, curve.literal, degrees[row]);
         }

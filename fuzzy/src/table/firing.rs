@@ -10,7 +10,7 @@ use super::operators::{larger, smaller};
 use super::results::number_of;
 use super::rules::{Action, Op, Step};
 use super::{Arrays, Buffers, Conjunction, Conjunctions, Disjunction};
-use crate::rows::{each, joined};
+use crate::rows::{change, join};
 
 /// The strongest rule of an output in each of `L` rows: the first in the model of several equally strong rules, in whatever
 /// order they fire.
@@ -105,12 +105,11 @@ impl<const L: usize> Act<L> for Firing<'_, L> {
     fn act_with(&mut self, actions: &[Action], strengths: &[f64; L]) {
         for action in actions {
             let kept = &mut self.strengths[action.strength as usize];
-            let before = *kept;
-            *kept = if action.sums != 0 {
-                joined(&before, strengths, |a, b| a + b)
+            if action.sums != 0 {
+                join(kept, strengths, |a, b| a + b);
             } else {
-                joined(&before, strengths, larger)
-            };
+                join(kept, strengths, larger);
+            }
             let rule = number_of(action.rule);
             if self.strongest.len() == 1 {
                 for row in 0..L {
@@ -156,7 +155,7 @@ fn fire_cells<const L: usize>(
             *kept = larger(*kept, strength);
             (cell.degree[row], cell.at[row]) = (strength, action.rule);
         }
-        strongest.strength = joined(&strongest.strength, &cell.degree, larger);
+        join(&mut strongest.strength, &cell.degree, larger);
     }
     for cell in &*reached {
         for row in 0..L {
@@ -395,54 +394,59 @@ fn fire_with<A: Arrays, const L: usize, const CELLS: bool>(
         return;
     }
     let least = table.least_strength();
+    let mut strengths = [0.0; L];
     for program in table.programs() {
         let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
-        let degrees = run(steps, degrees, &and, &or, stack);
-        let mut strengths = each(|row| fires(program.weight * degrees[row], least));
+        run(steps, degrees, (&and, &or), stack, &mut strengths);
+        change(&mut strengths, |degree| {
+            fires(program.weight * degree, least)
+        });
         for hedge in &table.hedges()[program.first_hedge as usize..program.end_hedge as usize] {
-            strengths = each(|row| hedge.of(strengths[row]));
+            change(&mut strengths, |strength| hedge.of(strength));
         }
         let actions = program.first_action as usize..program.end_action as usize;
         firing.act_with(&table.actions()[actions], &strengths);
     }
 }
 
-/// The degrees of an antecedent. `stack` holds at least the depth of the program.
+/// Writes the degrees of an antecedent to `top`. `stack` holds at least the depth of the program.
 #[inline(always)]
 pub(super) fn run<const L: usize>(
     steps: &[Step],
     degrees: &[[f64; L]],
-    and: impl Fn(f64, f64) -> f64,
-    or: impl Fn(f64, f64) -> f64,
+    (and, or): (impl Fn(f64, f64) -> f64, impl Fn(f64, f64) -> f64),
     stack: &mut [[f64; L]],
-) -> [f64; L] {
+    top: &mut [f64; L],
+) {
     let degree = |step: &Step| &degrees[step.literal as usize];
-    let (mut top, mut rest) = ([0.0; L], steps);
-    if let Some((first, after)) = steps.split_first()
-        && first.op == Op::PUSH
-    {
-        (top, rest) = (*degree(first), after);
+    let mut rest = steps;
+    match steps.split_first() {
+        Some((first, after)) if first.op == Op::PUSH => {
+            *top = *degree(first);
+            rest = after;
+        }
+        _ => top.fill(0.0),
     }
     let mut depth = 0;
     for step in rest {
-        top = match step.op {
-            Op::AND_LITERAL => joined(&top, degree(step), &and),
-            Op::OR_LITERAL => joined(&top, degree(step), &or),
+        match step.op {
+            Op::AND_LITERAL => join(top, degree(step), &and),
+            Op::OR_LITERAL => join(top, degree(step), &or),
             Op::PUSH => {
-                stack[depth] = top;
+                stack[depth] = *top;
                 depth += 1;
-                *degree(step)
+                *top = *degree(step);
             }
             Op::AND => {
                 depth -= 1;
-                joined(&stack[depth], &top, &and)
+                join(top, &stack[depth], |top, below| and(below, top));
             }
             Op::OR => {
                 depth -= 1;
-                joined(&stack[depth], &top, &or)
+                join(top, &stack[depth], |top, below| or(below, top));
             }
-            _ => each(|row| 1.0 - top[row]),
-        };
+            _ => change(top, |top| 1.0 - top),
+        }
     }
-    each(|row| larger(0.0, smaller(1.0, top[row])))
+    change(top, |top| larger(0.0, smaller(1.0, top)));
 }

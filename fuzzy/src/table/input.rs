@@ -2,7 +2,7 @@
 
 use super::operators::Hedge;
 use super::{Arrays, Kind};
-use crate::rows::each;
+use crate::rows::{change, set};
 
 /// An input: its range and its literals.
 #[doc(hidden)] // Exported data.
@@ -106,22 +106,25 @@ pub(crate) fn degrees_in_rows<A: Arrays, const L: usize>(
         }
     } else if let Some(&x) = values.first() {
         for line in lines(table, input, x) {
-            degrees[line.literal as usize] = each(|row| line.degree(values[row]));
+            set(&mut degrees[line.literal as usize], |row| {
+                line.degree(values[row])
+            });
         }
     }
-    let first = [values[0]];
     // Along a row of a map all inputs but one stay the same.
     let is_same = L > 1
         && values
             .iter()
             .all(|value| value.to_bits() == values[0].to_bits());
     for curve in curves(table, input) {
-        degrees[curve.literal as usize] = if is_same {
-            let [degree] = along(table, curve, &first);
-            [degree; L]
+        let degrees = &mut degrees[curve.literal as usize];
+        if is_same {
+            let mut degree = [0.0];
+            along(table, curve, &[values[0]], &mut degree);
+            degrees.fill(degree[0]);
         } else {
-            along(table, curve, values)
-        };
+            along(table, curve, values, degrees);
+        }
     }
 }
 
@@ -144,16 +147,17 @@ pub(super) fn curves<'t, A: Arrays>(table: &'t A, input: &Input) -> &'t [Curve] 
     &table.curves()[input.first_curve as usize..input.end_curve as usize]
 }
 
-/// The degrees of a curve at the values of each row.
+/// Writes the degrees of a curve at the values of each row.
 #[inline(always)]
 pub(super) fn along<A: Arrays, const L: usize>(
     table: &A,
     curve: &Curve,
     values: &[f64; L],
-) -> [f64; L] {
+    degrees: &mut [f64; L],
+) {
     let points = &table.points()[curve.first_point as usize..curve.end_point as usize];
     let hedges = &table.hedges()[curve.first_hedge as usize..curve.end_hedge as usize];
-    curve.degrees(points, hedges, values)
+    curve.degrees(points, hedges, values, degrees);
 }
 
 impl Curve {
@@ -163,12 +167,15 @@ impl Curve {
         points: &[Point],
         hedges: &[Hedge],
         values: &[f64; L],
-    ) -> [f64; L] {
-        let degrees = self.kind.memberships(&self.parameters, points, values);
-        let mut degrees = each(|row| self.height * degrees[row]);
-        for hedge in hedges {
-            degrees = each(|row| hedge.of(degrees[row]));
+        degrees: &mut [f64; L],
+    ) {
+        self.kind
+            .memberships(&self.parameters, points, values, degrees);
+        if self.height != 1.0 {
+            change(degrees, |degree| self.height * degree);
         }
-        degrees
+        for hedge in hedges {
+            change(degrees, |degree| hedge.of(degree));
+        }
     }
 }

@@ -47,7 +47,7 @@ pub use set::{FuzzySet, Section, SetDefuzzifier, SetTerm, Strand};
 
 pub use crate::shape::Kind;
 
-use crate::rows::each;
+use crate::rows::{each, set};
 use closed::{closed, closed_apart, closed_in_row, partition};
 pub(crate) use firing::has_cells_alone;
 use firing::{fire, fire_row};
@@ -237,38 +237,27 @@ pub(crate) fn evaluate_row<A, N, P, S, const CELLS: bool>(
     } else {
         fire_row(table, scratch);
     }
-    let mut outcomes = outcomes.iter_mut();
-    results(
-        table,
-        scratch,
-        given,
-        |index, output, _, strengths| {
-            value_in_row(
-                table,
-                index,
-                output,
-                strengths.as_flattened(),
-                &mut integrate,
-            )
-        },
-        |results| {
-            if let Some(outcome) = outcomes.next() {
-                *outcome = results.outcome(0);
-            }
-        },
-    );
+    let mut in_row = |index: usize, output: &Output, _, strengths: &[[f64; 1]]| {
+        let strengths = strengths.as_flattened();
+        value_in_row(table, index, output, strengths, &mut integrate)
+    };
+    let mut results = Results::NONE;
+    for (index, outcome) in (0..table.outputs().len()).zip(outcomes) {
+        fill(table, scratch, (index, given), &mut in_row, &mut results);
+        *outcome = results.outcome(0);
+    }
 }
 
-/// Evaluates the values of each input in `L` rows, in a table without blocks, and calls `put` with the results for each
-/// output. `in_row` gives the value in one row of an output that [`closed`] does not know, from its index, the row and the
-/// firing strengths of all rows.
+/// Evaluates the values of each input in `L` rows, in a table without blocks, into the results of each output. `in_row` gives
+/// the value in one row of an output that [`closed`] does not know, from its index, the row and the firing strengths of all
+/// rows.
 #[inline(always)]
 pub(crate) fn evaluate_rows<A, N, P, S, const L: usize, const CELLS: bool>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
     inputs: impl Iterator<Item = [f64; L]>,
-    in_row: impl FnMut(usize, &Output, usize, &[[f64; L]]) -> Option<f64>,
-    put: impl FnMut(&Results<L>),
+    mut in_row: impl FnMut(usize, &Output, usize, &[[f64; L]]) -> Option<f64>,
+    results: &mut [Results<L>],
 ) where
     A: Arrays,
     N: DerefMut<Target = [[f64; L]]>,
@@ -277,7 +266,9 @@ pub(crate) fn evaluate_rows<A, N, P, S, const L: usize, const CELLS: bool>(
 {
     let given = clamp(table, inputs, &mut scratch.values);
     fire::<_, _, _, _, L, CELLS>(table, scratch);
-    results(table, scratch, given, in_row, put);
+    for (index, results) in (0..table.outputs().len()).zip(results) {
+        fill(table, scratch, (index, given), &mut in_row, results);
+    }
 }
 
 /// The value in one row of an output that [`closed`] does not know; `None` where no rule fired. `integrate` is as in
@@ -324,44 +315,41 @@ fn clamp<A: Arrays, const L: usize>(
     given
 }
 
-/// Calls `put` with the results of the rules that have fired, for each output.
+/// Writes the results for an output of the rules that have fired.
 #[inline(always)]
-fn results<A, N, P, S, const L: usize>(
+fn fill<A, N, P, S, const L: usize>(
     table: &A,
     scratch: &Buffers<N, P, S>,
-    given: Given<L>,
-    mut in_row: impl FnMut(usize, &Output, usize, &[[f64; L]]) -> Option<f64>,
-    mut put: impl FnMut(&Results<L>),
+    (index, given): (usize, Given<L>),
+    in_row: &mut impl FnMut(usize, &Output, usize, &[[f64; L]]) -> Option<f64>,
+    results: &mut Results<L>,
 ) where
     A: Arrays,
     N: DerefMut<Target = [[f64; L]]>,
     S: DerefMut<Target = [Strongest<L>]>,
 {
-    for (index, output) in table.outputs().iter().enumerate() {
-        let Strongest { strength, rule } = scratch.strongest[index];
-        let strengths = output.first_strength as usize..output.end_strength as usize;
-        let strengths = &scratch.strengths[strengths];
-        let inputs = &scratch.values;
-        let values = if output.form == ClosedForm::PARTITION {
-            Some(partition(table, output, strengths))
-        } else if L == 1 {
-            closed_apart(table, output, strengths, inputs)
-        } else {
-            closed(table, output, strengths, inputs)
-        };
-        let values = values.unwrap_or_else(|| {
-            each(|row| {
-                let fires = strength[row] > 0.0;
-                let value = fires.then(|| in_row(index, output, row, strengths));
-                value.flatten().unwrap_or(f64::NAN)
-            })
-        });
-        put(&Results {
-            default_values: [output.default_value; L],
-            values,
-            coverage: strength,
-            rules: rule,
-            given,
+    let output = &table.outputs()[index];
+    let Strongest { strength, rule } = &scratch.strongest[index];
+    let strengths = output.first_strength as usize..output.end_strength as usize;
+    let strengths = &scratch.strengths[strengths];
+    let (inputs, values) = (&scratch.values, &mut results.values);
+    let is_known = if output.form == ClosedForm::PARTITION {
+        partition(table, output, strengths, values);
+        true
+    } else if L == 1 {
+        closed_apart(table, output, strengths, inputs, values)
+    } else {
+        closed(table, output, strengths, inputs, values)
+    };
+    if !is_known {
+        set(values, |row| {
+            let fires = strength[row] > 0.0;
+            let value = fires.then(|| in_row(index, output, row, strengths));
+            value.flatten().unwrap_or(f64::NAN)
         });
     }
+    results.default_values.fill(output.default_value);
+    results.coverage = *strength;
+    results.rules = *rule;
+    results.given = given;
 }

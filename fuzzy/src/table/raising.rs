@@ -99,9 +99,11 @@ where
         // In a damaged table it may be one of another output.
         let index = strength.checked_sub(first)? as usize;
         *strengths.get_mut(index)? = [1.0];
-        let alone = match closed(table, of, strengths, values) {
-            Some([value]) => Some(value).filter(|value| !value.is_nan()),
-            None => value_in_row(table, output, of, strengths.as_flattened(), &mut integrate),
+        let mut value = [0.0];
+        let alone = if closed(table, of, strengths, values, &mut value) {
+            Some(value[0]).filter(|value| !value.is_nan())
+        } else {
+            value_in_row(table, output, of, strengths.as_flattened(), &mut integrate)
         };
         *strengths.get_mut(index)? = [0.0];
         alone.map(&score)
