@@ -1,4 +1,5 @@
-//! `flagred export`: a profile and its rule set as constant data for on-board use, or a rule set for another program.
+//! `flagred export`: a profile and its rule set, or a rule set alone, as constant data for firmware; or a rule set for another
+//! program.
 
 use std::{
     fmt::Debug,

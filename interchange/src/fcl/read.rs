@@ -110,42 +110,34 @@ impl<'r, 't> Reader<'r, 't> {
     }
 
     /// Steps to the function block of a name. Of several ones without a name it is the first, with a loss.
-    pub(super) fn choose(&mut self, name: Option<&str>) -> bool {
-        let starts = self.words.iter().enumerate();
-        let is_start = |word: &str| word.eq_ignore_ascii_case("FUNCTION_BLOCK");
-        let starts: Vec<usize> = starts
-            .filter_map(|(at, word)| is_start(word).then_some(at))
-            .collect();
-        let name_at = |start: &usize| self.words.get(start + 1).copied().unwrap_or_default();
-        let names: Vec<&str> = starts.iter().map(name_at).collect();
-        let listed = names.iter().map(|name| format!("`{name}`"));
+    fn choose(&mut self, name: Option<&str>) -> bool {
+        let words = self.words.iter().zip(self.words.iter().skip(1)).enumerate();
+        let blocks = words.filter(|(_, (word, _))| word.eq_ignore_ascii_case("FUNCTION_BLOCK"));
+        let blocks: Vec<(usize, &str)> = blocks.map(|(at, (_, name))| (at, *name)).collect();
+        let listed = blocks.iter().map(|(_, name)| format!("`{name}`"));
         let listed = listed.collect::<Vec<_>>().join(", ");
-        match name {
-            None => {
-                if let [_, second, ..] = names[..] {
-                    let message = format!("the file has the function blocks {listed}");
-                    let help = "a rule set is one of them";
-                    self.draft.loss("several-blocks", second, message, help);
-                }
-                !self.draft.has_errors()
+        let Some(name) = name else {
+            if let [_, (_, second), ..] = blocks[..] {
+                let message = format!("the file has the function blocks {listed}");
+                let help = "a rule set is one of them";
+                self.draft.loss("several-blocks", second, message, help);
             }
-            Some(name) => {
-                let found = names.iter().position(|known| *known == name);
-                match found.and_then(|found| starts.get(found)) {
-                    Some(start) => self.next = *start,
-                    None => {
-                        let help = match nearest(name, names.iter().copied()) {
-                            Some(near) => format!("did you mean `{near}`?"),
-                            None => format!("there are {listed}"),
-                        };
-                        let message = format!("there is no function block `{name}`");
-                        let part = names.first().copied().unwrap_or_default();
-                        self.draft.error("unknown-block", part, message, &help);
-                    }
-                }
-                found.is_some()
-            }
+            return !self.draft.has_errors();
+        };
+        if let Some((at, _)) = blocks.iter().find(|(_, known)| *known == name) {
+            self.next = *at;
+            return true;
         }
+        let help = match nearest(name, blocks.iter().map(|(_, known)| *known)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("there are {listed}"),
+        };
+        let message = format!("there is no function block `{name}`");
+        let part = blocks
+            .first()
+            .map_or_else(|| self.here(), |(_, name)| *name);
+        self.draft.error("unknown-block", part, message, &help);
+        false
     }
 
     pub(super) fn file(&mut self) {

@@ -81,11 +81,6 @@ impl Reader<'_, '_> {
         let (Some(first), Some(last)) = (words.first(), words.last()) else {
             return self.unexpected("`IF`");
         };
-        let ended = self
-            .next
-            .checked_sub(1)
-            .and_then(|last| self.words.get(last));
-        self.is_fuzzylite |= ended != Some(&";");
         let span = self.draft.span(first).start..self.draft.span(last).end;
         if let Some(rule) = rules::read(&mut self.draft, words) {
             let mut spans = RuleSpans::default();
@@ -117,17 +112,9 @@ impl Reader<'_, '_> {
         }
         if !matches!(accumulation, None | Some(Aggregation::Sum)) {
             let name = output.variable.name.clone();
-            let span = self
-                .draft
-                .spans
-                .outputs
-                .get(index)
-                .map(|spans| spans.name.clone());
-            let part = self
-                .draft
-                .text
-                .get(span.unwrap_or_default())
-                .unwrap_or_default();
+            let spans = self.draft.spans.outputs.get(index);
+            let span = spans.map(|spans| spans.name.clone()).unwrap_or_default();
+            let part = self.draft.text.get(span).unwrap_or_default();
             let help = "write `ACCU : SUM;`, which weighs each rule";
             blocks::joined(&mut self.draft, &name, part, help);
         }
