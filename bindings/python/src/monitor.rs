@@ -94,11 +94,11 @@ impl MonitorData {
 #[pymethods]
 impl MonitorData {
     #[new]
-    #[pyo3(signature = (profile, signals = Vec::new(), step_s = None))]
-    fn new(profile: &Profile, signals: Vec<String>, step_s: Option<f64>) -> Self {
+    #[pyo3(signature = (profile, signals = None, step_s = None))]
+    fn new(profile: &Profile, signals: Option<Vec<String>>, step_s: Option<f64>) -> Self {
         MonitorData {
             loaded: Arc::clone(&profile.loaded),
-            signals,
+            signals: signals.unwrap_or_default(),
             followed: Mutex::new(None),
             step_s,
         }

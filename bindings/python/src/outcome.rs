@@ -4,6 +4,8 @@ use fuzzy::engine::{self, State};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 
+use crate::errors::data_error;
+
 /// What an evaluation says of one output at one point.
 #[pyclass(frozen, get_all, eq, module = "flagred")]
 #[derive(Clone, PartialEq)]
@@ -27,6 +29,42 @@ impl Outcome {
         self.value.unwrap_or(f64::NAN)
     }
 
+    #[staticmethod]
+    fn _of(
+        value: Option<f64>,
+        coverage: f64,
+        dominant_rule: Option<usize>,
+        clamped: bool,
+        state: &str,
+    ) -> PyResult<Self> {
+        let state = STATES.iter().find(|known| **known == state);
+        Ok(Outcome {
+            value,
+            coverage,
+            dominant_rule,
+            clamped,
+            state: state.ok_or_else(|| data_error("no state of an outcome", None))?,
+        })
+    }
+
+    #[expect(clippy::type_complexity, reason = "what pickle takes")]
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(
+        Bound<'py, PyAny>,
+        (Option<f64>, f64, Option<usize>, bool, &'static str),
+    )> {
+        let it = slf.get();
+        let fields = (
+            it.value,
+            it.coverage,
+            it.dominant_rule,
+            it.clamped,
+            it.state,
+        );
+        Ok((slf.getattr("_of")?, fields))
+    }
+
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let shown = |value: Py<PyAny>| Ok::<_, PyErr>(value.bind(py).repr()?.to_string());
         let value = shown(self.value.into_pyobject(py)?.unbind())?;
@@ -40,6 +78,15 @@ impl Outcome {
     }
 }
 
+/// All that an outcome can be.
+const STATES: [&str; 5] = [
+    "defined",
+    "default",
+    "previous",
+    "no_rule_fired",
+    "input_not_finite",
+];
+
 impl From<engine::Outcome> for Outcome {
     fn from(outcome: engine::Outcome) -> Self {
         Outcome {
@@ -48,11 +95,11 @@ impl From<engine::Outcome> for Outcome {
             dominant_rule: outcome.dominant,
             clamped: outcome.clamped,
             state: match outcome.state {
-                State::Defined(_) => "defined",
-                State::Default(_) => "default",
-                State::Previous(_) => "previous",
-                State::NoRuleFired => "no_rule_fired",
-                State::InputNotFinite => "input_not_finite",
+                State::Defined(_) => STATES[0],
+                State::Default(_) => STATES[1],
+                State::Previous(_) => STATES[2],
+                State::NoRuleFired => STATES[3],
+                State::InputNotFinite => STATES[4],
             },
         }
     }

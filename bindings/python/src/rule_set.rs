@@ -555,16 +555,16 @@ impl RuleSet {
         })?
     }
 
-    #[pyo3(signature = (*, coverage = 0.5, monotone = Vec::new()))]
+    #[pyo3(signature = (*, coverage = 0.5, monotone = None))]
     fn check<'py>(
         &self,
         py: Python<'py>,
         coverage: f64,
-        monotone: Vec<String>,
+        monotone: Option<Vec<String>>,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let mut options = check::Options::default();
         options.coverage = coverage;
-        for claim in monotone {
+        for claim in monotone.unwrap_or_default() {
             let claim = claim.parse::<Monotone>();
             options
                 .monotone

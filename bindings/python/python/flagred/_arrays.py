@@ -13,7 +13,8 @@ from ._errors import DataError
 def array(value: Any) -> NDArray[np.float64]:
     """A value, whatever it is, as an array of float64; masked, null and None become NaN."""
     if isinstance(value, np.ma.MaskedArray):
-        return value.astype(np.float64).filled(np.nan)
+        filled: NDArray[np.float64] = np.ma.filled(value.astype(np.float64), np.nan)
+        return filled
     if type(value).__module__.startswith("pandas.") and hasattr(value, "to_numpy"):
         # pandas has types of its own, with null as a value of them.
         value = value.to_numpy(dtype=np.float64, na_value=np.nan)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-Level = Literal["GOOD", "INFO", "WARN", "FAIL"]
-
 
 @dataclass(frozen=True)
 class Range:
@@ -165,7 +163,7 @@ class Cause:
 class Finding:
     """A time at a level: when, what, and its cause. ``str()`` says it in words."""
 
-    severity: Level
+    severity: Literal["GOOD", "INFO", "WARN", "FAIL"]
     from_s: float
     raised_s: float
     """When the level was raised."""

@@ -143,7 +143,7 @@ class Rules(MutableSequence[Rule]):
     @overload
     def __getitem__(self, index: int) -> Rule: ...
     @overload
-    def __getitem__(self, index: slice) -> list[Rule]: ...  # type: ignore[override]
+    def __getitem__(self, index: slice) -> list[Rule]: ...
     def __getitem__(self, index: int | slice) -> Rule | list[Rule]:
         if isinstance(index, slice):
             return [Rule(self._model, i) for i in range(len(self))[index]]

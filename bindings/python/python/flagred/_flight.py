@@ -250,12 +250,14 @@ class Assessment(AssessmentData):
     @property
     def reason(self) -> str | None:
         """Why there is no answer."""
-        return self._data["verdict"].get("reason")
+        reason: str | None = self._data["verdict"].get("reason")
+        return reason
 
     @property
     def help(self) -> str | None:
         """What the pilot can do to get an answer next time."""
-        return self._data["verdict"].get("help")
+        help: str | None = self._data["verdict"].get("help")
+        return help
 
     @cached_property
     def findings(self) -> list[Finding]:
