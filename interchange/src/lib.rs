@@ -149,11 +149,16 @@ pub fn read_block(text: &str, name: &str, losses: Losses) -> Result<Document, Fi
 ///
 /// # Errors
 ///
-/// As [`read`] without losses, and as [`fuzzy::yaml::parse`].
+/// As [`read`] without losses, and as [`fuzzy::yaml::parse`]; all that is wrong with the model.
 pub fn document(text: &str) -> Result<Document, Findings> {
-    match Format::of(text) {
-        Some(format) => read(text, format, Losses::Refuse),
-        None => fuzzy::yaml::parse(text),
+    let Some(format) = Format::of(text) else {
+        return fuzzy::yaml::parse(text);
+    };
+    let document = read(text, format, Losses::Refuse)?;
+    let invalid = fuzzy::validate(&document.model, &document.spans);
+    match invalid.is_empty() {
+        true => Ok(document),
+        false => Err(Findings::locate(invalid, text)),
     }
 }
 

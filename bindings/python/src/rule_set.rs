@@ -424,6 +424,30 @@ impl RuleSet {
         self.model(yaml::to_string)
     }
 
+    /// Evaluates the rule set, and gives values.
+    ///
+    /// Parameters
+    /// ----------
+    /// values
+    ///     A number for each input, in their order or by their names: ``model(8, 9)``, ``model(service=8, food=9)``,
+    ///     ``model({"service": 8, "food": 9})``. Or arrays that broadcast against each other. Or one frame with a column for
+    ///     each input: pandas, polars, pyarrow, DuckDB, and whatever else hands over Arrow data. None, null and NaN are
+    ///     unknown.
+    /// threads
+    ///     How many threads evaluate arrays and frames; as many as there are cores where it is None.
+    ///
+    /// Returns
+    /// -------
+    /// float, numpy.ndarray or frame
+    ///     The value of the output; NaN where it is unknown, null in frames. With several outputs a dict by their names. A
+    ///     frame gives a frame of the same library.
+    ///
+    /// Raises
+    /// ------
+    /// DataError
+    ///     An input has no value, a name is no input, or a value is no number.
+    /// RuleSetError
+    ///     The rule set is not finished, or was built wrong.
     #[pyo3(signature = (*args, threads = None, **named))]
     fn __call__<'py>(
         slf: &Bound<'py, Self>,
@@ -443,6 +467,25 @@ impl RuleSet {
         }
     }
 
+    /// Evaluates the rule set, and says what its values rest on.
+    ///
+    /// Parameters
+    /// ----------
+    /// values
+    ///     As the model is called.
+    /// threads
+    ///     As the model is called.
+    ///
+    /// Returns
+    /// -------
+    /// Outcome, Outcomes or frame
+    ///     Value, coverage, dominant rule and whether an input was clamped: of a point, as arrays, or as the columns of a
+    ///     frame. With several outputs a dict by their names.
+    ///
+    /// Examples
+    /// --------
+    /// >>> model.evaluate(service=8, food=9)
+    /// Outcome(value=18.394444444444446, coverage=0.9, dominant_rule=2, clamped=False, state='defined')
     #[pyo3(signature = (*args, threads = None, **named))]
     fn evaluate<'py>(
         slf: &Bound<'py, Self>,
@@ -502,6 +545,22 @@ impl RuleSet {
         Ok(Table { batches, schema })
     }
 
+    /// Says why the outputs are what they are at one point.
+    ///
+    /// Parameters
+    /// ----------
+    /// values
+    ///     A number for each input, in their order or by their names.
+    ///
+    /// Returns
+    /// -------
+    /// Explanation
+    ///     The degree of each term, the rules that fired and their shares. Jupyter draws it, ``print`` writes it.
+    ///
+    /// Raises
+    /// ------
+    /// DataError
+    ///     An input has no value, or is no finite number.
     #[pyo3(signature = (*args, **named))]
     fn explain<'py>(
         &self,
@@ -520,6 +579,28 @@ impl RuleSet {
         Explanation::new(py, explanation, Arc::clone(compiled))
     }
 
+    /// Evaluates an output over a grid of the inputs.
+    ///
+    /// Parameters
+    /// ----------
+    /// points
+    ///     How many points there are along each axis, from one end of the range to the other.
+    /// output
+    ///     The output; the first where it is None.
+    /// threads
+    ///     How many threads evaluate it; as many as there are cores where it is None.
+    /// fixed
+    ///     Inputs that are held at a value, by their names. The others are the axes.
+    ///
+    /// Returns
+    /// -------
+    /// DecisionMap
+    ///     Values, coverage and dominant rules as arrays. Jupyter draws one or two axes.
+    ///
+    /// Raises
+    /// ------
+    /// DataError
+    ///     There is no such input or output, or the grid is too large.
     #[pyo3(signature = (*, points = 51, output = None, threads = None, **fixed))]
     fn map(
         &self,
@@ -555,6 +636,19 @@ impl RuleSet {
         })?
     }
 
+    /// Looks for gaps, contradictions and jumps in the rules.
+    ///
+    /// Parameters
+    /// ----------
+    /// coverage
+    ///     The firing strength that some rule should reach everywhere.
+    /// monotone
+    ///     Claims about the outputs: ``"service:increasing"``, or ``"service:increasing:tip"`` for one of several.
+    ///
+    /// Returns
+    /// -------
+    /// list of Diagnostic
+    ///     What an author should know, in the order of the text; ``str()`` draws one.
     #[pyo3(signature = (*, coverage = 0.5, monotone = None))]
     fn check<'py>(
         &self,

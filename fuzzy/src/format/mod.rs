@@ -46,12 +46,16 @@ pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     })
 }
 
-/// As [`read`], of a rule set that is being built: it may lack outputs and rules.
+/// As [`read`], of a rule set that is being built: it may lack outputs and rules. An error tells errors alone.
 #[doc(hidden)]
 pub fn read_unfinished(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
     read_lacking(tree, |model, finding| {
         (model.rules.is_empty() && finding.code == "no-rules")
             || (model.outputs.is_empty() && finding.code == "missing-key")
+    })
+    .map_err(|mut findings| {
+        findings.retain(|finding| finding.severity == Severity::Error);
+        findings
     })
 }
 

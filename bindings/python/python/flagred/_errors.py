@@ -51,7 +51,7 @@ class RuleSetError(FlagredError, ValueError):
     ...     flagred.loads("fuzzy: 1\\nname: fan\\n")
     ... except flagred.RuleSetError as error:
     ...     print([finding.code for finding in error.findings])
-    ['missing-key', 'missing-key', 'missing-key']
+    ['missing-key', 'missing-key']
     """
 
     findings: list[Diagnostic]

@@ -299,7 +299,7 @@ def loads(text: str) -> Model:
     ...   - IF service IS excellent OR food IS delicious THEN tip IS high
     ... ''')
     >>> round(model(8, 9), 2)
-    18.34
+    18.39
     """
     return _read(text, "<text>")
 
