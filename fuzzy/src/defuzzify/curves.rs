@@ -103,27 +103,15 @@ impl Curves {
         workspace: &mut Workspace,
         visit: &mut dyn FnMut(&Piece<'_>),
     ) {
-        let Workspace {
-            cuts,
-            most_cuts,
-            parts,
-            ..
-        } = workspace;
-        let all_known = self.kinks(strengths, joint, cuts, *most_cuts);
+        let all_known = self.kinks(strengths, joint, workspace);
+        let (cuts, parts) = (&workspace.cuts, &mut workspace.parts);
         for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
             let width = to - from;
             if width <= 0.0 {
                 continue;
             }
             let middle = from + 0.5 * width;
-            parts.clear();
-            self.activated(strengths, joint.implication, |part| {
-                parts.extend(if all_known {
-                    self.on_piece(part, middle, width)
-                } else {
-                    Some(part)
-                });
-            });
+            self.parts(strengths, joint.implication, (from, to), all_known, parts);
             let degree = self.joined(parts, joint.aggregation, middle);
             let has_step = all_known
                 && matches!(
@@ -161,21 +149,30 @@ impl Curves {
         }
     }
 
-    /// Calls `visit` with each activated term.
-    fn activated(
+    /// Fills `parts` with the activated terms on a stretch, without those that are 0 there. Where the kinks of all terms are
+    /// known, each has one form all over the stretch.
+    fn parts(
         &self,
         strengths: Strengths<'_>,
         implication: Implication,
-        mut visit: impl FnMut(Part),
+        (from, to): (f64, f64),
+        all_known: bool,
+        parts: &mut Vec<Part>,
     ) {
+        parts.clear();
         for term in 0..self.terms.len() {
             for &strength in strengths.of(term).iter().filter(|h| **h > 0.0) {
-                visit(Part {
+                let part = Part {
                     term,
                     strength,
                     implication,
                     level: None,
-                });
+                };
+                if all_known {
+                    parts.extend(self.on_piece(part, from + 0.5 * (to - from), to - from));
+                } else {
+                    parts.push(part);
+                }
             }
         }
     }

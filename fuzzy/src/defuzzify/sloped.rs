@@ -52,7 +52,8 @@ pub(super) fn aggregate(aggregation: Aggregation, a: Sloped, b: Sloped) -> Slope
     let (by_x, by_y) = match aggregation {
         Aggregation::Sum => (1.0, 1.0),
         Aggregation::ProbabilisticSum => (1.0 - y, 1.0 - x),
-        Aggregation::BoundedSum if x + y < 1.0 => (1.0, 1.0),
+        // Where the sum is 1 but for rounding, it is not cut off.
+        Aggregation::BoundedSum if x + y <= 1.0 => (1.0, 1.0),
         Aggregation::Einstein => {
             let below = (1.0 + x * y) * (1.0 + x * y);
             ((1.0 - y) * (1.0 + y) / below, (1.0 - x) * (1.0 + x) / below)

@@ -309,7 +309,8 @@ impl Stage {
                 partial: vec![Partial::NONE; sizes.partial as usize],
                 next: vec![Partial::NONE; sizes.partial as usize],
                 stack: vec![[0.0; L]; sizes.stack as usize],
-                strengths: vec![[0.0; L]; strengths],
+                // Cleared eight at a time.
+                strengths: vec![[0.0; L]; strengths.next_multiple_of(8)],
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
             // A term passes two levels of its implication, each rising and falling.

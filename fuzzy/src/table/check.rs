@@ -283,17 +283,15 @@ impl Table<'_> {
         Some((last, most + curves.len()))
     }
 
-    /// Whether a program neither pops an empty stack nor pushes beyond its size.
+    /// Whether a program neither joins fewer than two degrees nor pushes beyond the size of the stack.
     fn fits_stack(&self, steps: core::ops::Range<usize>) -> bool {
         let mut depth = 0usize;
         let steps = self.steps.get(steps).unwrap_or_default();
         steps.iter().all(|step| {
             match step.op {
                 Op::PUSH => depth += 1,
-                Op::AND | Op::OR => match depth.checked_sub(1) {
-                    Some(less) => depth = less,
-                    None => return false,
-                },
+                Op::AND | Op::OR if depth < 2 => return false,
+                Op::AND | Op::OR => depth -= 1,
                 _ => {}
             }
             depth <= self.sizes.stack as usize

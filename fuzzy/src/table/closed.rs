@@ -148,8 +148,8 @@ pub(super) fn closed<A: Arrays, const L: usize>(
     inputs: &[[f64; L]],
 ) -> Option<[f64; L]> {
     let range = output.first as usize..output.end as usize;
-    let [areas, moments] = match output.form {
-        ClosedForm::PARTITION => Pair::integrals(&table.pairs()[range], strengths),
+    match output.form {
+        ClosedForm::PARTITION => Some(partition(table, output, strengths)),
         ClosedForm::MOMENTS => {
             let (mut areas, mut moments) = ([0.0; L], [0.0; L]);
             for (Moment { area, moment }, strengths) in table.moments()[range].iter().zip(strengths)
@@ -159,7 +159,7 @@ pub(super) fn closed<A: Arrays, const L: usize>(
                     moments[row] += strengths[row] * moment;
                 }
             }
-            [areas, moments]
+            Some(centroids(output, &areas, &moments))
         }
         // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
         form @ (ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM) => {
@@ -170,15 +170,43 @@ pub(super) fn closed<A: Arrays, const L: usize>(
                 strengths,
                 inputs,
             );
-            return Some(each(|row| output.clamped(values[row])));
+            Some(each(|row| output.clamped(values[row])))
         }
-        _ => return None,
-    };
-    Some(each(|row| {
+        _ => None,
+    }
+}
+
+/// [`closed`], apart from the code of partitions, from which it would take registers.
+#[inline(never)]
+pub(super) fn closed_apart<A: Arrays, const L: usize>(
+    table: &A,
+    output: &Output,
+    strengths: &[[f64; L]],
+    inputs: &[[f64; L]],
+) -> Option<[f64; L]> {
+    closed(table, output, strengths, inputs)
+}
+
+/// [`closed`] of a partition.
+#[inline(always)]
+pub(super) fn partition<A: Arrays, const L: usize>(
+    table: &A,
+    output: &Output,
+    strengths: &[[f64; L]],
+) -> [f64; L] {
+    let pairs = &table.pairs()[output.first as usize..output.end as usize];
+    let [areas, moments] = Pair::integrals(pairs, strengths);
+    centroids(output, &areas, &moments)
+}
+
+/// The centroids of sets whose moments are measured from the middle of the range; NaN where one has no area.
+#[inline(always)]
+fn centroids<const L: usize>(output: &Output, areas: &[f64; L], moments: &[f64; L]) -> [f64; L] {
+    each(|row| {
         let value = output.origin() + moments[row] / areas[row];
         let value = larger(output.low, smaller(output.high, value));
         select_unpredictable(areas[row] > 0.0, value, f64::NAN)
-    }))
+    })
 }
 
 /// The value of an output with another closed form; `None` where no rule fired.
@@ -238,13 +266,9 @@ fn weighted<const L: usize>(
     strengths: &[[f64; L]],
     inputs: &[[f64; L]],
 ) -> [f64; L] {
-    /// Up to this number it takes less time to compute all than to find those of rules that fire.
-    const FEW: usize = 16;
     let (mut sums, mut totals) = ([0.0; L], [0.0; L]);
-    let are_few = consequents.len() <= FEW;
     for (consequent, strengths) in consequents.iter().zip(strengths) {
-        let has_formula = consequent.first_code < consequent.end_code;
-        if (has_formula || !are_few) && strengths.iter().all(|strength| *strength <= 0.0) {
+        if strengths.iter().all(|strength| *strength <= 0.0) {
             continue;
         }
         let mut z = [consequent.constant; L];
@@ -254,8 +278,8 @@ fn weighted<const L: usize>(
                 z[row] += c.coefficient * inputs[row];
             }
         }
-        if has_formula {
-            let code = &points[consequent.first_code as usize..consequent.end_code as usize];
+        let code = &points[consequent.first_code as usize..consequent.end_code as usize];
+        if !code.is_empty() {
             for row in 0..L {
                 let value = |i: usize| inputs.get(i).map_or(f64::NAN, |inputs| inputs[row]);
                 z[row] += evaluate(code, value);

@@ -225,7 +225,7 @@ where
         all => all.fill(Strongest::NONE),
     }
     let (finding, strengths, strongest) = scratch.split();
-    strengths.fill([0.0; L]);
+    clear(strengths);
     let firing = Firing {
         least: table.least_strength(),
         strengths,
@@ -233,6 +233,20 @@ where
         one: Strongest::NONE,
     };
     (finding, firing)
+}
+
+/// Makes all 0. A few are written here, because a call of `memset` takes longer.
+#[inline(always)]
+fn clear<const L: usize>(strengths: &mut [[f64; L]]) {
+    match strengths.split_first_chunk_mut::<8>() {
+        Some((first, rest)) => {
+            *first = [[0.0; L]; 8];
+            if !rest.is_empty() {
+                rest.fill([0.0; L]);
+            }
+        }
+        None => strengths.fill([0.0; L]),
+    }
 }
 
 /// The memory in which the rules that fire are found.
@@ -258,8 +272,9 @@ impl<'m, const L: usize> Finding<'m, L> {
         }
         self.degrees.fill([0.0; L]);
         for (input, values) in table.inputs().iter().zip(self.values) {
-            let first = input.first_literal as usize;
-            degrees_in_rows(table, input, values, &mut self.degrees[first..]);
+            // In a damaged table an input without literals may begin anywhere.
+            let of_input = self.degrees.get_mut(input.first_literal as usize..);
+            degrees_in_rows(table, input, values, of_input.unwrap_or_default());
         }
     }
 }
@@ -401,18 +416,23 @@ pub(super) fn run<const L: usize>(
     or: impl Fn(f64, f64) -> f64,
     stack: &mut [[f64; L]],
 ) -> [f64; L] {
+    let degree = |step: &Step| &degrees[step.literal as usize];
+    let (mut top, mut rest) = ([0.0; L], steps);
+    if let Some((first, after)) = steps.split_first()
+        && first.op == Op::PUSH
+    {
+        (top, rest) = (*degree(first), after);
+    }
     let mut depth = 0;
-    let mut top = [0.0; L];
-    for step in steps {
-        let degree = || &degrees[step.literal as usize];
+    for step in rest {
         top = match step.op {
+            Op::AND_LITERAL => joined(&top, degree(step), &and),
+            Op::OR_LITERAL => joined(&top, degree(step), &or),
             Op::PUSH => {
                 stack[depth] = top;
                 depth += 1;
-                *degree()
+                *degree(step)
             }
-            Op::AND_LITERAL => joined(&top, degree(), &and),
-            Op::OR_LITERAL => joined(&top, degree(), &or),
             Op::AND => {
                 depth -= 1;
                 joined(&stack[depth], &top, &and)

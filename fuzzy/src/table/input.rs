@@ -109,8 +109,19 @@ pub(crate) fn degrees_in_rows<A: Arrays, const L: usize>(
             degrees[line.literal as usize] = each(|row| line.degree(values[row]));
         }
     }
+    let first = [values[0]];
+    // Along a row of a map all inputs but one stay the same.
+    let is_same = L > 1
+        && values
+            .iter()
+            .all(|value| value.to_bits() == values[0].to_bits());
     for curve in curves(table, input) {
-        degrees[curve.literal as usize] = along(table, curve, values);
+        degrees[curve.literal as usize] = if is_same {
+            let [degree] = along(table, curve, &first);
+            [degree; L]
+        } else {
+            along(table, curve, values)
+        };
     }
 }
 

@@ -48,7 +48,7 @@ pub use set::{FuzzySet, Section, SetDefuzzifier, SetTerm, Strand};
 pub use crate::shape::Kind;
 
 use crate::rows::each;
-use closed::{closed, closed_in_row};
+use closed::{closed, closed_apart, closed_in_row, partition};
 pub(crate) use firing::has_cells_alone;
 use firing::{fire, fire_row};
 use operators::{larger, smaller};
@@ -313,8 +313,11 @@ fn clamp<A: Arrays, const L: usize>(
         for row in 0..L {
             given.clamped[row] |= u64::from(nearest[row] != values[row]);
         }
-        for row in 0..L {
-            given.infinite[row] |= u64::from(!values[row].is_finite());
+        // What is not finite is outside, which is rare.
+        if given.clamped != [0; L] {
+            for row in 0..L {
+                given.infinite[row] |= u64::from(!values[row].is_finite());
+            }
         }
         *inside = nearest;
     }
@@ -338,7 +341,14 @@ fn results<A, N, P, S, const L: usize>(
         let Strongest { strength, rule } = scratch.strongest[index];
         let strengths = output.first_strength as usize..output.end_strength as usize;
         let strengths = &scratch.strengths[strengths];
-        let values = closed(table, output, strengths, &scratch.values);
+        let inputs = &scratch.values;
+        let values = if output.form == ClosedForm::PARTITION {
+            Some(partition(table, output, strengths))
+        } else if L == 1 {
+            closed_apart(table, output, strengths, inputs)
+        } else {
+            closed(table, output, strengths, inputs)
+        };
         let values = values.unwrap_or_else(|| {
             each(|row| {
                 let fires = strength[row] > 0.0;

@@ -238,17 +238,15 @@ impl<'t> Reader<'_, 't> {
         let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| {
             (low.min(a), high.max(b))
         });
-        let (low, high) = match low < high {
-            true => (low, high),
-            false if low == high => (low - 0.5, low + 0.5),
-            false => (0.0, 1.0),
+        let (found, (low, high)) = match low <= high {
+            true if low < high => ("its terms lie between", (low, high)),
+            true => ("its terms lie within", (low - 0.5, low + 0.5)),
+            false => ("its terms tell none, and it is from", (0.0, 1.0)),
         };
         (variable.low, variable.high) = (low, high);
         spans.range = spans.name.clone();
         let message = format!("`{name}` has no range");
-        let help = format!(
-            "its terms lie between {low} and {high}; write `RANGE := (LOW .. HIGH);` for another"
-        );
+        let help = format!("{found} {low} and {high}; write `RANGE := (LOW .. HIGH);` for another");
         self.draft.note("guessed-range", name, message, &help);
     }
 }

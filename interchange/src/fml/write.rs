@@ -19,7 +19,7 @@ use crate::{
     blocks::{self, Rules},
     conditions,
     names::{self, Allowed},
-    paper::{Paper, one_line},
+    paper::{Paper, named, one_line},
     shapes, words,
 };
 
@@ -247,7 +247,7 @@ fn tsk(paper: &mut Paper, output: &Output, model: &Model) -> Element {
             MembershipFunction::Constant { value }
             | MembershipFunction::Singleton { at: value } => (vec![*value], 0),
             _ => {
-                let message = format!("the term `{}` is a formula", term.name);
+                let message = format!("the term {} is a formula", named(term, variable));
                 let help = "FML has constants and linear functions";
                 paper.loss("no-shape", message, help);
                 continue;
@@ -272,9 +272,9 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
         };
         Some(parameters.iter().enumerate().fold(Element::new(name), with))
     };
-    let name = &term.name;
+    let name = named(term, variable);
     if term.height != 1.0 {
-        let message = format!("the term `{name}` has the height {}", term.height);
+        let message = format!("the term {name} has the height {}", term.height);
         paper.loss("height", message, "all terms of FML are 1 high");
     }
     let (low, high) = (variable.low, variable.high);
@@ -326,7 +326,7 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
         _ => None,
     };
     if shape.is_none() {
-        let message = format!("the term `{name}` has a shape that FML has not");
+        let message = format!("the term {name} has a shape that FML has not");
         paper.loss("no-shape", message, "write it as points: `piecewise`");
     }
     shape

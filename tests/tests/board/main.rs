@@ -434,7 +434,7 @@ fn profiles_of_every_kind(folder: &Folder) -> Vec<(String, Estimator, String)> {
         let file = folder.file(&format!("{name}-profile.yaml"), text);
         profiles.push((name, estimator, file));
     }
-    assert_eq!(profiles.len(), 6);
+    assert_eq!(profiles.len(), 7);
     profiles
 }
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 
-@dataclass(frozen=True)
-class Range:
+class Range(NamedTuple):
     """A range of commands, and where it came from."""
 
     low: float
@@ -17,8 +15,7 @@ class Range:
     source: str
 
 
-@dataclass(frozen=True)
-class Vehicle:
+class Vehicle(NamedTuple):
     """The vehicle, as far as the log describes it."""
 
     kind: str
@@ -32,8 +29,7 @@ class Vehicle:
     """What tells this vehicle from others of its kind."""
 
 
-@dataclass(frozen=True)
-class Motor:
+class Motor(NamedTuple):
     """A motor, and the output that drives it."""
 
     number: int
@@ -43,8 +39,7 @@ class Motor:
     source: str
 
 
-@dataclass(frozen=True)
-class Geometry:
+class Geometry(NamedTuple):
     """How much each motor rolls, pitches and yaws the vehicle."""
 
     factors: tuple[tuple[float, float, float], ...]
@@ -57,8 +52,7 @@ class Geometry:
     """Why the commands contradict it."""
 
 
-@dataclass(frozen=True)
-class Parameter:
+class Parameter(NamedTuple):
     """A parameter of the autopilot."""
 
     name: str
@@ -66,8 +60,7 @@ class Parameter:
     source: str
 
 
-@dataclass(frozen=True)
-class Event:
+class Event(NamedTuple):
     """A message, or a flight mode from when it was entered."""
 
     t_s: float
@@ -75,8 +68,7 @@ class Event:
     what: str
 
 
-@dataclass(frozen=True)
-class Interval:
+class Interval(NamedTuple):
     """A time interval on the log's clock, in seconds."""
 
     start_s: float
@@ -85,8 +77,7 @@ class Interval:
     """Whether it was still open at the end of the log."""
 
 
-@dataclass(frozen=True)
-class Intervals:
+class Intervals(NamedTuple):
     """Intervals in order of time, and the rule by which they were found."""
 
     spans: tuple[Interval, ...]
@@ -95,8 +86,7 @@ class Intervals:
     """The sum of their lengths."""
 
 
-@dataclass(frozen=True)
-class LeftOut:
+class LeftOut(NamedTuple):
     """What a log has beyond the bounds of what is kept of it: counted only."""
 
     texts: int
@@ -106,8 +96,7 @@ class LeftOut:
     messages: int
 
 
-@dataclass(frozen=True)
-class Report:
+class Report(NamedTuple):
     """Amount of data read, and damage."""
 
     bytes: int
@@ -128,16 +117,14 @@ class Report:
         return self.skipped_bytes == 0 and self.bad_messages == 0 and not self.truncated
 
 
-@dataclass(frozen=True)
-class Gap:
+class Gap(NamedTuple):
     """Something that a log lacks, and what the pilot can do."""
 
     reason: str
     help: str | None
 
 
-@dataclass(frozen=True)
-class MotorFinding:
+class MotorFinding(NamedTuple):
     """The motor that was at its limit, and at which."""
 
     number: int
@@ -148,8 +135,7 @@ class MotorFinding:
     margin_min: float | None
 
 
-@dataclass(frozen=True)
-class Cause:
+class Cause(NamedTuple):
     """What raised the risk: an input in a term, and the rule that says it."""
 
     input: str
@@ -159,8 +145,7 @@ class Cause:
     """The index of the rule in the rule set."""
 
 
-@dataclass(frozen=True)
-class Finding:
+class Finding(NamedTuple):
     """A time at a level: when, what, and its cause. ``str()`` says it in words."""
 
     severity: Literal["GOOD", "INFO", "WARN", "FAIL"]
@@ -187,16 +172,14 @@ class Finding:
         return self.text
 
 
-@dataclass(frozen=True)
-class Peak:
+class Peak(NamedTuple):
     """The largest value of a quantity, and when it was first reached."""
 
     t_s: float
     value_pct: float
 
 
-@dataclass(frozen=True)
-class Summary:
+class Summary(NamedTuple):
     """A flight in a few numbers. The risks are those of judged time."""
 
     in_air_s: float

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, NamedTuple
 
 __all__ = ["DataError", "Diagnostic", "FlagredError", "LogError", "RuleSetError"]
 
 
-@dataclass(frozen=True)
-class Diagnostic:
+class Diagnostic(NamedTuple):
     """A finding about a rule set: what is wrong, where, and what to do about it.
 
     ``str()`` draws it in its text.
@@ -30,11 +28,15 @@ class Diagnostic:
     """The line, from 1; None where there is no text."""
     column: int | None
     """The character in the line, from 1; None where there is no text."""
-    drawn: str = field(default="", repr=False, compare=False)
+    drawn: str = ""
     """The finding drawn in its text."""
 
     def __str__(self) -> str:
         return self.drawn
+
+    def __repr__(self) -> str:
+        fields = ", ".join(f"{name}={value!r}" for name, value in zip(self._fields[:-1], self))
+        return f"Diagnostic({fields})"
 
 
 class FlagredError(Exception):

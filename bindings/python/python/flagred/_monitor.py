@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from . import _data
 from ._core import MonitorData, Profile, Table, Update
@@ -16,8 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-@dataclass(frozen=True)
-class Followed:
+class Followed(NamedTuple):
     """What is said of a flight that a monitor followed."""
 
     verdict: Literal["GOOD", "WARN", "FAIL", "NA"]

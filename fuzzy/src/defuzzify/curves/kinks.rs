@@ -3,8 +3,7 @@
 use alloc::vec::Vec;
 
 use super::super::maxima::{INSIDE, turns};
-use super::super::sloped::activate;
-use super::{Curves, Joint, Part, Strengths, sloped};
+use super::{Curves, Joint, Part, Strengths, Workspace};
 use crate::model::{Aggregation, Implication};
 use crate::table::{LEAST_STRENGTH, numeric::root};
 
@@ -14,128 +13,104 @@ struct Cuts<'a> {
     most: usize,
     /// Whether memory was short.
     is_full: bool,
-    /// Two cuts next to each other, between which others are added.
+    /// Just inside two cuts next to each other, between which others are added.
     between: (f64, f64),
 }
 
 impl Curves {
-    /// Fills `cuts` with the kinks and steps of the aggregated set, from left to right. Returns whether they are all known: not
-    /// of formulas, and not where memory is short. A kink may be missed where curves meet twice between two cuts. Then the
-    /// integration takes longer, and is as exact.
+    /// Fills `workspace` with the cuts of the aggregated set, from left to right: its kinks and steps. Returns whether they are
+    /// all known: not of formulas, and not where memory is short. A kink may be missed where curves meet twice between two cuts.
+    /// Then the integration takes longer, and is as exact.
     pub(super) fn kinks(
         &self,
         strengths: Strengths<'_>,
         joint: Joint,
-        cuts: &mut Vec<f64>,
-        most: usize,
+        workspace: &mut Workspace,
     ) -> bool {
-        cuts.clear();
+        let parts = &mut workspace.parts;
+        workspace.cuts.clear();
         let active = |term: usize| strengths.of(term).iter().any(|h| *h > 0.0);
         for &(x, term) in &self.cuts {
-            if term.is_none_or(active) && cuts.last() != Some(&x) {
-                cuts.push(x);
+            if term.is_none_or(active) && workspace.cuts.last() != Some(&x) {
+                workspace.cuts.push(x);
             }
         }
         let mut cuts = Cuts {
-            cuts,
-            most,
+            cuts: &mut workspace.cuts,
+            most: workspace.most_cuts,
             is_full: false,
             between: (0.0, 0.0),
         };
-        // Terms pass their levels first: between these each activated term is smooth.
-        for kinks in [Curves::levels, Curves::crossings] {
-            let landmarks = cuts.cuts.len();
-            for i in 1..landmarks {
-                if let (Some(&a), Some(&b)) = (cuts.cuts.get(i - 1), cuts.cuts.get(i)) {
-                    // Just inside, past a step at the cut.
-                    let inside = INSIDE * (b - a);
-                    cuts.between = (a.next_up().max(a + inside), b.next_down().min(b - inside));
-                    kinks(self, strengths, joint, &mut cuts);
-                }
-            }
-            cuts.cuts.sort_unstable_by(f64::total_cmp);
-        }
+        cuts.each_stretch(|cuts, _| self.levels(strengths, joint.implication, cuts));
+        let all_known = !cuts.is_full && !self.has_formula;
+        // Between the levels each activated term is smooth.
+        cuts.each_stretch(|cuts, stretch| {
+            self.parts(strengths, joint.implication, stretch, all_known, parts);
+            self.crossings(parts, joint.aggregation, cuts);
+        });
         !cuts.is_full && !self.has_formula
     }
 
     /// Cuts where a term passes a level of its implication.
-    fn levels(&self, strengths: Strengths<'_>, joint: Joint, cuts: &mut Cuts<'_>) {
-        self.activated(strengths, joint.implication, |part| {
-            for level in levels(joint.implication, part.strength)
-                .into_iter()
-                .flatten()
-            {
-                if level != part.strength || self.cuts_off(part.term, part.strength) {
-                    cuts.at_sign_change(|x| self.membership(part.term, x) - level);
+    fn levels(&self, strengths: Strengths<'_>, implication: Implication, cuts: &mut Cuts<'_>) {
+        for term in 0..self.terms.len() {
+            for &strength in strengths.of(term).iter().filter(|h| **h > 0.0) {
+                for level in levels(implication, strength).into_iter().flatten() {
+                    if level != strength || self.cuts_off(term, strength) {
+                        cuts.at_sign_change(|x| self.membership(term, x) - level);
+                    }
                 }
             }
-        });
-    }
-
-    /// Cuts where two terms cross, where one comes to the least strength, or the sum of two reaches 1.
-    fn crossings(&self, strengths: Strengths<'_>, joint: Joint, cuts: &mut Cuts<'_>) {
-        let Joint {
-            implication,
-            aggregation,
-        } = joint;
-        let degree = |part: Part, x: f64| {
-            let membership = self.membership(part.term, x);
-            implication.of(part.strength, membership)
-        };
-        match aggregation {
-            Aggregation::Maximum => self.pairs(strengths, implication, |first, second| {
-                if first.term != second.term {
-                    cuts.at_sign_change(|x| degree(first, x) - degree(second, x));
-                }
-            }),
-            Aggregation::NilpotentMaximum => self.pairs(strengths, implication, |first, second| {
-                cuts.at_sign_change(|x| degree(first, x) - degree(second, x));
-                let sum = |x: f64| degree(first, x) + degree(second, x) - (1.0 - LEAST_STRENGTH);
-                cuts.at_sign_changes(sum, |x, width| {
-                    let slope = |part: Part| {
-                        let term = self.terms.get(part.term)?;
-                        let membership = sloped(term, x, width);
-                        Some(activate(implication, part.strength, membership).slope)
-                    };
-                    slope(first).unwrap_or(0.0) + slope(second).unwrap_or(0.0)
-                });
-            }),
-            Aggregation::Drastic => self.activated(strengths, implication, |part| {
-                cuts.at_sign_change(|x| degree(part, x) - LEAST_STRENGTH);
-            }),
-            Aggregation::BoundedSum => {
-                let unbounded = Joint {
-                    aggregation: Aggregation::Sum,
-                    ..joint
-                };
-                cuts.at_sign_change(|x| self.degree(strengths, unbounded, x) - 1.0);
-            }
-            _ => {}
         }
     }
 
-    /// Calls `visit` with each two activated terms.
-    fn pairs(
-        &self,
-        strengths: Strengths<'_>,
-        implication: Implication,
-        mut visit: impl FnMut(Part, Part),
-    ) {
-        let mut seen = 0;
-        self.activated(strengths, implication, |first| {
-            seen += 1;
-            let mut index = 0;
-            self.activated(strengths, implication, |second| {
-                index += 1;
-                if index > seen {
-                    visit(first, second);
+    /// Cuts where two terms cross, where one comes to the least strength, or the sum of two reaches 1.
+    fn crossings(&self, parts: &[Part], aggregation: Aggregation, cuts: &mut Cuts<'_>) {
+        let degree = |part: &Part, x: f64| self.joined(&[*part], Aggregation::Maximum, x);
+        for (i, first) in parts.iter().enumerate() {
+            let others = parts.iter().skip(i + 1);
+            match aggregation {
+                Aggregation::Maximum => {
+                    for second in others {
+                        cuts.at_sign_change(|x| degree(first, x) - degree(second, x));
+                    }
                 }
-            });
-        });
+                Aggregation::NilpotentMaximum => {
+                    for second in others {
+                        cuts.at_sign_change(|x| degree(first, x) - degree(second, x));
+                        let pair = [*first, *second];
+                        let sum = |x: f64| self.joined(&pair, Aggregation::Sum, x);
+                        let slope =
+                            |x: f64, width: f64| self.slope(&pair, Aggregation::Sum, x, width);
+                        cuts.at_sign_changes(|x| sum(x) - (1.0 - LEAST_STRENGTH), slope);
+                    }
+                }
+                Aggregation::Drastic => {
+                    cuts.at_sign_change(|x| degree(first, x) - LEAST_STRENGTH);
+                }
+                _ => {}
+            }
+        }
+        if aggregation == Aggregation::BoundedSum {
+            cuts.at_sign_change(|x| self.joined(parts, Aggregation::Sum, x) - 1.0);
+        }
     }
 }
 
 impl Cuts<'_> {
+    /// Calls `visit` for each stretch between two cuts, before others are added.
+    fn each_stretch(&mut self, mut visit: impl FnMut(&mut Self, (f64, f64))) {
+        for i in 1..self.cuts.len() {
+            if let (Some(&a), Some(&b)) = (self.cuts.get(i - 1), self.cuts.get(i)) {
+                // Past a step at the cut.
+                let inside = INSIDE * (b - a);
+                self.between = (a.next_up().max(a + inside), b.next_down().min(b - inside));
+                visit(self, (a, b));
+            }
+        }
+        self.cuts.sort_unstable_by(f64::total_cmp);
+    }
+
     fn push(&mut self, x: f64) {
         if self.cuts.len() < self.most {
             self.cuts.push(x);

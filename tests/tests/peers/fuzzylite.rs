@@ -1,35 +1,23 @@
-//! fuzzylite reads the rule sets that are written for it, and computes the same values.
+//! fuzzylite's Python library and FLL.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
-
-use std::{fmt::Write, process::Command};
+use std::fmt::Write;
 
 use fastrand::Rng;
 use flagred_tests::Folder;
-use fuzzy::{Engine, Model};
-use interchange::{Format, Losses};
+use fuzzy::Model;
+use interchange::Format;
 
-const PEER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/peer/fuzzylite_peer.py");
+use super::{SHIPPED, ask, model, python, write};
 
-/// Rule sets that come with the program.
-const SHIPPED: [(&str, &str); 3] = [
-    ("tipper", include_str!("../../rules/tipper.yaml")),
-    ("flagred", include_str!("../../rules/flagred.yaml")),
-    (
-        "flagred-paper",
-        include_str!("../../rules/flagred-paper.yaml"),
-    ),
-];
-
-/// A shape over [0, 10].
-fn shape(rng: &mut Rng) -> String {
+/// A shape over [0, 10], of the variable `own`.
+fn shape(rng: &mut Rng, own: &str) -> String {
     let mut places: Vec<f64> = (0..4).map(|_| (rng.f64() * 100.0).round() / 10.0).collect();
     places.sort_by(f64::total_cmp);
     let [a, b, c, d] = places[..] else {
         unreachable!()
     };
     let width = 0.5 + 2.0 * rng.f64();
-    match rng.usize(0..12) {
+    match rng.usize(0..13) {
         0 => format!("{{triangle: [{a}, {b}, {c}]}}"),
         1 => format!("{{trapezoid: [{a}, {b}, {c}, {d}]}}"),
         2 => format!("{{left_shoulder: [{a}, {}]}}", b + 1.0),
@@ -40,6 +28,7 @@ fn shape(rng: &mut Rng) -> String {
         7 => format!("{{s_shape: [{a}, {}]}}", b + 1.0),
         8 => format!("{{z_shape: [{a}, {}]}}", b + 1.0),
         9 => format!("{{cosine: {{center: {b}, width: {}}}}}", 2.0 + width),
+        11 => format!("{{function: 'exp(-(({own} - {b}) / {width})^2)'}}"),
         10 => format!("{{spike: {{center: {b}, width: {width}}}}}"),
         _ => format!(
             "{{piecewise: [[{a}, 0], [{}, 1], [{}, 0.25]]}}",
@@ -49,8 +38,8 @@ fn shape(rng: &mut Rng) -> String {
     }
 }
 
-fn terms(rng: &mut Rng) -> String {
-    let terms = (0..3).map(|i| format!("t{i}: {}", shape(rng)));
+fn terms(rng: &mut Rng, own: &str) -> String {
+    let terms = (0..3).map(|i| format!("t{i}: {}", shape(rng, own)));
     terms.collect::<Vec<_>>().join(", ")
 }
 
@@ -102,17 +91,17 @@ fn random(seed: u64) -> Model {
     let implication = one(&["minimum", "product"]);
     let aggregation = one(&["maximum", "probabilistic_sum", "sum"]);
     let output = match one(&["centroid", "centroid", "weighted_average", "weighted_sum"]) {
-        "centroid" => format!("terms: {{{}}}, samples: {{midpoint: 400}}", terms(rng)),
+        "centroid" => format!("terms: {{{}}}, samples: {{midpoint: 400}}", terms(rng, "y")),
         weighted => format!(
-            "terms: {{t0: {{constant: 2}}, t1: {{linear: {{a: 0.5, b: -0.25, constant: 1}}}}, t2: {{constant: 7.5}}}}, defuzzifier: {weighted}"
+            "terms: {{t0: {{constant: 2}}, t1: {{linear: {{a: 0.5, b: -0.25, constant: 1}}}}, t2: {{function: 'max(a - 2, -b) / (1 + abs(b)) + 3 * (a > b)'}}}}, defuzzifier: {weighted}"
         ),
     };
     let mut text = format!(
         "fuzzy: 1\nname: random\ninputs:\n  a: {{range: [0, 10], terms: {{{}}}}}\n  b: {{range: [0, 10], terms: {{{}}}}}\n\
          outputs:\n  y: {{range: [0, 10], {output}}}\n\
          operators: {{and: {and}, or: {or}, implication: {implication}, aggregation: {aggregation}}}\nrules:\n",
-        terms(rng),
-        terms(rng)
+        terms(rng, "a"),
+        terms(rng, "b")
     );
     for _ in 0..rng.usize(1..6) {
         let weight = ["", " WITH 0.5"][rng.usize(0..2)];
@@ -124,40 +113,7 @@ fn random(seed: u64) -> Model {
         )
         .unwrap();
     }
-    text.parse()
-        .unwrap_or_else(|findings| panic!("{text}\n{findings}"))
-}
-
-/// Writes a rule set, and its values at points that are spread over its inputs.
-fn write(folder: &Folder, name: &str, model: &Model) {
-    let written = interchange::write(model, Format::Fll, Losses::Refuse);
-    let written = written.unwrap_or_else(|findings| panic!("{name}: {findings}"));
-    // What is not sampled is sampled there: the values are those of the text as it is read again.
-    let read = interchange::read(&written.text, Format::Fll, Losses::Refuse).unwrap();
-    let engine = Engine::new(&read.model).unwrap();
-    let names = engine.input_names().chain(engine.output_names());
-    let mut table = names.collect::<Vec<_>>().join(",") + "\n";
-    let mut rng = Rng::with_seed(7);
-    for _ in 0..50 {
-        let inputs = read
-            .model
-            .inputs
-            .iter()
-            .map(|input| input.low + (input.high - input.low) * rng.f64());
-        let inputs: Vec<f64> = inputs.collect();
-        let outcomes = engine.evaluate(&inputs).unwrap();
-        // Here a strength below 1e-12 fires no rule, there every one above 0 does.
-        if outcomes.iter().any(|outcome| outcome.coverage < 1e-3) {
-            continue;
-        }
-        let values = outcomes.iter().map(|outcome| outcome.value());
-        let cells = inputs.iter().map(f64::to_string);
-        let cells =
-            cells.chain(values.map(|value| value.map_or("NA".into(), |value| value.to_string())));
-        table += &(cells.collect::<Vec<_>>().join(",") + "\n");
-    }
-    folder.file(&format!("{name}.fll"), written.text);
-    folder.file(&format!("{name}.csv"), table);
+    model(&text)
 }
 
 /// `FLAGRED_PYTHON` names a Python that has pyfuzzylite.
@@ -166,26 +122,21 @@ fn write(folder: &Folder, name: &str, model: &Model) {
 fn pyfuzzylite_computes_the_values_of_what_is_written_for_it() {
     let folder = Folder::new();
     for (name, text) in SHIPPED {
-        write(
-            &folder,
-            name,
-            &text.parse().unwrap_or_else(|findings| panic!("{findings}")),
-        );
+        write(&folder, name, &model(text), Format::Fll, 50);
     }
     for seed in 0..200 {
-        write(&folder, &format!("random-{seed}"), &random(seed));
+        write(
+            &folder,
+            &format!("random-{seed}"),
+            &random(seed),
+            Format::Fll,
+            50,
+        );
     }
-    let python = std::env::var("FLAGRED_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let output = Command::new(python)
-        .arg(PEER)
-        .arg(folder.path())
-        .output()
-        .unwrap();
-    let told = String::from_utf8(output.stdout).unwrap();
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{told}{errors}");
-    assert!(
-        told.contains("203 rule sets, 0 with other values"),
-        "{told}"
+    ask(
+        python(),
+        "fuzzylite_peer.py",
+        &folder,
+        "203 rule sets, 0 with other values",
     );
 }
