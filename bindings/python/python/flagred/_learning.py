@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +16,7 @@ from ._model import Model, _read
 __all__ = ["Errors", "Figure", "Learned", "Moved", "TuneValidation", "Tuned", "learn", "tune"]
 
 
-@dataclass(frozen=True)
-class Errors:
+class Errors(NamedTuple):
     """Errors of predictions."""
 
     rows: int
@@ -31,8 +29,7 @@ class Errors:
     """The mean of prediction less truth."""
 
 
-@dataclass(frozen=True)
-class Learned:
+class Learned(NamedTuple):
     """Rules that were learned from rows."""
 
     model: Model
@@ -58,8 +55,7 @@ class Learned:
     """Errors on rows that were left out; None where that was not asked for."""
 
 
-@dataclass(frozen=True)
-class Moved:
+class Moved(NamedTuple):
     """A number that tuning moved."""
 
     of: str
@@ -70,8 +66,7 @@ class Moved:
     after: float
 
 
-@dataclass(frozen=True)
-class Figure:
+class Figure(NamedTuple):
     """A figure, and the interval that holds 95 % of the figures of resampled groups, or rows without groups."""
 
     value: float
@@ -79,8 +74,7 @@ class Figure:
     high: float
 
 
-@dataclass(frozen=True)
-class TuneValidation:
+class TuneValidation(NamedTuple):
     """What tuning is worth on rows that were left out."""
 
     folds: int
@@ -91,8 +85,7 @@ class TuneValidation:
     gain: Figure
 
 
-@dataclass(frozen=True)
-class Tuned:
+class Tuned(NamedTuple):
     """A rule set whose numbers were tuned."""
 
     model: Model
