@@ -10,6 +10,7 @@ mod errors;
 mod evaluate;
 mod explanation;
 mod flight;
+mod learning;
 mod map;
 mod monitor;
 mod outcome;
@@ -25,6 +26,7 @@ mod _core {
         assessment::AssessmentData,
         explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
         flight::FlightData,
+        learning::{_learn, _tune},
         map::DecisionMap,
         monitor::{MonitorData, Update},
         outcome::{Outcome, Outcomes},

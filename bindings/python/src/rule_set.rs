@@ -130,8 +130,13 @@ impl RuleSet {
         Arc::clone(&current.unwrap_or_else(PoisonError::into_inner))
     }
 
-    fn model<T>(&self, of: impl FnOnce(&Model) -> T) -> T {
+    pub(crate) fn model<T>(&self, of: impl FnOnce(&Model) -> T) -> T {
         of(&self.source().document.model)
+    }
+
+    /// Compiles the rule set, where that is not done yet.
+    pub(crate) fn compile(&self, py: Python<'_>) -> PyResult<()> {
+        self.source().compiled(py).map(|_| ())
     }
 }
 

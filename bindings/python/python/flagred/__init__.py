@@ -46,6 +46,7 @@ from ._data import (
 )
 from ._errors import DataError, Diagnostic, FlagredError, LogError, RuleSetError
 from ._flight import Assessment, Flight, Signal, assess, read_log
+from ._learning import Errors, Figure, Learned, Moved, Tuned, TuneValidation, learn, tune
 from ._model import Model, load, loads
 from ._monitor import Followed, Monitor
 from ._picture import Picture
@@ -56,10 +57,12 @@ __all__ = [
     "DataError",
     "DecisionMap",
     "Diagnostic",
+    "Errors",
     "Event",
     "ExplainedInput",
     "ExplainedOutput",
     "Explanation",
+    "Figure",
     "Finding",
     "FiredRule",
     "FlagredError",
@@ -69,12 +72,14 @@ __all__ = [
     "Geometry",
     "Interval",
     "Intervals",
+    "Learned",
     "LeftOut",
     "LogError",
     "Model",
     "Monitor",
     "Motor",
     "MotorFinding",
+    "Moved",
     "Outcome",
     "Outcomes",
     "Parameter",
@@ -88,11 +93,15 @@ __all__ = [
     "Signal",
     "Summary",
     "Table",
+    "TuneValidation",
+    "Tuned",
     "Update",
     "Vehicle",
     "__version__",
     "assess",
+    "learn",
     "load",
     "loads",
     "read_log",
+    "tune",
 ]
