@@ -7,7 +7,7 @@ use fuzzy::{
     map::{self, Axis, Grid},
 };
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
-use pyo3::{prelude::*, types::PyDict};
+use pyo3::{prelude::*, sync::PyOnceLock, types::PyDict};
 
 use crate::{errors::data_error, outcome::NO_RULE, rule_set::Compiled};
 
@@ -135,6 +135,27 @@ impl DecisionMap {
                 Some("there are `map`, `rules` and `surface`".into()),
             )),
         }
+    }
+
+    /// Draws the map, of one or two axes.
+    ///
+    /// Parameters
+    /// ----------
+    /// ax : matplotlib.axes.Axes, optional
+    ///     Axes of matplotlib to draw on.
+    ///
+    /// Returns
+    /// -------
+    /// Picture or matplotlib.axes.Axes
+    ///     The axes; without them a picture in SVG, for which matplotlib is not needed.
+    #[pyo3(signature = (ax = None))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        ax: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        static PLOT: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        let plot = PLOT.import(slf.py(), "flagred._picture", "plot_map")?;
+        plot.call1((slf, ax))
     }
 
     fn _repr_svg_(&self) -> Option<String> {

@@ -224,6 +224,22 @@ def test_pictures(tip, tmp_path):
     assert (tmp_path / "tip.svg").read_text(encoding="utf-8") == picture._repr_svg_()
 
 
+def test_maps_on_axes_of_matplotlib(tip):
+    assert str(tip.map(points=11).plot()).startswith("<svg ")
+    figure = pytest.importorskip("matplotlib.figure").Figure()
+    ax, other, third = figure.subplots(1, 3)
+    assert tip.map(points=11).plot(ax) is ax
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("service", "food") and len(figure.axes) == 4
+    assert tip.map(points=5, food=9).plot(other) is other and other.get_ylabel() == "tip"
+    assert np.array_equal(other.lines[0].get_ydata(), tip.map(points=5, food=9).values)
+    three = flagred.Model("three").output("out", range=(0, 1), partition=["c", "d"])
+    for name in "xyz":
+        three.input(name, range=(0, 1), partition=["a", "b"])
+    three.rule("IF x IS a AND y IS a AND z IS a THEN out IS c")
+    with pytest.raises(flagred.DataError, match="one or two axes"):
+        three.map(points=3).plot(third)
+
+
 def test_many_threads_at_once(tip):
     service, food = np.random.default_rng(1).random((2, 20_000)) * 10
     expected = tip(service, food)

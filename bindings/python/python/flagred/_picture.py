@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 import os
+from typing import TYPE_CHECKING, Any
+
+from ._errors import DataError
+
+if TYPE_CHECKING:
+    from ._core import DecisionMap
 
 
 class Picture:
@@ -29,3 +35,22 @@ class Picture:
 
     def __repr__(self) -> str:
         return f"Picture({len(self.svg)} bytes of SVG)"
+
+
+def plot_map(map: DecisionMap, ax: Any | None) -> Any:
+    """A map as a picture, or on axes of matplotlib."""
+    if ax is None:
+        return Picture(map.svg())
+    axes = list(map.axes.items())
+    if len(axes) > 2:
+        raise DataError(f"a picture has one or two axes, and the map has {len(axes)}")
+    ax.set_xlabel(axes[0][0])
+    if len(axes) == 1:
+        ax.plot(axes[0][1], map.values)
+        ax.set_ylabel(map.output)
+        return ax
+    # What is unknown stays blank.
+    drawn = ax.pcolormesh(axes[0][1], axes[1][1], map.values.T, shading="nearest")
+    ax.set_ylabel(axes[1][0])
+    ax.figure.colorbar(drawn, ax=ax, label=map.output)
+    return ax
