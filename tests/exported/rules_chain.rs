@@ -130,8 +130,8 @@ pub static RULES: ::fuzzy::table::Chain<'static> = {
             steps: &[
                 Step { op: Op(0), literal: 0 }, Step { op: Op(0), literal: 1 }, Step { op: Op(0), literal: 2 },
                 Step { op: Op(1), literal: 3 }, Step { op: Op(0), literal: 2 }, Step { op: Op(1), literal: 4 },
-                Step { op: Op(0), literal: 3 }, Step { op: Op(1), literal: 0 }, Step { op: Op(0), literal: 2 },
-                Step { op: Op(1), literal: 1 }, Step { op: Op(0), literal: 4 }, Step { op: Op(0), literal: 1 },
+                Step { op: Op(0), literal: 0 }, Step { op: Op(1), literal: 3 }, Step { op: Op(0), literal: 1 },
+                Step { op: Op(1), literal: 2 }, Step { op: Op(0), literal: 4 }, Step { op: Op(0), literal: 1 },
                 Step { op: Op(2), literal: 2 }, Step { op: Op(0), literal: 0 }, Step { op: Op(0), literal: 3 },
                 Step { op: Op(1), literal: 4 },
             ],
@@ -150,9 +150,9 @@ pub static RULES: ::fuzzy::table::Chain<'static> = {
                 Moment { area: 2.5, moment: 5.5 },
             ],
             consequents: &[
-                Consequent { constant: 12.0, first: 0, end: 3, first_code: 4, end_code: 4 },
-                Consequent { constant: 5.0, first: 3, end: 3, first_code: 4, end_code: 4 },
-                Consequent { constant: 90.0, first: 3, end: 3, first_code: 4, end_code: 4 },
+                Consequent { constant: 12.0, first: 0, end: 3, first_code: 0, end_code: 0 },
+                Consequent { constant: 5.0, first: 3, end: 3, first_code: 0, end_code: 0 },
+                Consequent { constant: 90.0, first: 3, end: 3, first_code: 0, end_code: 0 },
             ],
             coefficients: &[
                 Coefficient { coefficient: 10.0, input: 1 }, Coefficient { coefficient: 5.0, input: 2 },
