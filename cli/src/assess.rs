@@ -1,6 +1,6 @@
 //! `flagred assess`: how risky was this flight?
 
-use std::{io::Write, path::PathBuf};
+use std::{io::Write, path::PathBuf, sync::Arc};
 
 use clap::ValueEnum;
 use flagred::{
@@ -10,12 +10,16 @@ use flagred::{
 };
 use flightlog::{Flight, ReadError};
 
+use report::{
+    document,
+    page::{self, Subject},
+    words,
+};
+
 use crate::{
-    assessment::{document, words},
     failure::{Exit, Failure},
     output::{self, Files, Output, Stdout},
-    parallel, profile,
-    report::{self, Subject},
+    parallel, profile, steps,
 };
 
 /// How long a step of the shown risk is where nothing else is asked for, in seconds.
@@ -111,7 +115,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             json.push(serde_json::to_string_pretty(&document).map_err(std::io::Error::from)?);
         } else if arguments.csv {
             let name = several.then_some(log.as_str());
-            document::write_csv(&mut out, name, head, estimator, &assessed)?;
+            steps::write_csv(&mut out, name, head, estimator, &assessed)?;
             head = false;
             if let Verdict::NotAvailable(reason) = &assessed.verdict {
                 let failure = Failure::unreadable(format!("`{log}`: no verdict: {reason}"));
@@ -133,7 +137,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         if reports {
             subjects.push(Subject {
                 name: log.clone(),
-                flight,
+                flight: Arc::new(flight),
                 assessed,
             });
         }
@@ -168,7 +172,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         ([], _) => Ok(()),
         ([subject], false) => write_reports(html.as_ref(), svg.as_ref(), subject, &loaded),
         (subjects, _) => html.as_ref().map_or(Ok(()), |html| {
-            html.write(&report::comparison(subjects, &loaded))
+            html.write(&page::comparison(subjects, &loaded))
         }),
     };
     out.write_all(&waiting)?;
@@ -188,8 +192,8 @@ fn write_reports(
     loaded: &profile::Loaded,
 ) -> Result<(), Failure> {
     let mut texts = Vec::new();
-    texts.extend(html.map(|html| (html, report::report(subject, loaded))));
-    let drawn = svg.and_then(|svg| Some((svg, report::svg(subject, loaded)?)));
+    texts.extend(html.map(|html| (html, page::report(subject, loaded))));
+    let drawn = svg.and_then(|svg| Some((svg, page::svg(subject, loaded)?)));
     let nothing_drawn = svg.is_some() && drawn.is_none();
     texts.extend(drawn);
     output::write_all(texts)?;

@@ -21,7 +21,7 @@ use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
     output::{Files, Stdout},
-    profile, rule_set,
+    profile,
 };
 
 #[derive(clap::Args)]
@@ -151,7 +151,7 @@ fn examine(
     text: &str,
     arguments: &Arguments,
 ) -> Result<(Findings, Option<(Document, check::Report)>), Failure> {
-    let document = match rule_set::document(text) {
+    let document = match interchange::document(text) {
         Ok(document) => document,
         Err(findings) => return Ok((findings, None)),
     };

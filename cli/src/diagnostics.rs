@@ -1,130 +1,27 @@
-//! Findings in a text, drawn as a compiler draws them.
+//! Files with rule sets and profiles: reading them, and what is wrong with them on standard error.
 
 use std::{
-    borrow::Cow,
-    cmp::Reverse,
     fs,
     io::{self, Read, Write},
-    ops::Range,
     path::Path,
 };
 
-use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use fuzzy::{
-    diagnostic::{Diagnostic, Findings, Severity},
-    drawing::{visible, visible_lines},
+    diagnostic::{Diagnostic, Findings},
     yaml::LARGEST_BYTES,
 };
+use report::diagnostics::{self, Style};
 
 use crate::failure::Failure;
 
-/// Findings that are drawn of a file, errors first; the others are counted.
-const MOST_DRAWN: usize = 100;
-
 /// Draws findings with their lines. `colored` text goes through `anstream`, which drops colours that a terminal lacks.
 pub(crate) fn draw(findings: &[Diagnostic], file: &str, text: &str, colored: bool) -> String {
-    let renderer = if colored {
-        Renderer::styled()
-    } else {
-        Renderer::plain()
+    let style = Style {
+        colored,
+        advice: command,
+        all: "`flagred check --json` lists them",
     };
-    let (shown_file, shown_text) = (visible(file), visible_lines(text));
-    let is_same = matches!(shown_text, Cow::Borrowed(_));
-    let mut first: Vec<&Diagnostic> = findings.iter().collect();
-    if first.len() > MOST_DRAWN {
-        first.sort_by_key(|finding| Reverse(finding.severity));
-        first.truncate(MOST_DRAWN);
-        first.sort_by_key(|finding| finding.span.start);
-    }
-    let drawn = first.into_iter().map(|finding| {
-        let finding = shown(finding, text, is_same);
-        renderer.render(&report(&finding, &shown_file, &shown_text))
-    });
-    let mut drawn = drawn.collect::<Vec<_>>().join("\n\n");
-    if !drawn.is_empty() {
-        drawn.push('\n');
-    }
-    if findings.len() > MOST_DRAWN {
-        let more = findings.len() - MOST_DRAWN;
-        drawn += &format!("\nand {more} more findings; `flagred check --json` lists them\n");
-    }
-    drawn
-}
-
-/// A finding in the text as it is shown, which may be the same.
-fn shown(finding: &Diagnostic, text: &str, is_same: bool) -> Diagnostic {
-    let at = |offset: usize| match text.get(..offset) {
-        Some(before) if !is_same => visible_lines(before).len(),
-        _ => offset,
-    };
-    let moved = |span: &Range<usize>| at(span.start)..at(span.end);
-    let mut shown = finding.clone();
-    shown.span = moved(&shown.span);
-    shown.message = visible(&shown.message).into_owned();
-    shown.help = shown.help.map(|help| visible(&help).into_owned());
-    for related in &mut shown.related {
-        related.span = moved(&related.span);
-        related.message = visible(&related.message).into_owned();
-    }
-    shown
-}
-
-fn report<'a>(finding: &'a Diagnostic, file: &'a str, text: &'a str) -> Vec<Group<'a>> {
-    let level = match finding.severity {
-        Severity::Error => Level::ERROR,
-        Severity::Warning => Level::WARNING,
-        Severity::Note => Level::NOTE,
-    };
-    let inside = |span: &Range<usize>| {
-        let end = span.end.min(text.len());
-        span.start.min(end)..end
-    };
-    let related = finding.related.iter().map(|related| {
-        AnnotationKind::Context
-            .span(inside(&related.span))
-            .label(related.message.as_str())
-    });
-    let snippet = Snippet::source(text)
-        .path(file)
-        .annotation(AnnotationKind::Primary.span(inside(&finding.span)))
-        .annotations(related);
-    let title = level
-        .primary_title(finding.message.as_str())
-        .id(finding.code);
-    let mut group = match is_meant_as_rules(text) {
-        true => title.element(snippet),
-        false => {
-            let before = text.get(..finding.span.start).unwrap_or(text);
-            let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-            let origin = Origin::path(file).line(before.matches('\n').count() + 1);
-            title.element(origin.char_column(column))
-        }
-    };
-    if let Some(help) = &finding.help {
-        group = group.element(Level::HELP.message(help.as_str()));
-    }
-    if let Some(command) = command(finding.code) {
-        group = group.element(Level::HELP.message(command));
-    }
-    vec![group]
-}
-
-/// Whether a text is a rule set of another program, or a line of it begins with a key that only rule sets and profiles have.
-/// No other file is quoted: it may hold secrets, and be named by somebody else.
-pub(crate) fn is_meant_as_rules(text: &str) -> bool {
-    let mut lines = text.lines();
-    interchange::Format::of(text).is_some()
-        || lines.any(|line| {
-            let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);
-            ["fuzzy", "flagred", "inputs", "outputs", "rules"]
-                .iter()
-                .any(|key| {
-                    let rest = line.strip_prefix(key);
-                    rest.is_some_and(|rest| {
-                        rest.trim_start_matches(['"', '\'', ' ']).starts_with(':')
-                    })
-                })
-        })
+    diagnostics::draw(findings, file, text, style)
 }
 
 /// The command that helps with a finding: the engine knows no commands.
@@ -132,6 +29,7 @@ fn command(code: &str) -> Option<&'static str> {
     match code {
         "empty-file" => Some("`flagred new NAME` writes a rule set to start from"),
         "no-rules" => Some("`flagred learn` writes rules from data"),
+        "several-blocks" => Some("`flagred import --block NAME` writes one in YAML"),
         "not-monotone" => Some("`flagred explain` shows the rules that fire at a point"),
         _ => None,
     }

@@ -1,7 +1,7 @@
 //! What commands make of bytes, without files, sockets or a terminal: for the fuzz targets and the tests that share their
 //! bodies. No interface: it changes without notice.
 
-use std::net::SocketAddr;
+use std::{net::SocketAddr, sync::Arc};
 
 use flagred::{estimator::Estimator, log::assess, profile, shipped};
 use flightlog::{
@@ -10,13 +10,18 @@ use flightlog::{
 };
 use fuzzy::{Findings, Model, check};
 
+use report::{
+    document,
+    page::{self, Subject},
+    words,
+};
+
 use crate::{
-    assessment::{document, words},
     diagnostics::draw,
     export, inspect,
     output::Visible,
     profile::Loaded,
-    report::{self, Subject},
+    steps,
     watch::{
         jsonl,
         lines::Words,
@@ -35,9 +40,9 @@ impl Profile {
         let model = rules_text.parse::<Model>().ok()?;
         Some(Profile(Loaded {
             estimator: Estimator::new(&profile, &model).ok()?,
-            model,
             profile_text: profile_text.to_owned(),
             rules_text: rules_text.to_owned(),
+            warnings: Findings(Vec::new()),
             files: Vec::new(),
         }))
     }
@@ -87,17 +92,17 @@ pub fn documents(name: &str, flight: Flight, profile: &Profile) -> std::io::Resu
         serde_json::to_string(&inspect::json::Document::new(name, &flight))?,
         serde_json::to_string(&document::document(name, &flight, estimator, &assessed))?,
     ];
-    let written = document::write_csv(&mut all.csv, Some(name), true, estimator, &assessed);
+    let written = steps::write_csv(&mut all.csv, Some(name), true, estimator, &assessed);
     written.map_err(|_| std::io::ErrorKind::Other)?;
     let subject = Subject {
         name: name.to_owned(),
-        flight,
+        flight: Arc::new(flight),
         assessed,
     };
-    all.pages.push(report::report(&subject, loaded));
-    all.pages.extend(report::svg(&subject, loaded));
+    all.pages.push(page::report(&subject, loaded));
+    all.pages.extend(page::svg(&subject, loaded));
     let subjects = [subject];
-    all.pages.push(report::comparison(&subjects, loaded));
+    all.pages.push(page::comparison(&subjects, loaded));
     Ok(all)
 }
 

@@ -12,6 +12,7 @@ Examples:
   flagred plot my-rules.yaml                     the terms of its variables
   flagred map my-rules.yaml                      the output over the inputs
   flagred learn my-rules.yaml rows.csv --output learned.yaml   rules from a table
+  flagred tune learned.yaml rows.csv --output tuned.yaml    and their numbers
   flagred watch udpin:0.0.0.0:14550              assess a flight live
   flagred completions bash                       completions for your shell
 
@@ -111,6 +112,14 @@ Examples:
   flagred learn my-rules.yaml rows.csv --column margin=margin_mean --skip-bad-rows --output learned.yaml
   flagred learn my-rules.yaml rows.csv --compare-gaps --output learned.yaml
   flagred check learned.yaml                     the gaps of the learned rules";
+
+pub(crate) const TUNE: &str = "\
+Examples:
+  flagred tune my-rules.yaml rows.csv --output tuned.yaml
+  flagred tune my-rules.yaml rows.csv --round 2 --svg moved.svg --output tuned.yaml
+  flagred tune my-rules.yaml rows.csv --only heat --fix heat.hot --rising heat --output tuned.yaml
+  flagred tune my-rules.yaml rows.csv --loss ranking --column risk=failed --group-by vehicle --weights --output tuned.yaml
+Ctrl-C ends the search; the best rule set so far is written.";
 
 pub(crate) const MAP: &str = "\
 Examples:

@@ -18,6 +18,9 @@ pub(crate) struct Arguments {
     /// The file to write; `-` is standard output
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
+    /// The function block to read of an FCL that has several
+    #[arg(long, value_name = "NAME")]
+    block: Option<String>,
     /// Leave out what a rule set cannot say: its values may be others
     #[arg(long)]
     lossy: bool,
@@ -35,8 +38,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         true => Losses::Accept,
         false => Losses::Refuse,
     };
-    let document = interchange::read(&text, format, losses)
-        .map_err(|findings| refuse(&findings, &file, &text))?;
+    let read = match &arguments.block {
+        None => interchange::read(&text, format, losses),
+        Some(name) if format == Format::Fcl => interchange::read_block(&text, name, losses),
+        Some(_) => {
+            let message = format!("`--block` is for FCL, and `{file}` is {}", format.name());
+            return Err(Failure::usage(message));
+        }
+    };
+    let document = read.map_err(|findings| refuse(&findings, &file, &text))?;
     show(&document.warnings, &file, &text);
     let invalid = fuzzy::validate(&document.model, &document.spans);
     if !invalid.is_empty() {

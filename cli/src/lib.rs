@@ -3,7 +3,6 @@
 //! Each command has a file; this one reads the command line and dispatches.
 
 mod assess;
-mod assessment;
 mod check;
 mod completions;
 mod convert;
@@ -30,10 +29,12 @@ mod output;
 mod parallel;
 mod plot;
 mod profile;
-mod report;
+mod rows;
 mod rule_set;
 mod schema;
+mod steps;
 mod table;
+mod tune;
 mod watch;
 
 use std::process::ExitCode;
@@ -96,6 +97,9 @@ enum Command {
     /// Learn rules from a table of inputs and outputs
     #[command(after_help = help::LEARN)]
     Learn(learn::Arguments),
+    /// Move membership functions, consequents and weights of a rule set to fit a table of inputs and outputs
+    #[command(after_help = help::TUNE)]
+    Tune(tune::Arguments),
     /// Measure how well profiles predict attitude errors, compared with simple baselines
     #[command(after_help = help::EVALUATE)]
     Evaluate(evaluate::Arguments),
@@ -133,6 +137,7 @@ impl Command {
             Command::Plot(arguments) => plot::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
+            Command::Tune(arguments) => tune::run(&arguments),
             Command::Evaluate(arguments) => evaluate::run(&arguments),
             Command::Import(arguments) => import::run(&arguments),
             Command::Export(arguments) => export::run(&arguments),

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use flagred::profile::Profile;
 use fuzzy::{Engine, Findings, Model, format::Document, validate};
-use interchange::{Format, Losses};
 
 use crate::{
     diagnostics::{read_text, refuse},
@@ -21,17 +20,9 @@ pub(crate) fn read(path: &Path) -> Result<(Document, String), Failure> {
 
 /// As [`read`], of a text that was read from a file.
 pub(crate) fn parse(file: &str, text: &str) -> Result<Document, Failure> {
-    document(text).map_err(|findings| {
+    interchange::document(text).map_err(|findings| {
         profile_instead(file, text).unwrap_or_else(|| refuse(&findings, file, text))
     })
-}
-
-/// The rule set of a text, whatever format it is in.
-pub(crate) fn document(text: &str) -> Result<Document, Findings> {
-    match Format::of(text) {
-        Some(format) => interchange::read(text, format, Losses::Refuse),
-        None => fuzzy::yaml::parse(text),
-    }
 }
 
 /// Reads and compiles a rule set.

@@ -31,6 +31,8 @@ enum Format {
     Inspect,
     /// What `flagred learn --json` prints
     Learn,
+    /// What `flagred tune --json` prints
+    Tune,
     /// A line of `flagred watch --jsonl`
     Watch,
 }
@@ -50,6 +52,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Format::Explain => include_str!("../schemas/explain.json"),
         Format::Inspect => include_str!("../schemas/inspect.json"),
         Format::Learn => include_str!("../schemas/learn.json"),
+        Format::Tune => include_str!("../schemas/tune.json"),
         Format::Watch => include_str!("../schemas/watch.json"),
     };
     write!(out, "{text}")?;

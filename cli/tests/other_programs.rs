@@ -89,3 +89,31 @@ fn what_is_no_such_file_is_told() {
     assert_eq!(output.status.code(), Some(3));
     assert!(text(&output.stderr).contains("`rules/tipper.yaml` is no FIS, FLL, FCL or FML"));
 }
+
+#[test]
+fn one_of_several_function_blocks_is_imported_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = std::fs::read_to_string(tipper(&folder, "fcl")).unwrap();
+    let file = folder.path().join("two.fcl");
+    let other = one.replace("FUNCTION_BLOCK tipper", "FUNCTION_BLOCK other");
+    std::fs::write(&file, one + &other).unwrap();
+    let file = file.to_str().unwrap();
+    let refused = flagred(&["check", file]);
+    let told = text(&refused.stdout);
+    assert_eq!(refused.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains("the file has the function blocks `tipper`, `other`")
+            && told.contains("help: `flagred import --block NAME` writes one"),
+        "{told}"
+    );
+    let imported = flagred(&["import", file, "--block", "other"]);
+    let told = text(&imported.stdout);
+    assert!(
+        told.contains("\nname: other\n") && told.ends_with("generous\n"),
+        "{told}"
+    );
+    let fis = tipper(&folder, "fis");
+    let refused = flagred(&["import", fis.to_str().unwrap(), "--block", "other"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("`--block` is for FCL"));
+}

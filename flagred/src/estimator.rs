@@ -1,6 +1,7 @@
 //! A profile and its rule set, compiled: from input values to a risk.
 
 use alloc::{string::String, sync::Arc, vec, vec::Vec};
+use core::ops::Range;
 
 use fuzzy::{
     Engine, Model,
@@ -10,7 +11,7 @@ use fuzzy::{
 };
 
 use crate::{
-    board::Plan,
+    board::{Plan, Rules},
     cause::{Asked, Cause, Proposition, Propositions},
     channel::{Channel, Input},
     gap::Filling,
@@ -100,7 +101,7 @@ pub enum EstimatorError {
     },
 }
 
-/// Why a profile and its rule set cannot be exported.
+/// Why a rule set, with or without a profile, cannot be exported.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoPlan {
@@ -109,6 +110,14 @@ pub enum NoPlan {
         "the value of output `{output}` has no closed form, so it cannot be written as a table"
     )]
     NoClosedForm {
+        /// The output.
+        output: String,
+    },
+    /// An output keeps its previous value.
+    #[error(
+        "output `{output}` keeps its previous value where no rule fires, so it does not depend on the inputs alone"
+    )]
+    KeepsPrevious {
         /// The output.
         output: String,
     },
@@ -127,9 +136,12 @@ impl NoPlan {
     pub fn help(&self) -> &'static str {
         match self {
             NoPlan::NoClosedForm { .. } => {
-                "closed forms have: the centroid over straight terms that overlap only where one falls while the next one \
-                 rises (a `partition`), with minimum and maximum; the centroid with `implication: product` and \
-                 `aggregation: sum`, over any terms; the Takagi-Sugeno defuzzifiers. All of them without `samples`"
+                "the defuzzifiers have a closed form with `implication: minimum` or `product` and `aggregation: maximum` or \
+                 `sum` (maxima: `maximum` only), over terms that are no functions, without `samples`; those of Takagi-Sugeno \
+                 and Tsukamoto have one always"
+            }
+            NoPlan::KeepsPrevious { .. } => {
+                "give the output a value for where no rule fires, as `when_no_rule_fires: 0`, or leave that key out"
             }
             NoPlan::SeveralRisks { .. } => {
                 "write a profile for each risk, and run a monitor of each: the findings are the same"
@@ -321,29 +333,9 @@ impl Estimator {
                 other: other.output.clone(),
             });
         }
-        let engine = &self.0.engine;
-        let chain = engine.chain();
-        let open = match (chain, engine.table()) {
-            (Some(chain), _) => chain.open(self.0.output).next(),
-            (None, Some(table)) => {
-                let is_open = |of: &fuzzy::table::Output| of.form == ClosedForm::NONE;
-                let of = table.outputs.get(self.0.output);
-                of.is_none_or(is_open).then_some(self.0.output)
-            }
-            (None, None) => Some(self.0.output),
-        };
-        let table = chain.map(|chain| chain.table).or(engine.table());
-        let (None, Some(table)) = (open, table) else {
-            let name = engine.output_names().nth(open.unwrap_or_default());
-            return Err(NoPlan::NoClosedForm {
-                output: name.unwrap_or_default().into(),
-            });
-        };
         Ok(Plan {
             name: &self.0.profile.name,
-            table,
-            stages: chain.map_or(&[], |chain| chain.stages),
-            places: chain.map_or(&[], |chain| chain.places),
+            rules: rules_for(&self.0.engine, self.0.output..self.0.output + 1)?,
             output: self.0.output as u32,
             order: &self.0.order,
             channels: &self.0.channels,
@@ -367,6 +359,47 @@ impl Estimator {
             coverage_below: self.0.filling.coverage_below(),
             filled: self.0.filling.lend(),
         }
+    }
+}
+
+/// A rule set as plain data, to be evaluated on board without a profile.
+///
+/// # Errors
+///
+/// An output has no closed form, or keeps its previous value.
+pub fn rules(engine: &Engine) -> Result<Rules<'_>, NoPlan> {
+    let mut outputs = engine.model().outputs.iter();
+    if let Some(output) = outputs.find(|output| output.keeps_previous()) {
+        return Err(NoPlan::KeepsPrevious {
+            output: output.variable.name.clone(),
+        });
+    }
+    rules_for(engine, 0..engine.output_names().len())
+}
+
+/// The rule set for these outputs; of others the values are not asked for.
+fn rules_for(engine: &Engine, mut outputs: Range<usize>) -> Result<Rules<'_>, NoPlan> {
+    let (chain, table) = (engine.chain(), engine.table());
+    let open = match (chain, table) {
+        (Some(chain), _) => outputs.find_map(|output| chain.open(output).next()),
+        (None, table) => outputs.find(|output| {
+            let of = table.and_then(|table| table.outputs.get(*output));
+            of.is_none_or(|of| of.form == ClosedForm::NONE)
+        }),
+    };
+    match (open, chain.map(|chain| chain.table).or(table)) {
+        (None, Some(table)) => Ok(Rules {
+            table,
+            stages: chain.map_or(&[], |chain| chain.stages),
+            places: chain.map_or(&[], |chain| chain.places),
+        }),
+        (open, _) => Err(NoPlan::NoClosedForm {
+            output: engine
+                .output_names()
+                .nth(open.unwrap_or_default())
+                .unwrap_or_default()
+                .into(),
+        }),
     }
 }
 

@@ -5,7 +5,7 @@
 //! - [`monitor::Monitor`]: a sample in, the risk and the level of the moment out; [`board::Monitor`] is the same without an
 //!   allocator.
 //! - [`shipped`]: the profiles and rule sets that come with the crate; [`profile::Profile`] and [`estimator::Estimator`]
-//!   make others usable.
+//!   make others usable; `loaded::load` (feature `flightlog`) reads both.
 //! - [`evaluation`], [`learning`]: how good a risk is, and rules from flights.
 //!
 //! ```
@@ -52,6 +52,8 @@ pub mod follower;
 pub mod gap;
 #[cfg(feature = "std")]
 pub mod learning;
+#[cfg(feature = "flightlog")]
+pub mod loaded;
 #[cfg(feature = "flightlog")]
 pub mod log;
 mod lookup;

@@ -13,6 +13,8 @@ mod formula;
 #[cfg(feature = "alloc")]
 mod outline;
 mod place;
+#[cfg(feature = "alloc")]
+mod slope;
 mod smooth;
 mod straight;
 #[cfg(test)]
@@ -23,7 +25,9 @@ mod validate;
 #[cfg(feature = "alloc")]
 use crate::formula::Formula;
 #[cfg(feature = "alloc")]
-pub(crate) use form::{Form, Parts, Role};
+pub use form::Role;
+#[cfg(feature = "alloc")]
+pub(crate) use form::{Form, Parts};
 pub use formula::Kind;
 #[cfg(feature = "alloc")]
 use straight::{along, into_unit};
@@ -305,6 +309,47 @@ form::forms! {
 
 #[cfg(feature = "alloc")]
 impl MembershipFunction {
+    /// Its parameters in the order of a list: name, role and value. None of a piecewise or linear shape or a formula, which have
+    /// no fixed number of them.
+    pub fn parameters(&self) -> Vec<(&'static str, Role, f64)> {
+        match self.parts() {
+            Parts::Fixed(form, values) => {
+                let named = form.parameters.iter().zip(values);
+                named
+                    .map(|(&(name, role), value)| (name, role, value))
+                    .collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The same shape with other values of [`MembershipFunction::parameters`], in their order.
+    ///
+    /// # Errors
+    /// The values make no membership function, or their number is another.
+    ///
+    /// # Example: a gaussian moved
+    /// ```
+    /// use fuzzy::model::MembershipFunction;
+    ///
+    /// let warm = MembershipFunction::Gaussian { mean: 20.0, sd: 3.0 };
+    /// assert_eq!(warm.with_parameters(&[22.0, 3.0])?, MembershipFunction::Gaussian { mean: 22.0, sd: 3.0 });
+    /// assert!(warm.with_parameters(&[22.0, -3.0]).is_err());
+    /// # Ok::<(), fuzzy::model::MembershipError>(())
+    /// ```
+    pub fn with_parameters(&self, values: &[f64]) -> Result<Self, MembershipError> {
+        let (form, count) = match self.parts() {
+            Parts::Fixed(form, _) => (Some(form), form.parameters.len()),
+            _ => (None, 0),
+        };
+        let wrong_number = || MembershipError::count(count, values.len());
+        let built = form
+            .and_then(|form| (form.build)(values))
+            .ok_or_else(wrong_number)?;
+        built.validate()?;
+        Ok(built)
+    }
+
     /// The place of a singleton.
     pub(crate) fn at(&self) -> Option<f64> {
         match self {

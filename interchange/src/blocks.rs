@@ -2,6 +2,8 @@
 
 use fuzzy::model::{Activation, Aggregation, Block, Model, Operators, Rule};
 
+use crate::draft::Draft;
+
 /// Gives a model the blocks that its rules were read from. A single one is the rule set itself.
 pub(crate) fn settle(model: &mut Model, mut blocks: Vec<Block>) {
     if let [block] = &blocks[..]
@@ -35,6 +37,26 @@ pub(crate) fn aggregate(model: &mut Model, found: &[Option<Aggregation>]) {
     model.operators.aggregation = common;
     for (output, found) in model.outputs.iter_mut().zip(found) {
         output.aggregation = found.filter(|found| *found != common);
+    }
+}
+
+/// Tells where the aggregation of an output with computed values joins rules, which a rule set weighs each.
+pub(crate) fn joined(draft: &mut Draft<'_>, output: &str, part: &str, help: &str) {
+    let rules = draft.model.rules.iter();
+    let consequents = rules.flat_map(|rule| &rule.rule.consequents);
+    let mut terms: Vec<&str> = consequents
+        .filter(|consequent| consequent.output.text == output)
+        .map(|consequent| consequent.term.text.as_str())
+        .collect();
+    terms.sort_unstable();
+    if terms
+        .windows(2)
+        .any(|pair| matches!(pair, [a, b] if a == b))
+    {
+        let message = format!(
+            "several rules conclude one term of `{output}`, and its aggregation joins them"
+        );
+        draft.loss("joined", part, message, help);
     }
 }
 

@@ -58,3 +58,145 @@ pub(crate) fn words(text: &str) -> Vec<&str> {
     }
     words
 }
+
+/// A formula that [`read`] and fuzzylite read. fuzzylite has no signs before operands, and comparisons as functions alone. `own`
+/// is written as `x`.
+pub(crate) fn write(formula: &Formula, own: Option<&str>) -> String {
+    let number = |value: f64| {
+        Written::whole(match value < 0.0 {
+            true => format!("(0 - {})", -value),
+            false => value.to_string(),
+        })
+    };
+    let variable = |name: &str| {
+        Written::whole(match own == Some(name) {
+            true => "x".to_owned(),
+            false => name.to_owned(),
+        })
+    };
+    formula.fold(&number, &variable, &apply).text
+}
+
+/// The formula with other names.
+pub(crate) fn renamed(formula: &Formula, name: impl Fn(&str) -> String) -> Formula {
+    let number = |value: f64| value.to_string();
+    let variable = |before: &str| quoted(&name(before));
+    let apply = |word: &str, operands: Vec<String>| match operands.as_slice() {
+        [of] if word == "-" || word == "not" => format!("({word} {of})"),
+        [a, b] if is_name(word) && word != "and" && word != "or" => format!("{word}({a}, {b})"),
+        [a, b] => format!("({a} {word} {b})"),
+        _ => format!("{word}({})", operands.join(", ")),
+    };
+    let text = formula.fold(&number, &variable, &apply);
+    text.parse().unwrap_or_else(|_| formula.clone())
+}
+
+/// A part of a formula, and how tightly its operator binds.
+struct Written {
+    text: String,
+    binds: u8,
+}
+
+impl Written {
+    /// A part that needs no brackets.
+    fn whole(text: String) -> Self {
+        Written { text, binds: 4 }
+    }
+
+    /// As an operand of an operator: in brackets where it binds less tightly than that one.
+    fn within(self, binds: u8) -> String {
+        match self.binds < binds {
+            true => format!("({})", self.text),
+            false => self.text,
+        }
+    }
+}
+
+fn apply(word: &str, mut operands: Vec<Written>) -> Written {
+    let binds = match word {
+        "+" | "-" => 1,
+        "*" | "/" | "%" => 2,
+        "^" => 3,
+        _ => 0,
+    };
+    if binds > 0
+        && operands.len() == 2
+        && let (Some(right), Some(left)) = (operands.pop(), operands.pop())
+    {
+        // Powers are put in brackets on both sides: not all programs nest them to the right.
+        let left = left.within(binds + u8::from(word == "^"));
+        let text = format!("{left} {word} {}", right.within(binds + 1));
+        return Written { text, binds };
+    }
+    let called = match word {
+        "<" => "lt",
+        "<=" => "le",
+        ">" => "gt",
+        ">=" => "ge",
+        "==" => "eq",
+        "!=" => "neq",
+        _ => word,
+    };
+    let texts: Vec<String> = operands.into_iter().map(|of| of.text).collect();
+    Written::whole(match (word, texts.as_slice()) {
+        ("-", [of]) => format!("(0 - ({of}))"),
+        ("not", [of]) => format!("eq({of}, 0)"),
+        // Every number but 0 is true.
+        ("and", [a, b]) => format!("min(neq({a}, 0), neq({b}, 0))"),
+        ("or", [a, b]) => format!("max(neq({a}, 0), neq({b}, 0))"),
+        _ => format!("{called}({})", texts.join(", ")),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FORMULAS: [&str; 8] = [
+        "-x^2 + 3 * (y - 2) / (x - (y - 1))",
+        "2 - (3 - x) - y",
+        "x^y^2 + (x^y)^2 + (-x)^3",
+        "not (x > y) or x >= 0.5 and y != x",
+        "max(abs(x), sqrt(y)) % 3",
+        "atan2(y, x) * pi",
+        "-(-x)",
+        "x / (y * 2) * 4",
+    ];
+
+    /// The values of both at some points.
+    fn assert_same(before: &Formula, after: &Formula, names: [&str; 2]) {
+        for x in [-1.5, 0.0, 0.25, 2.0] {
+            for y in [0.5, 1.0, 3.0] {
+                let value = |formula: &Formula, names: [&str; 2]| {
+                    formula
+                        .evaluate(|name| if name == names[0] { x } else { y })
+                        .to_bits()
+                };
+                assert_eq!(
+                    value(before, ["x", "y"]),
+                    value(after, names),
+                    "{before}: {after}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_written_reads_back_with_the_same_values() {
+        for text in FORMULAS {
+            let formula: Formula = text.parse().unwrap();
+            let written = write(&formula, None);
+            assert!(
+                !written.contains("(-") && !written.contains("- -"),
+                "{written}"
+            );
+            assert_same(&formula, &written.parse().unwrap(), ["x", "y"]);
+            let renamed = renamed(&formula, |name| format!("the {name}"));
+            assert_same(&formula, &renamed, ["the x", "the y"]);
+        }
+        let heat: Formula = "2 * heat - wind".parse().unwrap();
+        assert_eq!(write(&heat, Some("heat")), "2 * x - wind");
+        let long: Formula = ["x"; 200].join(" + ").parse().unwrap();
+        assert_eq!(write(&long, None), ["x"; 200].join(" + "));
+    }
+}

@@ -131,8 +131,34 @@ pub fn read(text: &str, format: Format, losses: Losses) -> Result<Document, Find
     match format {
         Format::Fis => fis::read(text, losses),
         Format::Fll => fll::read(text, losses),
-        Format::Fcl => fcl::read(text, losses),
+        Format::Fcl => fcl::read(text, None, losses),
         Format::Fml => fml::read(text, losses),
+    }
+}
+
+/// Reads one function block of an FCL that has several, by its name.
+///
+/// # Errors
+///
+/// As [`read`]; and no function block has that name.
+pub fn read_block(text: &str, name: &str, losses: Losses) -> Result<Document, Findings> {
+    fcl::read(text, Some(name), losses)
+}
+
+/// Reads a rule set in whatever format it is: one of these, or YAML.
+///
+/// # Errors
+///
+/// As [`read`] without losses, and as [`fuzzy::yaml::parse`]; all that is wrong with the model.
+pub fn document(text: &str) -> Result<Document, Findings> {
+    let Some(format) = Format::of(text) else {
+        return fuzzy::yaml::parse(text);
+    };
+    let document = read(text, format, Losses::Refuse)?;
+    let invalid = fuzzy::validate(&document.model, &document.spans);
+    match invalid.is_empty() {
+        true => Ok(document),
+        false => Err(Findings::locate(invalid, text)),
     }
 }
 

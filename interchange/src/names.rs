@@ -8,7 +8,7 @@ use fuzzy::{
     rule::{Condition, Name, Rule},
 };
 
-use crate::paper::Paper;
+use crate::{formula, paper::Paper};
 
 /// What a format takes as a name.
 pub(crate) struct Allowed {
@@ -73,14 +73,25 @@ pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Mode
     for output in &mut model.outputs {
         rename(&mut output.variable);
     }
-    for output in &mut model.outputs {
-        for term in &mut output.variable.terms {
-            if let MembershipFunction::Linear { coefficients, .. } = &mut term.membership_function {
-                for (input, _) in coefficients {
-                    if let Some((name, _)) = variables.get(input) {
-                        input.clone_from(name);
+    let name = |before: &str| match variables.get(before) {
+        Some((name, _)) => name.clone(),
+        None => before.to_owned(),
+    };
+    let outputs = model.outputs.iter_mut().map(|output| &mut output.variable);
+    for variable in model.inputs.iter_mut().chain(outputs) {
+        for term in &mut variable.terms {
+            match &mut term.membership_function {
+                MembershipFunction::Linear { coefficients, .. } => {
+                    for (input, _) in coefficients {
+                        *input = name(input);
                     }
                 }
+                MembershipFunction::Function { formula }
+                    if formula.variables().any(|known| name(known) != known) =>
+                {
+                    *formula = formula::renamed(formula, name);
+                }
+                _ => {}
             }
         }
     }

@@ -1,6 +1,11 @@
 //! A text that is being written, and what it cannot carry.
 
-use fuzzy::{Diagnostic, Findings, model::Operators};
+use std::fmt::Debug;
+
+use fuzzy::{
+    Diagnostic, Findings,
+    model::{Operators, Term, Variable},
+};
 
 use crate::{
     Format, Losses, Written,
@@ -46,19 +51,18 @@ impl Paper {
     }
 
     /// The word of the format for an operator or a defuzzifier, which `what` names.
-    pub(crate) fn word<T: Copy + PartialEq>(
+    pub(crate) fn word<T: Copy + PartialEq + Debug>(
         &mut self,
         words: &Words<T>,
         value: T,
         what: &str,
     ) -> &'static str {
         words::word(words, self.format, value).unwrap_or_else(|| {
-            let message = format!("{} has no word for {what}", self.format.name());
-            self.loss("no-word", message, "take another one");
-            words::all(words, self.format)
-                .first()
-                .copied()
-                .unwrap_or_default()
+            let (format, value) = (self.format.name(), snake_case(&format!("{value:?}")));
+            let known = words::all(words, self.format);
+            let message = format!("{format} has no word for {what} `{value}`");
+            self.loss("no-word", message, &format!("it has {}", known.join(", ")));
+            known.first().copied().unwrap_or_default()
         })
     }
 
@@ -76,7 +80,14 @@ impl Paper {
     }
 
     pub(crate) fn finish(self) -> Result<Written, Findings> {
-        let findings = Findings(self.findings);
+        // What holds for several outputs is told once.
+        let mut told: Vec<Diagnostic> = vec![];
+        for finding in self.findings {
+            if !told.contains(&finding) {
+                told.push(finding);
+            }
+        }
+        let findings = Findings(told);
         match findings.has_errors() {
             true => Err(findings),
             false => Ok(Written {
@@ -87,11 +98,28 @@ impl Paper {
     }
 }
 
+/// The word of a rule set for an operator, from its name in Rust: `weighted_average` of `WeightedAverage`.
+fn snake_case(name: &str) -> String {
+    let mut word = String::new();
+    for c in name.chars() {
+        if c.is_ascii_uppercase() && !word.is_empty() {
+            word.push('_');
+        }
+        word.push(c.to_ascii_lowercase());
+    }
+    word
+}
+
 /// A text on one line, without control characters.
 pub(crate) fn one_line(text: &str) -> String {
     let words = text.split(|c: char| c.is_whitespace() || !is_printable(c));
     let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
     words.join(" ")
+}
+
+/// What a message calls a term.
+pub(crate) fn named(term: &Term, variable: &Variable) -> String {
+    format!("`{}` of `{}`", term.name, variable.name)
 }
 
 /// Numbers with blanks between.

@@ -214,7 +214,7 @@ fn joined(mut parts: Vec<Condition>, join: fn(Vec<Condition>) -> Condition) -> C
     }
 }
 
-/// A rule in words that [`read`] reads, or several of the same condition where conclusions have hedges of their own. `None`
+/// A rule in words that [`read`] reads, or several of the same condition where a conclusion lacks hedges of the one before. `None`
 /// where a NOT stands before brackets that it cannot be taken into.
 pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<Vec<String>> {
     let condition = conditions::without_not(&rule.condition, operators)?;
@@ -224,24 +224,26 @@ pub(crate) fn write(rule: &Rule, operators: Operators, and: &str) -> Option<Vec<
         true => String::new(),
         false => format!(" with {}", rule.weight),
     };
-    let (plain, hedged): (Vec<_>, Vec<_>) =
-        rule.consequents.iter().partition(|c| c.hedges.is_empty());
-    let plain: Vec<String> = plain.into_iter().map(conclusion).collect();
-    let conclusions = (!plain.is_empty()).then(|| plain.join(and));
-    let conclusions = conclusions
-        .into_iter()
-        .chain(hedged.into_iter().map(conclusion));
-    Some(
-        conclusions
-            .map(|conclusion| format!("{start} then {conclusion}{weight}"))
-            .collect(),
-    )
-}
-
-fn conclusion(consequent: &Consequent) -> String {
-    let mut text = format!("{} is", consequent.output.text);
-    push_term(&mut text, &consequent.hedges, Some(&consequent.term));
-    text
+    let mut rules: Vec<String> = vec![];
+    let mut before: Option<&[Hedge]> = None;
+    for consequent in &rule.consequents {
+        let Consequent {
+            output,
+            hedges,
+            term,
+        } = consequent;
+        // fuzzylite hands the hedges of a conclusion on to those behind.
+        let own = before.and_then(|before| hedges.strip_suffix(before));
+        let mut text = format!("{} is", output.text);
+        push_term(&mut text, own.unwrap_or(hedges), Some(term));
+        match rules.last_mut().filter(|_| own.is_some()) {
+            Some(rule) => *rule += &format!("{and}{text}"),
+            None => rules.push(format!("{start} then {text}")),
+        }
+        before = Some(hedges);
+    }
+    rules.iter_mut().for_each(|rule| *rule += &weight);
+    Some(rules)
 }
 
 fn push_term(text: &mut String, hedges: &[Hedge], term: Option<&Name>) {

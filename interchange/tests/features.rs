@@ -84,6 +84,11 @@ const FEATURES: &[(&str, &str, &str)] = &[
     ("`concave`", "TERM", "{concave: {inflection: 5, end: 9}}"),
     ("`arc`, `semi_ellipse`", "TERM", "{semi_ellipse: [3, 9]}"),
     (
+        "a formula as a membership function",
+        "TERM",
+        "{function: exp(-((a - 7) / 2)^2)}",
+    ),
+    (
         "the height of a term",
         "TERM",
         "{triangle: [3, 7, 10], height: 0.5}",
@@ -122,6 +127,11 @@ const FEATURES: &[(&str, &str, &str)] = &[
         "`weighted_average` of `linear` terms",
         "OUTPUT",
         "terms: {small: {constant: 2}, large: {linear: {a: 0.5, b: -1, constant: 1}}}, defuzzifier: weighted_average",
+    ),
+    (
+        "`weighted_average` of formulas",
+        "OUTPUT",
+        "terms: {small: {constant: 2}, large: {function: 'max(a, 1) - 2 * b^2'}}, defuzzifier: weighted_average",
     ),
     (
         "`weighted_sum`",

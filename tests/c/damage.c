@@ -29,14 +29,22 @@ static long tried, accepted;
 
 /* The arrays of a plan: where it points to them, and the size of an item. Copies of the items can be damaged. */
 #define ARRAY(name) {offsetof(flagred_plan, name), sizeof *((flagred_plan *)0)->name}
+#define RULES(name) ARRAY(rules.name)
 static const struct { size_t field, size; } arrays[] = {
-    ARRAY(inputs), ARRAY(cuts), ARRAY(starts), ARRAY(lines), ARRAY(curves), ARRAY(points), ARRAY(hedges), ARRAY(axes),
-    ARRAY(dimensions), ARRAY(cells), ARRAY(nodes), ARRAY(edges), ARRAY(actions), ARRAY(programs), ARRAY(steps),
-    ARRAY(outputs), ARRAY(pairs), ARRAY(moments), ARRAY(consequents), ARRAY(coefficients), ARRAY(sets), ARRAY(set_terms),
-    ARRAY(sections), ARRAY(strands), ARRAY(flanks), ARRAY(knots), ARRAY(order), ARRAY(channels),
-    ARRAY(sources), ARRAY(coordinates), ARRAY(first_coordinates), ARRAY(values), ARRAY(distances),
+    RULES(inputs), RULES(cuts), RULES(starts), RULES(lines), RULES(curves), RULES(points), RULES(hedges), RULES(axes),
+    RULES(dimensions), RULES(cells), RULES(nodes), RULES(edges), RULES(actions), RULES(programs), RULES(steps),
+    RULES(blocks), RULES(outputs), RULES(pairs), RULES(moments), RULES(consequents), RULES(coefficients), RULES(sets),
+    RULES(set_terms), RULES(sections), RULES(strands), RULES(flanks), RULES(knots), RULES(stages), RULES(places),
+    ARRAY(order), ARRAY(channels), ARRAY(sources), ARRAY(coordinates), ARRAY(first_coordinates), ARRAY(values),
+    ARRAY(distances), ARRAY(propositions),
 };
 #define ARRAYS (sizeof arrays / sizeof *arrays)
+
+/* The words of a plan that are no arrays. */
+static const struct { size_t first, end; } words[] = {
+    {offsetof(flagred_plan, rules.and_operator), offsetof(flagred_plan, rules.inputs)},
+    {offsetof(flagred_plan, output), offsetof(flagred_plan, order)},
+};
 
 typedef struct { void *items; size_t count; } array;
 
@@ -57,7 +65,7 @@ static void use(flagred_monitor *monitor, size_t motors, int samples) {
     flagred_factors geometry[MOST_MOTORS] = {{-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, -1}};
     for (int i = 0; i < 9; i++) {
         for (size_t k = 0; k < 16; k++) {
-            inputs[k] = plan.inputs[k < plan.inputs_count ? k : 0].low + (double)((i + k) % 9) * 0.125;
+            inputs[k] = plan.rules.inputs[k < plan.rules.inputs_count ? k : 0].low + (double)((i + k) % 9) * 0.125;
         }
         CHECK(flagred_evaluate(monitor, inputs, plan.sources_count < 16 ? plan.sources_count : 16, &said) == FLAGRED_OK);
     }
@@ -129,9 +137,10 @@ static void damage(unsigned char *word, int samples) {
 
 /* Each word of what is no array, each length, each word of each item. */
 static void damage_in_turn(void) {
-    unsigned char *first = (unsigned char *)&plan.and_operator;
-    for (unsigned char *word = first; word < (unsigned char *)&plan.inputs; word += sizeof(uint32_t)) {
-        damage(word, 200);
+    for (int i = 0; i < 2; i++) {
+        for (size_t word = words[i].first; word < words[i].end; word += sizeof(uint32_t)) {
+            damage((unsigned char *)&plan + word, 200);
+        }
     }
     for (size_t i = 0; i < ARRAYS; i++) {
         array found = get(i);
@@ -151,14 +160,14 @@ static void damage_in_turn(void) {
 
 /* Up to six words and lengths at once. */
 static void damage_at_random(void) {
-    struct { unsigned char *word; uint32_t kept; } words[6];
+    struct { unsigned char *word; uint32_t kept; } changed[6];
     flagred_plan kept = plan;
     int count = 0;
     for (uint32_t left = 1 + below(6); left > 0; left--) {
         size_t i = below(ARRAYS + 6);
-        array found = i < ARRAYS ? get(i) : (array){&plan.and_operator, 1};
-        size_t bytes = i < ARRAYS ? found.count * arrays[i].size
-                                  : offsetof(flagred_plan, inputs) - offsetof(flagred_plan, and_operator);
+        size_t k = i % 2;
+        array found = i < ARRAYS ? get(i) : (array){(unsigned char *)&plan + words[k].first, 1};
+        size_t bytes = i < ARRAYS ? found.count * arrays[i].size : words[k].end - words[k].first;
         if (bytes < sizeof(uint32_t)) {
             continue;
         }
@@ -168,15 +177,15 @@ static void damage_at_random(void) {
             continue;
         }
         unsigned char *word = (unsigned char *)found.items + below(bytes / sizeof(uint32_t)) * sizeof(uint32_t);
-        memcpy(&words[count].kept, word, sizeof(uint32_t));
-        words[count].word = word;
-        uint32_t damaged = below(3) == 0 ? below(UINT32_MAX) : value(words[count].kept, (int)below(VALUES));
+        memcpy(&changed[count].kept, word, sizeof(uint32_t));
+        changed[count].word = word;
+        uint32_t damaged = below(3) == 0 ? below(UINT32_MAX) : value(changed[count].kept, (int)below(VALUES));
         memcpy(word, &damaged, sizeof damaged);
         count++;
     }
     try_plan(1 + below(MOST_MOTORS), 300);
     while (count-- > 0) {
-        memcpy(words[count].word, &words[count].kept, sizeof(uint32_t));
+        memcpy(changed[count].word, &changed[count].kept, sizeof(uint32_t));
     }
     plan = kept;
 }

@@ -62,35 +62,35 @@ int main(void) {
 
     /* Plans of another version, and damaged ones. */
     flagred_plan damaged = *plan;
-    damaged.format = 0;
+    damaged.rules.format = 0;
     CHECK(start(&damaged, &monitor) == FLAGRED_OTHER_FORMAT && flagred_memory_size(&damaged, MOTORS) == 0);
     damaged = *plan;
-    damaged.and_operator = 99;
+    damaged.rules.and_operator = 99;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     damaged = *plan;
-    damaged.conjunctions = 99;
+    damaged.rules.conjunctions = 99;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     damaged = *plan;
     damaged.output = 99;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     damaged = *plan;
-    damaged.lines_count = damaged.actions_count = 1;
+    damaged.rules.lines_count = damaged.rules.actions_count = 1;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     damaged = *plan;
-    damaged.inputs = NULL;
+    damaged.rules.inputs = NULL;
     CHECK(start(&damaged, &monitor) == FLAGRED_NULL_POINTER);
     damaged = *plan;
     damaged.channels_count = 0;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     damaged = *plan;
-    damaged.degrees = 1;
-    damaged.starts_count = 0;
+    damaged.rules.degrees = 1;
+    damaged.rules.starts_count = 0;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     damaged = *plan;
     damaged.order_count = 0;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
     damaged = *plan;
-    damaged.strengths = 0;
+    damaged.rules.strengths = 0;
     CHECK(start(&damaged, &monitor) == FLAGRED_DAMAGED_PLAN);
 
     flagred_channel channels[16];

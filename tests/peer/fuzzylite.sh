@@ -8,4 +8,4 @@ if [ ! -x "$venv/bin/pip" ] && ! python3 -m venv "$venv"; then
   exit 3
 fi
 "$venv/bin/pip" install --quiet "numpy<2" "pyfuzzylite==8.0.6"
-FLAGRED_PYTHON="$PWD/$venv/bin/python" cargo test -p flagred-tests --test fuzzylite -- --ignored
+FLAGRED_PYTHON="$PWD/$venv/bin/python" cargo test -p flagred-tests --test peers pyfuzzylite -- --ignored

@@ -189,7 +189,7 @@ pub fn points(estimator: &Estimator, along: usize) -> Vec<Vec<f64>> {
     let ranges: Vec<(f64, f64)> = match estimator.plan() {
         Ok(plan) => {
             let mut ranges = vec![(0.0, 1.0); plan_inputs];
-            for (input, index) in plan.table.inputs.iter().zip(plan.order) {
+            for (input, index) in plan.rules.table.inputs.iter().zip(plan.order) {
                 ranges[*index as usize] = (input.low, input.high);
             }
             ranges

@@ -6,7 +6,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
-const PACKAGES: [&str; 5] = ["fuzzy", "flagred", "flightlog", "interchange", "cli"];
+const PACKAGES: [&str; 7] = [
+    "fuzzy",
+    "flagred",
+    "flightlog",
+    "interchange",
+    "report",
+    "tuning",
+    "cli",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -56,8 +64,20 @@ fn every_package_stands_on_those_below_it_alone() {
         ("fuzzy", &[][..]),
         ("flightlog", &[]),
         ("interchange", &["fuzzy"]),
+        ("tuning", &["fuzzy"]),
         ("flagred", &["flightlog", "fuzzy"]),
-        ("cli", &["flagred", "flightlog", "fuzzy", "interchange"]),
+        ("report", &["flagred", "flightlog", "fuzzy", "interchange"]),
+        (
+            "cli",
+            &[
+                "flagred",
+                "flightlog",
+                "fuzzy",
+                "interchange",
+                "report",
+                "tuning",
+            ],
+        ),
     ] {
         let manifest = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
         let (_, dependencies) = manifest.split_once("\n[dependencies]\n").unwrap();
@@ -73,6 +93,8 @@ fn every_package_stands_on_those_below_it_alone() {
                     "flagred",
                     "flagred-cli",
                     "interchange",
+                    "report",
+                    "tuning",
                 ]
                 .contains(name)
             })
@@ -238,6 +260,7 @@ fn the_map_of_the_house_has_every_module_and_names_nothing_that_is_gone() {
         "flagred",
         "flightlog",
         "interchange",
+        "report",
         "cli",
         "tests",
     ]

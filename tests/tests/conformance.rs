@@ -252,6 +252,46 @@ fn bless() {
     }
 }
 
+/// Each outcome of the corpus to the bit, a line a case: its file, its number there from 0, and for each output the bits of
+/// value and coverage, the index of the dominant rule, and whether an input was clamped. Libraries for other languages are
+/// held against it. `UPDATE_BITS=1 cargo test -p flagred-tests --test conformance` writes it.
+#[test]
+fn the_bits_of_the_corpus_are_those_on_file() {
+    let mut lines = String::new();
+    for file in files() {
+        let (model, cases) = parts(&file);
+        let name = file.file_name().unwrap().to_string_lossy().into_owned();
+        for (i, line) in cases.lines().enumerate() {
+            let case = case(&model, line, format!("{name}: {line}"));
+            let outcomes = Engine::new(&case.model).unwrap().evaluate(&case.point);
+            lines += &format!("{name} {i}");
+            for outcome in outcomes.unwrap() {
+                let value = outcome
+                    .value()
+                    .map_or("none".to_owned(), |value| format!("{:x}", value.to_bits()));
+                let rule = outcome
+                    .dominant
+                    .map_or("none".to_owned(), |rule| rule.to_string());
+                lines += &format!(
+                    " {value},{:x},{rule},{}",
+                    outcome.coverage.to_bits(),
+                    u8::from(outcome.clamped)
+                );
+            }
+            lines.push('\n');
+        }
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance.bits");
+    if std::env::var_os("UPDATE_BITS").is_some() {
+        std::fs::write(&path, &lines).unwrap();
+    }
+    let known = std::fs::read_to_string(&path).unwrap();
+    for (known, now) in known.lines().zip(lines.lines()) {
+        assert_eq!(known, now, "other bits; if they are meant: UPDATE_BITS=1");
+    }
+    assert_eq!(known.len(), lines.len());
+}
+
 /// A batch of many rows, so that blocks, tasks and threads all come to their ends somewhere.
 #[test]
 fn batches_on_one_and_many_threads_have_the_bits_of_single_calls() {

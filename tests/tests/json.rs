@@ -89,6 +89,21 @@ fn learn() {
 }
 
 #[test]
+fn tune() {
+    let folder = Folder::new();
+    let rows = "margin,spread,risk\n0.1,0.1,50\n0.1,0.1,70\n0.3,0.2,10\n0.3,0.1,5\n";
+    let (data, out) = (folder.file("data.csv", rows), folder.at("out.yaml"));
+    let arguments = ["tune", PAPER, &data, "--output", &out, "--json", "--force"];
+    let document = json(&arguments);
+    valid("tune", &document);
+    assert!(document["validation"]["gain"]["low"].is_number());
+    assert!(document["moved"][0]["after"].is_number());
+    let document = json(&[&arguments[..], &["--no-validation"]].concat());
+    valid("tune", &document);
+    assert_eq!(document["rows"]["used"], 4);
+}
+
+#[test]
 fn inspect() {
     let folder = Folder::new();
     let ground = folder.file(

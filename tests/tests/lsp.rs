@@ -354,3 +354,33 @@ fn an_editor_that_leaves_without_a_word_leaves_nothing_behind() {
     drop((to, from));
     server.wait().unwrap();
 }
+
+/// Findings alone: nothing changes the text of another program.
+#[test]
+fn a_rule_set_of_another_program_has_findings_and_stays_as_it_is() {
+    let text = "FUNCTION_BLOCK fan\nVAR_INPUT\n  heat : REAL;\nEND_VAR\nVAR_OUTPUT\n  speed : REAL;\nEND_VAR\n\
+        FUZZIFY heat\n  RANGE := (0 .. 100);\n  TERM low := (0, 1) (100, 0);\nEND_FUZZIFY\n\
+        DEFUZZIFY speed\n  RANGE := (0 .. 9);\n  TERM slow := (0, 0) (2, 1) (4, 0);\n  METHOD : COGG;\nEND_DEFUZZIFY\n\
+        RULEBLOCK rules\n  RULE 1 : IF heat IS low THEN speed IS slow;\nEND_RULEBLOCK\nEND_FUNCTION_BLOCK\n";
+    let mut editor = Editor::new(&["utf-8"]);
+    let uri = "file:///tmp/fan.fcl";
+    let found = editor.open(uri, text);
+    assert!(
+        found[0].starts_with("14:11 unknown-word") && found[0].contains("did you mean `COG`?"),
+        "{found:?}"
+    );
+    let line = text
+        .lines()
+        .position(|line| line.contains("RULE 1"))
+        .unwrap();
+    let mut rename = place(uri, line, 22);
+    rename["newName"] = "cold".into();
+    assert!(editor.ask_raw("textDocument/rename", rename)["error"].is_object());
+    let options = json!({"tabSize": 2, "insertSpaces": true});
+    let formatted = editor.ask(
+        "textDocument/formatting",
+        json!({"textDocument": {"uri": uri}, "options": options}),
+    );
+    assert_eq!(formatted, Value::Null);
+    editor.end();
+}

@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_PLAN_FORMAT 5
+#define FLAGRED_FORMAT 6
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -36,7 +36,8 @@ typedef enum flagred_status {
     FLAGRED_NO_MOTORS = 4,      /* the number of motors is 0, or the profile names a motor that there is not */
     FLAGRED_MEMORY_SIZE = 5,    /* less memory than flagred_memory_size returns, or not aligned to 16 bytes */
     FLAGRED_BAD_LIMITS = 6,     /* the lower limit of a motor is not below its upper limit */
-    FLAGRED_BAD_GEOMETRY = 7    /* the geometry does not tell roll, pitch, yaw and thrust of all motors apart */
+    FLAGRED_BAD_GEOMETRY = 7,   /* the geometry does not tell roll, pitch, yaw and thrust of all motors apart */
+    FLAGRED_WRONG_COUNT = 8     /* not one value for each input, or not one outcome for each output */
 } flagred_status;
 
 typedef enum flagred_level {
@@ -133,6 +134,7 @@ typedef struct flagred_update {
     int32_t unknown_input;      /* the index of the unknown input of the profile; else -1 */
 } flagred_update;
 
+typedef struct flagred_rules flagred_rules;
 typedef struct flagred_plan flagred_plan;
 typedef struct flagred_monitor flagred_monitor;
 
@@ -168,6 +170,48 @@ int32_t flagred_finish(flagred_monitor *monitor, flagred_finding ended[FLAGRED_E
 /* The risk at values of the profile's inputs, in its order, independent of the flight. Writes risk_pct, coverage,
  * filled_from, dominant_rule and clamped. */
 int32_t flagred_evaluate(flagred_monitor *monitor, const double *inputs, size_t count, flagred_update *update);
+
+/* ---- Evaluating a rule set ----------------------------------------------------------------------------------------
+ *
+ * For any rule set, without a profile and a flight: outputs from inputs, bit for bit those of the command `flagred eval`.
+ *
+ *     #include "fan.h"                                         // flagred export --c fan.yaml
+ *     static _Alignas(16) unsigned char memory[FLAGRED_FAN_MEMORY];
+ *     flagred_evaluator *fan;
+ *     flagred_rules_start(&flagred_rules_fan, memory, sizeof memory, &fan);
+ *     flagred_rules_evaluate(fan, (double[]){27.5}, 1, &speed, 1);     // as often as wanted
+ */
+
+/* What the value of an outcome is. */
+typedef enum flagred_state {
+    FLAGRED_DEFINED = 0,
+    FLAGRED_DEFAULT = 1,        /* no rule fired; the value is the default value of the output */
+    FLAGRED_NO_RULE_FIRED = 2,  /* there is no value */
+    FLAGRED_NOT_FINITE = 3      /* an input is NAN or infinite; there is no value */
+} flagred_state;
+
+/* The outcome of an output. */
+typedef struct flagred_outcome {
+    double value;               /* NAN where there is none */
+    double coverage;            /* the largest firing strength of a rule, 0 to 1 */
+    int32_t state;              /* flagred_state */
+    int32_t dominant_rule;      /* the index of the rule with the largest firing strength; -1 where none fired */
+    int32_t clamped;            /* 1 where an input was outside its range and was clamped to it */
+} flagred_outcome;
+
+typedef struct flagred_evaluator flagred_evaluator;
+
+/* The size of an evaluator's memory in bytes; 0 for invalid rules. FLAGRED_NAME_MEMORY of an exported rule set is at least as
+ * large on every processor. */
+size_t flagred_rules_memory_size(const flagred_rules *rules);
+
+/* Makes an evaluator in `memory`; there is nothing to free. `rules` and `memory` must outlive it. */
+int32_t flagred_rules_start(const flagred_rules *rules, void *memory, size_t size, flagred_evaluator **evaluator);
+
+/* Evaluates one value for each input into one outcome for each output, in the order of the rule set. The outcomes depend on
+ * nothing but the inputs. */
+int32_t flagred_rules_evaluate(flagred_evaluator *evaluator, const double *inputs, size_t input_count,
+                               flagred_outcome *outcomes, size_t output_count);
 
 /* ---- Exported data: written by `flagred export --c`, not by hand --------------------------------------------------- */
 
@@ -339,14 +383,12 @@ typedef struct flagred_settings {
     const type *name;             \
     size_t name##_count
 
-struct flagred_plan {
+struct flagred_rules {
     uint32_t format;
     uint32_t and_operator, or_operator;
     uint32_t conjunctions, actions_a_cell, first_action, sums;
     uint32_t degrees, alive, partial, stack, strengths;
-    uint32_t output, signals;
-    double coverage_below, least_strength;
-    flagred_settings settings;
+    double least_strength;
     FLAGRED_ARRAY(flagred_input, inputs);
     FLAGRED_ARRAY(double, cuts);
     FLAGRED_ARRAY(uint32_t, starts);
@@ -374,6 +416,15 @@ struct flagred_plan {
     FLAGRED_ARRAY(flagred_strand, strands);
     FLAGRED_ARRAY(flagred_flank, flanks);
     FLAGRED_ARRAY(flagred_knot, knots);
+    FLAGRED_ARRAY(flagred_stage, stages);
+    FLAGRED_ARRAY(uint32_t, places);            /* of each stage: the outputs that it reads, its outputs, its rules */
+};
+
+struct flagred_plan {
+    flagred_rules rules;
+    uint32_t output, signals;
+    double coverage_below;
+    flagred_settings settings;
     FLAGRED_ARRAY(uint32_t, order);
     FLAGRED_ARRAY(flagred_channel, channels);
     FLAGRED_ARRAY(flagred_source, sources);
@@ -382,8 +433,6 @@ struct flagred_plan {
     FLAGRED_ARRAY(double, values);
     FLAGRED_ARRAY(double, distances);
     FLAGRED_ARRAY(flagred_proposition, propositions);
-    FLAGRED_ARRAY(flagred_stage, stages);
-    FLAGRED_ARRAY(uint32_t, places);            /* of each stage: the outputs that it reads, its outputs, its rules */
 };
 
 #undef FLAGRED_ARRAY

@@ -3,8 +3,11 @@
 //! It converts between pointers and references: the only `unsafe` code of the workspace.
 #![cfg_attr(not(feature = "std"), no_std)]
 
+mod array;
+mod evaluator;
 mod memory;
 mod plan;
+mod rules;
 mod status;
 mod update;
 
@@ -22,8 +25,9 @@ use flagred::{
     window::Window,
 };
 
+use array::Array;
 use memory::Block;
-use plan::{Array, Plan};
+use plan::Plan;
 use status::Status;
 use update::{ENDED, Finding, Update, findings};
 

@@ -2,15 +2,7 @@
 
 use flagred::{
     accumulator::AccumulatorSettings,
-    board::{
-        self, Proposition,
-        table::{
-            self, Action, Axis, Block as RuleBlock, Coefficient, Conjunction, Conjunctions,
-            Consequent, Curve, Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot,
-            Line, Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Stage, Step,
-            Strand, Table,
-        },
-    },
+    board::{self, Proposition},
     channel::{self, Channel, Motors, Observed, Statistic},
     follower::Settings,
     gap::FilledKnots,
@@ -18,44 +10,10 @@ use flagred::{
     verdict::{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings},
 };
 
-use crate::{memory::Block, status::Status};
+use crate::{array::Array, memory::Block, rules::Rules, status::Status};
 
 #[cfg(test)]
 mod tests;
-
-/// The version of the data that this library reads.
-const FORMAT: u32 = 5;
-
-/// An array of C and its length.
-#[derive(Debug, Clone, Copy)]
-#[repr(C)]
-pub(crate) struct Array<T> {
-    pub(crate) items: *const T,
-    pub(crate) count: usize,
-}
-
-impl<T> Array<T> {
-    /// The array as a slice.
-    ///
-    /// # Safety
-    /// It is null or has `count` items, and does not change while the slice is used.
-    #[allow(unsafe_code, reason = "foreign memory")]
-    pub(crate) unsafe fn read<'a>(&self) -> Result<&'a [T], Status> {
-        if self.count == 0 {
-            return Ok(&[]);
-        }
-        if self.items.is_null() || !self.items.is_aligned() {
-            return Err(Status::NullPointer);
-        }
-        // No object is larger: the count is damaged.
-        let bytes = self.count.checked_mul(size_of::<T>());
-        if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) {
-            return Err(Status::DamagedPlan);
-        }
-        // SAFETY: neither null nor unaligned, of a possible size, and the caller's promise.
-        Ok(unsafe { core::slice::from_raw_parts(self.items, self.count) })
-    }
-}
 
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
@@ -123,65 +81,24 @@ struct CSettings {
     min_samples: u32,
 }
 
-macro_rules! define {
-    ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
-        /// `struct flagred_plan`.
-        #[derive(Debug)]
-        #[repr(C)]
-        pub struct Plan {
-            format: u32,
-            and: u32,
-            or: u32,
-            conjunctions: u32,
-            actions_a_cell: u32,
-            first_action: u32,
-            sums: u32,
-            sizes: Sizes,
-            output: u32,
-            signals: u32,
-            coverage_below: f64,
-            least_strength: f64,
-            settings: CSettings,
-            $($array: Array<define!(@item $item)>,)*
-            order: Array<u32>,
-            channels: Array<CChannel>,
-            sources: Array<CSource>,
-            coordinates: Array<f64>,
-            first_coordinates: Array<u32>,
-            values: Array<f64>,
-            distances: Array<f64>,
-            propositions: Array<Proposition>,
-            stages: Array<Stage>,
-            places: Array<u32>,
-        }
-
-        impl Plan {
-            /// # Safety
-            /// The arrays have the lengths they say, and do not change.
-            #[allow(unsafe_code, reason = "foreign memory")]
-            unsafe fn table<'a>(&self) -> Result<Table<'a>, Status> {
-                // SAFETY: the caller's promise, for all arrays.
-                unsafe {
-                    Ok(Table {
-                        and: conjunction(self.and)?,
-                        or: disjunction(self.or)?,
-                        conjunctions: self.conjunctions()?,
-                        least_strength: self.least_strength,
-                        sizes: self.sizes,
-                        $($array: define!(@read $item self.$array),)*
-                    })
-                }
-            }
-        }
-    };
-    // An enumeration, whose codes are verified before they become a reference. Of all other items every bit pattern is valid.
-    (@item Hedge) => { u32 };
-    (@item Block) => { RuleBlock };
-    (@item $item:ident) => { $item };
-    (@read Hedge $array:expr) => { hedges($array.read()?)? };
-    (@read $item:ident $array:expr) => { $array.read()? };
+/// `struct flagred_plan`.
+#[derive(Debug)]
+#[repr(C)]
+pub struct Plan {
+    pub(crate) rules: Rules,
+    output: u32,
+    signals: u32,
+    coverage_below: f64,
+    settings: CSettings,
+    order: Array<u32>,
+    channels: Array<CChannel>,
+    sources: Array<CSource>,
+    coordinates: Array<f64>,
+    first_coordinates: Array<u32>,
+    values: Array<f64>,
+    distances: Array<f64>,
+    propositions: Array<Proposition>,
 }
-table::arrays!(define!);
 
 impl Plan {
     /// The size of a monitor's memory.
@@ -228,11 +145,9 @@ impl Plan {
         channels: &'a [Channel],
         inputs: &'a [channel::Input],
     ) -> Result<board::Plan<'a>, Status> {
-        if self.format != FORMAT {
-            return Err(Status::OtherFormat);
-        }
         // SAFETY: the caller's promise, for all arrays of the plan.
         unsafe {
+            let rules = self.rules.read()?;
             let knots = FilledKnots {
                 coordinates: self.coordinates.read()?,
                 starts: self.first_coordinates.read()?,
@@ -241,9 +156,7 @@ impl Plan {
             };
             Ok(board::Plan {
                 name: "",
-                table: self.table()?,
-                stages: self.stages.read()?,
-                places: self.places.read()?,
+                rules,
                 output: self.output,
                 order: self.order.read()?,
                 channels,
@@ -256,54 +169,6 @@ impl Plan {
             })
         }
     }
-}
-
-impl Plan {
-    fn conjunctions(&self) -> Result<Conjunctions, Status> {
-        let code = [
-            self.conjunctions,
-            self.actions_a_cell,
-            self.first_action,
-            self.sums,
-        ];
-        Conjunctions::from_code(code).ok_or(Status::DamagedPlan)
-    }
-}
-
-/// Hedges from their codes, where all codes are valid.
-#[allow(unsafe_code, reason = "foreign memory")]
-fn hedges(codes: &[u32]) -> Result<&[Hedge], Status> {
-    if codes.iter().any(|code| *code as usize >= Hedge::ALL.len()) {
-        return Err(Status::DamagedPlan);
-    }
-    // SAFETY: a hedge is a `u32` below the number of hedges, and all codes are.
-    Ok(unsafe { core::slice::from_raw_parts(codes.as_ptr().cast(), codes.len()) })
-}
-
-fn conjunction(code: u32) -> Result<Conjunction, Status> {
-    Ok(match code {
-        0 => Conjunction::Minimum,
-        1 => Conjunction::Product,
-        2 => Conjunction::BoundedDifference,
-        3 => Conjunction::Drastic,
-        4 => Conjunction::Einstein,
-        5 => Conjunction::Hamacher,
-        6 => Conjunction::NilpotentMinimum,
-        _ => return Err(Status::DamagedPlan),
-    })
-}
-
-fn disjunction(code: u32) -> Result<Disjunction, Status> {
-    Ok(match code {
-        0 => Disjunction::Maximum,
-        1 => Disjunction::ProbabilisticSum,
-        2 => Disjunction::BoundedSum,
-        3 => Disjunction::Drastic,
-        4 => Disjunction::Einstein,
-        5 => Disjunction::Hamacher,
-        6 => Disjunction::NilpotentMaximum,
-        _ => return Err(Status::DamagedPlan),
-    })
 }
 
 impl CChannel {

@@ -1,88 +1,87 @@
-//! A plan as C. Numbers read back bit for bit. The codes are those of `flagred-c`.
+//! A plan or a rule set as C. Numbers read back bit for bit. The codes are those of `flagred-c`.
 
 use std::fmt::Write;
 
 use super::Array;
 use flagred::{
-    board::{Plan, table::Hedge},
+    board::{Plan, Rules, table::Hedge},
     channel::{Channel, Input, Threshold},
     follower::Settings,
     gap::FilledKnots,
     verdict::{self, LevelSettings},
 };
 
-/// The file.
+/// The file of a profile.
 pub(super) fn text(plan: &Plan<'_>, rules: &str, signals: &[&str], causes: &[String]) -> String {
     let name = identifier(plan.name);
-    let mut out = String::new();
-    let heading = super::heading(plan, rules, signals, "--c").join("\n * ");
     let motor = plan.bytes(1) - plan.bytes(0);
-    let guard = name.to_uppercase();
-    line(&mut out, &format!("/* {heading} */"));
-    line(
-        &mut out,
-        &format!("#ifndef FLAGRED_PLAN_{guard}_H\n#define FLAGRED_PLAN_{guard}_H\n"),
+    let mut arrays = Arrays::begin(
+        &super::heading(plan, rules, signals, "--c"),
+        &format!("FLAGRED_PLAN_{}_H", name.to_uppercase()),
+        format!("flagred_{name}"),
     );
-    line(&mut out, "#include <math.h>\n#include \"flagred.h\"\n");
+    let out = &mut arrays.out;
     line(
-        &mut out,
+        out,
         "/* Enough memory for a monitor of so many motors, on any processor. */",
     );
     line(
-        &mut out,
+        out,
         &format!(
             "#define FLAGRED_MEMORY(motors) ({} + {motor} * (motors))\n",
             plan.bytes(0)
         ),
     );
-    let mut arrays = Arrays {
-        out,
-        prefix: format!("flagred_{name}"),
-        fields: Vec::new(),
-    };
-    for array in super::arrays(&plan.table) {
-        arrays.add_array(array.field, &array);
-    }
+    let rules = arrays.rules(&plan.rules);
     arrays.profile(plan);
     arrays.add_causes(causes);
-    let Arrays {
-        mut out, fields, ..
-    } = arrays;
-    let [conjunctions, actions_a_cell, first_action, sums] = plan.table.conjunctions.code();
-    let sizes = plan.table.sizes;
+    let out = &mut arrays.out;
     line(
-        &mut out,
+        out,
         &format!("static const flagred_plan flagred_plan_{name} = {{"),
     );
+    line(out, "    .rules = {");
+    for field in rules {
+        line(out, &format!("        {field}"));
+    }
+    line(out, "    },");
     for (field, value) in [
-        ("format", "FLAGRED_PLAN_FORMAT".to_owned()),
-        ("and_operator", (plan.table.and as u32).to_string()),
-        ("or_operator", (plan.table.or as u32).to_string()),
-        ("conjunctions", conjunctions.to_string()),
-        ("actions_a_cell", actions_a_cell.to_string()),
-        ("first_action", first_action.to_string()),
-        ("sums", sums.to_string()),
-        ("degrees", sizes.degrees.to_string()),
-        ("alive", sizes.alive.to_string()),
-        ("partial", sizes.partial.to_string()),
-        ("stack", sizes.stack.to_string()),
-        ("strengths", sizes.strengths.to_string()),
         ("output", plan.output.to_string()),
         ("signals", plan.signals.to_string()),
         ("coverage_below", number(plan.coverage_below)),
-        ("least_strength", number(plan.table.least_strength)),
         ("settings", settings(&plan.settings)),
     ] {
-        line(&mut out, &format!("    .{field} = {value},"));
+        line(out, &format!("    .{field} = {value},"));
     }
-    for (field, array, count) in fields {
-        line(
-            &mut out,
-            &format!("    .{field} = {array}, .{field}_count = {count},"),
-        );
+    for field in arrays.take_fields() {
+        line(&mut arrays.out, &format!("    {field}"));
     }
-    line(&mut out, "};\n\n#endif");
-    out
+    arrays.end()
+}
+
+/// The file of a rule set without a profile.
+pub(super) fn rules(rules: &Rules<'_>, name: &str, heading: &[String]) -> String {
+    let name = identifier(name);
+    let upper = name.to_uppercase();
+    let guard = format!("FLAGRED_RULES_{upper}_H");
+    let mut arrays = Arrays::begin(heading, &guard, format!("flagred_rules_{name}"));
+    let out = &mut arrays.out;
+    line(
+        out,
+        "/* Enough memory for an evaluator, on any processor. */",
+    );
+    let bytes = rules.bytes();
+    line(out, &format!("#define FLAGRED_{upper}_MEMORY {bytes}\n"));
+    let fields = arrays.rules(rules);
+    let out = &mut arrays.out;
+    line(
+        out,
+        &format!("static const flagred_rules flagred_rules_{name} = {{"),
+    );
+    for field in fields {
+        line(out, &format!("    {field}"));
+    }
+    arrays.end()
 }
 
 /// The arrays written so far, and the fields that point to them.
@@ -93,6 +92,62 @@ struct Arrays {
 }
 
 impl Arrays {
+    /// Begins a file.
+    fn begin(heading: &[String], guard: &str, prefix: String) -> Self {
+        let mut out = String::new();
+        line(&mut out, &format!("/* {} */", heading.join("\n * ")));
+        line(&mut out, &format!("#ifndef {guard}\n#define {guard}\n"));
+        line(&mut out, "#include <math.h>\n#include \"flagred.h\"\n");
+        Arrays {
+            out,
+            prefix,
+            fields: Vec::new(),
+        }
+    }
+
+    /// Ends the structure, and the file.
+    fn end(mut self) -> String {
+        line(&mut self.out, "};\n\n#endif");
+        self.out
+    }
+
+    /// The initialisers of the arrays that were written.
+    fn take_fields(&mut self) -> Vec<String> {
+        let fields = std::mem::take(&mut self.fields).into_iter();
+        fields
+            .map(|(field, array, count)| format!(".{field} = {array}, .{field}_count = {count},"))
+            .collect()
+    }
+
+    /// Writes the arrays of a rule set, and returns its initialisers.
+    fn rules(&mut self, rules: &Rules<'_>) -> Vec<String> {
+        let table = &rules.table;
+        for array in super::arrays(table) {
+            self.add_array(array.field, &array);
+        }
+        self.add_array("stages", &Array::new("stages", "Stage", rules.stages));
+        self.add_array("places", &Array::new("places", "u32", rules.places));
+        let [conjunctions, actions_a_cell, first_action, sums] = table.conjunctions.code();
+        let sizes = table.sizes;
+        let fields = [
+            ("format", "FLAGRED_FORMAT".to_owned()),
+            ("and_operator", (table.and as u32).to_string()),
+            ("or_operator", (table.or as u32).to_string()),
+            ("conjunctions", conjunctions.to_string()),
+            ("actions_a_cell", actions_a_cell.to_string()),
+            ("first_action", first_action.to_string()),
+            ("sums", sums.to_string()),
+            ("degrees", sizes.degrees.to_string()),
+            ("alive", sizes.alive.to_string()),
+            ("partial", sizes.partial.to_string()),
+            ("stack", sizes.stack.to_string()),
+            ("strengths", sizes.strengths.to_string()),
+            ("least_strength", number(table.least_strength)),
+        ];
+        let fields = fields.map(|(field, value)| format!(".{field} = {value},"));
+        fields.into_iter().chain(self.take_fields()).collect()
+    }
+
     /// Writes an array of C initialisers. C has no empty arrays.
     fn add(&mut self, kind: &str, field: &'static str, items: Vec<String>) {
         let array = format!("{}_{field}", self.prefix);
@@ -143,8 +198,6 @@ impl Arrays {
         }
         let propositions = Array::new("propositions", "Proposition", plan.propositions);
         self.add_array("propositions", &propositions);
-        self.add_array("stages", &Array::new("stages", "Stage", plan.stages));
-        self.add_array("places", &Array::new("places", "u32", plan.places));
     }
 
     /// What the cause of a finding is called. The plan does not hold it.

@@ -1,4 +1,5 @@
-//! `flagred export`: a profile and its rule set as constant data for on-board use, or a rule set for another program.
+//! `flagred export`: a profile and its rule set, or a rule set alone, as constant data for firmware; or a rule set for another
+//! program.
 
 use std::{
     fmt::Debug,
@@ -7,7 +8,7 @@ use std::{
 
 use flagred::{
     board::{
-        Plan,
+        Plan, Rules,
         table::{self, Table},
     },
     estimator::{Estimator, NoPlan},
@@ -15,6 +16,7 @@ use flagred::{
 };
 use fuzzy::drawing::visible;
 use interchange::{Format, Losses};
+use report::diagnostics::is_meant_as_rules;
 
 use crate::{
     failure::{Exit, Failure},
@@ -24,12 +26,13 @@ use crate::{
 
 mod c;
 mod lua;
+mod rules;
 mod rust;
 
 #[derive(clap::Args)]
 #[command(group = clap::ArgGroup::new("language").required(true))]
 pub(crate) struct Arguments {
-    /// Write Rust for the crate `flagred` with `default-features = false`
+    /// Write Rust: a profile for the crate `flagred`, a rule set for `flagred-fuzzy`, with `default-features = false`
     #[arg(long, group = "language")]
     rust: bool,
     /// Write C for `flagred.h` and the library of `flagred-c`
@@ -50,10 +53,10 @@ pub(crate) struct Arguments {
     /// Write a rule set as FML, for JFML and other programs of IEEE 1855
     #[arg(long, group = "language")]
     fml: bool,
-    /// Leave out what FIS, FLL, FCL or FML cannot say: its values may be others
-    #[arg(long, conflicts_with_all = ["rust", "c", "lua"])]
+    /// Leave out what the format cannot say, and `samples` in Rust and C: values may be others
+    #[arg(long, conflicts_with = "lua")]
     lossy: bool,
-    /// Profile: `flagred`, `flagred-paper`, or a file; for FIS, FLL, FCL and FML the file of a rule set
+    /// Profile: `flagred`, `flagred-paper`, or a file; but for Lua also a rule set in any format
     #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
     file: String,
     /// The file to write; `-` is standard output
@@ -65,7 +68,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Some(format) = arguments.format() {
         return to_program(arguments, format);
     }
-    let loaded = profile::load(&arguments.file)?;
+    let path = Path::new(&arguments.file);
+    let loaded = if arguments.lua || profile::is_shipped(&arguments.file) {
+        profile::load(&arguments.file)?
+    } else {
+        let text = profile::file_text(path)?;
+        if is_meant_as_rules(&text) && !profile::is_profile(&text) {
+            return rules::export(arguments, &text);
+        }
+        profile::from_text(path, text)?
+    };
+    if arguments.lossy {
+        return Err(Failure::usage(
+            "`--lossy` is for rule sets, and this is a profile",
+        ));
+    }
     let output = Files::reading(&loaded.files)?.output(&arguments.output, Replace::Yes)?;
     let plan = loaded.estimator.plan().map_err(|error| {
         let rules = &loaded.estimator.profile().rules;
@@ -162,9 +179,12 @@ fn heading(plan: &Plan<'_>, rules: &str, signals: &[&str], option: &str) -> Vec<
             signals.join(", ")
         ));
     }
-    // A name from outside must not end the comment.
-    let harmless = |line: String| visible(&line).replace("*/", "* /");
     lines.into_iter().map(harmless).collect()
+}
+
+/// A line of a comment: a name from outside must not end it.
+fn harmless(line: String) -> String {
+    visible(&line).replace("*/", "* /")
 }
 
 /// What a file was made of.
@@ -225,14 +245,18 @@ fn bytes_of_filling(plan: &Plan<'_>) -> usize {
 
 /// The size of all constants.
 fn bytes(plan: &Plan<'_>) -> usize {
-    let table: usize = arrays(&plan.table).iter().map(|array| array.bytes).sum();
     let profile = size_of_val(plan.order)
         + size_of_val(plan.channels)
         + size_of_val(plan.inputs)
-        + size_of_val(plan.propositions)
-        + size_of_val(plan.stages)
-        + size_of_val(plan.places);
-    size_of_val(plan) + table + profile + bytes_of_filling(plan)
+        + size_of_val(plan.propositions);
+    size_of_val(plan) + bytes_of_rules(&plan.rules) + profile + bytes_of_filling(plan)
+}
+
+/// The size of the arrays of a rule set.
+fn bytes_of_rules(rules: &Rules<'_>) -> usize {
+    let arrays = arrays(&rules.table);
+    let table: usize = arrays.iter().map(|array| array.bytes).sum();
+    table + size_of_val(rules.stages) + size_of_val(rules.places)
 }
 
 /// Items in lines of about a hundred characters.

@@ -1,12 +1,12 @@
-//! A plan as Rust.
+//! A plan or a rule set as Rust.
 //!
 //! The debug form of plain data is a Rust expression, once the names of enumerations are added, and the constants `inf` and
 //! `NaN` are defined. Numbers read back bit for bit.
 
-use std::fmt::Write;
+use std::fmt::{Debug, Write};
 
 use flagred::{
-    board::Plan,
+    board::{Plan, Rules, table::Table},
     channel::{Channel, Input, Statistic, Threshold},
 };
 
@@ -43,7 +43,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
     #[allow(unused_imports)]
     use ::flagred::{{
         accumulator::AccumulatorSettings,
-        board::{{Plan, Proposition, table::{{*, Hedge::*}}}},
+        board::{{Plan, Proposition, Rules, table::{{*, Hedge::*}}}},
         channel,
         follower::Settings,
         gap::FilledKnots,
@@ -51,13 +51,7 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
         verdict::{{LevelSettings, Limit, NoticeSettings, Threshold, VerdictSettings}},
     }};
     Plan {{
-        name: {:?},
-        table: Table {{
-            and: Conjunction::{:?},
-            or: Disjunction::{:?},
-            conjunctions: Conjunctions::{:?},
-            least_strength: {:?},
-            sizes: {:?},",
+        name: {:?},",
             sizes.numbers,
             sizes.partials,
             sizes.outputs,
@@ -65,25 +59,14 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
             causes.len(),
             causes.join(",\n    "),
             plan.name,
-            plan.table.and,
-            plan.table.or,
-            plan.table.conjunctions,
-            plan.table.least_strength,
-            plan.table.sizes,
         ),
     );
     let out = &mut out;
-    for array in super::arrays(&plan.table) {
-        items(out, 3, array.field, &array.items);
-    }
+    line_of(out, format_args!("        rules: Rules {{"));
+    fields(out, 3, &plan.rules);
     line_of(out, format_args!("        }},"));
-    let stages: Vec<String> = plan.stages.iter().map(|s| format!("{s:?}")).collect();
-    items(out, 2, "stages", &stages);
-    let places: Vec<String> = plan.places.iter().map(u32::to_string).collect();
-    items(out, 2, "places", &places);
     line_of(out, format_args!("        output: {},", plan.output));
-    let order: Vec<String> = plan.order.iter().map(u32::to_string).collect();
-    items(out, 2, "order", &order);
+    items(out, 2, "order", &debug(plan.order));
     let channels: Vec<String> = plan.channels.iter().map(channel).collect();
     items(out, 2, "channels", &channels);
     let inputs: Vec<String> = plan.inputs.iter().map(input).collect();
@@ -104,10 +87,120 @@ pub static PLAN: ::flagred::board::Plan<'static> = {{
             line_of(out, format_args!("        }}),"));
         }
     }
-    let propositions: Vec<String> = plan.propositions.iter().map(|p| format!("{p:?}")).collect();
-    items(out, 2, "propositions", &propositions);
+    items(out, 2, "propositions", &debug(plan.propositions));
     line_of(out, format_args!("    }}\n}};"));
     std::mem::take(out)
+}
+
+/// A rule set without a profile, as a function of its inputs.
+pub(super) fn function(rules: &Rules<'_>, heading: &[String]) -> String {
+    let mut text = String::new();
+    let out = &mut text;
+    for line in heading {
+        line_of(out, format_args!("// {line}"));
+    }
+    let table = &rules.table;
+    let (sizes, inputs, outputs) = (table.sizes, rules.inputs(), table.outputs.len());
+    let (kind, values, of_stages) = match rules.stages {
+        [] => ("Table", "", String::new()),
+        _ => (
+            "Chain",
+            "&mut values, ",
+            format!(
+                "
+    let mut values = Values {{
+        inputs: &mut [0.0; {}],
+        own: &mut [Outcome::UNDEFINED; {outputs}],
+    }};",
+                rules.most_inputs()
+            ),
+        ),
+    };
+    line_of(
+        out,
+        format_args!(
+            "
+/// The outcome of each output at values of the inputs. It depends on nothing else.
+#[allow(dead_code)]
+#[rustfmt::skip]
+pub fn evaluate(inputs: &[f64; {inputs}]) -> [::fuzzy::table::Outcome; {outputs}] {{
+    #[allow(unused_imports)]
+    use ::fuzzy::table::{{Outcome, Partial, Scratch, Strongest, Values}};
+    let mut scratch = Scratch {{
+        values: &mut [0.0; {}],
+        degrees: &mut [0.0; {}],
+        alive: &mut [Partial::NONE; {}],
+        partial: &mut [Partial::NONE; {partial}],
+        next: &mut [Partial::NONE; {partial}],
+        stack: &mut [0.0; {}],
+        strengths: &mut [0.0; {}],
+        strongest: &mut [Strongest::NONE; {outputs}],
+    }};{of_stages}
+    let mut outcomes = [Outcome::UNDEFINED; {outputs}];
+    RULES.evaluate(&mut scratch, {values}inputs, &mut outcomes);
+    outcomes
+}}
+
+/// The rule set.
+#[rustfmt::skip]
+pub static RULES: ::fuzzy::table::{kind}<'static> = {{
+    #[allow(dead_code, non_upper_case_globals)]
+    const inf: f64 = f64::INFINITY;
+    #[allow(dead_code, non_upper_case_globals)]
+    const NaN: f64 = f64::NAN;
+    #[allow(unused_imports)]
+    use ::fuzzy::table::{{*, Hedge::*}};",
+            rules.most_inputs(),
+            sizes.degrees,
+            sizes.alive,
+            sizes.stack,
+            sizes.strengths,
+            partial = sizes.partial,
+        ),
+    );
+    match rules.stages {
+        [] => fields_of_table(out, 1, "Table {", table),
+        _ => {
+            line_of(out, format_args!("    Chain {{"));
+            fields(out, 2, rules);
+        }
+    }
+    line_of(out, format_args!("    }}\n}};"));
+    text
+}
+
+/// The fields of a rule set.
+fn fields(out: &mut String, depth: usize, rules: &Rules<'_>) {
+    let indent = "    ".repeat(depth);
+    fields_of_table(out, depth, "table: Table {", &rules.table);
+    line_of(out, format_args!("{indent}}},"));
+    items(out, depth, "stages", &debug(rules.stages));
+    items(out, depth, "places", &debug(rules.places));
+}
+
+/// The fields of a table, which its `head` begins.
+fn fields_of_table(out: &mut String, depth: usize, head: &str, table: &Table<'_>) {
+    let indent = "    ".repeat(depth);
+    line_of(
+        out,
+        format_args!(
+            "{indent}{head}
+{indent}    and: Conjunction::{:?},
+{indent}    or: Disjunction::{:?},
+{indent}    conjunctions: Conjunctions::{:?},
+{indent}    least_strength: {:?},
+{indent}    sizes: {:?},",
+            table.and, table.or, table.conjunctions, table.least_strength, table.sizes,
+        ),
+    );
+    for array in super::arrays(table) {
+        items(out, depth + 1, array.field, &array.items);
+    }
+}
+
+/// The debug form of each item.
+fn debug<T: Debug>(items: &[T]) -> Vec<String> {
+    items.iter().map(|item| format!("{item:?}")).collect()
 }
 
 fn channel(channel: &Channel) -> String {

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use flightlog::{Flight, Intervals, Range};
 use fuzzy::drawing::visible;
 
-use crate::assessment::words::first_spans;
+use report::words::first_spans;
 
 /// Texts of the autopilot, and boots, that are shown; the JSON document has more.
 const MESSAGES: usize = 12;

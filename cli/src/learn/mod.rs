@@ -1,6 +1,5 @@
 //! `flagred learn`: rules from rows of data.
 
-mod data;
 pub(crate) mod report;
 
 use std::{io::Write as _, path::PathBuf};
@@ -21,6 +20,7 @@ use fuzzy::{
 use crate::{
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
+    rows::{self, Source},
     rule_set,
     table::Format,
 };
@@ -138,7 +138,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         };
         Failure::usage(format!("`{name}`: {error}")).help(help)
     })?;
-    let data = data::read(arguments, &model)?;
+    let source = Source {
+        tables: &arguments.data,
+        format: &arguments.format,
+        weight: arguments.weight.as_deref(),
+        group: arguments.group_by.as_deref(),
+    };
+    let data = rows::read(&source, &model)?;
     let mut rows = Vec::with_capacity(data.rows.len());
     let mut refused = data.refused;
     for (row, place) in data.rows {
@@ -148,7 +154,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
     }
     if !refused.is_empty() && (!arguments.format.skip_bad_rows || rows.is_empty()) {
-        return Err(bad_rows(&refused));
+        return Err(rows::refuse(&refused, "learned from"));
     }
     let learned = learner.finish();
     let gap = GapSettings::default();
@@ -219,14 +225,22 @@ fn counterexamples(arguments: &Arguments, model: &Model) -> Result<Vec<Counterex
 }
 
 fn claims(arguments: &Arguments) -> impl Iterator<Item = check::Monotone> {
+    monotone(&arguments.rising, &arguments.falling)
+}
+
+/// What `--rising` and `--falling` claim.
+pub(crate) fn monotone<'a>(
+    rising: &'a [String],
+    falling: &'a [String],
+) -> impl Iterator<Item = check::Monotone> + 'a {
     let claim = |input: &String, direction| check::Monotone {
         input: input.clone(),
         direction,
         output: None,
     };
-    let rising = arguments.rising.iter();
+    let rising = rising.iter();
     let rising = rising.map(move |input| claim(input, check::Direction::Increasing));
-    let falling = arguments.falling.iter();
+    let falling = falling.iter();
     rising.chain(falling.map(move |input| claim(input, check::Direction::Decreasing)))
 }
 
@@ -251,20 +265,6 @@ fn monotone_help(arguments: &Arguments, outcome: &Outcome) -> Option<&'static st
 
 fn unusable(error: impl std::fmt::Display) -> Failure {
     Failure::unreadable(format!("the learned rules cannot be used: {error}"))
-}
-
-fn bad_rows(refused: &[String]) -> Failure {
-    const SHOWN: usize = 20;
-    let mut shown: Vec<String> = refused.iter().take(SHOWN).cloned().collect();
-    let more = refused.len().saturating_sub(SHOWN);
-    shown.extend((more > 0).then(|| format!("and {more} more")));
-    let count = refused.len();
-    Failure::unreadable(format!(
-        "{count} row{} cannot be learned from, and nothing was written",
-        if count == 1 { "" } else { "s" }
-    ))
-    .details(shown)
-    .help("correct or remove these rows, or leave them out with --skip-bad-rows")
 }
 
 /// The shares of the map that rules cover, and that have a value after filling.

@@ -14,7 +14,7 @@ use fuzzy::{
 use gen_lsp_types as lsp;
 use percent_encoding::percent_decode_str;
 
-use crate::{profile, rule_set};
+use crate::profile;
 
 /// A text that an editor shows.
 pub(super) struct Document {
@@ -97,7 +97,7 @@ fn partial(text: &str) -> Option<Partial> {
 
 /// What `flagred check` finds in a rule set.
 fn findings(text: &str) -> Findings {
-    let document = match rule_set::document(text) {
+    let document = match interchange::document(text) {
         Ok(document) => document,
         Err(findings) => return findings,
     };

@@ -233,10 +233,9 @@ fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
     let file = arguments.model.display().to_string();
     let text = read_text(&arguments.model)?;
     let (model, engine, estimator) = if profile::is_profile(&text) {
-        let Loaded {
-            model, estimator, ..
-        } = profile::from_text(&arguments.model, text)?;
-        (model, estimator.engine().clone(), Some(estimator))
+        let Loaded { estimator, .. } = profile::from_text(&arguments.model, text)?;
+        let engine = estimator.engine().clone();
+        (engine.model().clone(), engine, Some(estimator))
     } else {
         let document = rule_set::parse(&file, &text)?;
         let engine = rule_set::compile(&document, &file, &text)?;

@@ -9,7 +9,7 @@ use super::{
     lines::teller,
     session::{Doubts, End, Event, Flown, Left, Lost, Session},
 };
-use crate::assessment::document::FindingDocument;
+use report::document::FindingDocument;
 
 /// A line; names are those of docs/json.md.
 #[derive(Serialize)]

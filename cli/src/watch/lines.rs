@@ -10,7 +10,7 @@ use flightlog::{Vehicle, mavlink::Setup};
 use fuzzy::drawing::visible;
 
 use super::session::{Doubt, End, Event, Flown, Left, Lost, Session, Silent, Source, View};
-use crate::assessment::{finding::Teller, words::effective_range};
+use report::{finding::Teller, words::effective_range};
 
 /// Seconds of the vehicle's clock between two lines of risk in words.
 const STEP_S: f64 = 1.0;

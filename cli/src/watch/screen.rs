@@ -9,7 +9,7 @@ use super::{
     lines,
     session::{Event, Session, View},
 };
-use crate::assessment::words::level_style;
+use report::words::level_style;
 
 /// Enter and leave the alternate screen, without a cursor.
 pub(crate) const ENTER: &str = "\x1b[?1049h\x1b[?25l";

@@ -16,8 +16,8 @@ mod tracked;
 mod trust;
 
 use super::voice;
-use crate::assessment::document::numbered;
 pub(crate) use event::{End, Event, Flown, Left, Lost, Silent};
+use report::document::numbered;
 use speech::Speech;
 pub(crate) use tracked::View;
 use tracked::{Tracked, tell};

@@ -15,7 +15,7 @@ use flightlog::mavlink::{
 
 use fuzzy::drawing::visible;
 
-use crate::assessment::finding::cause;
+use report::finding::cause;
 
 /// The names of the values that are sent.
 pub(crate) const RISK: &str = "FR_RISK";

@@ -25,7 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use fuzzy::table::{Chain, Damaged, Outcome, Scratch, Sought, Stage, Table, Values};
+use fuzzy::table::{Damaged, Sought};
 
 use crate::{
     cause::{Asked, Cause, Propositions},
@@ -43,8 +43,13 @@ use crate::{
 pub use crate::{cause::Proposition, effort::Factors};
 pub use fuzzy::table;
 
+mod rules;
 mod storage;
 
+pub use rules::Rules;
+use rules::take;
+#[doc(hidden)] // For the C interface.
+pub use rules::{Evaluator, RuleMemory};
 #[cfg(feature = "std")]
 pub use storage::OwnedMemory;
 pub use storage::{Memory, Sizes, Storage};
@@ -54,12 +59,8 @@ pub use storage::{Memory, Sizes, Storage};
 pub struct Plan<'a> {
     /// The name of the profile.
     pub name: &'a str,
-    /// The rule set; where outputs read others, the arrays of all stages.
-    pub table: Table<'a>,
-    /// The stages of a rule set in which outputs read others; else empty. See [`table::Chain`].
-    pub stages: &'a [Stage],
-    /// See [`table::Chain::places`].
-    pub places: &'a [u32],
+    /// The rule set.
+    pub rules: Rules<'a>,
     /// The index of the output that is the risk.
     pub output: u32,
     /// The index among the profile's inputs of each input of the rule set.
@@ -117,15 +118,15 @@ impl Plan<'_> {
     /// # Errors
     /// The first array with an index out of bounds, or with a window that has no length.
     pub fn check(&self) -> Result<(), Damaged> {
-        match self.chain() {
-            None => self.table.check()?,
-            Some(chain) => chain.check(self.order.len())?,
-        }
+        self.rules.check()?;
         let require = |holds: bool, array| holds.then_some(()).ok_or(Damaged(array));
         let inputs = self.inputs.len();
-        require((self.output as usize) < self.table.outputs.len(), "output")?;
         require(
-            (!self.stages.is_empty() || self.order.len() == self.table.inputs.len())
+            (self.output as usize) < self.rules.table.outputs.len(),
+            "output",
+        )?;
+        require(
+            self.order.len() == self.rules.inputs()
                 && self.order.iter().all(|input| (*input as usize) < inputs),
             "order",
         )?;
@@ -166,23 +167,11 @@ impl Plan<'_> {
         )
     }
 
-    /// The rule set, where outputs read others.
-    const fn chain(&self) -> Option<Chain<'_>> {
-        match self.stages {
-            [] => None,
-            stages => Some(Chain {
-                table: self.table,
-                stages,
-                places: self.places,
-            }),
-        }
-    }
-
     /// The number of outputs that propositions can be about.
     const fn read_outputs(&self) -> usize {
-        match self.stages {
+        match self.rules.stages {
             [] => 0,
-            _ => self.table.outputs.len(),
+            _ => self.rules.table.outputs.len(),
         }
     }
 
@@ -190,14 +179,10 @@ impl Plan<'_> {
         &self,
         inputs: &[f64],
         point: &mut [f64],
-        (scratch, values, outcomes): (&mut Scratch<'_>, &mut Values<'_>, &mut [Outcome]),
+        rules: &mut Evaluator<'_>,
     ) -> Option<Estimate> {
         self.lookup().estimate(inputs, point, |point| {
-            match self.chain() {
-                None => self.table.evaluate(scratch, point, outcomes),
-                Some(chain) => chain.evaluate(scratch, values, point, outcomes),
-            }
-            outcomes.get(self.output as usize).copied()
+            rules.evaluate(point)?.get(self.output as usize).copied()
         })
     }
 
@@ -207,18 +192,25 @@ impl Plan<'_> {
         inputs: &[f64],
         risk_pct: f64,
         point: &mut [f64],
-        (scratch, values, outcomes): (&mut Scratch<'_>, &mut Values<'_>, &[Outcome]),
+        rules: &mut Evaluator<'_>,
     ) -> Option<Cause> {
         self.lookup().reorder(inputs, point)?;
+        let Evaluator {
+            scratch,
+            values,
+            outcomes,
+            ..
+        } = rules;
         let propositions = Propositions {
             all: self.propositions,
         };
         let risk = (self.output as usize, risk_pct);
-        let outputs = self.table.outputs.len();
-        let Some(chain) = self.chain() else {
+        let table = &self.rules.table;
+        let outputs = table.outputs.len();
+        let Some(chain) = self.rules.chain() else {
             return propositions.cause(inputs, risk, outputs, |output, asked, pick| match asked {
                 Asked::Raises(value) => {
-                    let rule = self.table.raised_by(scratch, point, output, value)?;
+                    let rule = table.raised_by(scratch, point, output, value)?;
                     pick(rule, scratch.degrees)
                 }
                 Asked::Concludes(_) => None,
@@ -233,7 +225,7 @@ impl Plan<'_> {
                     Sought::Concludes(before.iter().filter(is_read).count())
                 }
             };
-            let given = (&*point, outcomes);
+            let given = (&*point, &**outcomes);
             chain.rule_of(scratch, values, given, (output, sought), pick)
         })?;
         let rule = chain.rule(cause.rule)?;
@@ -257,10 +249,7 @@ impl Plan<'_> {
 pub struct Monitor<'a> {
     plan: &'a Plan<'a>,
     follower: Follower,
-    scratch: Scratch<'a>,
-    /// Of the stages.
-    values: Values<'a>,
-    outcomes: &'a mut [Outcome],
+    rules: Evaluator<'a>,
     /// One for each input of the rule set.
     point: &'a mut [f64],
     /// One for each input of the profile.
@@ -294,7 +283,7 @@ impl<'a> Monitor<'a> {
     fn divide(plan: &'a Plan<'a>, memory: Memory<'a>) -> Option<Monitor<'a>> {
         let Memory {
             mut numbers,
-            mut partials,
+            partials,
             strongest,
             outcomes,
             own,
@@ -302,39 +291,25 @@ impl<'a> Monitor<'a> {
             risks,
             motors,
         } = memory;
-        let sizes = plan.table.sizes;
-        let inputs = plan.order.len();
-        let most_inputs = plan.most_inputs();
-        let outputs = plan.table.outputs.len();
-        let fits = strongest.len() == outputs
-            && outcomes.len() == outputs
-            && own.len() == outputs
-            && seen.len() == plan.channels.len();
+        let memory = RuleMemory {
+            numbers: take(&mut numbers, plan.rules.numbers())?,
+            partials,
+            strongest,
+            outcomes,
+            own,
+        };
+        let fits = seen.len() == plan.channels.len();
         let monitor = Monitor {
             plan,
             follower: Follower::new(plan.settings),
-            scratch: Scratch {
-                values: take(&mut numbers, most_inputs)?,
-                degrees: take(&mut numbers, sizes.degrees as usize)?,
-                stack: take(&mut numbers, sizes.stack as usize)?,
-                strengths: take(&mut numbers, sizes.strengths as usize)?,
-                alive: take(&mut partials, sizes.alive as usize)?,
-                partial: take(&mut partials, sizes.partial as usize)?,
-                next: take(&mut partials, sizes.partial as usize)?,
-                strongest,
-            },
-            values: Values {
-                inputs: take(&mut numbers, plan.stage_inputs())?,
-                own,
-            },
-            point: take(&mut numbers, inputs)?,
+            rules: Evaluator::new(&plan.rules, memory)?,
+            point: take(&mut numbers, plan.order.len())?,
             inputs: take(&mut numbers, plan.inputs.len())?,
-            outcomes,
             seen,
             risks,
             motors,
         };
-        (fits && numbers.is_empty() && partials.is_empty()).then_some(monitor)
+        (fits && numbers.is_empty()).then_some(monitor)
     }
 
     /// Gives each motor its factors, in the order of the samples, so that turning the nose is told from what pushes the
@@ -370,13 +345,12 @@ impl<'a> Monitor<'a> {
             motors: self.motors,
         };
         let point = &mut *self.point;
-        let rules = (&mut self.scratch, &mut self.values, &mut *self.outcomes);
+        let rules = &mut self.rules;
         let estimate = |inputs: &[f64]| plan.estimate(inputs, point, rules);
         let channels = (plan.channels, plan.inputs);
         let update = self.follower.push(channels, &mut room, sample, estimate);
         self.follower.explain(channels, &update, |risk_pct| {
-            let rules = (&mut self.scratch, &mut self.values, &*self.outcomes);
-            plan.cause(self.inputs, risk_pct, self.point, rules)
+            plan.cause(self.inputs, risk_pct, self.point, &mut self.rules)
         });
         update
     }
@@ -384,16 +358,15 @@ impl<'a> Monitor<'a> {
     /// The risk at values of the inputs, in the order of the profile, independent of the flight. `None` where no rule fires
     /// and nothing fills the gap, or where a value is not finite.
     pub fn at(&mut self, inputs: &[f64]) -> Option<Estimate> {
-        let rules = (&mut self.scratch, &mut self.values, &mut *self.outcomes);
-        self.plan.estimate(inputs, self.point, rules)
+        self.plan.estimate(inputs, self.point, &mut self.rules)
     }
 
     /// What raises the risk at values of the inputs, in the order of the profile, independent of the flight. `None` where no
     /// rule does.
     pub fn cause_at(&mut self, inputs: &[f64]) -> Option<Cause> {
         let said = self.at(inputs).filter(|said| said.filled_from.is_none())?;
-        let rules = (&mut self.scratch, &mut self.values, &*self.outcomes);
-        self.plan.cause(inputs, said.risk_pct, self.point, rules)
+        self.plan
+            .cause(inputs, said.risk_pct, self.point, &mut self.rules)
     }
 
     /// The values of the inputs after the last sample, in the order of the profile; NaN is unknown.
@@ -420,11 +393,4 @@ impl<'a> Monitor<'a> {
 /// Whether a window can have this length in seconds.
 fn is_length(window_s: f64) -> bool {
     window_s.is_finite() && window_s > 0.0
-}
-
-/// Takes the first items off a slice.
-fn take<'m, T>(rest: &mut &'m mut [T], count: usize) -> Option<&'m mut [T]> {
-    let (taken, left) = core::mem::take(rest).split_at_mut_checked(count)?;
-    *rest = left;
-    Some(taken)
 }

@@ -62,43 +62,17 @@ macro_rules! lent {
 }
 
 impl Plan<'_> {
-    /// The most inputs of a stage: those of the rule set, and the outputs that it reads.
-    pub(super) const fn most_inputs(&self) -> usize {
-        let reads = match self.chain() {
-            None => 0,
-            Some(chain) => chain.most_reads(),
-        };
-        self.order.len().saturating_add(reads)
-    }
-
-    /// The numbers that are handed over between stages.
-    pub(super) const fn stage_inputs(&self) -> usize {
-        match self.stages {
-            [] => 0,
-            _ => self.most_inputs(),
-        }
-    }
-
     /// The size of its memory.
     pub const fn sizes(&self) -> Sizes {
-        let sizes = self.table.sizes;
-        // Saturating: a damaged plan asks for more memory than there is, and never for less than it uses.
-        let rules = (sizes.degrees as usize)
-            .saturating_add(sizes.stack as usize)
-            .saturating_add(sizes.strengths as usize);
         let numbers = self
-            .most_inputs()
-            .saturating_add(self.stage_inputs())
+            .rules
+            .numbers()
             .saturating_add(self.order.len())
-            .saturating_add(self.inputs.len())
-            .saturating_add(rules);
-        let partials = (sizes.partial as usize)
-            .saturating_mul(2)
-            .saturating_add(sizes.alive as usize);
+            .saturating_add(self.inputs.len());
         Sizes {
             numbers,
-            partials,
-            outputs: self.table.outputs.len(),
+            partials: self.rules.partials(),
+            outputs: self.rules.table.outputs.len(),
             channels: self.channels.len(),
         }
     }

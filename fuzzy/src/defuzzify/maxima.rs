@@ -1,12 +1,13 @@
 //! The maxima of an aggregated set, from its pieces.
 
-use super::piece::Piece;
-use crate::model::Defuzzifier;
-use crate::table::{SetDefuzzifier, numeric::root, set::Maxima as Values};
+use alloc::vec::Vec;
 
-/// Degrees this close to the highest, relative to it, count as the highest. Rounding changes a plateau made of two slopes by
-/// less.
-const PLATEAU: f64 = 1e-12;
+use super::piece::Piece;
+use crate::model::{Defuzzifier, MembershipFunction};
+use crate::table::{Kind, SetDefuzzifier, numeric::root, set::Maxima as Values};
+
+/// Degrees as close to each other as this, relative to the higher one, are equal: rounding changes them by less.
+pub(super) const EQUAL: f64 = 1e-12;
 
 /// The highest degree seen.
 #[derive(Debug, Default, Clone, Copy)]
@@ -16,9 +17,7 @@ impl Highest {
     pub(crate) fn see(&mut self, piece: &Piece<'_>) {
         self.0 = self.0.max(piece.left).max(piece.right);
         let mut highest = self.0;
-        peaks(piece, self.0, &mut |_, degree| {
-            highest = highest.max(degree)
-        });
+        peaks(piece, &mut |_, degree| highest = highest.max(degree));
         self.0 = highest;
     }
 }
@@ -44,7 +43,7 @@ struct End {
 impl Maxima {
     pub(crate) fn of(highest: Highest) -> Self {
         Maxima {
-            least_degree: highest.0 * (1.0 - PLATEAU),
+            least_degree: highest.0 * (1.0 - EQUAL),
             ..Maxima::default()
         }
     }
@@ -52,16 +51,18 @@ impl Maxima {
     pub(crate) fn see(&mut self, piece: &Piece<'_>) {
         let high = |degree: f64| degree >= self.least_degree;
         let (left, right) = (high(piece.left), high(piece.right));
-        let flat = piece
-            .curve
-            .is_none_or(|curve| [0.25, 0.5, 0.75].into_iter().all(|part| high(curve(part))));
+        let flat = piece.curve.is_none_or(|curve| {
+            [0.25, 0.5, 0.75]
+                .into_iter()
+                .all(|part| high((curve.degree)(part)))
+        });
         let is_plateau = left && right && flat;
         let (mut rises_first, mut rises_last) =
             (piece.left < piece.right, piece.left < piece.right);
         let mut inside: Option<(f64, f64, f64)> = None;
         if !is_plateau {
             let least = self.least_degree;
-            let ends = peaks(piece, least, &mut |x, degree| {
+            let ends = peaks(piece, &mut |x, degree| {
                 if degree >= least {
                     let (first, last, count) = inside.unwrap_or((x, x, 0.0));
                     inside = Some((first.min(x), last.max(x), count + 1.0));
@@ -73,7 +74,7 @@ impl Maxima {
         let before = self.before;
         let meet = before.x == piece.from;
         let falls = !is_plateau && !rises_first;
-        let step = libm::fabs(before.degree - piece.left) > PLATEAU * before.degree;
+        let step = libm::fabs(before.degree - piece.left) > EQUAL * before.degree;
         if meet && !step {
             if before.rises && falls && left {
                 self.point(piece.from);
@@ -123,83 +124,64 @@ impl Maxima {
     }
 }
 
-/// The windows of a piece in which its slope is looked at.
-const WINDOWS: usize = 8;
-
-/// Calls `visit` with each maximum inside a curve, and its degree; parts of the curve far below `above` are left out. Returns
-/// whether the curve rises at its beginning and towards its end; `None` of a straight piece.
-fn peaks(piece: &Piece<'_>, above: f64, visit: &mut dyn FnMut(f64, f64)) -> Option<(bool, bool)> {
+/// Calls `visit` with each maximum inside a curve, and its degree. Returns whether the curve rises at its beginning and towards
+/// its end; `None` of a straight piece.
+fn peaks(piece: &Piece<'_>, visit: &mut dyn FnMut(f64, f64)) -> Option<(bool, bool)> {
     let curve = piece.curve?;
-    Some(turns(curve, 0.9 * above, &mut |part| {
-        visit(piece.from + (piece.to - piece.from) * part, curve(part));
+    Some(turns(curve.slope, &mut |part| {
+        visit(
+            piece.from + (piece.to - piece.from) * part,
+            (curve.degree)(part),
+        );
     }))
 }
 
-/// Calls `visit` with each place inside [0, 1] at which a smooth function has a maximum, unless it is below `above` all around.
-/// Returns whether it rises at 0 and towards 1.
-pub(super) fn turns(
-    curve: &dyn Fn(f64) -> f64,
-    above: f64,
-    visit: &mut dyn FnMut(f64),
-) -> (bool, bool) {
-    let half = 0.5 / WINDOWS as f64;
-    let (mut first, mut last) = (0.0, 0.0);
-    for window in 0..WINDOWS {
-        let middle = (2 * window + 1) as f64 * half;
-        let slopes = Slopes::new(|t| curve(middle + half * t));
-        let (left, right) = (slopes.at(-1.0), slopes.at(1.0));
-        if window == 0 {
-            first = left;
-        } else if last > 0.0 && left <= 0.0 {
-            visit(middle - half);
+/// The stretches of a piece at whose ends its slope is looked at.
+const STRETCHES: u32 = 32;
+
+/// The slope at an end is that so far inside, past a kink at the end itself.
+pub(super) const INSIDE: f64 = 1e-12;
+
+/// Calls `visit` with each place inside [0, 1] at which a function has a maximum: where its slope falls through 0. Returns whether
+/// it rises at 0 and towards 1.
+pub(super) fn turns(slope: &dyn Fn(f64) -> f64, visit: &mut dyn FnMut(f64)) -> (bool, bool) {
+    let mut from = INSIDE;
+    let first = slope(from);
+    let mut before = first;
+    for i in 1..=STRETCHES {
+        let to = (f64::from(i) / f64::from(STRETCHES)).min(1.0 - INSIDE);
+        let here = slope(to);
+        if before > 0.0 && here <= 0.0 {
+            visit(root(from, to, slope));
         }
-        if left > 0.0 && right < 0.0 && slopes.highest > above {
-            visit(middle + half * root(-1.0, 1.0, |t| slopes.at(t)));
-        }
-        last = right;
+        (from, before) = (to, here);
     }
-    (first > 0.0, last > 0.0)
+    (first > 0.0, before > 0.0)
 }
 
-/// The slope of a smooth function on [-1, 1]: that of its interpolation at Chebyshev's nodes.
-struct Slopes {
-    nodes: [f64; Slopes::NODES],
-    /// Newton's divided differences.
-    differences: [f64; Slopes::NODES],
-    highest: f64,
-}
-
-impl Slopes {
-    const NODES: usize = 9;
-
-    fn new(f: impl Fn(f64) -> f64) -> Self {
-        let step = core::f64::consts::PI / (Self::NODES - 1) as f64;
-        let nodes = core::array::from_fn(|i| -libm::cos(i as f64 * step));
-        let mut differences = nodes.map(f);
-        let highest = differences
-            .iter()
-            .copied()
-            .fold(f64::NEG_INFINITY, f64::max);
-        for order in 1..Self::NODES {
-            for i in (order..Self::NODES).rev() {
-                differences[i] =
-                    (differences[i] - differences[i - 1]) / (nodes[i] - nodes[i - order]);
-            }
+/// The places at which a shape is not smooth or turns, and the ends of the range: between these it only rises, only falls or is
+/// level. Those of a formula are not known.
+pub(super) fn monotone(shape: &MembershipFunction, low: f64, high: f64) -> Vec<f64> {
+    let mut cuts = shape.cuts();
+    let sort = |cuts: &mut Vec<f64>| {
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+    };
+    cuts.retain(|x| low < *x && *x < high);
+    cuts.extend([low, high]);
+    sort(&mut cuts);
+    // The others turn at their cuts alone.
+    if let Kind::SIGMOID_DIFFERENCE | Kind::SIGMOID_PRODUCT | Kind::GAUSSIAN2 = shape.kind().0 {
+        let mut turning = Vec::new();
+        for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
+            let width = to - from;
+            let mut found = |part: f64| turning.push(from + width * part);
+            let slope = |part: f64| shape.slope(from + width * part, width);
+            turns(&slope, &mut found);
+            turns(&|part| -slope(part), &mut found);
         }
-        Slopes {
-            nodes,
-            differences,
-            highest,
-        }
+        cuts.extend(turning);
+        sort(&mut cuts);
     }
-
-    /// The derivative at `t`, by Horner's rule for Newton's form.
-    fn at(&self, t: f64) -> f64 {
-        let (mut value, mut slope) = (0.0, 0.0);
-        for (node, difference) in self.nodes.iter().zip(&self.differences).rev() {
-            slope = value + slope * (t - node);
-            value = difference + value * (t - node);
-        }
-        slope
-    }
+    cuts
 }

@@ -24,6 +24,7 @@ pub(crate) mod polyline;
 mod prepared;
 mod sampled;
 mod singletons;
+mod sloped;
 pub(crate) mod weighted;
 
 /// The operators that activate and aggregate consequents.

@@ -16,9 +16,17 @@ pub(crate) struct Piece<'a> {
     pub(crate) left: f64,
     /// The degree just inside `to`.
     pub(crate) right: f64,
-    /// The degree of a curve at a share in [0, 1] of the way from `from` to `to`, which is finer than `x` in a narrow piece.
     /// `None` where the piece is straight.
-    pub(crate) curve: Option<&'a dyn Fn(f64) -> f64>,
+    pub(crate) curve: Option<Curve<'a>>,
+}
+
+/// A smooth curve over a piece, at a share in [0, 1] of the way from `from` to `to`, which is finer than `x` in a narrow piece.
+#[derive(Clone, Copy)]
+pub(crate) struct Curve<'a> {
+    /// The degree.
+    pub(crate) degree: &'a dyn Fn(f64) -> f64,
+    /// A number with the sign of the slope, and proportional to it.
+    pub(crate) slope: &'a dyn Fn(f64) -> f64,
 }
 
 /// The area of a set and its first moment about `origin`.
@@ -63,7 +71,7 @@ impl Integrals {
         let units = width / self.unit;
         if let Some(curve) = piece.curve {
             let known = if units > 0.0 { self.area / units } else { 0.0 };
-            let (mean, moment) = integrate(curve, 1.0, known);
+            let (mean, moment) = integrate(curve.degree, 1.0, known);
             self.area += units * mean;
             self.moment += units * ((piece.from - self.origin) * mean + width * moment);
             return;
@@ -85,7 +93,7 @@ impl Piece<'_> {
     /// The whole area.
     pub(crate) fn area(&self) -> f64 {
         let mean = match self.curve {
-            Some(curve) => integrate(curve, 1.0, 0.0).0,
+            Some(curve) => integrate(curve.degree, 1.0, 0.0).0,
             None => 0.5 * (self.left + self.right),
         };
         (self.to - self.from) * mean
@@ -96,7 +104,8 @@ impl Piece<'_> {
         let width = self.to - self.from;
         if let Some(curve) = self.curve {
             let mean = area / width;
-            let part = root(0.0, 1.0, |part| integrate(curve, part, 0.0).0 - mean);
+            let area = |part: f64| integrate(curve.degree, part, 0.0).0;
+            let part = root(0.0, 1.0, |part| area(part) - mean);
             return self.from + width * part;
         }
         // area = left d + slope d^2 / 2, solved for d without cancellation.
@@ -161,7 +170,10 @@ mod tests {
             to,
             left: f(0.0),
             right: f(1.0),
-            curve: Some(f),
+            curve: Some(Curve {
+                degree: f,
+                slope: &|_| f64::NAN,
+            }),
         }
     }
 

@@ -6,7 +6,9 @@
 
 use alloc::vec::Vec;
 
-use super::piece::Piece;
+use super::curves::Part;
+use super::piece::{Curve, Piece};
+use super::sloped::{Sloped, aggregate};
 use super::{Joint, Strengths};
 use crate::model::{Aggregation, Implication, Term};
 use crate::table::operators::smaller;
@@ -49,6 +51,7 @@ pub(crate) struct Workspace {
     /// The most cuts. The vector's capacity depends on the allocator.
     pub(super) most_cuts: usize,
     segments: Vec<Segment>,
+    pub(super) parts: Vec<Part>,
 }
 
 /// A line under a firing strength.
@@ -68,6 +71,7 @@ impl Workspace {
             cuts: Vec::with_capacity(most_cuts),
             most_cuts,
             segments: Vec::with_capacity(activations),
+            parts: Vec::with_capacity(activations),
         }
     }
 }
@@ -276,18 +280,22 @@ fn join(
             }
         }
         _ => {
-            let degree = |t: f64| {
-                segments.iter().fold(0.0, |sum, segment| {
-                    let line = segment.left + (segment.right - segment.left) * t;
-                    aggregation.of(sum, line)
+            let sloped = |t: f64| {
+                segments.iter().fold(Sloped::default(), |sum, segment| {
+                    let slope = segment.right - segment.left;
+                    let degree = segment.left + slope * t;
+                    aggregate(aggregation, sum, Sloped { degree, slope })
                 })
             };
             visit(&Piece {
                 from: stretch.from,
                 to: stretch.to,
-                left: degree(0.0),
-                right: degree(1.0),
-                curve: Some(&degree),
+                left: sloped(0.0).degree,
+                right: sloped(1.0).degree,
+                curve: Some(Curve {
+                    degree: &|t| sloped(t).degree,
+                    slope: &|t| sloped(t).slope,
+                }),
             });
         }
     }

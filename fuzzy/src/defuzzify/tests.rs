@@ -1,3 +1,5 @@
+use alloc::vec;
+
 use crate::Engine;
 use crate::model::{
     Aggregation, Defuzzifier, Implication, MembershipFunction, Model, Operators, Output, Variable,
@@ -115,6 +117,157 @@ fn a_rounded_top_has_one_maximum() {
                 );
             }
         }
+    }
+}
+
+const MAXIMA: [Defuzzifier; 3] = [
+    Defuzzifier::SmallestOfMaxima,
+    Defuzzifier::MeanOfMaxima,
+    Defuzzifier::LargestOfMaxima,
+];
+
+#[test]
+fn a_bell_has_its_maximum_in_the_middle_under_every_implication() {
+    // Its flanks are no polynomials.
+    let bell = |slope: f64| MembershipFunction::Bell {
+        center: 30.1,
+        width: 19.3,
+        slope,
+    };
+    for slope in [0.4, 1.284, 1.387, 2.08] {
+        for implication in [
+            Implication::Hamacher,
+            Implication::Einstein,
+            Implication::BoundedDifference,
+        ] {
+            for aggregation in [Aggregation::Maximum, Aggregation::Einstein] {
+                for defuzzifier in MAXIMA {
+                    let terms = [(bell(slope), 0.8)];
+                    let x = value(
+                        (0.0, 100.0),
+                        &terms,
+                        (implication, aggregation),
+                        defuzzifier,
+                    );
+                    assert!(
+                        (x - 30.1).abs() < 1e-9,
+                        "{slope} {implication:?} {aggregation:?} {defuzzifier:?}: {x}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_maximum_beside_the_middle_of_a_bell() {
+    let bell = MembershipFunction::Bell {
+        center: 50.0,
+        width: 12.0,
+        slope: 0.82,
+    };
+    let ramp = MembershipFunction::RightShoulder {
+        foot: 0.0,
+        top: 100.0,
+    };
+    let terms = [(bell, 1.0), (ramp, 0.02)];
+    let x = value((0.0, 100.0), &terms, PRODUCT_SUM, Defuzzifier::MeanOfMaxima);
+    // Where the slope of the bell is that of the ramp.
+    let bell = |t: f64| 1.64 * t.powf(0.64) / 12.0 / (1.0 + t.powf(1.64)).powi(2);
+    let (mut low, mut high): (f64, f64) = (0.0, 1.0);
+    while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
+        let middle = 0.5 * (low + high);
+        *(if bell(middle) < 0.02 / 100.0 {
+            &mut low
+        } else {
+            &mut high
+        }) = middle;
+    }
+    assert!((x - 50.0 - 12.0 * low).abs() < 1e-9, "{x}, {low}");
+}
+
+#[test]
+fn a_nilpotent_minimum_cuts_out_a_plateau() {
+    // Of a gaussian at a strength of 0.3 the part above 0.7 is left, 0.3 high.
+    let half = 10.0 * (-2.0 * 0.7_f64.ln()).sqrt();
+    for (aggregation, terms) in [
+        (Aggregation::Maximum, vec![(gaussian(40.0, 10.0), 0.3)]),
+        (Aggregation::Sum, vec![(gaussian(40.0, 10.0), 0.3)]),
+        // Beside one that is lower.
+        (
+            Aggregation::NilpotentMaximum,
+            vec![(gaussian(40.0, 10.0), 0.3), (gaussian(80.0, 5.0), 0.2)],
+        ),
+    ] {
+        let of = |defuzzifier| {
+            let operators = (Implication::NilpotentMinimum, aggregation);
+            value((0.0, 100.0), &terms, operators, defuzzifier)
+        };
+        for (defuzzifier, expected) in MAXIMA.into_iter().zip([40.0 - half, 40.0, 40.0 + half]) {
+            let x = of(defuzzifier);
+            assert!(
+                (x - expected).abs() < 1e-9,
+                "{aggregation:?} {defuzzifier:?}: {x}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_strength_of_the_highest_degree_but_for_rounding_cuts_nothing_off() {
+    let bell = MembershipFunction::Bell {
+        center: 50.0,
+        width: 20.0,
+        slope: 3.0,
+    };
+    for operators in [
+        MINIMUM_MAXIMUM,
+        (Implication::Minimum, Aggregation::Sum),
+        (Implication::NilpotentMinimum, Aggregation::Maximum),
+    ] {
+        for defuzzifier in MAXIMA {
+            let of = |strength: f64| {
+                let terms = [(bell.clone(), strength)];
+                value((0.0, 100.0), &terms, operators, defuzzifier)
+            };
+            let x = of(1.0 - 2e-16);
+            assert!(
+                (x - 50.0).abs() < 1e-9,
+                "{operators:?} {defuzzifier:?}: {x}"
+            );
+            // A strength that is lower by more cuts it off where its degree is the strength.
+            let cut = 20.0 * 1e-9_f64.powf(1.0 / 6.0);
+            let expected = match defuzzifier {
+                Defuzzifier::SmallestOfMaxima => 50.0 - cut,
+                Defuzzifier::LargestOfMaxima => 50.0 + cut,
+                _ => 50.0,
+            };
+            let x = of(1.0 - 1e-9);
+            assert!(
+                (x - expected).abs() < 1e-6,
+                "{operators:?} {defuzzifier:?}: {x}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_drastic_aggregation_is_1_where_two_terms_are_over_the_least_strength() {
+    let terms = [(gaussian(30.0, 5.0), 1.0), (gaussian(60.0, 5.0), 1.0)];
+    let of = |defuzzifier| {
+        let operators = (Implication::Product, Aggregation::Drastic);
+        value((-10.0, 100.0), &terms, operators, defuzzifier)
+    };
+    let reach = 5.0 * (-2.0 * 1e-12_f64.ln()).sqrt();
+    assert!((of(Defuzzifier::SmallestOfMaxima) - (60.0 - reach)).abs() < 1e-9);
+    assert!((of(Defuzzifier::LargestOfMaxima) - (30.0 + reach)).abs() < 1e-9);
+    for defuzzifier in [
+        Defuzzifier::MeanOfMaxima,
+        Defuzzifier::Centroid,
+        Defuzzifier::Bisector,
+    ] {
+        let x = of(defuzzifier);
+        assert!((x - 45.0).abs() < 1e-9, "{defuzzifier:?}: {x}");
     }
 }
 

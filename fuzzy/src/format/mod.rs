@@ -40,13 +40,36 @@ pub const VERSION: u64 = 1;
 /// All findings, where one of them is an error. Without a text at hand they have no line and column.
 #[doc(hidden)]
 pub fn read(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
+    // A rule set without rules can be read: rules are learned into it.
+    read_lacking(tree, |model, finding| {
+        model.rules.is_empty() && finding.code == "no-rules"
+    })
+}
+
+/// As [`read`], of a rule set that is being built: it may lack outputs and rules. An error tells errors alone.
+#[doc(hidden)]
+pub fn read_unfinished(tree: &Node) -> Result<Document, Vec<Diagnostic>> {
+    read_lacking(tree, |model, finding| {
+        (model.rules.is_empty() && finding.code == "no-rules")
+            || (model.outputs.is_empty() && finding.code == "missing-key")
+    })
+    .map_err(|mut findings| {
+        findings.retain(|finding| finding.severity == Severity::Error);
+        findings
+    })
+}
+
+/// Reads a model from a tree. What it `may_lack` is a warning.
+fn read_lacking(
+    tree: &Node,
+    may_lack: fn(&Model, &Diagnostic) -> bool,
+) -> Result<Document, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let mut spans = Spans::default();
     let model = model(tree, &mut spans, &mut findings);
     if let Some(model) = &model {
         let mut invalid = validate(model, &spans);
-        for finding in invalid.iter_mut().filter(|f| f.code == "no-rules") {
-            // A rule set without rules can be read: rules are learned into it.
+        for finding in invalid.iter_mut().filter(|f| may_lack(model, f)) {
             finding.severity = Severity::Warning;
         }
         findings.extend(invalid);

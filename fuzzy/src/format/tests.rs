@@ -631,3 +631,13 @@ fn another_programs_word_is_answered_with_one_of_this_format() {
         }
     }
 }
+
+#[test]
+fn a_rule_set_that_is_being_built_may_lack_outputs_and_rules() {
+    let read = |text: &str| super::read_unfinished(&crate::yaml::read(text).unwrap());
+    let begun = "{fuzzy: 1, name: fan, inputs: {heat: {range: [0, 40], partition: [low, high]}}, outputs: {}, rules: []}";
+    assert_eq!(read(begun).unwrap().model.inputs.len(), 1);
+    let wrong = read(&begun.replace("[0, 40]", "[40, 0]")).unwrap_err();
+    assert_eq!(wrong.len(), 1, "{wrong:?}");
+    assert!(crate::yaml::parse(begun).is_err());
+}

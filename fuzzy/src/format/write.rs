@@ -8,8 +8,7 @@ use super::{
 };
 use crate::{
     model::{
-        Activation, LEAST_STRENGTH, MembershipFunction, Model, NoRuleFires, Output, SamplingRule,
-        Term, Variable, between_peaks, even_peaks,
+        Activation, LEAST_STRENGTH, Model, NoRuleFires, Output, SamplingRule, Variable, even_peaks,
     },
     tree::Node,
 };
@@ -92,14 +91,7 @@ fn output(output: &Output) -> Node {
 fn terms(variable: &Variable) -> (&'static str, Node) {
     let terms = &variable.terms;
     let names = || terms.iter().map(|term| term.name.as_str());
-    let peaks = peaks(terms);
-    let is_partition = terms.len() >= 2
-        && peaks.is_sorted_by(|a, b| a < b)
-        && peaks
-            .iter()
-            .all(|p| (variable.low..=variable.high).contains(p))
-        && *terms == between_peaks(&names().zip(peaks.iter().copied()).collect::<Vec<_>>());
-    if !is_partition {
+    let Some(peaks) = variable.partition_peaks() else {
         let terms = terms.iter().map(|term| {
             let (shape, parameters) = shapes::write(&term.membership_function);
             let mut entries: Entries = Vec::from([(shape, parameters)]);
@@ -109,7 +101,7 @@ fn terms(variable: &Variable) -> (&'static str, Node) {
             (term.name.as_str(), Node::mapping(entries))
         });
         return ("terms", Node::mapping(terms));
-    }
+    };
     let is_even = even_peaks(variable.low, variable.high, terms.len()).eq(peaks.iter().copied());
     let partition = if is_even {
         Node::list(names().map(Node::text).collect())
@@ -117,16 +109,4 @@ fn terms(variable: &Variable) -> (&'static str, Node) {
         Node::mapping(names().zip(peaks.iter().copied().map(Node::number)))
     };
     ("partition", partition)
-}
-
-/// Where each term of a partition would have its peak.
-fn peaks(terms: &[Term]) -> Vec<f64> {
-    let peak = |term: &Term| match term.membership_function {
-        MembershipFunction::Triangle { peak, .. } => Some(peak),
-        MembershipFunction::LeftShoulder { top, .. }
-        | MembershipFunction::RightShoulder { top, .. } => Some(top),
-        _ => None,
-    };
-    let peaks: Option<Vec<f64>> = terms.iter().map(peak).collect();
-    peaks.unwrap_or_default()
 }

@@ -89,6 +89,52 @@ impl Formula {
         })
     }
 
+    /// Puts the formula together in another notation, from the inside out: `apply` gets the word of an operator or a function,
+    /// as `+` or `max`, and its operands. A sign is `-` with one operand.
+    ///
+    /// # Example: as calls of functions
+    /// ```
+    /// use fuzzy::model::Formula;
+    ///
+    /// let power: Formula = "-speed^2 + 1".parse()?;
+    /// let text = power.fold(
+    ///     &|number| number.to_string(),
+    ///     &str::to_owned,
+    ///     &|word, operands: Vec<String>| format!("({word} {})", operands.join(" ")),
+    /// );
+    /// assert_eq!(text, "(+ (- (^ speed 2)) 1)");
+    /// # Ok::<(), Box<fuzzy::Diagnostic>>(())
+    /// ```
+    pub fn fold<T>(
+        &self,
+        number: &impl Fn(f64) -> T,
+        variable: &impl Fn(&str) -> T,
+        apply: &impl Fn(&str, Vec<T>) -> T,
+    ) -> T {
+        self.folded(&self.expression, number, variable, apply)
+    }
+
+    fn folded<T>(
+        &self,
+        expression: &Expression,
+        number: &impl Fn(f64) -> T,
+        variable: &impl Fn(&str) -> T,
+        apply: &impl Fn(&str, Vec<T>) -> T,
+    ) -> T {
+        match expression {
+            Expression::Number(value) => number(*value),
+            Expression::Variable(index) => {
+                let read = self.variables.get(*index);
+                variable(read.map_or("", |read| &read.name))
+            }
+            Expression::Apply(operation, operands) => {
+                let operands = operands.iter();
+                let folded = operands.map(|of| self.folded(of, number, variable, apply));
+                apply(operation.word(), folded.collect())
+            }
+        }
+    }
+
     /// Whether it is a function of this variable alone, and no constant.
     #[cfg(any(feature = "check", feature = "drawing"))]
     pub(crate) fn is_over(&self, variable: &str) -> bool {

@@ -276,7 +276,13 @@ fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
 
 /// The middle of the interval where a term is highest.
 fn peak(variable: &Variable, shape: &MembershipFunction) -> f64 {
-    // By sampling, which is fine enough: the peaks of terms differ by far more than a thousandth of the range.
+    // Sampling would miss what is narrower than its steps.
+    if let MembershipFunction::Singleton { at: x } | MembershipFunction::Triangle { peak: x, .. } =
+        shape
+    {
+        return x.clamp(variable.low, variable.high);
+    }
+    // By sampling, which is fine enough: the peaks of other terms differ by far more than a thousandth of the range.
     const STEPS: u32 = 2000;
     let at =
         |i: u32| variable.low + (variable.high - variable.low) * f64::from(i) / f64::from(STEPS);

@@ -383,3 +383,22 @@ fn rules_are_not_learned_for_functions_of_inputs() {
         "the term `steep` of the output is a function of inputs; rules are learned for fuzzy sets and numbers"
     );
 }
+
+#[test]
+fn the_mean_chooses_the_nearest_singleton_wherever_it_lies() {
+    let text = "{fuzzy: 1, name: t, inputs: {x: {range: [0, 1], partition: [a, b]}}, outputs: {y: {range: [0, 1], terms: {low: {singleton: 0}, odd: {singleton: 0.12345}, high: {singleton: 0.98765}}}}, rules: []}";
+    let model = crate::yaml::parse(text).unwrap().model;
+    let settings = Settings {
+        resolution: Resolution::Mean,
+        ..Settings::default()
+    };
+    let mut learner = Learner::new(&model, settings).unwrap();
+    for row in [[0.0, 0.2], [1.0, 0.8]] {
+        learner.add(&row, 1.0).unwrap();
+    }
+    let learned = words(&learner.finish());
+    assert_eq!(
+        learned,
+        ["IF x IS a THEN y IS odd", "IF x IS b THEN y IS high"]
+    );
+}

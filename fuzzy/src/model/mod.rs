@@ -10,10 +10,8 @@ pub(crate) mod chain;
 pub(crate) mod document;
 mod partition;
 pub use crate::formula::Formula;
-#[cfg(feature = "serde")]
-pub(crate) use crate::shape::Role;
 pub(crate) use crate::shape::{Form, Parts};
-pub use crate::shape::{MembershipError, MembershipFunction};
+pub use crate::shape::{MembershipError, MembershipFunction, Role};
 pub use crate::table::{
     Activation, Aggregation, Comparison, Conjunction, Disjunction, Implication, LEAST_STRENGTH,
 };
@@ -130,6 +128,11 @@ pub enum NoRuleFires {
 }
 
 /// How an aggregated fuzzy set becomes a number.
+///
+/// Of maxima, degrees that differ by at most 1e-12, relatively, are equally high: two plateaus or peaks of almost one degree both
+/// count, a stretch between two kinks is a plateau if its degrees are so close to the highest, and a firing strength so close to
+/// the highest degree of a term does not cut it off. The mean is that of all values on plateaus, or of the peaks where there is
+/// no plateau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Defuzzifier {
     /// The centre of gravity of the aggregated set.

@@ -2,7 +2,7 @@
 
 use alloc::{string::String, vec::Vec};
 
-use super::{MembershipFunction, Term};
+use super::{MembershipFunction, Term, Variable};
 
 /// Triangles between the peaks of their neighbours, shoulders at the ends: the degrees sum to 1 everywhere.
 pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
@@ -26,6 +26,29 @@ pub(crate) fn between_peaks(peaks: &[(&str, f64)]) -> Vec<Term> {
         }
     };
     peaks.iter().enumerate().map(term).collect()
+}
+
+impl Variable {
+    /// The peaks of its terms where they are a partition, as [`Variable::partition_at`] makes one: at least two terms of height
+    /// 1, whose peaks rise and lie in the range. `None` for other terms.
+    pub fn partition_peaks(&self) -> Option<Vec<f64>> {
+        let peak = |term: &Term| match term.membership_function {
+            MembershipFunction::Triangle { peak, .. } => Some(peak),
+            MembershipFunction::LeftShoulder { top, .. }
+            | MembershipFunction::RightShoulder { top, .. } => Some(top),
+            _ => None,
+        };
+        let peaks: Vec<f64> = self.terms.iter().map(peak).collect::<Option<_>>()?;
+        let names = self.terms.iter().map(|term| term.name.as_str());
+        let partition = between_peaks(&names.zip(peaks.iter().copied()).collect::<Vec<_>>());
+        let is_partition = peaks.len() >= 2
+            && peaks.is_sorted_by(|a, b| a < b)
+            && peaks
+                .iter()
+                .all(|peak| (self.low..=self.high).contains(peak))
+            && self.terms == partition;
+        is_partition.then_some(peaks)
+    }
 }
 
 /// The peaks of `count` terms evenly spaced from `low` to `high`.

@@ -20,9 +20,9 @@ pub(crate) struct Form {
     pub(crate) build: fn(&[f64]) -> Option<MembershipFunction>,
 }
 
-/// What a parameter may be; all are finite numbers.
+/// What a parameter of a membership function may be; all are finite numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Role {
+pub enum Role {
     /// A position on the axis, not left of the one before.
     Ascending,
     /// Over 0: a width, a deviation.

@@ -12,6 +12,15 @@ pub struct MembershipError {
     pub(crate) parameter: Option<usize>,
 }
 
+impl MembershipError {
+    pub(super) fn count(expected: usize, got: usize) -> Self {
+        MembershipError {
+            message: format!("the shape has {expected} parameters, not {got}"),
+            parameter: None,
+        }
+    }
+}
+
 impl core::fmt::Display for MembershipError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(&self.message)

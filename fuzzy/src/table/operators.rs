@@ -14,7 +14,7 @@ pub enum Conjunction {
     Product,
     /// `max(0, a + b - 1)` (Lukasiewicz).
     BoundedDifference,
-    /// `min(a, b)` where one of them is 1, else 0.
+    /// `min(a, b)` where one of them is 1 up to rounding (1e-12), else 0.
     Drastic,
     /// `a b / (2 - (a + b - a b))`.
     Einstein,
@@ -34,7 +34,7 @@ pub enum Disjunction {
     ProbabilisticSum,
     /// `min(1, a + b)`.
     BoundedSum,
-    /// `max(a, b)` where one of them is 0, else 1.
+    /// `max(a, b)` where one of them is 0 up to rounding (1e-12), else 1.
     Drastic,
     /// `(a + b) / (1 + a b)`.
     Einstein,
@@ -60,13 +60,13 @@ pub enum Aggregation {
     BoundedSum,
     /// `a + b`, unbounded.
     Sum,
-    /// `max(a, b)` where one of them is 0, else 1.
+    /// `max(a, b)` where one of them is 0 up to rounding (1e-12), else 1.
     Drastic,
     /// `(a + b) / (1 + a b)`.
     Einstein,
     /// `(a + b - 2 a b) / (1 - a b)`, 1 where both are 1.
     Hamacher,
-    /// `max(a, b)` where `a + b < 1`, else 1.
+    /// `max(a, b)` where `a + b < 1` by more than rounding (1e-12) or one of them is 0, else 1.
     NilpotentMaximum,
 }
 
@@ -168,7 +168,7 @@ impl Conjunction {
             // `a + b - 1` loses the digits of a small degree.
             Conjunction::BoundedDifference => larger(0.0, smaller(a, b) - (1.0 - larger(a, b))),
             Conjunction::Drastic => {
-                if larger(a, b) == 1.0 {
+                if 1.0 - larger(a, b) <= LEAST_STRENGTH {
                     smaller(a, b)
                 } else {
                     0.0
@@ -206,7 +206,7 @@ impl Disjunction {
             Disjunction::ProbabilisticSum => probabilistic_sum(a, b),
             Disjunction::BoundedSum => smaller(1.0, a + b),
             Disjunction::Drastic => {
-                if smaller(a, b) == 0.0 {
+                if smaller(a, b) <= LEAST_STRENGTH {
                     larger(a, b)
                 } else {
                     1.0

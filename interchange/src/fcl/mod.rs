@@ -6,5 +6,7 @@ pub(crate) use write::write;
 mod extent;
 mod lex;
 mod read;
+mod rules;
 mod term;
+mod variables;
 mod write;

@@ -13,6 +13,21 @@ use crate::{
     shapes::{self, Shape},
 };
 
+/// Whether a term is a number.
+pub(super) fn is_number(term: &Term) -> bool {
+    matches!(
+        term.membership_function,
+        MembershipFunction::Singleton { .. }
+    )
+}
+
+/// Whether the words behind `:=` name a shape, and are no points or number.
+pub(super) fn is_named(words: &[&str]) -> bool {
+    words
+        .first()
+        .is_some_and(|first| *first != "(" && number(first).is_none())
+}
+
 /// The term of a name, from the words behind `:=`. In an output with computed values a number is a constant.
 pub(super) fn read(
     draft: &mut Draft<'_>,

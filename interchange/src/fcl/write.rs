@@ -8,8 +8,9 @@ use fuzzy::{
 use crate::{
     Format, Losses, Written,
     blocks::{self, Rules},
+    formula,
     names::{self, Allowed},
-    paper::{Paper, numbers, one_line},
+    paper::{Paper, named, numbers, one_line},
     rules, shapes, words,
 };
 
@@ -111,13 +112,13 @@ fn terms(paper: &mut Paper, variable: &Variable) {
         variable.low, variable.high
     ));
     for term in &variable.terms {
-        if let Some(shape) = shape(paper, term) {
+        if let Some(shape) = shape(paper, term, variable) {
             paper.line(format!("  TERM {} := {shape};", term.name));
         }
     }
 }
 
-fn shape(paper: &mut Paper, term: &Term) -> Option<String> {
+fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<String> {
     use MembershipFunction as Of;
     let height = term.height;
     let points = |points: &[(f64, f64)]| {
@@ -148,24 +149,61 @@ fn shape(paper: &mut Paper, term: &Term) -> Option<String> {
         }
         Of::Piecewise { points: ref all } => points(all),
         Of::Singleton { at } | Of::Constant { value: at } if height == 1.0 => Some(at.to_string()),
+        Of::Function { ref formula } if height == 1.0 => {
+            function(paper, term, variable);
+            Some(format!("FUNCTION {}", formula::write(formula, None)))
+        }
+        Of::Linear {
+            ref coefficients,
+            constant,
+        } => {
+            function(paper, term, variable);
+            Some(format!("FUNCTION {}", linear(coefficients, constant)))
+        }
         ref other => {
-            let name = &term.name;
+            let name = named(term, variable);
             let written = shapes::write(Format::Fcl, other).or_else(|| {
                 let written = shapes::write(Format::Fll, other)?;
                 let message = format!(
-                    "only fuzzylite reads the shape `{}`, of the term `{name}`",
+                    "only fuzzylite reads the shape `{}`, of the term {name}",
                     written.0
                 );
                 paper.note("not-in-iec", message, "write it as points: `piecewise`");
                 Some(written)
             });
             if written.is_none() || height != 1.0 {
-                let message = format!("the term `{name}` has a shape or a height that FCL has not");
+                let message = format!("the term {name} has a shape or a height that FCL has not");
                 paper.loss("no-shape", message, "write it as points: `piecewise`");
             }
             written.map(|(shape, parameters)| format!("{shape} {}", numbers(&parameters)))
         }
     }
+}
+
+/// Tells that a term is a function.
+fn function(paper: &mut Paper, term: &Term, variable: &Variable) {
+    let name = named(term, variable);
+    let message = format!("the term {name} is a function, which IEC 61131-7 has not");
+    let help = "jFuzzyLogic reads it in outputs with `COGS`";
+    paper.note("not-in-iec", message, help);
+}
+
+/// `0.5 * food - 2 * service + 3`
+fn linear(coefficients: &[(String, f64)], constant: f64) -> String {
+    let mut text = String::new();
+    let products = coefficients
+        .iter()
+        .map(|(input, by)| (*by, format!(" * {input}")));
+    for (by, what) in products.chain([(constant, String::new())]) {
+        let (sign, size) = match (text.is_empty(), by < 0.0) {
+            (true, false) => ("", by),
+            (true, true) => ("0 - ", -by),
+            (false, false) => (" + ", by),
+            (false, true) => (" - ", -by),
+        };
+        text += &format!("{sign}{size}{what}");
+    }
+    text
 }
 
 /// The points without a second one at the same place and height, as the shoulder of a triangle has.

@@ -62,7 +62,9 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
         return draft.finish();
     };
     draft.model.name = unquoted(system.get("Name").unwrap_or("unnamed")).into();
-    let weighted = kind(&mut draft, system);
+    let Some(weighted) = kind(&mut draft, system) else {
+        return draft.finish();
+    };
     operators(&mut draft, system, weighted);
     let inputs = Section::numbered(&sections, "Input");
     let names: Vec<&str> = inputs.iter().map(|input| name(input)).collect();
@@ -162,20 +164,24 @@ fn without_comment(line: &str) -> &str {
     line
 }
 
-/// Whether the system is Sugeno's.
-fn kind(draft: &mut Draft<'_>, system: &Section<'_>) -> bool {
+/// Whether the system is Sugeno's; `None` with an error where it is of another kind.
+fn kind(draft: &mut Draft<'_>, system: &Section<'_>) -> Option<bool> {
     let word = system.get("Type").unwrap_or("mamdani");
     match unquoted(word).to_ascii_lowercase().as_str() {
-        "mamdani" => false,
-        "sugeno" => true,
+        "mamdani" => Some(false),
+        // fuzzylite writes `tsukamoto`, where the terms of outputs are monotone sets.
+        "sugeno" | "tsukamoto" => Some(true),
+        other if other.contains("type2") => {
+            let message = format!("`{other}` has type-2 fuzzy sets, which a rule set cannot hold");
+            let help = "MATLAB's `convertToType1` makes it a system that can be read";
+            draft.error("type-2", word, message, help);
+            None
+        }
         other => {
-            let message = match other.contains("type2") {
-                true => format!("`{other}` has type-2 fuzzy sets, which a rule set cannot hold"),
-                false => format!("unknown type `{other}`"),
-            };
+            let message = format!("unknown type `{other}`");
             let help = "`mamdani` and `sugeno` can be read";
             draft.error("unknown-word", word, message, help);
-            false
+            None
         }
     }
 }

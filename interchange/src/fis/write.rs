@@ -9,7 +9,7 @@ use fuzzy::{
 use crate::{
     Format, Losses, Written, conditions,
     names::{self, Allowed},
-    paper::{Paper, numbers, one_line},
+    paper::{Paper, named, numbers, one_line},
     shapes, words,
 };
 
@@ -102,6 +102,9 @@ fn system(paper: &mut Paper, model: &Model) {
     let weighted = words::is_weighted(first);
     let operators = model.operators;
     let quoted = |text: &str| format!("'{}'", one_line(&text.replace('\'', "")));
+    if let Some(description) = &model.description {
+        paper.line(format!("% {}", one_line(description)));
+    }
     paper.line("[System]");
     paper.line(format!("Name={}", quoted(&model.name)));
     paper.line(format!(
@@ -163,20 +166,22 @@ fn shape(
     model: &Model,
 ) -> Option<(&'static str, Vec<f64>)> {
     use MembershipFunction as Of;
+    let name = named(term, variable);
     if term.height != 1.0 {
-        let message = format!("the term `{}` has the height {}", term.name, term.height);
+        let message = format!("the term {name} has the height {}", term.height);
         paper.loss("height", message, "all terms of FIS are 1 high");
     }
-    // What MATLAB lacks is written with a shape that is equal within the range.
+    // What MATLAB lacks is written with a shape that is equal within the range. Octave takes no flank without a width.
+    let width = variable.high - variable.low;
     let written = match term.membership_function {
-        Of::LeftShoulder { top, foot } => Some((
-            "trapmf",
-            vec![variable.low.min(top), variable.low.min(top), top, foot],
-        )),
-        Of::RightShoulder { foot, top } => Some((
-            "trapmf",
-            vec![foot, top, variable.high.max(top), variable.high.max(top)],
-        )),
+        Of::LeftShoulder { top, foot } => {
+            let left = variable.low.min(top);
+            Some(("trapmf", vec![left - width, left, top, foot]))
+        }
+        Of::RightShoulder { foot, top } => {
+            let right = variable.high.max(top);
+            Some(("trapmf", vec![foot, top, right, right + width]))
+        }
         Of::Rectangle { left, right } => Some(("trapmf", vec![left, left, right, right])),
         Of::Constant { value } => Some(("constant", vec![value])),
         Of::Linear {
@@ -194,11 +199,11 @@ fn shape(
     };
     match written {
         None => {
-            let message = format!("the term `{}` has a shape that FIS has not", term.name);
+            let message = format!("the term {name} has a shape that FIS has not");
             paper.loss("no-shape", message, "write it as points: `piecewise`");
         }
-        Some((name @ ("discretemf" | "cosinemf" | "spikemf" | "concavemf"), _)) => {
-            let message = format!("MATLAB has no shape `{name}`, of the term `{}`", term.name);
+        Some((shape @ ("discretemf" | "cosinemf" | "spikemf" | "concavemf"), _)) => {
+            let message = format!("MATLAB has no shape `{shape}`, of the term {name}");
             paper.note("not-in-matlab", message, "fuzzylite reads it");
         }
         Some(_) => {}

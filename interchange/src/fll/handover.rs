@@ -8,7 +8,7 @@ use fuzzy::{
 
 use crate::draft::Draft;
 
-pub(super) fn replace(draft: &mut Draft<'_>) {
+pub(crate) fn replace(draft: &mut Draft<'_>) {
     for index in 0..draft.model.rules.len() {
         let Some(rule) = draft.model.rules.get(index) else {
             return;
@@ -16,11 +16,18 @@ pub(super) fn replace(draft: &mut Draft<'_>) {
         let mut condition = rule.rule.condition.clone();
         let mut problems = vec![];
         resolve(&mut condition, &draft.model, index, &mut problems);
-        if let Some(rule) = draft.model.rules.get_mut(index) {
-            rule.rule.condition = condition;
-        }
+        let Some(rule) = draft.model.rules.get_mut(index) else {
+            return;
+        };
+        let changes = rule.rule.condition != condition;
+        rule.rule.condition = condition;
         let span = draft.spans.rules.get(index).map(|rule| rule.whole.clone());
         let part = draft.text.get(span.unwrap_or_default()).unwrap_or_default();
+        if changes && problems.is_empty() {
+            let message = "a condition is about an output".into();
+            let help = "fuzzylite hands degrees over, so it becomes the conditions of the rules that conclude the term";
+            draft.note("handed-over", part, message, help);
+        }
         for problem in problems {
             let help = "name the inputs in this rule instead of the output";
             draft.loss("handed-over", part, problem, help);

@@ -4,7 +4,8 @@ pub(crate) use read::read;
 pub(crate) use write::write;
 
 mod activation;
-mod handover;
+pub(crate) mod habits;
+pub(crate) mod handover;
 mod read;
-mod term;
+pub(crate) mod term;
 mod write;

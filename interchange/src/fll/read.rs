@@ -3,14 +3,11 @@
 use fuzzy::{
     diagnostic::nearest,
     format::{Document, RuleSpans, VariableSpans},
-    model::{
-        Aggregation, Block, Defuzzifier, Model, NoRuleFires, Output, Rule, Sampling, SamplingRule,
-        Variable,
-    },
+    model::{Aggregation, Block, NoRuleFires, Output, Rule, Sampling, SamplingRule, Variable},
 };
 
-use super::{activation, handover, term};
-use crate::{Format, Losses, blocks, draft::Draft, rules, shapes, words};
+use super::{activation, habits, handover, term};
+use crate::{Format, Losses, blocks, draft::Draft, rules, words};
 
 /// A section and its lines.
 struct Section<'t> {
@@ -225,19 +222,7 @@ fn variable(
     variable.description = description(section);
     for written in section.all("term") {
         if let Some((term, span)) = term::read(draft, written, inputs, own) {
-            // A rule finds the first term of a name.
-            if variable.terms.iter().any(|known| known.name == term.name) {
-                let message = format!("`{}` has a term `{}` before", section.name, term.name);
-                draft.note(
-                    "never-used",
-                    written,
-                    message,
-                    "no rule finds this one, and it is left out",
-                );
-                continue;
-            }
-            variable.terms.push(term);
-            spans.terms.push(span);
+            habits::add(draft, (&mut variable, &mut spans), (term, span), written);
         }
     }
     Some((variable, spans))
@@ -259,25 +244,7 @@ fn output(draft: &mut Draft<'_>, section: &Section<'_>, inputs: &[&str]) {
             _ => NoRuleFires::Undefined,
         };
     }
-    let maxima = matches!(
-        output.defuzzifier,
-        Defuzzifier::SmallestOfMaxima | Defuzzifier::MeanOfMaxima | Defuzzifier::LargestOfMaxima
-    );
-    if maxima && output.when_no_rule_fires == NoRuleFires::Undefined {
-        let (low, high) = (output.variable.low, output.variable.high);
-        let value = match output.defuzzifier {
-            Defuzzifier::SmallestOfMaxima => low,
-            Defuzzifier::LargestOfMaxima => high,
-            _ => 0.5 * (low + high),
-        };
-        output.when_no_rule_fires = NoRuleFires::Value(value);
-        let message = format!(
-            "where no rule fires, fuzzylite gives `{}` the value {value}",
-            section.name
-        );
-        let help = "take `when_no_rule_fires` out of the rule set to leave it undefined";
-        draft.note("no-rule-fires", section.name, message, help);
-    }
+    habits::unfired(draft, &mut output, section.name);
     if ["lock-previous", "lock-valid"]
         .into_iter()
         .any(|key| flag(draft, section, key) == Some(true))
@@ -305,12 +272,7 @@ fn defuzzifier(draft: &mut Draft<'_>, written: &str, output: &mut Output) {
     output.defuzzifier = known;
     let weighted = words::is_weighted(known);
     if weighted {
-        // fuzzylite tells Tsukamoto's kind from the terms.
-        if known == Defuzzifier::WeightedAverage
-            && !output.variable.terms.iter().any(shapes::is_computed)
-        {
-            output.defuzzifier = Defuzzifier::Tsukamoto;
-        }
+        habits::tsukamoto(output);
         return;
     }
     let Some(part) = parts.next() else {
@@ -411,33 +373,16 @@ fn aggregate(draft: &mut Draft<'_>, outputs: &[&Section<'_>]) {
         let output = draft.model.outputs.get(found.len());
         let weighted = output.is_some_and(|output| words::is_weighted(output.defuzzifier));
         let joins = weighted && !matches!(aggregation, None | Some(Aggregation::Sum));
-        if joins && concludes_twice(&draft.model, section.name) {
-            let message = format!(
-                "several rules conclude one term of `{}`, and its aggregation joins them",
-                section.name
-            );
+        if joins {
             let part = section.get(key).unwrap_or(section.name);
-            draft.loss(
-                "joined",
+            blocks::joined(
+                draft,
+                section.name,
                 part,
-                message,
                 "write `aggregation: none`, which weighs each rule",
             );
         }
         found.push(aggregation.filter(|_| !weighted));
     }
     blocks::aggregate(&mut draft.model, &found);
-}
-
-/// Whether two rules conclude the same term of an output.
-fn concludes_twice(model: &Model, output: &str) -> bool {
-    let mut terms = vec![];
-    let consequents = model.rules.iter().flat_map(|rule| &rule.rule.consequents);
-    for consequent in consequents.filter(|consequent| consequent.output.text == output) {
-        if terms.contains(&&consequent.term.text) {
-            return true;
-        }
-        terms.push(&consequent.term.text);
-    }
-    false
 }

@@ -11,25 +11,39 @@ use crate::{Format, draft::Draft, formula, shapes};
 /// Shapes whose number of parameters is not fixed.
 const OTHERS: [&str; 5] = ["Discrete", "Constant", "Linear", "Function", "Binary"];
 
+/// `NAME Shape PARAMETER...`
 pub(super) fn read(
     draft: &mut Draft<'_>,
     written: &str,
     inputs: &[&str],
     own: Option<&str>,
 ) -> Option<(Term, TermSpans)> {
-    let mut words = written.split_whitespace();
-    let (Some(name), Some(shape)) = (words.next(), words.next()) else {
-        let message = format!("`{written}` is no term");
-        let help = "write a name, a shape and its parameters: `term: low Triangle 0 1 2`";
-        draft.error("no-term", written, message, help);
-        return None;
-    };
+    match written.split_once(char::is_whitespace) {
+        Some((name, shape)) => of_shape(draft, name, shape.trim(), inputs, own),
+        None => {
+            let message = format!("`{written}` is no term");
+            let help = "write a name, a shape and its parameters: `term: low Triangle 0 1 2`";
+            draft.error("no-term", written, message, help);
+            None
+        }
+    }
+}
+
+/// The term of a name, from `Shape PARAMETER...`. `own` is the variable that a formula calls `x`, where the term is a fuzzy set.
+pub(crate) fn of_shape(
+    draft: &mut Draft<'_>,
+    name: &str,
+    written: &str,
+    inputs: &[&str],
+    own: Option<&str>,
+) -> Option<(Term, TermSpans)> {
+    let (shape, rest) = written
+        .split_once(char::is_whitespace)
+        .unwrap_or((written, ""));
     let mut spans = TermSpans::default();
     spans.name = draft.span(name);
-    if shape == "Function" {
-        let at = draft.span(shape).end - draft.span(written).start;
-        let text = written.get(at..).unwrap_or_default();
-        let membership_function = formula::read(draft, &formula::words(text), own)?;
+    if shape.eq_ignore_ascii_case("Function") {
+        let membership_function = formula::read(draft, &formula::words(rest), own)?;
         let term = Term {
             name: name.to_owned(),
             membership_function,
@@ -38,7 +52,7 @@ pub(super) fn read(
         return Some((term, spans));
     }
     let mut numbers = vec![];
-    for word in words {
+    for word in rest.split_whitespace() {
         numbers.push(draft.number(word)?);
         spans.parameters.push(draft.span(word));
     }

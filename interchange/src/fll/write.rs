@@ -9,6 +9,7 @@ use super::activation;
 use crate::{
     Format, Losses, Written,
     blocks::{self, Rules},
+    formula,
     names::{self, Allowed},
     paper::{Paper, numbers, one_line},
     rules, shapes, words,
@@ -47,7 +48,7 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         // A rule set takes values outside the range as the nearest inside.
         paper.line("  lock-range: true");
         for term in &input.terms {
-            self::term(&mut paper, term, &model);
+            self::term(&mut paper, term, &model, Some(&input.name));
         }
     }
     for output in &model.outputs {
@@ -118,13 +119,22 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) {
     paper.line(format!("  default: {default}"));
     let keeps = matches!(output.when_no_rule_fires, NoRuleFires::Previous(_));
     paper.line(format!("  lock-previous: {keeps}"));
+    // A fuzzy set is a function of its own variable.
+    let own = (!words::is_weighted(output.defuzzifier)).then_some(output.variable.name.as_str());
     for term in &output.variable.terms {
-        self::term(paper, term, model);
+        self::term(paper, term, model, own);
     }
 }
 
-fn term(paper: &mut Paper, term: &Term, model: &Model) {
+fn term(paper: &mut Paper, term: &Term, model: &Model, own: Option<&str>) {
     use MembershipFunction as Of;
+    if let Of::Function { formula } = &term.membership_function
+        && term.height == 1.0
+    {
+        let formula = formula::write(formula, own);
+        paper.line(format!("  term: {} Function {formula}", term.name));
+        return;
+    }
     let written = match &term.membership_function {
         Of::Piecewise { points } => {
             let flat: Vec<f64> = points.iter().flat_map(|&(x, y)| [x, y]).collect();
@@ -142,7 +152,7 @@ fn term(paper: &mut Paper, term: &Term, model: &Model) {
     };
     let Some((shape, mut parameters)) = written else {
         let message = format!(
-            "the term `{}` is a formula, or a singleton among fuzzy sets",
+            "the term `{}` is a singleton among fuzzy sets, or a formula with a height",
             term.name
         );
         paper.loss("no-shape", message, "write it as points: `piecewise`");

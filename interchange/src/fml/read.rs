@@ -118,12 +118,13 @@ impl Reader<'_> {
             match node.tag_name().name() {
                 "fuzzyVariable" if is_output(&node) => self.output(node),
                 "tskVariable" => self.tsk(node),
+                "tsukamotoVariable" => self.tsukamoto(node),
                 "fuzzyVariable" => {}
                 other => {
                     let message = format!("variables of the kind `{other}` cannot be read");
                     let help = match nearest(other, all) {
                         Some(near) if near != other => format!("did you mean `{near}`?"),
-                        _ => "fuzzyVariable and tskVariable can".into(),
+                        _ => format!("{} can", all.join(", ")),
                     };
                     let part = tag(self.draft.text, node);
                     self.draft.error("unknown-element", part, message, &help);
@@ -173,7 +174,7 @@ impl Reader<'_> {
         let mut spans = VariableSpans::default();
         spans.name = self.draft.span(part);
         spans.range = spans.name.clone();
-        for node in children(node, &["fuzzyTerm"]) {
+        for node in children(node, &["fuzzyTerm", "tsukamotoTerm"]) {
             if let Some((term, span)) =
                 term::read(&mut self.draft, node, self.right_is_high, (low, high))
             {
@@ -202,6 +203,25 @@ impl Reader<'_> {
         self.draft.spans.outputs.push(spans);
     }
 
+    /// An output whose terms are monotone sets.
+    fn tsukamoto(&mut self, node: Node<'_, '_>) {
+        let Some((variable, spans)) = self.variable(node) else {
+            return;
+        };
+        let output = Output::new(variable).defuzzifier(Defuzzifier::Tsukamoto);
+        self.computed(node, output, spans);
+    }
+
+    /// Adds an output that weighs a value for each rule.
+    fn computed(&mut self, node: Node<'_, '_>, mut output: Output, spans: VariableSpans) {
+        if let Some(value) = self.number(node, "defaultValue") {
+            output.when_no_rule_fires = NoRuleFires::Value(value);
+        }
+        self.aggregations.push(None);
+        self.draft.model.outputs.push(output);
+        self.draft.spans.outputs.push(spans);
+    }
+
     /// A Takagi-Sugeno output: its terms have a constant, then a coefficient for each input.
     fn tsk(&mut self, node: Node<'_, '_>) {
         let part = tag(self.draft.text, node);
@@ -210,9 +230,6 @@ impl Reader<'_> {
         let high = self.number(node, "domainright").unwrap_or(1.0);
         let mut output =
             Output::new(Variable::new(name, low, high)).defuzzifier(Defuzzifier::WeightedAverage);
-        if let Some(value) = self.number(node, "defaultValue") {
-            output.when_no_rule_fires = NoRuleFires::Value(value);
-        }
         let mut spans = VariableSpans::default();
         spans.name = self.draft.span(part);
         spans.range = spans.name.clone();
@@ -223,15 +240,13 @@ impl Reader<'_> {
             .iter()
             .map(|input| input.name.clone());
         let inputs: Vec<String> = inputs.collect();
-        for node in children(node, &["tskTerm"]) {
-            if let Some((term, span)) = term::tsk(&mut self.draft, node, &inputs) {
+        for term in children(node, &["tskTerm"]) {
+            if let Some((term, span)) = term::tsk(&mut self.draft, term, &inputs) {
                 output.variable.terms.push(term);
                 spans.terms.push(span);
             }
         }
-        self.aggregations.push(None);
-        self.draft.model.outputs.push(output);
-        self.draft.spans.outputs.push(spans);
+        self.computed(node, output, spans);
     }
 
     fn word<T: Copy>(
@@ -261,11 +276,11 @@ impl Reader<'_> {
 
     fn rule_base(&mut self, base: Node<'_, '_>) {
         match base.tag_name().name() {
-            "mamdaniRuleBase" | "ruleBase" | "tskRuleBase" => {}
+            "mamdaniRuleBase" | "ruleBase" | "tskRuleBase" | "tsukamotoRuleBase" => {}
             "knowledgeBase" => return,
             other => {
                 let message = format!("`{other}` cannot be read");
-                let help = "mamdaniRuleBase and tskRuleBase can";
+                let help = "mamdaniRuleBase, tskRuleBase and tsukamotoRuleBase can";
                 let part = tag(self.draft.text, base);
                 self.draft.loss("unknown-element", part, message, help);
                 return;

@@ -10,7 +10,7 @@ use roxmltree::Node;
 use super::read::{attribute, children, tag};
 use crate::draft::{Draft, number};
 
-const SHAPES: [(&str, usize); 13] = [
+const SHAPES: [(&str, usize); 14] = [
     ("triangularShape", 3),
     ("trapezoidShape", 4),
     ("gaussianShape", 2),
@@ -24,6 +24,7 @@ const SHAPES: [(&str, usize); 13] = [
     ("sShape", 2),
     ("zShape", 2),
     ("pointSetShape", 0),
+    ("pointSetMonotonicShape", 0),
 ];
 
 pub(super) fn read(
@@ -84,7 +85,7 @@ pub(super) fn read(
         *parameter = value;
     }
     let function = match known {
-        "pointSetShape" => points(draft, shape)?,
+        "pointSetShape" | "pointSetMonotonicShape" => points(draft, shape)?,
         _ => function(known, p, right_is_high, range)?,
     };
     let term = Term {

@@ -19,7 +19,7 @@ use crate::{
     blocks::{self, Rules},
     conditions,
     names::{self, Allowed},
-    paper::{Paper, one_line},
+    paper::{Paper, named, one_line},
     shapes, words,
 };
 
@@ -95,20 +95,25 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     let model = &names::plain(model, &NAMES, &mut paper);
     let mut base = Element::new("knowledgeBase");
     for input in &model.inputs {
-        base.push(variable(&mut paper, input, "input"));
+        base.push(variable(
+            &mut paper,
+            input,
+            ["fuzzyVariable", "fuzzyTerm", "input"],
+        ));
     }
     for output in &model.outputs {
         base.push(self::output(&mut paper, output, model));
     }
-    let is_weighted = |output: &Output| words::is_weighted(output.defuzzifier);
-    let weighted = model.outputs.iter().any(is_weighted);
-    if weighted && !model.outputs.iter().all(is_weighted) {
-        let message = "some outputs are weighted, others are not".into();
-        paper.loss("two-kinds", message, "write a rule set for each kind");
+    let mut kinds = model.outputs.iter().map(Kind::of);
+    let kind = kinds.next().unwrap_or(Kind::Mamdani);
+    if kinds.any(|other| other != kind) {
+        let message = "the outputs are of different kinds".into();
+        let help = "write a rule set for each of Mamdani's, Takagi and Sugeno's, Tsukamoto's";
+        paper.loss("two-kinds", message, help);
     }
     let enabled = blocks::of(model).into_iter().filter(|block| block.enabled);
     let bases: Vec<Element> = enabled
-        .map(|block| rule_base(&mut paper, &block, weighted))
+        .map(|block| rule_base(&mut paper, &block, kind))
         .collect();
     let root = Element::new("fuzzySystem")
         .with("xmlns", NAMESPACE)
@@ -130,6 +135,24 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     paper.finish()
 }
 
+/// The kind of outputs that a rule base concludes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Mamdani,
+    Tsk,
+    Tsukamoto,
+}
+
+impl Kind {
+    fn of(output: &Output) -> Kind {
+        match output.defuzzifier {
+            Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => Kind::Tsk,
+            Defuzzifier::Tsukamoto => Kind::Tsukamoto,
+            _ => Kind::Mamdani,
+        }
+    }
+}
+
 /// A variable without its terms.
 fn variable_element(name: &'static str, variable: &Variable, kind: &str) -> Element {
     Element::new(name)
@@ -143,14 +166,18 @@ fn variable_element(name: &'static str, variable: &Variable, kind: &str) -> Elem
         .with("type", kind)
 }
 
-fn variable(paper: &mut Paper, variable: &Variable, kind: &str) -> Element {
-    let mut element = variable_element("fuzzyVariable", variable, kind);
+/// `names` are those of the element and of its terms, and the type.
+fn variable(paper: &mut Paper, variable: &Variable, names: [&'static str; 3]) -> Element {
+    let mut element = variable_element(names[0], variable, names[2]);
     for term in &variable.terms {
-        if let Some(shape) = shape(paper, term, variable) {
-            let term = Element::new("fuzzyTerm")
+        if let Some(mut shape) = shape(paper, term, variable) {
+            if names[1] == "tsukamotoTerm" && shape.name == "pointSetShape" {
+                shape.name = "pointSetMonotonicShape";
+            }
+            let element_of_term = Element::new(names[1])
                 .with("name", &term.name)
                 .with("complement", false);
-            element.push(term.of([shape]));
+            element.push(element_of_term.of([shape]));
         }
     }
     element
@@ -162,16 +189,21 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
         let message = format!("the output `{name}` is sampled, which FML does not say");
         paper.note("sampled", message, "each program samples in its own way");
     }
-    let mut element = match output.defuzzifier {
-        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum => {
+    let mut element = match Kind::of(output) {
+        Kind::Tsk => {
             if output.defuzzifier == Defuzzifier::WeightedSum {
                 let message = format!("the output `{name}` is a weighted sum");
                 paper.loss("no-method", message, "FML has the weighted average alone");
             }
-            tsk(output, model)
+            tsk(paper, output, model)
         }
-        _ => {
-            let element = variable(paper, &output.variable, "output");
+        Kind::Tsukamoto => {
+            let names = ["tsukamotoVariable", "tsukamotoTerm", "output"];
+            variable(paper, &output.variable, names).with("combination", "WA")
+        }
+        Kind::Mamdani => {
+            let names = ["fuzzyVariable", "fuzzyTerm", "output"];
+            let element = variable(paper, &output.variable, names);
             let accumulation = paper.word(
                 words::AGGREGATIONS,
                 output.aggregation.unwrap_or(model.operators.aggregation),
@@ -200,7 +232,7 @@ fn output(paper: &mut Paper, output: &Output, model: &Model) -> Element {
 }
 
 /// A Takagi-Sugeno output: the constant of each term, then a coefficient for each input.
-fn tsk(output: &Output, model: &Model) -> Element {
+fn tsk(paper: &mut Paper, output: &Output, model: &Model) -> Element {
     let variable = &output.variable;
     let mut element = variable_element("tskVariable", variable, "output").with("combination", "WA");
     for term in &variable.terms {
@@ -214,7 +246,12 @@ fn tsk(output: &Output, model: &Model) -> Element {
             }
             MembershipFunction::Constant { value }
             | MembershipFunction::Singleton { at: value } => (vec![*value], 0),
-            _ => (vec![], 0),
+            _ => {
+                let message = format!("the term {} is a formula", named(term, variable));
+                let help = "FML has constants and linear functions";
+                paper.loss("no-shape", message, help);
+                continue;
+            }
         };
         let values = values
             .iter()
@@ -235,9 +272,9 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
         };
         Some(parameters.iter().enumerate().fold(Element::new(name), with))
     };
-    let name = &term.name;
+    let name = named(term, variable);
     if term.height != 1.0 {
-        let message = format!("the term `{name}` has the height {}", term.height);
+        let message = format!("the term {name} has the height {}", term.height);
         paper.loss("height", message, "all terms of FML are 1 high");
     }
     let (low, high) = (variable.low, variable.high);
@@ -289,30 +326,31 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
         _ => None,
     };
     if shape.is_none() {
-        let message = format!("the term `{name}` has a shape that FML has not");
+        let message = format!("the term {name} has a shape that FML has not");
         paper.loss("no-shape", message, "write it as points: `piecewise`");
     }
     shape
 }
 
-fn rule_base(paper: &mut Paper, block: &Rules<'_>, weighted: bool) -> Element {
+fn rule_base(paper: &mut Paper, block: &Rules<'_>, outputs: Kind) -> Element {
     let operators = block.operators;
     if block.activation != Activation::General {
         let message = format!("the rules `{}` do not all fire", block.name);
         paper.loss("activation", message, "FML has no activation methods");
     }
     let [and, or, implication] = paper.operators(operators);
-    let kind = match weighted {
-        true => "tskRuleBase",
-        false => "mamdaniRuleBase",
+    let name = match outputs {
+        Kind::Mamdani => "mamdaniRuleBase",
+        Kind::Tsk => "tskRuleBase",
+        Kind::Tsukamoto => "tsukamotoRuleBase",
     };
-    let mut base = Element::new(kind)
+    let mut base = Element::new(name)
         .with("name", one_line(block.name))
         .with("activationMethod", implication)
         .with("andMethod", and)
         .with("orMethod", or);
     for (number, rule) in &block.rules {
-        match self::rule(rule, *number, operators, weighted) {
+        match self::rule(rule, *number, operators, outputs) {
             Ok(element) => base.push(element.with("andMethod", and).with("orMethod", or)),
             Err(what) => {
                 let message = format!("rule {number} {what}");
@@ -328,7 +366,7 @@ fn rule(
     rule: &Rule,
     number: usize,
     operators: Operators,
-    weighted: bool,
+    outputs: Kind,
 ) -> Result<Element, &'static str> {
     let rule = &rule.rule;
     let condition = conditions::without_not(&rule.condition, operators);
@@ -352,9 +390,9 @@ fn rule(
     {
         return Err("has a hedge in its conclusion");
     }
-    let names = match weighted {
-        true => ["tskRule", "tskConsequent", "tskThen", "tskClause"],
-        false => ["rule", "consequent", "then", "clause"],
+    let names = match outputs {
+        Kind::Tsk => ["tskRule", "tskConsequent", "tskThen", "tskClause"],
+        Kind::Mamdani | Kind::Tsukamoto => ["rule", "consequent", "then", "clause"],
     };
     let then = Element::new(names[2]).of(rule.consequents.iter().map(|consequent| {
         Element::new(names[3]).of([

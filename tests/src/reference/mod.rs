@@ -8,6 +8,7 @@ pub mod flight;
 pub mod inputs;
 pub mod integral;
 pub mod levels;
+mod number;
 pub mod rules;
 mod shapes;
 pub mod window;

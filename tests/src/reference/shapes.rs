@@ -4,6 +4,8 @@ use std::f64::consts::PI;
 
 use fuzzy::model::MembershipFunction;
 
+use super::number::Number;
+
 /// The places at which a shape has a parameter.
 pub(super) fn parameters(shape: &MembershipFunction) -> Vec<f64> {
     match *shape {
@@ -42,7 +44,9 @@ pub(super) fn parameters(shape: &MembershipFunction) -> Vec<f64> {
         }
         MembershipFunction::Concave { end, .. } => vec![end],
         MembershipFunction::Arc { start, end } => vec![start, end],
-        MembershipFunction::SemiEllipse { left, right } => vec![left, right],
+        MembershipFunction::SemiEllipse { left, right } => {
+            vec![left, (left + right) / 2.0, right]
+        }
         MembershipFunction::Sigmoid { inflection, .. } => vec![inflection],
         MembershipFunction::SigmoidDifference {
             left_inflection,
@@ -61,41 +65,57 @@ pub(super) fn parameters(shape: &MembershipFunction) -> Vec<f64> {
     }
 }
 
-pub(super) fn membership(shape: &MembershipFunction, x: f64) -> f64 {
-    let sigmoid = |inflection: f64, slope: f64| 1.0 / (1.0 + (-slope * (x - inflection)).exp());
-    let gaussian = |mean: f64, sd: f64| (-(x - mean).powi(2) / (2.0 * sd.powi(2))).exp();
+/// The degree at `x`, and with a dual number its slope.
+pub(super) fn membership<T: Number>(shape: &MembershipFunction, x: T) -> T {
+    let (at, n) = (x.value(), T::of);
+    let (zero, one, two) = (n(0.0), n(1.0), n(2.0));
+    // 1 / (1 + e^-t), without the cancellation of its slope where it is near 1.
+    let sigmoid = |inflection: f64, slope: f64| {
+        let t = n(slope) * (x - n(inflection));
+        if t.value() > 0.0 {
+            one - one / (one + t.exp())
+        } else {
+            one / (one + (-t).exp())
+        }
+    };
+    let gaussian = |mean: f64, sd: f64| {
+        let z = (x - n(mean)) / n(sd);
+        (-(z * z) / two).exp()
+    };
     // An S from a to b, by its two parabolas.
     let s = |a: f64, b: f64| {
-        if x <= a && a < b {
-            0.0
-        } else if x >= b {
-            1.0
-        } else if x < (a + b) / 2.0 {
-            2.0 * ((x - a) / (b - a)).powi(2)
+        let square = |from: f64| {
+            let t = (x - n(from)) / n(b - a);
+            two * t * t
+        };
+        if at <= a && a < b {
+            zero
+        } else if at >= b {
+            one
+        } else if at < (a + b) / 2.0 {
+            square(a)
         } else {
-            1.0 - 2.0 * ((x - b) / (b - a)).powi(2)
+            one - square(b)
         }
     };
     let z = |a: f64, b: f64| {
-        if x <= a {
-            1.0
-        } else if x >= b {
-            0.0
-        } else if x < (a + b) / 2.0 {
-            1.0 - 2.0 * ((x - a) / (b - a)).powi(2)
+        if at <= a {
+            one
+        } else if at >= b {
+            zero
         } else {
-            2.0 * ((x - b) / (b - a)).powi(2)
+            one - s(a, b)
         }
     };
     let trapezoid = |a: f64, b: f64, c: f64, d: f64| {
-        if b <= x && x <= c {
-            1.0
-        } else if a < x && x < b {
-            (x - a) / (b - a)
-        } else if c < x && x < d {
-            (d - x) / (d - c)
+        if b <= at && at <= c {
+            one
+        } else if a < at && at < b {
+            (x - n(a)) / n(b - a)
+        } else if c < at && at < d {
+            (n(d) - x) / n(d - c)
         } else {
-            0.0
+            zero
         }
     };
     match *shape {
@@ -109,19 +129,16 @@ pub(super) fn membership(shape: &MembershipFunction, x: f64) -> f64 {
         MembershipFunction::LeftShoulder { top, foot } => trapezoid(-1e9, -1e9, top, foot),
         MembershipFunction::RightShoulder { foot, top } => trapezoid(foot, top, 1e9, 1e9),
         MembershipFunction::Rectangle { left, right } => trapezoid(left, left, right, right),
-        MembershipFunction::Singleton { at } => f64::from(x == at),
+        MembershipFunction::Singleton { at: place } => n(f64::from(at == place)),
         MembershipFunction::Piecewise { ref points } => {
-            let at = points
-                .iter()
-                .filter(|point| point.0 == x)
-                .map(|point| point.1);
-            let before = points.iter().rev().find(|point| point.0 < x);
-            let after = points.iter().find(|point| point.0 > x);
-            match (at.reduce(f64::max), before, after) {
-                (Some(y), _, _) => y,
-                (_, Some(a), Some(b)) => a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0),
-                (_, Some(only), None) | (_, None, Some(only)) => only.1,
-                (_, None, None) => 0.0,
+            let here = points.iter().filter(|point| point.0 == at);
+            let before = points.iter().rev().find(|point| point.0 < at);
+            let after = points.iter().find(|point| point.0 > at);
+            match (here.map(|point| point.1).reduce(f64::max), before, after) {
+                (Some(y), _, _) => n(y),
+                (_, Some(a), Some(b)) => n(a.1) + n((b.1 - a.1) / (b.0 - a.0)) * (x - n(a.0)),
+                (_, Some(only), None) | (_, None, Some(only)) => n(only.1),
+                (_, None, None) => zero,
             }
         }
         MembershipFunction::Gaussian { mean, sd } => gaussian(mean, sd),
@@ -131,12 +148,12 @@ pub(super) fn membership(shape: &MembershipFunction, x: f64) -> f64 {
             right_mean,
             right_sd,
         } => {
-            let mut product = 1.0;
-            if x < left_mean {
-                product *= gaussian(left_mean, left_sd);
+            let mut product = one;
+            if at < left_mean {
+                product = product * gaussian(left_mean, left_sd);
             }
-            if x > right_mean {
-                product *= gaussian(right_mean, right_sd);
+            if at > right_mean {
+                product = product * gaussian(right_mean, right_sd);
             }
             product
         }
@@ -144,7 +161,7 @@ pub(super) fn membership(shape: &MembershipFunction, x: f64) -> f64 {
             center,
             width,
             slope,
-        } => 1.0 / (1.0 + ((x - center) / width).abs().powf(2.0 * slope)),
+        } => one / (one + ((x - n(center)) / n(width)).abs().powf(2.0 * slope)),
         MembershipFunction::Sigmoid { inflection, slope } => sigmoid(inflection, slope),
         MembershipFunction::SigmoidDifference {
             left_inflection,
@@ -166,43 +183,39 @@ pub(super) fn membership(shape: &MembershipFunction, x: f64) -> f64 {
             right_top,
             right,
         } => s(left, left_top).min(z(right_top, right)),
-        MembershipFunction::Cosine { center, width } if (x - center).abs() > width / 2.0 => 0.0,
+        MembershipFunction::Cosine { center, width } if (at - center).abs() > width / 2.0 => zero,
         MembershipFunction::Cosine { center, width } => {
-            (1.0 + (2.0 / width * PI * (x - center)).cos()) / 2.0
+            (one + (n(2.0 / width * PI) * (x - n(center))).cos()) / two
         }
-        MembershipFunction::Spike { center, width } => (-(10.0 / width * (x - center)).abs()).exp(),
-        MembershipFunction::Concave { inflection, end } if inflection <= end && x < end => {
-            (end - inflection) / (2.0 * end - inflection - x)
+        MembershipFunction::Spike { center, width } => {
+            (-(n(10.0 / width) * (x - n(center))).abs()).exp()
         }
-        MembershipFunction::Concave { inflection, end } if inflection > end && x > end => {
-            (inflection - end) / (inflection - 2.0 * end + x)
+        MembershipFunction::Concave { inflection, end }
+            if inflection <= end && at < end || inflection > end && at > end =>
+        {
+            n(end - inflection) / (n(2.0 * end - inflection) - x)
         }
-        MembershipFunction::Concave { .. } => 1.0,
+        MembershipFunction::Concave { .. } => one,
         MembershipFunction::Arc { start, end } => {
             // The height of a circle of radius |end - start| around `end`, divided by the radius.
-            let radius = (end - start).abs();
-            let passed = (x - end) * (end - start) >= 0.0;
-            let away = if passed {
-                0.0
-            } else {
-                (x - end).abs().min(radius)
-            };
-            (radius.powi(2) - away.powi(2)).sqrt() / radius
+            let away = (x - n(end)) / n(start - end);
+            let away = away.max(zero).min(one);
+            (one - away * away).sqrt()
         }
         MembershipFunction::SemiEllipse { left, right } => {
             let (centre, radius) = ((left + right) / 2.0, (right - left) / 2.0);
-            let away = (x - centre).abs().min(radius);
-            (radius.powi(2) - away.powi(2)).sqrt() / radius
+            let away = ((x - n(centre)) / n(radius)).abs().min(one);
+            (one - away * away).sqrt()
         }
         MembershipFunction::Function { ref formula } => {
-            let degree = formula.evaluate(|_| x);
-            if degree.is_nan() {
+            let degree = formula.evaluate(|_| at);
+            n(if degree.is_nan() {
                 0.0
             } else {
                 degree.clamp(0.0, 1.0)
-            }
+            })
         }
-        MembershipFunction::Constant { value } => value,
-        MembershipFunction::Linear { .. } => 0.0,
+        MembershipFunction::Constant { value } => n(value),
+        MembershipFunction::Linear { .. } => zero,
     }
 }

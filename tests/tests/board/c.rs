@@ -46,12 +46,22 @@ fn library() -> &'static Path {
     })
 }
 
-/// Compiles a C program with the library and an exported profile, and returns it and its folder. The compiler is `cc`, with
-/// which Rust links too.
+/// Compiles a C program with the library and an exported profile, and returns it and its folder.
 pub(crate) fn program(
     source: &str,
     name: &str,
     (profile, plan): (&str, &str),
+) -> (Command, Folder) {
+    let plan = format!("flagred_plan_{plan}");
+    compiled(source, name, profile, &[("PLAN", &plan)])
+}
+
+/// The same with the export of any file. The compiler is `cc`, with which Rust links too.
+pub(crate) fn compiled(
+    source: &str,
+    name: &str,
+    exported: &str,
+    defined: &[(&str, &str)],
 ) -> (Command, Folder) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let folder = Folder::new();
@@ -67,13 +77,15 @@ pub(crate) fn program(
     cc.arg("-I").arg(root.join("bindings/c/include"));
     let header = folder.at("profile.h");
     let status = flagred()
-        .args(["export", "--c", profile, "--output"])
+        .args(["export", "--c", exported, "--output"])
         .arg(&header)
         .status();
-    assert!(status.unwrap().success(), "{profile}");
+    assert!(status.unwrap().success(), "{exported}");
     cc.arg("-I").arg(folder.path());
     cc.arg(format!("-DPROFILE=\"{header}\""));
-    cc.arg(format!("-DPLAN=flagred_plan_{plan}"));
+    for (macro_name, value) in defined {
+        cc.arg(format!("-D{macro_name}={value}"));
+    }
     let binary = folder.at(name);
     cc.arg(root.join(source)).arg("-o").arg(&binary);
     cc.arg(library().join("libflagred.a"));
@@ -248,17 +260,34 @@ fn a_damaged_table_is_refused_or_evaluates_in_c() {
     }
 }
 
-/// The program of examples/09-on-board.md.
+/// The programs of examples/09-on-board.md and docs/export.md.
 #[test]
-fn the_page_in_c_runs() {
-    let page = include_str!("../../../examples/09-on-board.md");
-    let (_, rest) = page.split_once("```c\n").unwrap();
-    let (code, _) = rest.split_once("```").unwrap();
-    let pages = Folder::new();
-    let (mut program, _folder) = program(&pages.file("page.c", code), "page", FLAGRED);
-    let output = program.output().unwrap();
-    assert!(output.status.success());
-    assert_eq!(String::from_utf8(output.stdout).unwrap(), "FAIL\n");
+fn the_pages_in_c_run() {
+    let tipper = concat!(env!("CARGO_MANIFEST_DIR"), "/../rules/tipper.yaml");
+    for (page, header, exported, prints) in [
+        (
+            include_str!("../../../examples/09-on-board.md"),
+            "profile.h",
+            "flagred",
+            "FAIL\n",
+        ),
+        (
+            include_str!("../../../docs/export.md"),
+            "tipper.h",
+            tipper,
+            "22.98\n",
+        ),
+    ] {
+        let (_, rest) = page.split_once("```c\n").unwrap();
+        let (code, _) = rest.split_once("```").unwrap();
+        let code = code.replace(&format!("\"{header}\""), "PROFILE");
+        let pages = Folder::new();
+        let source = pages.file("page.c", code);
+        let (mut program, _folder) = compiled(&source, "page", exported, &[]);
+        let output = program.output().unwrap();
+        assert!(output.status.success());
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), prints);
+    }
 }
 
 #[test]

@@ -7,12 +7,18 @@
 
 use core::{any::Any, mem::MaybeUninit, ptr};
 
-use flagred::{estimator::Estimator, profile::Profile, shipped};
+use flagred::{
+    board::table::{self, Sizes},
+    estimator::Estimator,
+    profile::Profile,
+    shipped,
+};
 
 use super::*;
 use crate::{
     CMonitor, CSample, flagred_evaluate, flagred_finish, flagred_memory_size, flagred_push,
     flagred_start,
+    rules::{FORMAT, Rules, conjunction, disjunction},
 };
 
 /// A linear congruence; its high bits are random enough.
@@ -115,27 +121,31 @@ impl Arrays {
 macro_rules! copy {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
         fn copy(plan: &board::Plan<'_>) -> Copied {
-            let table = plan.table;
+            let table = plan.rules.table;
             let mut arrays = Arrays::default();
             let filled = plan.filled.unwrap_or(FilledKnots { coordinates: &[], starts: &[], values: &[], distances: &[] });
             let [conjunctions, actions_a_cell, first_action, sums] = table.conjunctions.code();
             let channels: Vec<CChannel> = plan.channels.iter().map(channel).collect();
             let sources: Vec<CSource> = plan.inputs.iter().map(source).collect();
             let mut plan = Box::new(Plan {
-                format: FORMAT,
-                and: (0..7).find(|code| conjunction(*code).ok() == Some(table.and)).unwrap(),
-                or: (0..7).find(|code| disjunction(*code).ok() == Some(table.or)).unwrap(),
-                conjunctions,
-                actions_a_cell,
-                first_action,
-                sums,
-                sizes: table.sizes,
+                rules: Rules {
+                    format: FORMAT,
+                    and: (0..7).find(|code| conjunction(*code).ok() == Some(table.and)).unwrap(),
+                    or: (0..7).find(|code| disjunction(*code).ok() == Some(table.or)).unwrap(),
+                    conjunctions,
+                    actions_a_cell,
+                    first_action,
+                    sums,
+                    sizes: table.sizes,
+                    least_strength: table.least_strength,
+                    $($array: copy!(@keep $item arrays, table.$array),)*
+                    stages: arrays.keep(plan.rules.stages),
+                    places: arrays.keep(plan.rules.places),
+                },
                 output: plan.output,
                 signals: plan.signals,
                 coverage_below: plan.coverage_below,
-                least_strength: table.least_strength,
                 settings: settings(&plan.settings),
-                $($array: copy!(@keep $item arrays, table.$array),)*
                 order: arrays.keep(plan.order),
                 channels: arrays.keep(&channels),
                 sources: arrays.keep(&sources),
@@ -144,11 +154,11 @@ macro_rules! copy {
                 values: arrays.keep(filled.values),
                 distances: arrays.keep(filled.distances),
                 propositions: arrays.keep(plan.propositions),
-                stages: arrays.keep(plan.stages),
-                places: arrays.keep(plan.places),
             });
             let counts = vec![
-                $(&raw mut plan.$array.count,)*
+                $(&raw mut plan.rules.$array.count,)*
+                &raw mut plan.rules.stages.count,
+                &raw mut plan.rules.places.count,
                 &raw mut plan.order.count,
                 &raw mut plan.channels.count,
                 &raw mut plan.sources.count,
@@ -157,15 +167,13 @@ macro_rules! copy {
                 &raw mut plan.values.count,
                 &raw mut plan.distances.count,
                 &raw mut plan.propositions.count,
-                &raw mut plan.stages.count,
-                &raw mut plan.places.count,
             ];
             let Arrays { kept, mut pieces } = arrays;
             // Often enough: the numbers at the front.
             for _ in 0..pieces.len() / 4 {
                 let words = 6 * size_of::<u32>();
-                pieces.push(Piece((&raw mut plan.and).cast(), words));
-                pieces.push(Piece((&raw mut plan.sizes).cast(), size_of::<Sizes>()));
+                pieces.push(Piece((&raw mut plan.rules.and).cast(), words));
+                pieces.push(Piece((&raw mut plan.rules.sizes).cast(), size_of::<Sizes>()));
                 pieces.push(Piece((&raw mut plan.output).cast(), 8));
                 pieces.push(Piece((&raw mut plan.coverage_below).cast(), 8));
                 pieces.push(Piece((&raw mut plan.settings).cast(), size_of::<CSettings>()));
@@ -346,7 +354,7 @@ fn a_damaged_plan_is_refused_or_can_be_pushed() {
     let mut kinds = [0; 3];
     for estimator in estimators() {
         let plan = estimator.plan().unwrap();
-        kinds[copy(&plan).plan.conjunctions as usize] += 1;
+        kinds[copy(&plan).plan.rules.conjunctions as usize] += 1;
         for round in 0..ROUNDS {
             let copied = copy(&plan);
             if round > 0 {
@@ -406,7 +414,7 @@ fn sizes_do_not_wrap() {
         assert_eq!(status, Status::MemorySize as i32);
     }
     for count in [usize::MAX, usize::MAX / 4] {
-        copied.plan.lines.count = count;
+        copied.plan.rules.lines.count = count;
         // SAFETY: an array that cannot be is refused before it is read.
         let bytes = unsafe { flagred_memory_size(&*copied.plan, MOTORS) };
         assert_eq!(bytes, 0);

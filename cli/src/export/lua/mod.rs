@@ -35,7 +35,7 @@ impl Refused {
 
 /// The file.
 pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Refused> {
-    if !plan.stages.is_empty() {
+    if !plan.rules.stages.is_empty() {
         return Err(Refused::new(
             "a script on the autopilot cannot evaluate outputs that read other outputs".into(),
             "write rules whose conditions name inputs only; `export --rust` and `export --c` carry chains",
@@ -83,7 +83,7 @@ fn constants(plan: &Plan<'_>) -> Vec<String> {
     let mut lines = Vec::new();
     let mut set = |name: &str, value: String| lines.push(format!("local {name} = {value}"));
     set("MIN_SAMPLES", sampling.min_samples.to_string());
-    set("LEAST_STRENGTH", number(plan.table.least_strength));
+    set("LEAST_STRENGTH", number(plan.rules.table.least_strength));
     set("WARM_UP_US", microseconds(sampling.warm_up_s));
     set("LONGEST_GAP_US", microseconds(sampling.longest_gap_s));
     set("TAKE_OFF_US", microseconds(sampling.take_off_s));

@@ -25,11 +25,13 @@ pub(super) fn fill(
     let model = estimator.model();
     let output_name = &estimator.profile().output;
     let index = plan.output as usize;
-    let (Some(output), Some(variable)) = (plan.table.outputs.get(index), model.outputs.get(index))
-    else {
+    let (Some(output), Some(variable)) = (
+        plan.rules.table.outputs.get(index),
+        model.outputs.get(index),
+    ) else {
         return Ok(());
     };
-    if !plan.table.blocks.is_empty() {
+    if !plan.rules.table.blocks.is_empty() {
         return Err(Refused::new(
             "the rule set has activation methods or blocks with different operators, which the script does not have".into(),
             "the script has rules that all fire, with one AND and one OR",
@@ -41,7 +43,7 @@ pub(super) fn fill(
         used: Vec::new(),
         functions: Vec::new(),
     };
-    let actions = plan.table.actions.iter();
+    let actions = plan.rules.table.actions.iter();
     let actions: Vec<_> = actions
         .filter(|action| action.output == plan.output && action.rule != u32::MAX)
         .collect();
@@ -132,7 +134,7 @@ pub(super) fn fill(
 
 /// The inputs in the order of the rules, within their ranges.
 fn point(plan: &Plan<'_>) -> Vec<String> {
-    let inputs = plan.table.inputs.iter().zip(plan.order).zip(1..);
+    let inputs = plan.rules.table.inputs.iter().zip(plan.order).zip(1..);
     let line = |((input, from), i): ((&flagred::board::table::Input, &u32), u32)| {
         format!(
             "  point[{i}] = max({}, min({}, value[{}]))",
@@ -184,7 +186,7 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
     let mut lines = vec![format!("local OUTPUT_TERMS = {strengths}")];
     match output.form {
         ClosedForm::MOMENTS => {
-            let moments = plan.table.moments.get(range).unwrap_or_default();
+            let moments = plan.rules.table.moments.get(range).unwrap_or_default();
             let list = |of: fn(&flagred::board::table::Moment) -> f64| {
                 moments
                     .iter()
@@ -201,7 +203,7 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
             lines.push(format!("local MOMENTS = {{{}}}", list(moment)));
         }
         ClosedForm::PARTITION => {
-            let pairs = plan.table.pairs.get(range).unwrap_or_default();
+            let pairs = plan.rules.table.pairs.get(range).unwrap_or_default();
             let sides = pairs.iter().flat_map(|pair| [(pair, 0), (pair, 1)]);
             lines.push("-- The output's terms: area = a h + b h^2, moment about the middle of the range = c h + d h^2 + e h^3 at".into());
             lines.push(

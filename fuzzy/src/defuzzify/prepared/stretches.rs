@@ -3,11 +3,11 @@
 use alloc::{vec, vec::Vec};
 
 use super::{MOST_KNOTS, Measure};
-use crate::defuzzify::maxima::turns;
+use crate::defuzzify::maxima::monotone;
 use crate::defuzzify::polyline::limits;
 use crate::model::Term;
 use crate::table::numeric::gauss;
-use crate::table::{Flank, Kind, Knot};
+use crate::table::{Flank, Knot};
 
 /// A part of a term that only rises, only falls or is level.
 pub(super) struct Stretch {
@@ -52,30 +52,7 @@ pub(super) const LEVEL: f64 = 4e-16;
 
 pub(super) fn curved(term: &Term, low: f64, high: f64) -> Vec<Stretch> {
     let f = |x: f64| term.membership(x);
-    let mut cuts = term.membership_function.cuts();
-    cuts.retain(|x| low < *x && *x < high);
-    cuts.extend([low, high]);
-    cuts.sort_by(f64::total_cmp);
-    cuts.dedup();
-    // These may turn anywhere.
-    if let Kind::SIGMOID_DIFFERENCE | Kind::SIGMOID_PRODUCT | Kind::GAUSSIAN2 =
-        term.membership_function.kind().0
-    {
-        let mut turning = Vec::new();
-        for (&from, &to) in cuts.iter().zip(cuts.iter().skip(1)) {
-            let width = to - from;
-            let mut found = |part: f64| turning.push(from + width * part);
-            turns(&|part| f(from + width * part), 0.0, &mut found);
-            turns(
-                &|part| -f(from + width * part),
-                f64::NEG_INFINITY,
-                &mut found,
-            );
-        }
-        cuts.extend(turning);
-        cuts.sort_by(f64::total_cmp);
-        cuts.dedup();
-    }
+    let cuts = monotone(&term.membership_function, low, high);
     // Just inside, past a step at the cut.
     let inside = |x: f64, next: f64| {
         let (here, there) = (f(x), f(next));

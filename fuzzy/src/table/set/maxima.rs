@@ -7,7 +7,16 @@ use crate::table::operators::{larger, smaller};
 impl Prepared<'_> {
     /// The smallest, the mean or the largest value at which the maximum is highest.
     pub(super) fn maxima(&self, strengths: &[f64]) -> Option<f64> {
-        // Where its term has its highest degree, cut or scaled.
+        // The highest degree of the term itself that counts. A strength that is its highest degree but for rounding cuts
+        // nothing off.
+        let level = |term: &SetTerm, strength: f64| {
+            if self.scales || strength >= term.highest * (1.0 - TIE) {
+                term.highest
+            } else {
+                strength
+            }
+        };
+        // The same, cut or scaled.
         let top = |term: &SetTerm, strength: f64| {
             if self.scales {
                 strength * term.highest
@@ -30,11 +39,7 @@ impl Prepared<'_> {
                 if top(term, strength) < highest * (1.0 - TIE) {
                     continue;
                 }
-                let level = if self.scales {
-                    term.highest
-                } else {
-                    smaller(strength, term.highest)
-                };
+                let level = level(term, strength);
                 if larger(strand.left, strand.right) >= level * (1.0 - TIE) {
                     spans.add(section, &self.flanks[strand.flank as usize], level);
                 }

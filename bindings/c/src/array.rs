@@ -1,0 +1,34 @@
+//! Arrays of the caller.
+
+use crate::status::Status;
+
+/// An array of C and its length.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub(crate) struct Array<T> {
+    pub(crate) items: *const T,
+    pub(crate) count: usize,
+}
+
+impl<T> Array<T> {
+    /// The array as a slice.
+    ///
+    /// # Safety
+    /// It is null or has `count` items, and does not change while the slice is used.
+    #[allow(unsafe_code, reason = "foreign memory")]
+    pub(crate) unsafe fn read<'a>(&self) -> Result<&'a [T], Status> {
+        if self.count == 0 {
+            return Ok(&[]);
+        }
+        if self.items.is_null() || !self.items.is_aligned() {
+            return Err(Status::NullPointer);
+        }
+        // No object is larger: the count is damaged.
+        let bytes = self.count.checked_mul(size_of::<T>());
+        if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) {
+            return Err(Status::DamagedPlan);
+        }
+        // SAFETY: neither null nor unaligned, of a possible size, and the caller's promise.
+        Ok(unsafe { core::slice::from_raw_parts(self.items, self.count) })
+    }
+}

@@ -1,0 +1,146 @@
+//! Evaluating a rule set that has no profile.
+
+use flagred::board::{
+    self, Evaluator, RuleMemory,
+    table::{self, Partial, State, Strongest},
+};
+
+use crate::{array::Array, memory::Block, rules::Rules, status::Status};
+
+/// `struct flagred_evaluator`.
+#[derive(Debug)]
+pub(crate) struct CEvaluator(Evaluator<'static>);
+
+/// `struct flagred_outcome`.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub(crate) struct Outcome {
+    value: f64,
+    coverage: f64,
+    state: i32,
+    dominant_rule: i32,
+    clamped: i32,
+}
+
+impl Outcome {
+    fn of(outcome: &table::Outcome) -> Outcome {
+        let dominant = outcome.dominant.map(|rule| i32::try_from(rule).ok());
+        Outcome {
+            value: outcome.value().unwrap_or(f64::NAN),
+            coverage: outcome.coverage,
+            state: match outcome.state {
+                State::Defined(_) => 0,
+                // `Previous` is of sequences of evaluations, which this is not.
+                State::Default(_) | State::Previous(_) => 1,
+                State::NoRuleFired => 2,
+                State::InputNotFinite => 3,
+            },
+            dominant_rule: dominant.flatten().unwrap_or(-1),
+            clamped: outcome.clamped.into(),
+        }
+    }
+}
+
+/// The size of an evaluator's memory in bytes; 0 for invalid rules.
+///
+/// # Safety
+/// `rules` is null or points to rules whose arrays have the lengths they say.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub(crate) unsafe extern "C" fn flagred_rules_memory_size(rules: *const Rules) -> usize {
+    // SAFETY: the caller's promise; the arrays are used in this call only.
+    let rules = unsafe { rules.as_ref().map(|rules| rules.read()) };
+    let rules = rules.and_then(Result::ok);
+    rules.map_or(0, |rules| rules.bytes())
+}
+
+/// Makes an evaluator of a rule set.
+///
+/// # Safety
+/// `rules` is null or points to rules whose arrays have the lengths they say; `memory` is null or has `size` bytes that nothing
+/// else uses; `evaluator` is null or writable. The rules and the memory outlive the evaluator.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub(crate) unsafe extern "C" fn flagred_rules_start(
+    rules: *const Rules,
+    memory: *mut u8,
+    size: usize,
+    evaluator: *mut *mut CEvaluator,
+) -> i32 {
+    // SAFETY: the caller's promises, passed on.
+    let started = unsafe { start(rules, memory, size) };
+    if evaluator.is_null() {
+        return Status::NullPointer as i32;
+    }
+    let (status, started) = match started {
+        Ok(started) => (Status::Ok, started),
+        Err(status) => (status, core::ptr::null_mut()),
+    };
+    // SAFETY: not null, and writable by the caller's promise.
+    unsafe { evaluator.write(started) };
+    status as i32
+}
+
+/// # Safety
+/// As [`flagred_rules_start`].
+#[allow(unsafe_code, reason = "foreign memory")]
+unsafe fn start(
+    rules: *const Rules,
+    memory: *mut u8,
+    size: usize,
+) -> Result<*mut CEvaluator, Status> {
+    // SAFETY: the caller's promises: the rules outlive the evaluator, and nothing else uses the memory.
+    let (rules, mut block) = unsafe {
+        let rules = rules.as_ref().ok_or(Status::NullPointer)?;
+        (rules.read()?, Block::new(memory, size)?)
+    };
+    if size < rules.bytes() {
+        return Err(Status::MemorySize);
+    }
+    rules.check().map_err(|_| Status::DamagedPlan)?;
+    let rules: &'static board::Rules<'static> = block.place(rules)?;
+    let outputs = rules.table.outputs.len();
+    let memory = RuleMemory {
+        numbers: block.fill(rules.numbers(), 0.0)?,
+        partials: block.fill(rules.partials(), Partial::NONE)?,
+        strongest: block.fill(outputs, Strongest::NONE)?,
+        outcomes: block.fill(outputs, table::Outcome::UNDEFINED)?,
+        own: block.fill(outputs, table::Outcome::UNDEFINED)?,
+    };
+    let evaluator = Evaluator::new(rules, memory).ok_or(Status::DamagedPlan)?;
+    block.place(CEvaluator(evaluator)).map(core::ptr::from_mut)
+}
+
+/// Evaluates one value for each input into one outcome for each output.
+///
+/// # Safety
+/// `evaluator` is null or from [`flagred_rules_start`]; `inputs` is null or has `input_count` items; `outcomes` is null or has
+/// room for `output_count` items.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "foreign memory")]
+pub(crate) unsafe extern "C" fn flagred_rules_evaluate(
+    evaluator: *mut CEvaluator,
+    inputs: *const f64,
+    input_count: usize,
+    outcomes: *mut Outcome,
+    output_count: usize,
+) -> i32 {
+    let inputs = Array {
+        items: inputs,
+        count: input_count,
+    };
+    // SAFETY: the caller's promises; the inputs are used in this call only.
+    let (evaluator, inputs) = unsafe { (evaluator.as_mut(), inputs.read()) };
+    let (Some(evaluator), Ok(inputs), false) = (evaluator, inputs, outcomes.is_null()) else {
+        return Status::NullPointer as i32;
+    };
+    let evaluated = evaluator.0.evaluate(inputs);
+    let Some(evaluated) = evaluated.filter(|all| all.len() == output_count) else {
+        return Status::WrongCount as i32;
+    };
+    for (i, outcome) in evaluated.iter().enumerate() {
+        // SAFETY: there is room for as many by the caller's promise.
+        unsafe { outcomes.add(i).write(Outcome::of(outcome)) };
+    }
+    Status::Ok as i32
+}

@@ -1,0 +1,117 @@
+//! The exported rule set in C.
+
+use flagred::board::{
+    self,
+    table::{
+        self, Action, Axis, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
+        Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node,
+        Output, Pair, Point, Program, Section, SetTerm, Sizes, Stage, Step, Strand, Table,
+    },
+};
+
+use crate::{array::Array, status::Status};
+
+/// The version of the data that this library reads.
+pub(crate) const FORMAT: u32 = 6;
+
+macro_rules! define {
+    ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {
+        /// `struct flagred_rules`.
+        #[derive(Debug)]
+        #[repr(C)]
+        pub(crate) struct Rules {
+            pub(crate) format: u32,
+            pub(crate) and: u32,
+            pub(crate) or: u32,
+            pub(crate) conjunctions: u32,
+            pub(crate) actions_a_cell: u32,
+            pub(crate) first_action: u32,
+            pub(crate) sums: u32,
+            pub(crate) sizes: Sizes,
+            pub(crate) least_strength: f64,
+            $(pub(crate) $array: Array<define!(@item $item)>,)*
+            pub(crate) stages: Array<Stage>,
+            pub(crate) places: Array<u32>,
+        }
+
+        impl Rules {
+            /// # Safety
+            /// The arrays have the lengths they say, and do not change.
+            #[allow(unsafe_code, reason = "foreign memory")]
+            pub(crate) unsafe fn read<'a>(&self) -> Result<board::Rules<'a>, Status> {
+                if self.format != FORMAT {
+                    return Err(Status::OtherFormat);
+                }
+                // SAFETY: the caller's promise, for all arrays.
+                unsafe {
+                    Ok(board::Rules {
+                        table: Table {
+                            and: conjunction(self.and)?,
+                            or: disjunction(self.or)?,
+                            conjunctions: self.conjunctions()?,
+                            least_strength: self.least_strength,
+                            sizes: self.sizes,
+                            $($array: define!(@read $item self.$array),)*
+                        },
+                        stages: self.stages.read()?,
+                        places: self.places.read()?,
+                    })
+                }
+            }
+        }
+    };
+    // An enumeration, whose codes are verified before they become a reference. Of all other items every bit pattern is valid.
+    (@item Hedge) => { u32 };
+    (@item $item:ident) => { $item };
+    (@read Hedge $array:expr) => { hedges($array.read()?)? };
+    (@read $item:ident $array:expr) => { $array.read()? };
+}
+table::arrays!(define!);
+
+impl Rules {
+    fn conjunctions(&self) -> Result<Conjunctions, Status> {
+        let code = [
+            self.conjunctions,
+            self.actions_a_cell,
+            self.first_action,
+            self.sums,
+        ];
+        Conjunctions::from_code(code).ok_or(Status::DamagedPlan)
+    }
+}
+
+/// Hedges from their codes, where all codes are valid.
+#[allow(unsafe_code, reason = "foreign memory")]
+fn hedges(codes: &[u32]) -> Result<&[Hedge], Status> {
+    if codes.iter().any(|code| *code as usize >= Hedge::ALL.len()) {
+        return Err(Status::DamagedPlan);
+    }
+    // SAFETY: a hedge is a `u32` below the number of hedges, and all codes are.
+    Ok(unsafe { core::slice::from_raw_parts(codes.as_ptr().cast(), codes.len()) })
+}
+
+pub(crate) fn conjunction(code: u32) -> Result<Conjunction, Status> {
+    Ok(match code {
+        0 => Conjunction::Minimum,
+        1 => Conjunction::Product,
+        2 => Conjunction::BoundedDifference,
+        3 => Conjunction::Drastic,
+        4 => Conjunction::Einstein,
+        5 => Conjunction::Hamacher,
+        6 => Conjunction::NilpotentMinimum,
+        _ => return Err(Status::DamagedPlan),
+    })
+}
+
+pub(crate) fn disjunction(code: u32) -> Result<Disjunction, Status> {
+    Ok(match code {
+        0 => Disjunction::Maximum,
+        1 => Disjunction::ProbabilisticSum,
+        2 => Disjunction::BoundedSum,
+        3 => Disjunction::Drastic,
+        4 => Disjunction::Einstein,
+        5 => Disjunction::Hamacher,
+        6 => Disjunction::NilpotentMaximum,
+        _ => return Err(Status::DamagedPlan),
+    })
+}

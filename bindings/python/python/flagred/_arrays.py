@@ -1,0 +1,39 @@
+"""Values as NumPy arrays of float64 in which NaN is unknown."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._errors import DataError
+
+
+def array(value: Any) -> NDArray[np.float64]:
+    """A value, whatever it is, as an array of float64; masked, null and None become NaN."""
+    if isinstance(value, np.ma.MaskedArray):
+        filled: NDArray[np.float64] = np.ma.filled(value.astype(np.float64), np.nan)
+        return filled
+    if type(value).__module__.startswith("pandas.") and hasattr(value, "to_numpy"):
+        # pandas has types of its own, with null as a value of them.
+        value = value.to_numpy(dtype=np.float64, na_value=np.nan)
+    found = np.asarray(value)
+    if found.dtype.kind not in "biufO":
+        raise DataError(f"an array of {found.dtype} holds no numbers\n  help: convert it to numbers first")
+    try:
+        return found.astype(np.float64, copy=False)
+    except (TypeError, ValueError) as error:
+        raise DataError(f"an array of objects holds something that is no number: {error}") from None
+
+
+def alike(values: list[Any]) -> list[NDArray[np.float64]]:
+    """Values as arrays of one shape, in one piece each."""
+    arrays = [array(value) for value in values]
+    try:
+        arrays = list(np.broadcast_arrays(*arrays))
+    except ValueError:
+        shapes = ", ".join(str(one.shape) for one in arrays)
+        raise DataError(f"arrays of the shapes {shapes} do not go together") from None
+    # Not `ascontiguousarray`: it would give a number an axis.
+    return [np.asarray(one, dtype=np.float64, order="C") for one in arrays]

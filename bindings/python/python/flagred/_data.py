@@ -1,0 +1,217 @@
+"""What logs and assessments tell, as plain data."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple
+
+
+class Range(NamedTuple):
+    """A range of commands, and where it came from."""
+
+    low: float
+    high: float
+    unit: str
+    """``us``, ``1`` (a fraction) or ``raw`` (counts of a bus)."""
+    source: str
+
+
+class Vehicle(NamedTuple):
+    """The vehicle, as far as the log describes it."""
+
+    kind: str
+    """``multirotor``, ``plane``, ... or ``unknown vehicle``."""
+    source: str
+    frame: str | None
+    motors: int | None
+    """The number of motors, where the frame tells it."""
+    firmware: str | None
+    id: str | None
+    """What tells this vehicle from others of its kind."""
+
+
+class Motor(NamedTuple):
+    """A motor, and the output that drives it."""
+
+    number: int
+    """Its number for the autopilot, from 1."""
+    output: str
+    """The output as the log names it."""
+    source: str
+
+
+class Geometry(NamedTuple):
+    """How much each motor rolls, pitches and yaws the vehicle."""
+
+    factors: tuple[tuple[float, float, float], ...]
+    """Roll, pitch and yaw of each motor; the largest of each axis is 1."""
+    frame: str | None
+    basis: str
+    """``declared``, ``inferred`` or ``assumed``."""
+    source: str
+    doubt: str | None
+    """Why the commands contradict it."""
+
+
+class Parameter(NamedTuple):
+    """A parameter of the autopilot."""
+
+    name: str
+    value: float | None
+    source: str
+
+
+class Event(NamedTuple):
+    """A message, or a flight mode from when it was entered."""
+
+    t_s: float
+    """The time in seconds on the log's clock."""
+    what: str
+
+
+class Interval(NamedTuple):
+    """A time interval on the log's clock, in seconds."""
+
+    start_s: float
+    end_s: float
+    ends_with_log: bool
+    """Whether it was still open at the end of the log."""
+
+
+class Intervals(NamedTuple):
+    """Intervals in order of time, and the rule by which they were found."""
+
+    spans: tuple[Interval, ...]
+    rule: str
+    duration_s: float
+    """The sum of their lengths."""
+
+
+class LeftOut(NamedTuple):
+    """What a log has beyond the bounds of what is kept of it: counted only."""
+
+    texts: int
+    modes: int
+    parameters: int
+    changes: int
+    messages: int
+
+
+class Report(NamedTuple):
+    """Amount of data read, and damage."""
+
+    bytes: int
+    messages: int
+    skipped_bytes: int
+    """Bytes that belong to no message."""
+    bad_messages: int
+    """Messages that were rejected as damaged."""
+    truncated: bool
+    """Whether the log ends inside a message."""
+    reason: str | None
+    """The first reason for which something was skipped."""
+    left_out: LeftOut
+
+    @property
+    def is_clean(self) -> bool:
+        """Whether nothing was skipped, rejected or cut off."""
+        return self.skipped_bytes == 0 and self.bad_messages == 0 and not self.truncated
+
+
+class Gap(NamedTuple):
+    """Something that a log lacks, and what the pilot can do."""
+
+    reason: str
+    help: str | None
+
+
+class MotorFinding(NamedTuple):
+    """The motor that was at its limit, and at which."""
+
+    number: int
+    """Its number, from 1."""
+    side: str
+    """The limit it was nearest to: ``lower`` or ``upper``."""
+    margin_mean: float | None
+    margin_min: float | None
+
+
+class Cause(NamedTuple):
+    """What raised the risk: an input in a term, and the rule that says it."""
+
+    input: str
+    term: str
+    value: float | None
+    rule: int
+    """The index of the rule in the rule set."""
+
+
+class Finding(NamedTuple):
+    """A time at a level: when, what, and its cause. ``str()`` says it in words."""
+
+    severity: Literal["GOOD", "INFO", "WARN", "FAIL"]
+    from_s: float
+    raised_s: float
+    """When the level was raised."""
+    failed_s: float | None
+    """When it became FAIL; None if it did not."""
+    to_s: float
+    measure: str
+    """``risk``, ``elevated_risk``, or what a notice is about."""
+    threshold_pct: float
+    value_pct: float
+    """The worst value of the measure in that time."""
+    motor: MotorFinding | None
+    cause: Cause | None
+    risk: str | None
+    """The output that is the risk, where it is not the first of the profile."""
+    output: str | None
+    """The output of the motor, as the log names it."""
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class Peak(NamedTuple):
+    """The largest value of a quantity, and when it was first reached."""
+
+    t_s: float
+    value_pct: float
+
+
+class Summary(NamedTuple):
+    """A flight in a few numbers. The risks are those of judged time."""
+
+    in_air_s: float
+    assessed_s: float
+    """The time in the air with a known risk."""
+    filled_s: float
+    """The time in the air with a risk interpolated where no rule applies."""
+    risk_mean_pct: float | None
+    risk_max: Peak | None
+    elevated_risk_max: Peak | None
+    saturated_share: float | None
+    """The share of motor commands in the air within 0.5 % of a limit."""
+
+
+def intervals(data: dict[str, Any] | None) -> Intervals | None:
+    if data is None:
+        return None
+    spans = tuple(Interval(**span) for span in data["spans"])
+    return Intervals(spans, data["rule"], data["duration_s"])
+
+
+def finding(data: dict[str, Any]) -> Finding:
+    motor, cause = data.pop("motor"), data.pop("cause")
+    return Finding(
+        motor=MotorFinding(**motor) if motor else None,
+        # Documents count rules from 1, Python from 0.
+        cause=Cause(**{**cause, "rule": cause["rule"] - 1}) if cause else None,
+        risk=data.pop("risk", None),
+        **data,
+    )
+
+
+def summary(data: dict[str, Any]) -> Summary:
+    peaks = {name: Peak(**data[name]) if data[name] else None for name in ("risk_max", "elevated_risk_max")}
+    return Summary(**{**data, **peaks})

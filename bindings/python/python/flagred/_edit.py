@@ -1,0 +1,324 @@
+"""Parts of a model that can be changed: every change is validated, and one that is wrong changes nothing."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, MutableMapping, MutableSequence
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
+
+from ._core import RuleSet
+from ._errors import DataError
+
+if TYPE_CHECKING:
+    from ._model import Model
+
+Document = dict[str, Any]
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON has it: tuples become lists, numbers of NumPy those of Python."""
+    if isinstance(value, (str, bool, int, float)) or value is None:
+        return value
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    return [plain(item) for item in value]
+
+
+def edit(model: RuleSet, change: Callable[[Document], None]) -> None:
+    """Changes the document of a model."""
+    document: Document = json.loads(model._json())
+    change(document)
+    try:
+        changed = json.dumps(document, allow_nan=False)
+    except ValueError:
+        raise DataError("a number is NaN or infinite\n  help: a rule set takes finite numbers") from None
+    model._edit(changed)
+
+
+def rule_lists(document: Document) -> list[list[Any]]:
+    """The lists of rules: one, or one for each block."""
+    if "blocks" in document:
+        return [block["rules"] for block in document["blocks"].values()]
+    return [document["rules"]]
+
+
+def find(document: Document, index: int) -> tuple[list[Any], int]:
+    """The list that holds a rule, and its place there."""
+    for rules in rule_lists(document):
+        if index < len(rules):
+            return rules, index
+        index -= len(rules)
+    raise IndexError("there is no such rule")
+
+
+class Rule:
+    """A rule of a model. What is set here is set in the model."""
+
+    __slots__ = ("_index", "_model")
+
+    def __init__(self, model: RuleSet, index: int) -> None:
+        self._model, self._index = model, index
+
+    @property
+    def index(self) -> int:
+        """Its index in the rules of the model."""
+        return self._index
+
+    @property
+    def text(self) -> str:
+        """The rule: ``IF temperature IS hot THEN speed IS fast``."""
+        return self._model._rule(self._index)[0]
+
+    @text.setter
+    def text(self, text: str) -> None:
+        self._set("rule", text)
+
+    @property
+    def weight(self) -> float:
+        """Its weight, in (0, 1]."""
+        return self._model._rule(self._index)[1]
+
+    @weight.setter
+    def weight(self, weight: float) -> None:
+        self._set("rule", RuleSet._weighted(self.text, float(weight)))
+
+    @property
+    def confidence(self) -> float | None:
+        """The confidence of its source, in [0, 1]."""
+        return self._model._rule(self._index)[2]
+
+    @confidence.setter
+    def confidence(self, confidence: float | None) -> None:
+        self._set("confidence", confidence)
+
+    @property
+    def support(self) -> int | None:
+        """How many samples support it."""
+        return self._model._rule(self._index)[3]
+
+    @property
+    def note(self) -> str | None:
+        """The author's note."""
+        return self._model._rule(self._index)[4]
+
+    @note.setter
+    def note(self, note: str | None) -> None:
+        self._set("note", note)
+
+    def _set(self, key: str, value: Any) -> None:
+        def change(document: Document) -> None:
+            rules, at = find(document, self._index)
+            rule = rules[at] if isinstance(rules[at], dict) else {"rule": rules[at]}
+            rules[at] = {name: item for name, item in {**rule, key: plain(value)}.items() if item is not None}
+
+        edit(self._model, change)
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __repr__(self) -> str:
+        return f"Rule({self._index}: {self.text})"
+
+
+class Rules(MutableSequence[Rule]):
+    """The rules of a model, in their order. A text can be put in the place of a rule."""
+
+    __slots__ = ("_model",)
+
+    def __init__(self, model: RuleSet) -> None:
+        self._model = model
+
+    def __len__(self) -> int:
+        return self._model._rule_count()
+
+    def _index(self, index: int) -> int:
+        known = range(len(self))
+        try:
+            return known[index]
+        except IndexError:
+            raise IndexError(f"there are {len(known)} rules") from None
+
+    @overload
+    def __getitem__(self, index: int) -> Rule: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Rule]: ...
+    def __getitem__(self, index: int | slice) -> Rule | list[Rule]:
+        if isinstance(index, slice):
+            return [Rule(self._model, i) for i in range(len(self))[index]]
+        return Rule(self._model, self._index(index))
+
+    def __setitem__(self, index: Any, rule: Any) -> None:
+        at = self._index(index)
+
+        def change(document: Document) -> None:
+            rules, place = find(document, at)
+            rules[place] = plain(str(rule) if isinstance(rule, Rule) else rule)
+
+        edit(self._model, change)
+
+    def __delitem__(self, index: int | slice) -> None:
+        chosen = range(len(self))[index] if isinstance(index, slice) else [self._index(index)]
+
+        def change(document: Document) -> None:
+            for at in sorted(chosen, reverse=True):
+                rules, place = find(document, at)
+                del rules[place]
+
+        edit(self._model, change)
+
+    def insert(self, index: int, rule: Any) -> None:
+        """Puts a rule before the one of this index; behind the last one at the end."""
+        at = range(len(self) + 1)[slice(index, None)]
+
+        def change(document: Document) -> None:
+            text = plain(str(rule) if isinstance(rule, Rule) else rule)
+            if at and at[0] < len(self):
+                rules, place = find(document, at[0])
+                rules.insert(place, text)
+            else:
+                rule_lists(document)[-1].append(text)
+
+        edit(self._model, change)
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{rule.index}: {rule.text}" for rule in self)
+
+
+def _key(name: str, doc: str) -> Any:
+    """A property that is a key of the rule-set format."""
+
+    def get(self: Variable) -> Any:
+        return self._document().get(name)
+
+    def put(self: Variable, value: Any) -> None:
+        self._set(name, value)
+
+    return property(get, put, doc=doc)
+
+
+class Variable:
+    """An input or output of a model. What is set here is set in the model.
+
+    Its attributes are the keys of the rule-set format; one that is not written is None.
+    """
+
+    __slots__ = ("_kind", "_model", "name")
+
+    name: str
+    """Its name in rules."""
+
+    def __init__(self, model: RuleSet, kind: str, name: str) -> None:
+        self._model, self._kind, self.name = model, kind, name
+
+    def _document(self) -> Document:
+        found: Document = json.loads(self._model._json())[self._kind][self.name]
+        return found
+
+    range: Any = _key("range", "The least and the greatest value.")
+    unit: Any = _key("unit", "The unit of its values, for people.")
+    description: Any = _key("description", "What it means.")
+    partition: Any = _key("partition", "Terms side by side: a list, or a dict of their peaks. In place of ``terms``.")
+    terms: Any = _key("terms", "The terms: a membership function for each name. In place of ``partition``.")
+
+    def _set(self, key: str, value: Any) -> None:
+        def change(document: Document) -> None:
+            variable = document[self._kind][self.name]
+            if key in ("partition", "terms"):
+                variable.pop("partition", None)
+                variable.pop("terms", None)
+            variable[key] = plain(value)
+            if value is None:
+                del variable[key]
+
+        edit(self._model, change)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name}: {self._document()})"
+
+
+class Output(Variable):
+    """An output of a model."""
+
+    __slots__ = ()
+
+    defuzzifier: Any = _key("defuzzifier", "How the aggregated set becomes a number: ``centroid``, ``bisector``, ...")
+    samples: Any = _key("samples", "Integrate by sampling, as other programs do: ``{'midpoint': 1000}``.")
+    when_no_rule_fires: Any = _key(
+        "when_no_rule_fires", "``undefined``, ``error``, ``previous``, ``{'value': 50}`` or ``{'previous': 50}``."
+    )
+    aggregation: Any = _key("aggregation", "How the consequents of this output are combined.")
+    clamp: Any = _key("clamp", "Whether a value outside the range is moved to it.")
+
+
+_V = TypeVar("_V", bound=Variable)
+
+
+class Variables(MutableMapping[str, _V], Generic[_V]):
+    """The inputs or outputs of a model by their names, in their order.
+
+    A dict with the keys of the rule-set format can be put in the place of one.
+    """
+
+    __slots__ = ("_kind", "_model", "_view")
+
+    def __init__(self, model: Model, kind: str, view: type[_V]) -> None:
+        self._model, self._kind, self._view = model, kind, view
+
+    def _names(self) -> list[str]:
+        return self._model._input_names() if self._kind == "inputs" else self._model._output_names()
+
+    def __getitem__(self, name: str) -> _V:
+        if name not in self._names():
+            raise KeyError(name)
+        return self._view(self._model, self._kind, name)
+
+    def __setitem__(self, name: str, variable: Any) -> None:
+        data = variable._document() if isinstance(variable, Variable) else plain(variable)
+        edit(self._model, lambda document: document[self._kind].update({name: data}))
+
+    def __delitem__(self, name: str) -> None:
+        if name not in self._names():
+            raise KeyError(name)
+        edit(self._model, lambda document: document[self._kind].pop(name))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names())
+
+    def __len__(self) -> int:
+        return len(self._names())
+
+    def __repr__(self) -> str:
+        return f"{self._kind.capitalize()}({', '.join(self._names())})"
+
+
+class Operators(MutableMapping[str, str]):
+    """The operators of all rules: ``and``, ``or``, ``implication`` and ``aggregation``."""
+
+    __slots__ = ("_model",)
+
+    def __init__(self, model: RuleSet) -> None:
+        self._model = model
+
+    def _document(self) -> dict[str, str]:
+        found: dict[str, str] = json.loads(self._model._json())["operators"]
+        return found
+
+    def __getitem__(self, name: str) -> str:
+        return self._document()[name]
+
+    def __setitem__(self, name: str, operator: str) -> None:
+        edit(self._model, lambda document: document["operators"].update({name: operator}))
+
+    def __delitem__(self, name: str) -> None:
+        edit(self._model, lambda document: document["operators"].pop(name))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._document())
+
+    def __len__(self) -> int:
+        return len(self._document())
+
+    def __repr__(self) -> str:
+        return f"Operators({self._document()})"

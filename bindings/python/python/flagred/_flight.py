@@ -1,0 +1,376 @@
+"""Flights: logs and what is said of them."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import IO, TYPE_CHECKING, Any, Literal
+
+from . import _data
+from ._core import AssessmentData, FlightData, Profile, Table
+from ._data import Event, Finding, Gap, Geometry, Intervals, Motor, Parameter, Range, Report, Summary, Vehicle
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["Assessment", "Flight", "Signal", "assess", "read_log"]
+
+
+class Signal:
+    """A signal of a flight: values over time.
+
+    pyarrow, polars and others take it as a table of ``t_s`` and its name.
+    """
+
+    __slots__ = ("_base", "_flight", "name", "rate_hz", "source", "unit")
+
+    name: str
+    """Its name, with the unit in it."""
+    unit: str
+    """Its unit; empty where it has none."""
+    source: str
+    """The message or field of the log that it comes from."""
+    rate_hz: float | None
+    """Values a second, without pauses."""
+
+    def __init__(self, flight: FlightData, name: str, unit: str, source: str, rate_hz: float | None, base: int) -> None:
+        self._flight, self._base = flight, base
+        self.name, self.unit, self.source, self.rate_hz = name, unit, source, rate_hz
+
+    def _arrays(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        arrays = self._flight._signal(self.name)
+        assert arrays is not None
+        return arrays
+
+    @property
+    def t_s(self) -> NDArray[np.float64]:
+        """The times in seconds on the log's clock."""
+        return self._arrays()[0]
+
+    @property
+    def values(self) -> NDArray[np.float64]:
+        """The values; NaN is unknown."""
+        return self._arrays()[1]
+
+    @property
+    def base(self) -> Table:
+        """All signals that share its times, as a table."""
+        table = self._flight._series_table(self._base)
+        assert table is not None
+        return table
+
+    def __len__(self) -> int:
+        return len(self.t_s)
+
+    def __repr__(self) -> str:
+        rate = "" if self.rate_hz is None else f", {self.rate_hz:.1f} Hz"
+        return f"Signal({self.name}: {len(self)} values{rate})"
+
+
+class _Signals(Mapping[str, Signal]):
+    def __init__(self, flight: FlightData) -> None:
+        self._all = {signal[0]: Signal(flight, *signal) for signal in flight._signals()}
+
+    def __getitem__(self, name: str) -> Signal:
+        return self._all[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __repr__(self) -> str:
+        return f"Signals({', '.join(self._all)})"
+
+
+class Flight(FlightData):
+    """A flight, read from a log by :func:`read_log`.
+
+    Times are in seconds on the log's own clock.
+    """
+
+    def __new__(cls, *args: Any, **kwargs: Any) -> Flight:
+        raise TypeError("a flight is read by `flagred.read_log`")
+
+    @cached_property
+    def _data(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self._json())
+        return found
+
+    @property
+    def format(self) -> str:
+        """The kind of log, such as ``PX4 ULog``."""
+        format: str = self._data["format"]
+        return format
+
+    @cached_property
+    def vehicle(self) -> Vehicle:
+        """The vehicle, as far as the log describes it."""
+        return Vehicle(**self._data["vehicle"])
+
+    @cached_property
+    def motors(self) -> list[Motor]:
+        """The motors in order of their number; a column of the commands each."""
+        return [Motor(**motor) for motor in self._data["motors"]]
+
+    @cached_property
+    def geometry(self) -> Geometry | None:
+        """How much each motor rolls, pitches and yaws the vehicle; None where it is unknown."""
+        data = self._data["geometry"]
+        if data is None:
+            return None
+        return Geometry(**{**data, "factors": tuple(tuple(row) for row in data["factors"])})
+
+    @cached_property
+    def range(self) -> Range | None:
+        """The range of the raw commands; None where it is unknown."""
+        data = self._data["range"]
+        return Range(**data) if data else None
+
+    @cached_property
+    def effective_range(self) -> Range:
+        """The part of the range that is used in flight."""
+        return Range(**self._data["effective_range"])
+
+    @property
+    def effective_range_doubt(self) -> str | None:
+        """Why the used part counts as the whole range although the log tells limits."""
+        doubt: str | None = self._data["effective_range_doubt"]
+        return doubt
+
+    @cached_property
+    def parameters(self) -> dict[str, Parameter]:
+        """Parameters of the autopilot about motors and gains, by their names."""
+        return {data["name"]: Parameter(**data) for data in self._data["parameters"]}
+
+    @cached_property
+    def modes(self) -> list[Event]:
+        """The flight modes, from the time each was entered."""
+        return [Event(**event) for event in self._data["modes"]]
+
+    @cached_property
+    def messages(self) -> list[Event]:
+        """Texts that the autopilot wrote into the log."""
+        return [Event(**event) for event in self._data["messages"]]
+
+    @cached_property
+    def armed(self) -> Intervals | None:
+        """When the motors were armed; None where it is unknown."""
+        return _data.intervals(self._data["armed"])
+
+    @cached_property
+    def in_air(self) -> Intervals | None:
+        """When the vehicle was in the air; None where it is unknown."""
+        return _data.intervals(self._data["in_air"])
+
+    @property
+    def utc_at_zero_s(self) -> float | None:
+        """UTC at time 0, in seconds since 1970; None where it is unknown."""
+        utc: float | None = self._data["utc_at_zero_s"]
+        return utc
+
+    @property
+    def boots_s(self) -> list[float]:
+        """Times at which the autopilot booted again within the log."""
+        boots: list[float] = self._data["boots_s"]
+        return boots
+
+    @property
+    def header(self) -> dict[str, str]:
+        """The header lines of a flight CSV."""
+        return dict(self._data["header"])
+
+    @cached_property
+    def report(self) -> Report:
+        """Amount of data read, and damage."""
+        data = self._data["report"]
+        return Report(**{**data, "left_out": _data.LeftOut(**data["left_out"])})
+
+    @cached_property
+    def gaps(self) -> list[Gap]:
+        """What the log lacks for an assessment."""
+        return [Gap(**gap) for gap in self._data["gaps"]]
+
+    @property
+    def t_s(self) -> NDArray[np.float64]:
+        """The times of the motor commands."""
+        return self._command_times()
+
+    @property
+    def raw_commands(self) -> NDArray[np.float64]:
+        """The commands as they were logged, in the unit of ``range``: a row a sample, a column a motor; NaN is unknown."""
+        return self._raw_commands()
+
+    @property
+    def commands(self) -> NDArray[np.float64]:
+        """The commands on the effective range, from 0 to 1: a row a sample, a column a motor; NaN is unknown."""
+        return self._effective_commands()
+
+    @property
+    def commands_table(self) -> Table:
+        """``t_s`` and the command of each motor on the effective range, as a table."""
+        return self._commands_table()
+
+    @cached_property
+    def signals(self) -> Mapping[str, Signal]:
+        """All other signals by their names."""
+        return _Signals(self)
+
+    def __repr__(self) -> str:
+        air = "unknown" if self.in_air is None else f"{self.in_air.duration_s:.1f} s"
+        return f"Flight({self.name}: {self.format}, {len(self.motors)} motors, in the air {air})"
+
+
+class Assessment(AssessmentData):
+    """What is said of a flight; made by :func:`assess`."""
+
+    def __new__(cls, *args: Any, **kwargs: Any) -> Assessment:
+        raise TypeError("an assessment is made by `flagred.assess`")
+
+    flight: Flight
+    """The flight."""
+    profile: Profile
+    """The profile it was assessed by."""
+
+    @cached_property
+    def _data(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self._json())
+        return found
+
+    @property
+    def verdict(self) -> Literal["GOOD", "WARN", "FAIL", "NA"]:
+        """How risky the flight was; ``NA`` where there is no answer."""
+        verdict: Literal["GOOD", "WARN", "FAIL", "NA"] = self._data["verdict"]["verdict"]
+        return verdict
+
+    @property
+    def reason(self) -> str | None:
+        """Why there is no answer."""
+        reason: str | None = self._data["verdict"].get("reason")
+        return reason
+
+    @property
+    def help(self) -> str | None:
+        """What the pilot can do to get an answer next time."""
+        help: str | None = self._data["verdict"].get("help")
+        return help
+
+    @cached_property
+    def findings(self) -> list[Finding]:
+        """The findings, the gravest first."""
+        return [_data.finding(dict(finding)) for finding in self._data["findings"]]
+
+    @property
+    def findings_left_out(self) -> int:
+        """How many findings are not listed."""
+        left_out: int = self._data["findings_left_out"]
+        return left_out
+
+    @cached_property
+    def summary(self) -> Summary:
+        """The flight in a few numbers."""
+        return _data.summary(self._data["summary"])
+
+    @cached_property
+    def steps(self) -> Table:
+        """The risk over time, a row each step: ``t_s``, ``risk`` and ``elevated_risk`` in %, ``coverage``, ``filled``,
+        ``dominant_rule``, ``margin``, ``spread``, ``judged``, and the inputs of the rules."""
+        return self._steps()
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        # A frame keeps the styles of the report to itself.
+        return f'<iframe srcdoc="{escape(self.html())}" style="width:100%;height:40em;border:0" sandbox="allow-scripts"></iframe>'
+
+    def __str__(self) -> str:
+        lines = [f"{self.verdict} {self.flight.name}"]
+        if self.reason is not None:
+            lines.append(f"  no verdict: {self.reason}")
+            lines.extend([f"  help: {self.help}"] if self.help else [])
+        lines.extend(f"  {finding.severity} {finding}" for finding in self.findings)
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        return f"Assessment({self.verdict}: {len(self.findings)} findings, {self.flight.name})"
+
+
+def read_log(log: str | os.PathLike[str] | bytes | IO[bytes], *, signals: list[str] | None = None) -> Flight:
+    """Reads a flight log.
+
+    Parameters
+    ----------
+    log
+        The log: a path, its bytes, or a file that is open for reading. ArduPilot (.bin, .log), PX4 (.ulg), MAVLink
+        (.tlog) or flight CSV, plain or gzipped; the content decides, not the name.
+    signals
+        The names of the signals to keep; all where it is None. Motor commands are always read.
+
+    Raises
+    ------
+    LogError
+        It is no flight log. A damaged log is no error: see :attr:`Flight.report`.
+    OSError
+        The file cannot be read.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> flight = flagred.read_log(b"t_s,motor1,motor2,motor3,motor4\\n0,0.4,0.4,0.5,0.5\\n1,0.4,0.4,0.5,0.6\\n")
+    >>> flight.commands.shape
+    (2, 4)
+    """
+    if isinstance(log, (bytes, bytearray, memoryview)):
+        return _flight(bytes(log), "<bytes>", signals)
+    if isinstance(log, (str, os.PathLike)):
+        return _flight(log, os.fspath(log), signals)
+    name = getattr(log, "name", "<file>")
+    return _flight(bytes(log.read()), name if isinstance(name, str) else "<file>", signals)
+
+
+def _flight(source: Any, name: str, signals: list[str] | None) -> Flight:
+    return FlightData.__new__(Flight, source, name, signals)
+
+
+def assess(
+    log: Flight | str | os.PathLike[str] | bytes | IO[bytes],
+    profile: Profile | str = "flagred",
+    *,
+    step_s: float | None = 0.1,
+) -> Assessment:
+    """Assesses a flight: how close it was to losing control.
+
+    Parameters
+    ----------
+    log
+        A flight, or a log as :func:`read_log` takes it.
+    profile
+        The profile, or its name, or its file.
+    step_s
+        How far apart the steps of the risk over time are, in seconds; None keeps none.
+
+    Raises
+    ------
+    LogError
+        It is no flight log.
+    RuleSetError
+        The profile or its rule set has errors.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> log = "t_s,motor1,motor2,motor3,motor4,in_air\\n"
+    >>> log += "".join(f"{i / 50},0.45,0.5,0.55,0.5,1\\n" for i in range(1000))
+    >>> flagred.assess(log.encode()).verdict
+    'GOOD'
+    """
+    if not isinstance(profile, Profile):
+        profile = Profile(profile)
+    flight = log if isinstance(log, Flight) else read_log(log)
+    assessment: Assessment = AssessmentData.__new__(Assessment, flight, profile, step_s)
+    assessment.flight, assessment.profile = flight, profile
+    return assessment

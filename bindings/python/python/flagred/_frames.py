@@ -1,0 +1,89 @@
+"""Frames of other libraries: a frame in, a frame of the same library out."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ._errors import DataError
+
+if TYPE_CHECKING:
+    from ._core import RuleSet
+
+
+def _library(value: Any) -> str:
+    return type(value).__module__.partition(".")[0].lstrip("_")
+
+
+def is_frame(value: Any) -> bool:
+    """Whether a value holds a column for each input, and is no column itself."""
+    if _is_pandas(value):
+        return True
+    if hasattr(value, "__arrow_c_stream__") or hasattr(value, "__arrow_c_array__"):
+        return any(hasattr(value, name) for name in ("schema", "columns", "column_names", "keys")) or not any(
+            hasattr(value, name) for name in ("dtype", "type", "__array__")
+        )
+    return _library(value) == "polars" and hasattr(value, "collect")
+
+
+def _is_pandas(value: Any) -> bool:
+    return "pandas" in sys.modules and isinstance(value, sys.modules["pandas"].DataFrame)
+
+
+def evaluate(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: bool) -> Any:
+    """Evaluates a frame, and gives one of the same library."""
+    if _is_pandas(frame):
+        return _pandas(rule_set, frame, threads, with_reasons)
+    library = _library(frame)
+    if library == "polars" and hasattr(frame, "collect"):
+        raise DataError("a lazy frame has no rows yet\n  help: collect it first: `model(frame.collect())`")
+    table = rule_set._table(frame, threads, with_reasons)
+    if library == "polars":
+        import polars
+
+        return polars.DataFrame(table)
+    if library == "pyarrow":
+        import pyarrow
+
+        made = pyarrow.table(table)
+        if isinstance(frame, pyarrow.RecordBatch):
+            return made.combine_chunks().to_batches()[0] if len(made) else pyarrow.RecordBatch.from_pylist([], made.schema)
+        return made
+    if library in ("duckdb", "_duckdb"):
+        import duckdb
+        import pyarrow
+
+        return duckdb.from_arrow(pyarrow.table(table))
+    return table
+
+
+def _pandas(rule_set: RuleSet, frame: Any, threads: int | None, with_reasons: bool) -> Any:
+    """By NumPy columns: this takes no pyarrow, and copies nothing that is float64."""
+    import numpy as np
+    import pandas
+
+    columns = []
+    for name in rule_set._input_names():
+        if name not in frame.columns:
+            there = ", ".join(f"`{column}`" for column in frame.columns)
+            raise DataError(f"the frame has no column `{name}`\n  help: there are {there}")
+        columns.append(frame[name])
+        if columns[-1].ndim != 1:
+            raise DataError(f"the frame has several columns `{name}`")
+    outputs = rule_set._output_names()
+    found = (rule_set.evaluate if with_reasons else rule_set)(*columns, threads=threads)
+    if len(outputs) == 1:
+        found = {outputs[0]: found}
+    if not with_reasons:
+        return pandas.DataFrame(found, index=frame.index)
+    made: dict[str, Any] = {}
+    for name, outcomes in found.items():
+        prefix = "" if len(outputs) == 1 else f"{name}_"
+        rules = outcomes.dominant_rule
+        made[name] = outcomes.value
+        made[f"{prefix}coverage"] = outcomes.coverage
+        made[f"{prefix}dominant_rule"] = pandas.arrays.IntegerArray(
+            np.ma.getdata(rules), np.ma.getmaskarray(rules).copy()
+        )
+        made[f"{prefix}clamped"] = outcomes.clamped
+    return pandas.DataFrame(made, index=frame.index)

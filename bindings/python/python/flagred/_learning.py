@@ -1,0 +1,353 @@
+"""Rules and numbers from rows of data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._arrays import array
+from ._core import _learn, _tune
+from ._errors import DataError
+from ._model import Model, _read
+
+__all__ = ["Errors", "Figure", "Learned", "Moved", "TuneValidation", "Tuned", "learn", "tune"]
+
+
+class Errors(NamedTuple):
+    """Errors of predictions."""
+
+    rows: int
+    """The rows with a prediction."""
+    without_prediction: int
+    rmse: float
+    """The root mean square of the error."""
+    mean_absolute: float
+    bias: float
+    """The mean of prediction less truth."""
+
+
+class Learned(NamedTuple):
+    """Rules that were learned from rows."""
+
+    model: Model
+    """The rule set with the learned rules."""
+    rows: int
+    refused: list[str]
+    """Why rows were left out."""
+    rules: int
+    """The number of learned rules."""
+    conflicts: int
+    """Combinations of terms whose rows do not agree."""
+    missing: int
+    """Combinations of terms without a rule."""
+    left_out: int
+    """Combinations with rows, but too few or of too low a confidence."""
+    completed: int
+    """Rules for combinations without rows, each from the nearest one."""
+    moved: int
+    """Rules whose consequent was moved for ``rising`` and ``falling``."""
+    counterexamples: list[str]
+    """Where the output contradicts ``rising`` and ``falling`` all the same."""
+    validation: Errors | None
+    """Errors on rows that were left out; None where that was not asked for."""
+
+
+class Moved(NamedTuple):
+    """A number that tuning moved."""
+
+    of: str
+    """``variable.term``, or ``rule 3`` counted from 1."""
+    name: str
+    """``peak`` of a partition, the parameter of a membership function, ``constant``, ``weight``."""
+    before: float
+    after: float
+
+
+class Figure(NamedTuple):
+    """A figure, and the interval that holds 95 % of the figures of resampled groups, or rows without groups."""
+
+    value: float
+    low: float
+    high: float
+
+
+class TuneValidation(NamedTuple):
+    """What tuning is worth on rows that were left out."""
+
+    folds: int
+    before: Figure
+    """The loss of the model as it was."""
+    after: Figure
+    """The loss where each part is predicted by the model tuned on the others."""
+    gain: Figure
+
+
+class Tuned(NamedTuple):
+    """A rule set whose numbers were tuned."""
+
+    model: Model
+    rows: int
+    refused: list[str]
+    """Why rows were left out."""
+    before: float
+    """The loss of the model as it was, on the rows it was tuned on."""
+    after: float
+    """The loss of the tuned model on these rows."""
+    without_value: int
+    """Rows without a value of the tuned model; they count as the middle of the range."""
+    moved: list[Moved]
+    validation: TuneValidation | None
+    """None where ``folds`` was not given."""
+
+
+def learn(
+    model: Model,
+    data: Any,
+    *,
+    resolve: Literal["strongest", "heaviest", "mean"] = "strongest",
+    min_support: int = 1,
+    min_degree: float = 0.0,
+    complete: bool = False,
+    rising: Iterable[str] = (),
+    falling: Iterable[str] = (),
+    keep_rules: bool = False,
+    columns: Mapping[str, str] | None = None,
+    weight: str | None = None,
+    group_by: str | None = None,
+    skip_bad_rows: bool = False,
+    validation: bool = True,
+) -> Learned:
+    """Learns rules from rows, after Wang and Mendel (1992). ``flagred learn`` does the same.
+
+    Parameters
+    ----------
+    model
+        The variables and terms. Its rules are replaced; its numbers stay.
+    data
+        A frame, or a mapping of columns, with a column for each input and the output.
+    resolve
+        How rows of one combination of terms choose the consequent: the row with the highest degree, the consequent with
+        the highest sum of degrees, or the mean of the rows.
+    min_support
+        The fewest rows of a rule.
+    min_degree
+        The lowest confidence of a rule.
+    complete
+        Add rules for combinations of terms without rows, each from the nearest combination with rows.
+    rising, falling
+        Inputs in which the output must not fall, or not rise, when they rise.
+    keep_rules
+        Add the learned rules to those of the model.
+    columns
+        The names of columns that are not those of their variables: ``{"risk": "failed"}``.
+    weight
+        The column with the weights of the rows.
+    group_by
+        In cross-validation, leave out all rows with one value of this column together.
+    skip_bad_rows
+        Leave out rows that cannot be used, and say why in ``refused``, rather than raise an error.
+    validation
+        Whether to predict left-out rows, to tell what the rules are worth on rows they do not know.
+
+    Raises
+    ------
+    DataError
+        A column is missing, or rows cannot be used.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> fan = (
+    ...     flagred.Model("fan")
+    ...     .input("heat", range=(0, 40), partition=["cool", "hot"])
+    ...     .output("speed", range=(0, 9), partition=["slow", "fast"])
+    ... )
+    >>> learned = flagred.learn(fan, {"heat": [5, 12, 36], "speed": [0, 2, 9]}, validation=False)
+    >>> [rule.text for rule in learned.model.rules]
+    ['IF heat IS cool THEN speed IS slow', 'IF heat IS hot THEN speed IS fast']
+    """
+    options = {
+        "resolve": resolve,
+        "min_support": min_support,
+        "min_degree": min_degree,
+        "complete": complete,
+        "rising": list(rising),
+        "falling": list(falling),
+        "keep_rules": keep_rules,
+        "validation": validation,
+    }
+    found = _learn(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), options)
+    errors = found.pop("validation")
+    return Learned(
+        model=_read(found.pop("model"), "<model>"), validation=None if errors is None else Errors(**errors), **found
+    )
+
+
+def tune(
+    model: Model,
+    data: Any,
+    *,
+    loss: Literal["squared", "log", "ranking"] = "squared",
+    only: Iterable[str] = (),
+    fix: Iterable[str] = (),
+    weights: bool = False,
+    least_distance: float = 0.01,
+    rising: Iterable[str] = (),
+    falling: Iterable[str] = (),
+    digits: int | None = None,
+    starts: int = 1,
+    iterations: int = 100,
+    seed: int = 0,
+    columns: Mapping[str, str] | None = None,
+    weight: str | None = None,
+    group_by: str | None = None,
+    folds: int | None = None,
+    skip_bad_rows: bool = False,
+    threads: int | None = None,
+) -> Tuned:
+    """Tunes the numbers of a rule set on rows; its rules stay. ``flagred tune`` does the same. Ctrl-C ends the search.
+
+    Parameters
+    ----------
+    model
+        The rule set to begin with. It does not change.
+    data
+        A frame, or a mapping of columns, with a column for each input and the output.
+    loss
+        ``squared`` errors; ``log`` and ``ranking`` for an output of 0 and 1: the mean of -ln p, and 1 less the area under
+        the ROC curve.
+    only, fix
+        The variables, or terms as ``variable.term``, that alone may move, or that stay.
+    weights
+        Whether the weights of the rules may move.
+    least_distance
+        The least distance between neighbouring peaks, as a share of the range.
+    rising, falling
+        Inputs in which the output must not fall, or not rise, when they rise.
+    digits
+        Round what moved to so many significant digits.
+    starts
+        How often the search starts: at the model, then at random places around it.
+    iterations
+        The most steps of a start.
+    seed
+        Of what is random: places to start, parts of cross-validation.
+    columns
+        The names of columns that are not those of their variables: ``{"risk": "failed"}``.
+    weight
+        The column with the weights of the rows.
+    group_by
+        In cross-validation, leave out all rows with one value of this column together.
+    folds
+        Cross-validate in so many parts. None skips it.
+    skip_bad_rows
+        Leave out rows that cannot be used, and say why in ``refused``, rather than raise an error.
+    threads
+        The number of threads; as many as there are cores for None.
+
+    Raises
+    ------
+    DataError
+        A column is missing, rows cannot be used, or nothing may move.
+    RuleSetError
+        The rule set cannot be used.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> fan = (
+    ...     flagred.Model("fan")
+    ...     .input("heat", range=(0, 40), partition={"cool": 5, "hot": 35})
+    ...     .output("speed", range=(0, 10), terms={"slow": {"singleton": 2}, "fast": {"singleton": 8}})
+    ...     .rule("IF heat IS cool THEN speed IS slow", "IF heat IS hot THEN speed IS fast")
+    ... )
+    >>> heat = list(range(41))
+    >>> speed = [2 + 6 * min(max((value - 20) / 10, 0), 1) for value in heat]
+    >>> tuned = flagred.tune(fan, {"heat": heat, "speed": speed}, digits=3)
+    >>> [(one.of, one.name, one.after) for one in tuned.moved]
+    [('heat.cool', 'peak', 20.0), ('heat.hot', 'peak', 30.0)]
+    """
+    options = {
+        "loss": loss,
+        "only": list(only),
+        "fix": list(fix),
+        "weights": weights,
+        "least_distance": least_distance,
+        "rising": list(rising),
+        "falling": list(falling),
+        "digits": digits,
+        "starts": starts,
+        "iterations": iterations,
+        "seed": seed,
+        "folds": folds,
+        "threads": threads,
+    }
+    found = _tune(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), options)
+    moved = [Moved(*one) for one in found.pop("moved")]
+    worth = found.pop("validation")
+    if worth is not None:
+        folds = worth.pop("folds")
+        worth = TuneValidation(folds=folds, **{name: Figure(*figure) for name, figure in worth.items()})
+    return Tuned(model=_read(found.pop("model"), "<model>"), moved=moved, validation=worth, **found)
+
+
+def _rows(
+    model: Model,
+    data: Any,
+    columns: Mapping[str, str] | None,
+    weight: str | None,
+    group_by: str | None,
+    skip_bad_rows: bool,
+) -> dict[str, Any]:
+    """The columns that the native half takes."""
+    names = [*model._input_names(), *model._output_names()]
+    renamed = dict(columns or {})
+    for name in renamed:
+        if name not in names:
+            raise DataError(f"`columns` names `{name}`, which is no variable of the rule set")
+    data = _columns(data)
+    found = [array(_column(data, renamed.get(name, name))) for name in names]
+    weights = None if weight is None else array(_column(data, weight))
+    groups = None
+    if group_by is not None:
+        groups = np.unique(np.asarray(_column(data, group_by)).astype(str), return_inverse=True)[1].astype(np.uint32)
+    _same_length([*found, *([] if weights is None else [weights]), *([] if groups is None else [groups])])
+    return {"columns": found, "weights": weights, "groups": groups, "skip_bad_rows": skip_bad_rows}
+
+
+def _same_length(columns: list[NDArray[Any]]) -> None:
+    if any(column.ndim != 1 for column in columns):
+        raise DataError("a column has no rows, or several columns have one name")
+    lengths = sorted({len(column) for column in columns})
+    if len(lengths) > 1:
+        raise DataError(f"the columns are not of one length: {', '.join(map(str, lengths))}")
+
+
+def _columns(data: Any) -> Any:
+    """What gives columns by their names."""
+    if hasattr(data, "fetchnumpy"):
+        return data.fetchnumpy()
+    if hasattr(data, "collect"):
+        raise DataError("a lazy frame has no rows yet\n  help: collect it first: `frame.collect()`")
+    return data
+
+
+def _names(data: Any) -> list[str]:
+    if hasattr(data, "schema") and hasattr(data.schema, "names") and not callable(data.schema.names):
+        return [str(name) for name in data.schema.names]
+    if isinstance(getattr(data, "columns", None), Iterable):
+        return [str(name) for name in data.columns]
+    if hasattr(data, "keys"):
+        return [str(name) for name in data.keys()]
+    raise DataError(f"`{type(data).__name__}` is no table\n  help: give a frame, or a dict of columns by their names")
+
+
+def _column(data: Any, name: str) -> Any:
+    there = _names(data)
+    if name not in there:
+        listed = ", ".join(f"`{column}`" for column in there)
+        raise DataError(f"the data have no column `{name}`\n  help: there are {listed}")
+    return data[name]

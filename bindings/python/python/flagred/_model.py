@@ -1,0 +1,330 @@
+"""Rule sets."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ._core import RuleSet
+from ._edit import Document, Operators, Output, Rules, Variable, Variables, edit, plain, rule_lists
+from ._errors import DataError, RuleSetError
+from ._picture import Picture
+
+__all__ = ["Model", "load", "loads"]
+
+
+Partition = Sequence[str] | Mapping[str, float]
+Terms = Mapping[str, Mapping[str, Any]]
+
+_EMPTY = "fuzzy: 1\nname: model\ninputs: {}\noutputs: {}\nrules: []\n"
+
+
+class Model(RuleSet):
+    """A fuzzy rule set: inputs and outputs with their terms, and rules between them.
+
+    :func:`load` and :func:`loads` read one. A model is called like a function. It is compiled when it is first used,
+    can be used by many threads at once, and is pickled and copied as data.
+
+    Parameters
+    ----------
+    name
+        The name of a new rule set, to be filled by :meth:`input`, :meth:`output` and :meth:`rule`.
+    description
+        Its purpose.
+    operators
+        ``and``, ``or``, ``implication``, ``aggregation``; those of the rule-set format where they are left out.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> fan = (
+    ...     flagred.Model("fan")
+    ...     .input("temperature", range=(0, 40), unit="°C", partition={"cold": 10, "hot": 30})
+    ...     .output("speed", range=(0, 9), partition=["slow", "fast"])
+    ...     .rule("IF temperature IS cold THEN speed IS slow", "IF temperature IS hot THEN speed IS fast")
+    ... )
+    >>> fan(20)
+    4.5
+    >>> fan.rules[1].weight = 0.5
+    >>> fan.rules[1].text
+    'IF temperature IS hot THEN speed IS fast WITH 0.5'
+    >>> flagred.loads(fan.to_yaml()) == fan
+    True
+    """
+
+    __slots__ = ()
+
+    def __new__(
+        cls, name: str, description: str | None = None, *, operators: Mapping[str, str] | None = None
+    ) -> Model:
+        model: Model = super().__new__(cls, _EMPTY, "<model>", True)
+
+        def fill(document: Document) -> None:
+            document["name"] = name
+            document["operators"].update(operators or {})
+            if description is not None:
+                document["description"] = description
+
+        edit(model, fill)
+        return model
+
+    def input(
+        self,
+        name: str,
+        *,
+        range: Sequence[float],
+        partition: Partition | None = None,
+        terms: Terms | None = None,
+        unit: str | None = None,
+        description: str | None = None,
+    ) -> Model:
+        """Adds an input.
+
+        Parameters
+        ----------
+        name
+            Its name in rules.
+        range
+            Its least and greatest value.
+        partition
+            Terms side by side: their names, evenly spaced over the range, or the peak of each.
+        terms
+            In place of a partition, a membership function for each term: ``{"hot": {"right_shoulder": [20, 30]}}``.
+        unit
+            The unit of its values, for people.
+        description
+            What it means.
+
+        Returns
+        -------
+        Model
+            The model itself.
+        """
+        return self._add("inputs", name, locals())
+
+    def output(
+        self,
+        name: str,
+        *,
+        range: Sequence[float],
+        partition: Partition | None = None,
+        terms: Terms | None = None,
+        unit: str | None = None,
+        description: str | None = None,
+        defuzzifier: str | None = None,
+        samples: Mapping[str, int] | None = None,
+        when_no_rule_fires: str | Mapping[str, float] | None = None,
+        aggregation: str | None = None,
+        clamp: bool | None = None,
+    ) -> Model:
+        """Adds an output. See :meth:`input` for what both have.
+
+        Parameters
+        ----------
+        defuzzifier
+            How the aggregated set becomes a number; ``centroid`` where it is left out.
+        samples
+            Integrate by sampling, as other programs do: ``{"midpoint": 1000}``.
+        when_no_rule_fires
+            ``undefined`` (where it is left out), ``error``, ``previous``, ``{"value": 50}`` or ``{"previous": 50}``.
+        aggregation
+            How the consequents of this output are combined; as the rule set says where it is left out.
+        clamp
+            Whether a value outside the range is moved to it.
+
+        Returns
+        -------
+        Model
+            The model itself.
+        """
+        return self._add("outputs", name, locals())
+
+    def rule(self, *texts: str) -> Model:
+        """Adds rules.
+
+        Parameters
+        ----------
+        texts
+            ``IF temperature IS hot AND NOT humidity IS low THEN speed IS very fast WITH 0.8``
+
+        Returns
+        -------
+        Model
+            The model itself.
+        """
+        edit(self, lambda document: rule_lists(document)[-1].extend(texts))
+        return self
+
+    def _add(self, kind: str, name: str, given: dict[str, Any]) -> Model:
+        if name in (*self._input_names(), *self._output_names()):
+            raise DataError(f"there is a variable `{name}` already\n  help: `model.{kind}['{name}'] = ...` replaces it")
+        keys = {key: plain(value) for key, value in given.items() if key not in ("self", "name") and value is not None}
+        edit(self, lambda document: document[kind].update({name: keys}))
+        return self
+
+    @property
+    def inputs(self) -> Variables[Variable]:
+        """The inputs by their names, in the order of their values. They can be changed."""
+        return Variables(self, "inputs", Variable)
+
+    @property
+    def outputs(self) -> Variables[Output]:
+        """The outputs by their names. They can be changed."""
+        return Variables(self, "outputs", Output)
+
+    @property
+    def rules(self) -> Rules:
+        """The rules, in their order. They can be changed."""
+        return Rules(self)
+
+    @property
+    def operators(self) -> Operators:
+        """The operators of all rules. They can be changed."""
+        return Operators(self)
+
+    @property
+    def name(self) -> str:
+        """The name of the rule set."""
+        return self._name()
+
+    @name.setter
+    def name(self, name: str) -> None:
+        edit(self, lambda document: document.update(name=name))
+
+    @property
+    def description(self) -> str | None:
+        """The purpose of the rule set, in the author's words."""
+        return self._description()
+
+    @description.setter
+    def description(self, description: str | None) -> None:
+        def change(document: Document) -> None:
+            document.pop("description", None)
+            if description is not None:
+                document["description"] = description
+
+        edit(self, change)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The rule set as a document, with the keys of the rule-set format."""
+        found: dict[str, Any] = json.loads(self._json())
+        return found
+
+    @property
+    def text(self) -> str:
+        """The text it was read from; after an edit, the rule set in YAML."""
+        return self._text()[0]
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the rule set in YAML.
+
+        Parameters
+        ----------
+        path
+            The file.
+        """
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.to_yaml())
+
+    def plot(self) -> Picture:
+        """Draws the terms of all variables.
+
+        Returns
+        -------
+        Picture
+            Shown by Jupyter; ``str()`` is the SVG.
+        """
+        return Picture(self._variables_svg())
+
+    def _repr_svg_(self) -> str:
+        return self._variables_svg()
+
+    def __repr__(self) -> str:
+        return f"Model({self.name}: {', '.join(self._input_names())} -> {', '.join(self._output_names())})"
+
+    def __eq__(self, other: object) -> bool:
+        return self._equals(other) if isinstance(other, Model) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _read, self._text()
+
+    def __copy__(self) -> Model:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Model:
+        return self.copy()
+
+    def copy(self) -> Model:
+        """A model that is equal, and apart: an edit of one does not change the other."""
+        other = Model(self.name)
+        other._share(self)
+        return other
+
+
+def _read(text: str, file: str) -> Model:
+    return RuleSet.__new__(Model, text, file, file == "<model>")
+
+
+def loads(text: str) -> Model:
+    """Reads a rule set from its text.
+
+    Parameters
+    ----------
+    text
+        A rule set in YAML, or in a format of another program: FIS (MATLAB), FLL (fuzzylite), FCL or FML.
+
+    Raises
+    ------
+    RuleSetError
+        The text is no rule set. All mistakes are told at once, in ``findings``.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> model = flagred.loads('''
+    ... fuzzy: 1
+    ... name: tip
+    ... inputs:
+    ...   service: {range: [0, 10], partition: [poor, good, excellent]}
+    ...   food: {range: [0, 10], partition: [rancid, delicious]}
+    ... outputs:
+    ...   tip: {range: [0, 30], partition: [low, medium, high]}
+    ... rules:
+    ...   - IF service IS poor OR food IS rancid THEN tip IS low
+    ...   - IF service IS good THEN tip IS medium
+    ...   - IF service IS excellent OR food IS delicious THEN tip IS high
+    ... ''')
+    >>> round(model(8, 9), 2)
+    18.39
+    """
+    return _read(text, "<text>")
+
+
+def load(path: str | os.PathLike[str]) -> Model:
+    """Reads a rule set from a file.
+
+    Parameters
+    ----------
+    path
+        The file: YAML, FIS, FLL, FCL or FML, whatever its name.
+
+    Raises
+    ------
+    RuleSetError
+        The file is no rule set. All mistakes are told at once, in ``findings``.
+    OSError
+        The file cannot be read.
+    """
+    with open(path, "rb") as file:
+        data = file.read()
+    name = os.fspath(path)
+    encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+    try:
+        text = data.decode(encoding)
+    except UnicodeDecodeError as error:
+        raise RuleSetError(f"`{name}` is not UTF-8: byte {error.start} is {data[error.start]:02X}") from None
+    return _read(text, name)

@@ -1,0 +1,110 @@
+"""A flight followed sample by sample."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from . import _data
+from ._core import MonitorData, Profile, Table, Update
+from ._data import Finding, Summary
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class Followed(NamedTuple):
+    """What is said of a flight that a monitor followed."""
+
+    verdict: Literal["GOOD", "WARN", "FAIL", "NA"]
+    reason: str | None
+    """Why there is no answer."""
+    findings: list[Finding]
+    summary: Summary
+    steps: Table
+
+
+class Monitor(MonitorData):
+    """Follows a flight sample by sample, as on board.
+
+    Parameters
+    ----------
+    profile
+        The profile, or its name, or its file.
+    signals
+        The names of the signals that come with each sample; a profile may need some.
+    step_s
+        How far apart the steps are that :meth:`finish` gives, in seconds; None keeps none.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> monitor = flagred.Monitor("flagred-paper")
+    >>> for i in range(500):
+    ...     t_s = i * 0.04
+    ...     update = monitor.push(t_s, [0.4, 0.4, 0.41, 0.41] if t_s < 10 else [0.0, 1.0, 0.05, 1.0])
+    >>> update.level
+    'FAIL'
+    """
+
+    __slots__ = ("_names",)
+
+    def __new__(
+        cls, profile: Profile | str = "flagred", *, signals: Sequence[str] = (), step_s: float | None = None
+    ) -> Monitor:
+        if not isinstance(profile, Profile):
+            profile = Profile(profile)
+        monitor: Monitor = super().__new__(cls, profile, list(signals), step_s)
+        monitor._names = list(signals)
+        return monitor
+
+    _names: list[str]
+
+    def push(
+        self,
+        t_s: float,
+        commands: Sequence[float] | NDArray[np.float64],
+        *,
+        in_air: bool = True,
+        signals: Mapping[str, float] | None = None,
+    ) -> Update:
+        """Takes a sample.
+
+        Parameters
+        ----------
+        t_s
+            Its time in seconds; times do not decrease.
+        commands
+            The command of each motor on its effective range, from 0 to 1. NaN is unknown.
+        in_air
+            Whether the vehicle is in the air.
+        signals
+            The values of the signals; one that is missing is unknown.
+
+        Returns
+        -------
+        Update
+            The risk and the level of the moment.
+        """
+        known = signals or {}
+        return self._push(t_s, commands, in_air, [known.get(name, float("nan")) for name in self._names])
+
+    def ended(self) -> list[Finding]:
+        """The findings that are over after the latest sample."""
+        return [_data.finding(finding) for finding in json.loads(self._ended())]
+
+    def finish(self) -> Followed | None:
+        """Ends the flight and says what is said of it; None without a sample. Samples that follow are of a new flight."""
+        finished = self._finish()
+        if finished is None:
+            return None
+        data, steps = json.loads(finished[0]), finished[1]
+        return Followed(
+            verdict=data["verdict"]["verdict"],
+            reason=data["verdict"].get("reason"),
+            findings=[_data.finding(finding) for finding in data["findings"]],
+            summary=_data.summary(data["summary"]),
+            steps=steps,
+        )

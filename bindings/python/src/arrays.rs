@@ -1,0 +1,45 @@
+//! NumPy arrays in: any shape that broadcasts, any strides, any type of number.
+
+use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::{prelude::*, sync::PyOnceLock, types::PyList};
+
+/// Arrays of one shape, in one piece each.
+pub(crate) struct Arrays<'py> {
+    arrays: Vec<PyReadonlyArrayDyn<'py, f64>>,
+    pub(crate) shape: Vec<usize>,
+}
+
+impl<'py> Arrays<'py> {
+    /// Values as arrays of one shape. What is in no such form yet is copied by `flagred._arrays.alike`.
+    pub(crate) fn new(py: Python<'py>, values: &[Bound<'py, PyAny>]) -> PyResult<Self> {
+        if let Some(arrays) = Self::of(values) {
+            return Ok(arrays);
+        }
+        static ALIKE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        let alike = ALIKE.import(py, "flagred._arrays", "alike")?;
+        let made: Vec<Bound<'py, PyAny>> = alike.call1((PyList::new(py, values)?,))?.extract()?;
+        Self::of(&made).ok_or_else(|| {
+            crate::errors::data_error("the inputs are no arrays of numbers of one shape", None)
+        })
+    }
+
+    /// The values as they are; `None` unless all are arrays of one shape, in one piece.
+    fn of(values: &[Bound<'py, PyAny>]) -> Option<Self> {
+        let arrays = values.iter().map(|value| {
+            let array = value.cast::<PyArrayDyn<f64>>().ok()?;
+            let array = array
+                .is_c_contiguous()
+                .then(|| array.try_readonly().ok())??;
+            Some(array)
+        });
+        let arrays: Vec<_> = arrays.collect::<Option<_>>()?;
+        let shape = arrays.first()?.shape().to_vec();
+        let is_alike = arrays.iter().all(|array| array.shape() == shape);
+        is_alike.then_some(Arrays { arrays, shape })
+    }
+
+    pub(crate) fn columns(&self) -> PyResult<Vec<&[f64]>> {
+        let slices = self.arrays.iter().map(|array| Ok(array.as_slice()?));
+        slices.collect()
+    }
+}

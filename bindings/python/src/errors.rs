@@ -1,0 +1,93 @@
+//! Errors and findings as Python's: the classes are in `python/flagred/_errors.py`.
+
+use std::io;
+
+use fuzzy::{
+    Findings,
+    diagnostic::{Diagnostic, Severity},
+};
+use pyo3::{exceptions::PyOSError, prelude::*, sync::PyOnceLock, types::PyType};
+use report::diagnostics::{Style, draw};
+
+pyo3::import_exception!(flagred._errors, DataError);
+pyo3::import_exception!(flagred._errors, LogError);
+pyo3::import_exception!(flagred._errors, RuleSetError);
+
+const STYLE: Style = Style {
+    colored: false,
+    advice: |_| None,
+    all: "`findings` of the error lists them",
+};
+
+/// A [`DataError`] with what to do about it.
+pub(crate) fn data_error(message: impl std::fmt::Display, help: Option<String>) -> PyErr {
+    match help {
+        Some(help) => DataError::new_err(format!("{message}\n  help: {help}")),
+        None => DataError::new_err(message.to_string()),
+    }
+}
+
+/// A [`LogError`] with what to do about it.
+pub(crate) fn log_error(message: impl std::fmt::Display, help: Option<&str>) -> PyErr {
+    match help {
+        Some(help) => LogError::new_err(format!("{message}\n  help: {help}")),
+        None => LogError::new_err(message.to_string()),
+    }
+}
+
+/// Why a file cannot be read, as `open` tells it.
+pub(crate) fn os_error(
+    py: Python<'_>,
+    error: &io::Error,
+    path: &str,
+    help: Option<&str>,
+) -> PyResult<PyErr> {
+    let help = help.map_or(String::new(), |help| format!("\n  help: {help}"));
+    Ok(match error.raw_os_error() {
+        Some(number) => {
+            let told = py.import("os")?.call_method1("strerror", (number,))?;
+            PyOSError::new_err((number, format!("{told}{help}"), path.to_owned()))
+        }
+        None => PyOSError::new_err(format!("`{path}` cannot be read: {error}{help}")),
+    })
+}
+
+/// A [`RuleSetError`] whose text is the drawn findings.
+pub(crate) fn rule_set_error(py: Python<'_>, findings: &Findings, file: &str, text: &str) -> PyErr {
+    match diagnostics(py, findings, file, text) {
+        Ok(list) => {
+            let list: Vec<Py<PyAny>> = list.into_iter().map(Bound::unbind).collect();
+            RuleSetError::new_err((draw(&findings.0, file, text, STYLE), list))
+        }
+        Err(error) => error,
+    }
+}
+
+/// Findings as objects of `flagred.Diagnostic`.
+pub(crate) fn diagnostics<'py>(
+    py: Python<'py>,
+    findings: &Findings,
+    file: &str,
+    text: &str,
+) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let class = CLASS.import(py, "flagred._errors", "Diagnostic")?;
+    let object = |finding: &Diagnostic| {
+        let severity = match finding.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        };
+        class.call1((
+            severity,
+            finding.code,
+            &finding.message,
+            finding.help.as_deref(),
+            file,
+            finding.position.map(|position| position.line),
+            finding.position.map(|position| position.column),
+            draw(std::slice::from_ref(finding), file, text, STYLE),
+        ))
+    };
+    findings.0.iter().map(object).collect()
+}

@@ -1,0 +1,194 @@
+//! Columns of values in, columns of outcomes out: in blocks, on many threads, with an ear for Ctrl-C.
+
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use fuzzy::{
+    Engine,
+    engine::{self, EvaluateError, Sequence},
+};
+use pyo3::prelude::*;
+use rayon::{ThreadPool, prelude::*};
+
+use crate::{
+    errors::data_error,
+    outcome::{Columns, NO_RULE, Reasons},
+    threads,
+};
+
+/// Rows whose outcomes fit the cache.
+const BLOCK: usize = 1024;
+
+/// Evaluates one table after another; an output that keeps its previous value keeps it from table to table.
+pub(crate) struct Evaluator<'e> {
+    engine: &'e Engine,
+    sequence: Option<Sequence<'e>>,
+    pool: Option<Arc<ThreadPool>>,
+    threads: Option<usize>,
+    with_reasons: bool,
+}
+
+/// The part of the result that a block fills.
+struct Block<'a> {
+    first: usize,
+    outputs: Vec<BlockOutput<'a>>,
+}
+
+struct BlockOutput<'a> {
+    value: &'a mut [f64],
+    reasons: Option<(&'a mut [f64], &'a mut [i32], &'a mut [bool])>,
+}
+
+impl<'e> Evaluator<'e> {
+    /// # Errors
+    /// No threads.
+    pub(crate) fn new(
+        engine: &'e Engine,
+        threads: Option<usize>,
+        with_reasons: bool,
+    ) -> PyResult<Self> {
+        if threads == Some(0) {
+            let help = "write `threads=1`, or leave it out for as many as there are cores";
+            return Err(data_error("0 threads evaluate nothing", Some(help.into())));
+        }
+        let keeps_previous = engine.model().keeps_previous();
+        Ok(Evaluator {
+            engine,
+            sequence: keeps_previous.then(|| Sequence::new(engine)),
+            pool: None,
+            threads,
+            with_reasons,
+        })
+    }
+
+    /// The outcomes of each output; columns are of one length. The interpreter is free for others meanwhile.
+    pub(crate) fn run(
+        &mut self,
+        py: Python<'_>,
+        rows: usize,
+        columns: &[&[f64]],
+    ) -> PyResult<Vec<Columns>> {
+        if columns.is_empty() {
+            let message = "the rule set has no inputs, so rows say nothing to it";
+            return Err(data_error(message, Some("call it without values".into())));
+        }
+        let outputs = self.engine.output_names().len();
+        let mut results: Vec<Columns> = (0..outputs)
+            .map(|_| Columns {
+                value: vec![0.0; rows],
+                reasons: self.with_reasons.then(|| Reasons {
+                    coverage: vec![0.0; rows],
+                    dominant_rule: vec![0; rows],
+                    clamped: vec![false; rows],
+                }),
+            })
+            .collect();
+        let mut blocks = blocks(rows, &mut results);
+        if rows > BLOCK && self.threads != Some(1) && self.sequence.is_none() && self.pool.is_none()
+        {
+            self.pool = Some(threads::pool(self.threads)?);
+        }
+        // As many blocks at once as take about this long: then Ctrl-C is heard.
+        const LISTEN_EVERY: Duration = Duration::from_millis(50);
+        let (mut from, mut at_once) = (0, 16);
+        while from < blocks.len() {
+            let to = blocks.len().min(from + at_once);
+            let begun = Instant::now();
+            let group = &mut blocks[from..to];
+            let evaluator = &mut *self;
+            py.detach(move || evaluator.group(columns, group))
+                .map_err(|error| data_error(error, None))?;
+            py.check_signals()?;
+            if begun.elapsed() < LISTEN_EVERY {
+                at_once *= 2;
+            }
+            from = to;
+        }
+        drop(blocks);
+        Ok(results)
+    }
+
+    fn group(&mut self, columns: &[&[f64]], group: &mut [Block<'_>]) -> Result<(), EvaluateError> {
+        let engine = self.engine;
+        let each = |block: &mut Block<'_>| {
+            block.fill(columns, |part, outcomes| {
+                engine.evaluate_batch_into(part, outcomes)
+            })
+        };
+        match (&mut self.sequence, &self.pool) {
+            (Some(sequence), _) => group.iter_mut().try_for_each(|block| {
+                block.fill(columns, |part, outcomes| {
+                    sequence.evaluate_batch_into(part, outcomes)
+                })
+            }),
+            (None, Some(pool)) => pool.install(|| group.par_iter_mut().try_for_each(each)),
+            (None, None) => group.iter_mut().try_for_each(each),
+        }
+    }
+}
+
+/// The result in blocks of rows.
+fn blocks(rows: usize, results: &mut [Columns]) -> Vec<Block<'_>> {
+    let mut blocks: Vec<Block<'_>> = (0..rows.div_ceil(BLOCK))
+        .map(|i| Block {
+            first: i * BLOCK,
+            outputs: Vec::new(),
+        })
+        .collect();
+    for result in results {
+        let mut reasons = result.reasons.as_mut().map(|reasons| {
+            reasons
+                .coverage
+                .chunks_mut(BLOCK)
+                .zip(reasons.dominant_rule.chunks_mut(BLOCK))
+                .zip(reasons.clamped.chunks_mut(BLOCK))
+        });
+        for (block, value) in blocks.iter_mut().zip(result.value.chunks_mut(BLOCK)) {
+            let reasons = reasons.as_mut().and_then(Iterator::next);
+            block.outputs.push(BlockOutput {
+                value,
+                reasons: reasons.map(|((coverage, rule), clamped)| (coverage, rule, clamped)),
+            });
+        }
+    }
+    blocks
+}
+
+impl Block<'_> {
+    fn fill(
+        &mut self,
+        columns: &[&[f64]],
+        evaluate: impl FnOnce(&[&[f64]], &mut [engine::Outcome]) -> Result<(), EvaluateError>,
+    ) -> Result<(), EvaluateError> {
+        let rows = self.outputs.first().map_or(0, |output| output.value.len());
+        let part = self.first..self.first + rows;
+        let part: Vec<&[f64]> = columns
+            .iter()
+            .map(|column| column.get(part.clone()).unwrap_or_default())
+            .collect();
+        let each = self.outputs.len();
+        let mut outcomes = vec![engine::Outcome::default(); rows * each];
+        evaluate(&part, &mut outcomes)?;
+        for (i, output) in self.outputs.iter_mut().enumerate() {
+            let outcomes = outcomes.iter().skip(i).step_by(each);
+            for (to, outcome) in output.value.iter_mut().zip(outcomes.clone()) {
+                *to = outcome.value().unwrap_or(f64::NAN);
+            }
+            let Some((coverage, rule, clamped)) = &mut output.reasons else {
+                continue;
+            };
+            let to = coverage
+                .iter_mut()
+                .zip(rule.iter_mut())
+                .zip(clamped.iter_mut());
+            for (((coverage, rule), clamped), outcome) in to.zip(outcomes) {
+                *coverage = outcome.coverage;
+                *rule = outcome.dominant.map_or(NO_RULE, |rule| rule as i32);
+                *clamped = outcome.clamped;
+            }
+        }
+        Ok(())
+    }
+}

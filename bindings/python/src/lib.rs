@@ -1,0 +1,40 @@
+//! The native half of the Python package `flagred`: it converts types and calls the libraries.
+//!
+//! The other half, `python/flagred`, holds what is plain Python: data classes, errors, views for editing, other libraries'
+//! frames.
+
+mod arrays;
+mod arrow;
+mod assessment;
+mod errors;
+mod evaluate;
+mod explanation;
+mod flight;
+mod learning;
+mod map;
+mod monitor;
+mod outcome;
+mod profile;
+mod rule_set;
+mod table;
+mod threads;
+
+#[pyo3::pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::{
+        assessment::AssessmentData,
+        explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
+        flight::FlightData,
+        learning::{_learn, _tune},
+        map::DecisionMap,
+        monitor::{MonitorData, Update},
+        outcome::{Outcome, Outcomes},
+        profile::Profile,
+        rule_set::RuleSet,
+        table::Table,
+    };
+
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+}

@@ -1,0 +1,180 @@
+//! A flight followed sample by sample.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use flagred::{
+    flight::Assessor,
+    monitor::{Craft, Sample, Update as Said},
+};
+use pyo3::prelude::*;
+use report::{document::FindingDocument, finding::Teller};
+use serde_json::json;
+
+use crate::{
+    assessment::{said, steps},
+    errors::data_error,
+    profile::Profile,
+    table::Table,
+};
+use flagred::loaded::Loaded;
+
+/// What a monitor knows after a sample.
+#[pyclass(frozen, get_all, module = "flagred")]
+pub(crate) struct Update {
+    /// The time of the sample in seconds.
+    t_s: f64,
+    /// The risk in %, from 0 to 100; None where it is unknown.
+    risk: Option<f64>,
+    /// Why the risk is unknown; None where it is known.
+    unknown: Option<String>,
+    /// The elevated risk in %; None where the risk is unknown.
+    elevated_risk: Option<f64>,
+    /// ``GOOD``, ``INFO``, ``WARN`` or ``FAIL``; None on the ground and where the risk has been unknown for long.
+    level: Option<String>,
+    /// The new level where this sample changed it.
+    change: Option<String>,
+    /// The largest firing strength of a rule, in [0, 1].
+    coverage: Option<f64>,
+    /// Whether the risk is interpolated because no rule applies.
+    filled: Option<bool>,
+    /// The index of the rule with the largest firing strength.
+    dominant_rule: Option<usize>,
+    /// Whether the risk counts for levels and findings.
+    judged: bool,
+}
+
+#[pymethods]
+impl Update {
+    fn __repr__(&self) -> String {
+        let risk = match (&self.risk, &self.unknown) {
+            (Some(risk), _) => format!("risk={risk:.1} %"),
+            (None, why) => format!("unknown='{}'", why.as_deref().unwrap_or_default()),
+        };
+        let level = self.level.as_deref().unwrap_or("None");
+        format!("Update(t_s={}, {risk}, level={level})", self.t_s)
+    }
+}
+
+/// Follows a flight sample by sample; `flagred.Monitor` is made of it.
+#[pyclass(frozen, subclass, module = "flagred._core")]
+pub(crate) struct MonitorData {
+    loaded: Arc<Loaded>,
+    signals: Vec<String>,
+    /// Made with the first sample, which tells how many motors there are.
+    followed: Mutex<Option<Followed>>,
+    step_s: Option<f64>,
+}
+
+struct Followed {
+    assessor: Assessor,
+    motors: usize,
+}
+
+impl MonitorData {
+    fn followed(&self) -> MutexGuard<'_, Option<Followed>> {
+        self.followed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn teller(&self) -> Teller<'_> {
+        Teller {
+            model: self.loaded.estimator.model(),
+            motors: &[],
+        }
+    }
+
+    fn begin(&self, motors: usize) -> PyResult<Followed> {
+        let signals: Vec<&str> = self.signals.iter().map(String::as_str).collect();
+        let craft = Craft::new(motors).with_signals(&signals);
+        let assessor = Assessor::new(&self.loaded.estimator, craft, self.step_s);
+        let assessor = assessor.map_err(|error| data_error(error, None))?;
+        Ok(Followed { assessor, motors })
+    }
+}
+
+#[pymethods]
+impl MonitorData {
+    #[new]
+    #[pyo3(signature = (profile, signals = None, step_s = None))]
+    fn new(profile: &Profile, signals: Option<Vec<String>>, step_s: Option<f64>) -> Self {
+        MonitorData {
+            loaded: Arc::clone(&profile.loaded),
+            signals: signals.unwrap_or_default(),
+            followed: Mutex::new(None),
+            step_s,
+        }
+    }
+
+    fn _push(
+        &self,
+        t_s: f64,
+        commands: Vec<f64>,
+        in_air: bool,
+        signals: Vec<f64>,
+    ) -> PyResult<Update> {
+        let mut followed = self.followed();
+        let followed = match &mut *followed {
+            Some(followed) => followed,
+            none => none.insert(self.begin(commands.len())?),
+        };
+        for (what, expected, given) in [
+            ("commands", followed.motors, commands.len()),
+            ("signals", self.signals.len(), signals.len()),
+        ] {
+            if expected != given {
+                return Err(data_error(
+                    format!("{expected} {what} are followed, and {given} were given"),
+                    None,
+                ));
+            }
+        }
+        let update = followed.assessor.push(&Sample {
+            t_s,
+            motors: &commands,
+            in_air,
+            signals: &signals,
+        });
+        Ok(self.update(&update))
+    }
+
+    /// The findings that are over after the latest sample, in JSON.
+    fn _ended(&self) -> String {
+        let followed = self.followed();
+        let ended = followed
+            .as_ref()
+            .map_or(&[][..], |followed| followed.assessor.ended());
+        let ended: Vec<_> = ended
+            .iter()
+            .map(|f| FindingDocument::new(f, self.teller()))
+            .collect();
+        json!(ended).to_string()
+    }
+
+    /// Ends the flight: its assessment in JSON, and its steps; None without a sample.
+    fn _finish(&self) -> PyResult<Option<(String, Table)>> {
+        let Some(mut followed) = self.followed().take() else {
+            return Ok(None);
+        };
+        let assessed = followed.assessor.finish();
+        Ok(Some((said(&assessed, self.teller()), steps(&assessed)?)))
+    }
+}
+
+impl MonitorData {
+    fn update(&self, update: &Said) -> Update {
+        let risk = update.risk.as_ref();
+        let estimate = risk.ok();
+        let profile = self.loaded.estimator.profile();
+        Update {
+            t_s: update.t_s,
+            risk: estimate.map(|estimate| estimate.risk_pct),
+            unknown: risk.err().map(|why| why.explain(profile)),
+            elevated_risk: update.elevated_risk_pct,
+            level: update.level.map(|level| level.to_string()),
+            change: update.change.map(|level| level.to_string()),
+            coverage: estimate.map(|estimate| estimate.coverage),
+            filled: estimate.map(|estimate| estimate.filled_from.is_some()),
+            dominant_rule: estimate.and_then(|estimate| estimate.dominant_rule),
+            judged: update.judged,
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Threads: pools that survive a fork, and work that Ctrl-C ends.
+
+use std::{
+    collections::HashMap,
+    process,
+    sync::{Arc, Mutex, PoisonError, mpsc},
+    thread,
+    time::Duration,
+};
+
+use pyo3::{exceptions::PyRuntimeError, prelude::*};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// The pools of this process, by the number of their threads.
+type Pools = (u32, HashMap<usize, Arc<ThreadPool>>);
+
+/// A pool of so many threads; of as many as there are cores for `None`.
+///
+/// A fork copies a pool without its threads, which would wait for ever. So a child process makes its own.
+pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
+    static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
+    let threads = threads.unwrap_or_else(|| thread::available_parallelism().map_or(1, Into::into));
+    let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let here = process::id();
+    if let Some((_, pools)) = guard.take_if(|(process, _)| *process != here) {
+        // Their threads are in the parent: ending them here would wait for ever.
+        std::mem::forget(pools);
+    }
+    let (_, pools) = guard.get_or_insert_with(|| (here, HashMap::new()));
+    if let Some(pool) = pools.get(&threads) {
+        return Ok(Arc::clone(pool));
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = Arc::new(pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
+    pools.insert(threads, Arc::clone(&pool));
+    Ok(pool)
+}
+
+/// Does long work on another thread while this one listens for Ctrl-C. After Ctrl-C nobody waits for the work.
+pub(crate) fn interruptible<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    /// Work that is shorter is not noticed to wait.
+    const LISTEN_EVERY: Duration = Duration::from_millis(50);
+    let (sender, mut receiver) = mpsc::sync_channel(1);
+    thread::spawn(move || sender.send(work()));
+    loop {
+        let receiver = &mut receiver;
+        match py.detach(move || receiver.recv_timeout(LISTEN_EVERY)) {
+            Ok(done) => return Ok(done),
+            Err(mpsc::RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(mpsc::RecvTimeoutError::Disconnected) => {
+                return Err(PyRuntimeError::new_err("the work ended without a result"));
+            }
+        }
+    }
+}

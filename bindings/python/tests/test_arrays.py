@@ -1,0 +1,106 @@
+"""NumPy arrays: any shape, any strides, any type of number."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from conftest import GAPS, TIP
+
+import flagred
+
+MODEL = flagred.loads(TIP)
+
+
+def bits(array):
+    return np.asarray(array, dtype=np.float64).view(np.uint64)
+
+
+def one_by_one(model, *arrays):
+    arrays = np.broadcast_arrays(*arrays)
+    values = [model(*(float(value) for value in row)) for row in zip(*(array.ravel() for array in arrays))]
+    return np.array(values, dtype=np.float64).reshape(arrays[0].shape)
+
+
+def test_arrays_have_the_bits_of_single_calls():
+    service, food = np.random.default_rng(0).random((2, 5000)) * 14 - 2
+    service[::17], food[::23] = np.nan, np.inf
+    expected = one_by_one(MODEL, service, food)
+    for threads in (None, 1, 2, 5):
+        assert np.array_equal(bits(MODEL(service, food, threads=threads)), bits(expected))
+    outcomes = MODEL.evaluate(service, food)
+    assert np.array_equal(bits(outcomes.value), bits(expected))
+    for i in range(0, 5000, 191):
+        single = MODEL.evaluate(service[i], food[i])
+        rule = None if outcomes.dominant_rule[i] is np.ma.masked else int(outcomes.dominant_rule[i])
+        assert (outcomes.coverage[i], rule, bool(outcomes.clamped[i])) == (
+            single.coverage,
+            single.dominant_rule,
+            single.clamped,
+        )
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data())
+def test_any_arrays_that_broadcast(data):
+    shapes = data.draw(hnp.mutually_broadcastable_shapes(num_shapes=2, max_dims=3, max_side=5))
+    kinds = st.sampled_from(["f8", "f4", "f2", "i1", "i4", "i8", "u2", "u8", "?", ">f8", ">i4"])
+    arrays = []
+    for shape in shapes.input_shapes:
+        array = data.draw(hnp.arrays(data.draw(kinds), shape))
+        if array.ndim and data.draw(st.booleans()):
+            array = array[::-1]
+        if array.ndim > 1 and data.draw(st.booleans()):
+            array = np.asfortranarray(array)
+        if array.ndim and data.draw(st.booleans()):
+            array = np.repeat(array, 2, axis=0)[::2]
+        arrays.append(array)
+    before = [array.copy() for array in arrays]
+    found = MODEL(*arrays)
+    assert np.shape(found) == shapes.result_shape
+    assert np.array_equal(bits(found), bits(one_by_one(MODEL, *arrays)))
+    for array, copy in zip(arrays, before):
+        assert np.array_equal(array, copy, equal_nan=array.dtype.kind == "f")
+
+
+def test_what_stands_for_unknown():
+    expected = MODEL([8.0, np.nan, 8.0], 9)
+    assert np.isnan(expected[1]) and not np.isnan(expected[0])
+    masked = np.ma.masked_array([8, 7, 8], mask=[0, 1, 0])
+    for given in ([8, None, 8], np.array([8, None, 8], dtype=object), masked):
+        assert np.array_equal(MODEL(given, 9), expected, equal_nan=True)
+
+
+def test_shapes_at_the_edges():
+    assert MODEL([], []).shape == (0,)
+    assert MODEL(np.zeros((0, 3)), 1.0).shape == (0, 3)
+    assert type(MODEL(np.float32(8), np.int8(9))) is float
+    assert MODEL(np.array(8.0), 9) == MODEL(8, 9)
+    assert MODEL(np.zeros((2, 1)), np.zeros(3)).shape == (2, 3)
+    read_only = np.array([8.0, 7.0])
+    read_only.flags.writeable = False
+    assert MODEL(read_only, read_only).shape == (2,)
+
+
+def test_what_holds_no_numbers_is_refused():
+    for wrong in (np.array(["a"]), np.array(["2020-01-01"], dtype="M8[D]"), np.array([1j]), [object()]):
+        with pytest.raises(flagred.DataError):
+            MODEL(wrong, 1.0)
+
+
+def test_several_outputs_by_name():
+    model = flagred.loads(GAPS)
+    heat = np.linspace(-5, 45, 2001)
+    answers = model(heat)
+    assert list(answers) == ["speed", "lamp"]
+    for i in range(0, 2001, 101):
+        single = model(heat[i])
+        assert np.array_equal([answers[name][i] for name in answers], list(single.values()), equal_nan=True)
+    assert np.isnan(answers["speed"]).any() and not np.isnan(answers["lamp"]).any()
+
+
+def test_a_value_that_is_kept_follows_the_order_of_rows(keeps):
+    heat = np.concatenate([[22.0], np.full(3000, 30.0), np.full(3000, 22.0), [10.0, 22.0]])
+    speed = keeps(heat)
+    assert np.isnan(speed[0]) and speed[1] == speed[-3] == keeps(30) and speed[-1] == keeps(10)

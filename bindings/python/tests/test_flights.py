@@ -1,0 +1,171 @@
+"""Flights: logs, assessments, a monitor."""
+
+import io
+import json
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import flagred
+
+CSV = "t_s,motor1,motor2,motor3,motor4,in_air\n" + "".join(
+    f"{i / 50},{'0,1,0.05,1' if i > 600 else '0.4,0.4,0.41,0.41'},1\n" for i in range(1500)
+)
+
+
+@pytest.fixture(scope="module")
+def flight(steady):
+    return flagred.read_log(steady)
+
+
+def test_a_log_from_a_path_bytes_and_a_file(steady, flight):
+    for log in (str(steady), steady.read_bytes(), io.BytesIO(steady.read_bytes())):
+        again = flagred.read_log(log)
+        assert np.array_equal(again.commands, flight.commands, equal_nan=True)
+    with steady.open("rb") as file:
+        assert flagred.read_log(file).name == str(steady)
+
+
+def test_what_a_log_holds(flight):
+    assert (flight.format, flight.vehicle.frame, len(flight.motors)) == ("ArduPilot DataFlash", "QUAD/X", 4)
+    assert flight.range.unit == "us" and flight.range.high == 2000
+    assert flight.in_air.duration_s == pytest.approx(129.14, abs=0.01)
+    assert flight.in_air.spans[0].start_s < flight.in_air.spans[0].end_s
+    assert flight.report.truncated and not flight.report.is_clean
+    assert flight.geometry.basis == "declared" and len(flight.geometry.factors) == 4
+    assert flight.modes[0].t_s <= flight.modes[-1].t_s
+    assert all(parameter.name == name for name, parameter in flight.parameters.items()) and flight.parameters
+    assert flight.commands.shape == flight.raw_commands.shape == (len(flight.t_s), 4)
+    assert np.nanmin(flight.commands) >= 0 and np.nanmax(flight.commands) <= 1
+    assert (np.diff(flight.t_s) >= 0).all()
+    table = flight.commands_table
+    assert table.keys() == ["t_s", "motor1", "motor2", "motor3", "motor4"]
+    assert np.array_equal(table["motor3"], flight.commands[:, 2], equal_nan=True)
+
+
+def test_signals(flight):
+    roll = flight.signals["roll_deg"]
+    assert (roll.unit, roll.source) == ("deg", "ATT.Roll") and len(roll) == len(roll.values)
+    assert roll.rate_hz == pytest.approx(1 / np.median(np.diff(roll.t_s)), rel=0.05)
+    assert np.array_equal(roll.base["roll_deg"], roll.values, equal_nan=True)
+    assert "roll_deg" in flight.signals and "wind" not in flight.signals
+    some = flagred.read_log(CSV.encode(), signals=[])
+    assert len(some.signals) == 0 and some.commands.shape == (1500, 4)
+
+
+def test_an_assessment_is_that_of_the_command_line(flight):
+    assessment = flagred.assess(flight)
+    document = json.loads(assessment.to_json())
+    assert document["schema"] == "flagred.assess/1"
+    assert assessment.verdict == document["verdict"] == "GOOD"
+    assert assessment.reason is None and str(assessment).startswith("GOOD ")
+    assert assessment.summary.risk_max.value_pct == document["summary"]["risk_max"]["value_pct"]
+    steps = assessment.steps
+    assert len(steps) == len(document["steps"]) > 1000
+    for name in ("risk", "elevated_risk", "coverage", "margin"):
+        expected = [np.nan if step[name] is None else step[name] for step in document["steps"]]
+        assert np.array_equal(steps[name], expected, equal_nan=True), name
+    for name, first in document["steps"][500]["inputs"].items():
+        assert steps[name][500] == first
+    rules = [np.nan if step["dominant_rule"] is None else step["dominant_rule"] - 1 for step in document["steps"]]
+    assert np.array_equal(steps["dominant_rule"], rules, equal_nan=True)
+
+
+def test_findings_and_the_report():
+    assessment = flagred.assess(CSV.encode(), "flagred-paper")
+    assert assessment.verdict == "FAIL" and assessment.profile.name == "flagred-paper"
+    worst = assessment.findings[0]
+    document = json.loads(assessment.to_json())["findings"][0]
+    assert (worst.severity, worst.from_s, worst.value_pct) == ("FAIL", document["from_s"], document["value_pct"])
+    assert worst.cause.rule == document["cause"]["rule"] - 1 and worst.text == str(worst) == document["text"]
+    assert worst.motor.number == document["motor"]["number"]
+    html = assessment.html()
+    assert html.startswith("<!DOCTYPE html>") and "FAIL" in html and "<path" in html
+    assert assessment.svg().startswith("<svg ")
+    assert assessment._repr_html_().startswith("<iframe srcdoc=")
+    assert len(flagred.assess(CSV.encode(), step_s=None).steps) == 0
+    with pytest.raises(flagred.DataError, match="a step of 0"):
+        flagred.assess(CSV.encode(), step_s=0)
+
+
+def test_no_answer_says_why():
+    assessment = flagred.assess(b"t_s,motor1,motor2,motor3,motor4\n0,0.4,0.4,0.5,0.5\n")
+    assert assessment.verdict == "NA" and assessment.reason and assessment.summary.risk_max is None
+    assert "no verdict" in str(assessment)
+
+
+def test_what_is_no_log(tmp_path):
+    with pytest.raises(flagred.LogError, match="is empty"):
+        flagred.read_log(b"")
+    with pytest.raises(flagred.LogError, match="PNG picture"):
+        flagred.read_log(b"\x89PNG\r\n\x1a\n" + bytes(100))
+    with pytest.raises(FileNotFoundError) as error:
+        flagred.read_log(tmp_path / "none.bin")
+    assert error.value.filename == str(tmp_path / "none.bin")
+    with pytest.raises(OSError):
+        flagred.read_log(tmp_path)
+
+
+def test_profiles(tmp_path):
+    profile = flagred.Profile()
+    assert profile.name == "flagred" and "at_limit" in profile.inputs
+    again = pickle.loads(pickle.dumps(profile))
+    assert (again.text, again.rules_text, again.inputs) == (profile.text, profile.rules_text, profile.inputs)
+    file = tmp_path / "mine.yaml"
+    file.write_text(flagred.Profile("flagred-paper").text, encoding="utf-8")
+    assert flagred.Profile(str(file)).inputs == ["margin", "spread"]
+    file.write_text(file.read_text(encoding="utf-8").replace("\ninputs:", "\ninptus:"), encoding="utf-8")
+    with pytest.raises(flagred.RuleSetError) as error:
+        flagred.Profile(str(file))
+    assert str(file) in str(error.value)
+    with pytest.raises(FileNotFoundError, match="shipped profiles are flagred and flagred-paper"):
+        flagred.Profile("none")
+    file.write_text(flagred.loads(profile.rules_text).to_yaml(), encoding="utf-8")
+    with pytest.raises(flagred.DataError, match="is a rule set, not a profile"):
+        flagred.Profile(str(file))
+
+
+def test_a_monitor_says_what_the_assessment_says():
+    flight = flagred.read_log(CSV.encode())
+    assessment = flagred.assess(flight, "flagred-paper", step_s=None)
+    monitor = flagred.Monitor("flagred-paper")
+    levels = []
+    for t_s, commands in zip(flight.t_s, flight.commands):
+        update = monitor.push(float(t_s), commands)
+        assert (update.risk is None) == (update.unknown is not None)
+        levels.append(update.level)
+    assert levels[300] == "GOOD" and levels[-1] == "FAIL"
+    followed = monitor.finish()
+    assert followed.verdict == assessment.verdict == "FAIL"
+    assert followed.findings[0].from_s == assessment.findings[0].from_s
+    assert followed.summary.risk_max == assessment.summary.risk_max
+    assert monitor.finish() is None
+    assert monitor.push(0.0, [0.5] * 4, in_air=False).unknown == "on the ground"
+    with pytest.raises(flagred.DataError, match="4 commands are followed, and 3 were given"):
+        monitor.push(1.0, [0.5] * 3)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.one_of(st.binary(max_size=2000), st.binary(max_size=200).map(lambda data: b"\xa3\x95\x80\x80" + data)))
+def test_any_bytes_are_read_or_refused(data):
+    try:
+        flagred.assess(data).html()
+    except flagred.LogError:
+        pass
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.data())
+def test_damaged_logs_are_read(steady, data):
+    log = bytearray(steady.read_bytes()[: data.draw(st.integers(0, 300_000))])
+    for _ in range(data.draw(st.integers(0, 20)) if log else 0):
+        log[data.draw(st.integers(0, len(log) - 1))] = data.draw(st.integers(0, 255))
+    try:
+        flight = flagred.read_log(bytes(log))
+    except flagred.LogError:
+        return
+    assert flight.commands.shape == (len(flight.t_s), len(flight.motors))
+    assert flagred.assess(flight).verdict in ("GOOD", "WARN", "FAIL", "NA")

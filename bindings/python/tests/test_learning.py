@@ -1,0 +1,162 @@
+"""Rules and numbers from rows."""
+
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import flagred
+
+FAN = """\
+fuzzy: 1
+name: fan
+inputs: {heat: {range: [0, 40], partition: {cool: 5, hot: 35}}}
+outputs: {speed: {range: [0, 10], terms: {slow: {singleton: 2}, fast: {singleton: 8}}}}
+rules: [IF heat IS cool THEN speed IS slow, IF heat IS hot THEN speed IS fast]
+"""
+
+HEAT = np.arange(41.0)
+SPEED = 2 + 6 * np.clip((HEAT - 20) / 10, 0, 1)
+
+
+@pytest.fixture
+def fan() -> flagred.Model:
+    return flagred.loads(FAN)
+
+
+def frames(columns: dict) -> list:
+    """The columns in each library that is there."""
+    made = [columns]
+    for name, make in [
+        ("pandas", lambda module: module.DataFrame(columns)),
+        ("polars", lambda module: module.DataFrame(columns)),
+        ("pyarrow", lambda module: module.table(columns)),
+        ("pyarrow", lambda module: module.RecordBatch.from_pydict(columns)),
+        ("duckdb", lambda module: module.from_arrow(pytest.importorskip("pyarrow").table(columns))),
+    ]:
+        try:
+            made.append(make(__import__(name)))
+        except ImportError:
+            continue
+    return made
+
+
+def test_tuning_finds_the_numbers_and_leaves_the_model(fan):
+    before = fan.copy()
+    tuned = flagred.tune(fan, {"heat": HEAT, "speed": SPEED})
+    assert fan == before
+    assert tuned.before > 1 and tuned.after < 0.01
+    assert (tuned.rows, tuned.refused, tuned.without_value, tuned.validation) == (41, [], 0, None)
+    assert {(one.of, one.name) for one in tuned.moved} >= {("heat.cool", "peak"), ("heat.hot", "peak")}
+    assert np.allclose(tuned.model(HEAT), SPEED, atol=0.1)
+
+
+def test_all_frames_give_the_same_bits(fan):
+    columns = {"heat": HEAT, "speed": SPEED, "vehicle": np.where(HEAT < 20, "a", "b"), "count": 1 + HEAT % 3}
+    texts = set()
+    for data in frames(columns):
+        tuned = flagred.tune(fan, data, weight="count", group_by="vehicle", folds=2, iterations=5)
+        texts.add(tuned.model.to_yaml())
+        assert tuned.validation is not None and tuned.validation.folds == 2
+        worth = tuned.validation.after
+        assert worth.low <= worth.value <= worth.high
+    assert len(texts) == 1
+
+
+def test_settings_of_tuning_hold(fan):
+    data = {"heat": HEAT, "flow": SPEED}
+    tuned = flagred.tune(fan, data, only=["speed"], columns={"speed": "flow"}, digits=2)
+    assert tuned.model.inputs["heat"].terms == fan.inputs["heat"].terms
+    assert {one.of for one in tuned.moved} <= {"speed.slow", "speed.fast"} and tuned.moved
+    assert all(float(f"{one.after:.2g}") == one.after for one in tuned.moved)
+    first, second = (flagred.tune(fan, data, columns={"speed": "flow"}, starts=2, seed=4, threads=n) for n in (1, 2))
+    assert first == second
+    rising = flagred.tune(fan, data, columns={"speed": "flow"}, rising=["heat"]).model
+    assert np.all(np.diff(rising(np.linspace(0, 40, 500))) >= 0)
+    with pytest.raises(flagred.DataError, match="not decreasing in `heat`"):
+        flagred.tune(fan, data, columns={"speed": "flow"}, falling=["heat"])
+    with pytest.raises(flagred.DataError, match="nothing may move"):
+        flagred.tune(fan, data, columns={"speed": "flow"}, fix=["heat", "speed"])
+    with pytest.raises(flagred.DataError, match="no variable and no term `heet`"):
+        flagred.tune(fan, data, columns={"speed": "flow"}, only=["heet"])
+
+
+def test_rules_are_learned(fan):
+    learned = flagred.learn(fan, {"heat": [1, 9, 39, 38, 37], "speed": [2, 2, 8, 8, 2]}, resolve="mean")
+    assert [rule.text for rule in learned.model.rules] == [
+        "IF heat IS cool THEN speed IS slow",
+        "IF heat IS hot THEN speed IS fast",
+    ]
+    assert (learned.rows, learned.rules, learned.conflicts, learned.missing) == (5, 2, 1, 0)
+    assert learned.validation is not None and learned.validation.rows + learned.validation.without_prediction == 5
+    kept = flagred.learn(fan, {"heat": [1], "speed": [2]}, resolve="mean", keep_rules=True, validation=False)
+    assert len(kept.model.rules) == 3 and kept.validation is None
+
+
+def test_learned_rules_that_do_not_rise_are_told(fan):
+    data = {"heat": [1, 2, 38, 39], "speed": [8, 8, 2, 2]}
+    learned = flagred.learn(fan, data, resolve="mean", rising=["heat"], validation=False)
+    assert learned.counterexamples == [] and learned.moved > 0
+    fan.rules[0].weight = fan.rules[1].weight = 0.9
+    data = {"heat": [1, 2], "speed": [2, 2]}
+    kept = flagred.learn(fan, data, resolve="mean", falling=["heat"], keep_rules=True, validation=False)
+    assert len(kept.counterexamples) == 1 and "`speed` rises from" in kept.counterexamples[0]
+
+
+def test_bad_rows_are_refused_or_left_out(fan):
+    data = {"heat": [1, None, 50, 39], "speed": [2, 2, 8, 8]}
+    with pytest.raises(flagred.DataError, match="2 rows cannot be used\n  row 1: `heat` is not a finite number\n  row 2"):
+        flagred.learn(fan, data, resolve="mean")
+    learned = flagred.learn(fan, data, resolve="mean", skip_bad_rows=True)
+    assert learned.rows == 2 and len(learned.refused) == 2
+    assert flagred.tune(fan, data, skip_bad_rows=True, iterations=1).rows == 3
+    with pytest.raises(flagred.DataError, match="must be 0 or 1"):
+        flagred.tune(fan, {"heat": [1], "speed": [2]}, loss="log")
+
+
+@pytest.mark.parametrize(
+    ("data", "options", "message"),
+    [
+        ({"heat": [1]}, {}, "no column `speed`\n  help: there are `heat`"),
+        ({"heat": [1, 2], "speed": [1]}, {}, "not of one length: 1, 2"),
+        ({"heat": ["a"], "speed": [1]}, {}, "holds no numbers"),
+        (7, {}, "`int` is no table"),
+        ({"heat": [1], "speed": [1]}, {"columns": {"spede": "x"}}, "no variable of the rule set"),
+        ({"heat": [1], "speed": [1]}, {"weight": "w"}, "no column `w`"),
+        ({"heat": [], "speed": []}, {}, "no rows"),
+    ],
+)
+def test_data_that_cannot_be_used(fan, data, options, message):
+    with pytest.raises(flagred.DataError, match=message):
+        flagred.learn(fan, data, **options)
+    with pytest.raises(flagred.DataError, match=message):
+        flagred.tune(fan, data, **options)
+
+
+@pytest.mark.parametrize("call", [flagred.learn, flagred.tune])
+def test_unknown_words(fan, call):
+    word = {flagred.learn: "resolve", flagred.tune: "loss"}[call]
+    with pytest.raises(flagred.DataError, match=f"`{word}` is `best`\n  help: write"):
+        call(fan, {"heat": [1], "speed": [1]}, **{word: "best"})
+
+
+def test_a_rule_set_without_rules_cannot_be_tuned():
+    model = flagred.Model("fan").input("heat", range=(0, 1), partition=["a", "b"])
+    with pytest.raises(flagred.RuleSetError):
+        flagred.tune(model, {"heat": [1]})
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are sent as POSIX does")
+def test_interrupts_end_a_search(tip):
+    random = np.random.default_rng(0)
+    rows = 100_000
+    data = {"service": random.uniform(0, 10, rows), "food": random.uniform(0, 10, rows), "tip": random.uniform(5, 25, rows)}
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        flagred.tune(tip, data, starts=1000, iterations=10_000)
+    assert time.monotonic() - begun < 30

@@ -1,0 +1,296 @@
+"""Rule sets: reading, asking, explaining, maps, copies."""
+
+import copy
+import math
+import pickle
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+from conftest import ROOT, TIP
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import flagred
+
+
+def test_numbers_by_place_and_by_name(tip):
+    value = tip(8, 9)
+    assert type(value) is float
+    assert value == tip(service=8, food=9) == tip({"food": 9, "service": 8}) == tip(8.0, np.float64(9))
+    outcome = tip.evaluate(food=9, service=8)
+    assert (outcome.value, float(outcome), outcome.dominant_rule, outcome.clamped) == (value, value, 2, False)
+    assert outcome.state == "defined"
+    assert outcome.coverage == 0.9
+    assert outcome == tip.evaluate(8, 9) != tip.evaluate(8, 8)
+    assert tip.evaluate(11, 9).clamped
+    assert repr(outcome).startswith("Outcome(value=18.39")
+
+
+def test_unknown_is_no_number(tip, gaps):
+    for unknown in (None, math.nan, math.inf):
+        assert math.isnan(tip(8, unknown))
+        assert tip.evaluate(8, unknown).value is None
+        assert tip.evaluate(8, unknown).state == "input_not_finite"
+    answers = gaps.evaluate(20)
+    assert answers["speed"].value is None and answers["speed"].dominant_rule is None
+    assert answers["speed"].state == "no_rule_fired"
+    assert (answers["lamp"].value, answers["lamp"].state) == (0.25, "default")
+    assert math.isnan(gaps(20)["speed"]) and gaps(20)["lamp"] == 0.25
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda tip: tip(1), "the model has 2 inputs, but 1 values were given"),
+        (lambda tip: tip(servce=1, food=2), "there is no input `servce`\n  help: did you mean `service`?"),
+        (lambda tip: tip(service=1), "input `food` has no value"),
+        (lambda tip: tip(1, food=2), "values are given by place and by name"),
+        (lambda tip: tip("a", "b"), "holds no numbers"),
+        (lambda tip: tip([1, 2], [1, 2, 3]), "do not go together"),
+        (lambda tip: tip([1], [2], threads=0), "0 threads"),
+        (lambda tip: tip.map(bill=3), "there is no input `bill`"),
+        (lambda tip: tip.map(points=1), "at least 2 points"),
+        (lambda tip: tip.map(output="top"), "did you mean `tip`?"),
+        (lambda tip: tip.explain([1, 2], [3, 4]), "one point is explained at a time"),
+        (lambda tip: tip.explain(1, math.nan), "not a finite number"),
+        (lambda tip: tip.check(monotone=["service"]), "increasing"),
+    ],
+)
+def test_mistakes_are_told(tip, ask, message):
+    with pytest.raises(flagred.DataError) as error:
+        ask(tip)
+    assert message in str(error.value)
+
+
+def test_a_model_that_must_fire_says_where_it_does_not():
+    model = flagred.loads(TIP.replace("high]}\nrules", "high], when_no_rule_fires: error}\nrules"))
+    model.rules[1] = "IF service IS good AND food IS delicious THEN tip IS medium"
+    del model.rules[2]
+    del model.rules[0]
+    with pytest.raises(flagred.DataError, match="no rule fired for output `tip`"):
+        model(0, 0)
+    assert math.isnan(model([0.0], [0.0])[0])
+
+
+def test_errors_are_drawn_and_listed():
+    with pytest.raises(flagred.RuleSetError) as error:
+        flagred.loads(TIP.replace("IS good", "IS god").replace("range: [0, 30]", "range: [30, 0]"))
+    first, second = error.value.findings
+    assert (second.code, second.line, second.column, second.severity) == ("unknown-term", 10, 19, "error")
+    assert (second.message, second.help) == ("input `service` has no term `god`", "did you mean `good`?")
+    assert first.line == 7 and first.file == "<text>"
+    assert "--> <text>:10:19" in str(error.value) and str(error.value).count("^") >= 2
+    assert str(second) in str(error.value)
+    again = pickle.loads(pickle.dumps(error.value))
+    assert again.findings == error.value.findings and str(again) == str(error.value)
+    assert isinstance(error.value, flagred.FlagredError) and isinstance(error.value, ValueError)
+
+
+def test_files(tmp_path, tip):
+    tip.save(tmp_path / "tip.yaml")
+    assert flagred.load(tmp_path / "tip.yaml") == tip
+    (tmp_path / "wide.yaml").write_bytes(TIP.encode("utf-16"))
+    assert flagred.load(str(tmp_path / "wide.yaml")) == tip
+    (tmp_path / "latin.yaml").write_bytes(b"fuzzy: 1 # \xe9")
+    with pytest.raises(flagred.RuleSetError, match="not UTF-8: byte 11 is E9"):
+        flagred.load(tmp_path / "latin.yaml")
+    with pytest.raises(FileNotFoundError):
+        flagred.load(tmp_path / "none.yaml")
+    (tmp_path / "bad.yaml").write_text("fuzzy: 1\n")
+    with pytest.raises(flagred.RuleSetError) as error:
+        flagred.load(tmp_path / "bad.yaml")
+    assert error.value.findings[0].file == str(tmp_path / "bad.yaml")
+
+
+FIS = """
+[System]
+Name='fan'
+Type='sugeno'
+[Input1]
+Name='heat'
+Range=[0 40]
+MF1='high':'trimf',[10 30 50]
+[Output1]
+Name='speed'
+Range=[0 9]
+MF1='fast':'linear',[0.2 1]
+[Rules]
+1, 1 (1) : 1
+"""
+
+FLL = """
+Engine: fan
+InputVariable: heat
+  range: 0 40
+  term: high Ramp 20 30
+OutputVariable: speed
+  range: 0 9
+  aggregation: Maximum
+  defuzzifier: Centroid 100
+  term: fast Triangle 5 7 9
+RuleBlock:
+  implication: Minimum
+  rule: if heat is high then speed is fast
+"""
+
+FCL = """
+FUNCTION_BLOCK fan
+VAR_INPUT heat : REAL; END_VAR
+VAR_OUTPUT speed : REAL; END_VAR
+FUZZIFY heat
+  RANGE := (0 .. 40);
+  TERM high := (20, 0) (30, 1);
+END_FUZZIFY
+DEFUZZIFY speed
+  RANGE := (0 .. 9);
+  TERM fast := (5, 0) (7, 1) (9, 0);
+  METHOD : COG;
+END_DEFUZZIFY
+RULEBLOCK only
+  AND : MIN;
+  ACT : MIN;
+  ACCU : MAX;
+  RULE 1 : IF heat IS high THEN speed IS fast;
+END_RULEBLOCK
+END_FUNCTION_BLOCK
+"""
+
+
+@pytest.mark.parametrize(("text", "value"), [(FIS, 7.0), (FLL, 7.0), (FCL, 7.0)])
+def test_formats_of_other_programs(text, value):
+    model = flagred.loads(text)
+    assert model(30) == pytest.approx(value, abs=1e-3)
+    assert flagred.loads(model.to_yaml()) == model
+    with pytest.raises(flagred.RuleSetError) as error:
+        flagred.loads(text.replace("high", "hot", 1).replace("1, 1 (1)", "2, 1 (1)"))
+    assert error.value.findings[0].line > 1
+
+
+def test_explanations(tip):
+    explanation = tip.explain(service=8, food=9)
+    assert explanation.values == {"tip": tip(8, 9)}
+    assert explanation.inputs[0].terms == pytest.approx({"poor": 0, "good": 0.4, "excellent": 0.6})
+    assert [rule.rule for rule in explanation.rules] == [2, 1, 0]
+    assert explanation.rules[0].text == tip.rules[2].text
+    (output,) = explanation.outputs
+    assert sum(share.share for share in output.rules) == pytest.approx(1)
+    assert output.set_at.shape == output.set_degree.shape and output.set_degree.max() == pytest.approx(0.9, abs=0.01)
+    assert explanation._repr_svg_().startswith("<svg ") and "degree of 8" in str(explanation)
+
+
+def test_maps(tip, gaps):
+    whole = tip.map(points=11)
+    assert whole.values.shape == whole.coverage.shape == whole.dominant_rule.shape == (11, 11)
+    assert list(whole.axes) == ["service", "food"] and whole.fixed == {}
+    service, food = np.meshgrid(*whole.axes.values(), indexing="ij")
+    assert np.array_equal(whole.values, tip(service, food))
+    assert np.array_equal(whole.coverage, tip.evaluate(service, food).coverage)
+    cut = tip.map(points=5, food=9)
+    assert cut.fixed == {"food": 9} and np.array_equal(cut.values, tip(cut.axes["service"], 9))
+    for kind in ("map", "rules", "surface"):
+        assert whole.svg(kind).startswith("<svg ")
+    assert cut._repr_svg_().startswith("<svg ")
+    with pytest.raises(flagred.DataError, match="two axes"):
+        cut.svg("surface")
+    speed = gaps.map(output="speed", points=41)
+    assert np.isnan(speed.values[20]) and speed.dominant_rule[20] is np.ma.masked
+
+
+def test_findings_of_a_check(tip):
+    codes = [finding.code for finding in tip.check()]
+    assert "narrow-reach" in codes
+    assert "not-monotone" not in codes
+    assert "not-monotone" in [finding.code for finding in tip.check(monotone=["service:decreasing"])]
+
+
+def test_copies_are_apart(tip):
+    for other in (copy.copy(tip), copy.deepcopy(tip), tip.copy(), pickle.loads(pickle.dumps(tip))):
+        assert other == tip and type(other) is flagred.Model
+        other.rules[0].weight = 0.5
+        assert other != tip and tip.rules[0].weight == 1
+    unfinished = flagred.Model("empty")
+    assert pickle.loads(pickle.dumps(unfinished)) == unfinished
+    outcome = tip.evaluate(8, 9)
+    assert pickle.loads(pickle.dumps(outcome)) == outcome
+
+
+def test_pictures(tip, tmp_path):
+    picture = tip.plot()
+    assert str(picture).startswith("<svg ") and "excellent" in str(picture)
+    picture.save(tmp_path / "tip.svg")
+    assert (tmp_path / "tip.svg").read_text(encoding="utf-8") == picture._repr_svg_()
+
+
+def test_many_threads_at_once(tip):
+    service, food = np.random.default_rng(1).random((2, 20_000)) * 10
+    expected = tip(service, food)
+    wrong = []
+
+    def ask(i):
+        part = slice(i * 1000, None)
+        if not np.array_equal(tip(service[part], food[part]), expected[part]) or tip(8, 9) != tip(8, 9):
+            wrong.append(i)
+        if i == 3:
+            tip.rules[0].note = "edited while it is asked"
+
+    threads = [threading.Thread(target=ask, args=(i,)) for i in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no fork")
+def test_a_forked_process_has_threads_of_its_own(tip):
+    import os
+
+    many = np.linspace(0, 10, 100_000)
+    expected = tip(many, many)
+    child = os.fork()
+    if child == 0:
+        os._exit(0 if np.array_equal(tip(many, many), expected) else 1)
+    assert os.waitpid(child, 0)[1] == 0
+
+
+def test_ctrl_c_ends_an_evaluation():
+    code = """
+import signal, sys, threading, time, os
+import numpy as np, flagred
+model = flagred.loads(sys.stdin.read())
+many = np.linspace(0, 10, 60_000_000)
+threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+begun = time.monotonic()
+try:
+    model(many, many, threads=1)
+except KeyboardInterrupt:
+    sys.exit(0 if time.monotonic() - begun < 3 else 4)
+sys.exit(5)
+"""
+    done = subprocess.run([sys.executable, "-c", code], input=TIP, text=True, timeout=60)
+    assert done.returncode == 0
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.one_of(st.text(), st.binary().map(lambda data: data.decode("latin-1"))))
+def test_any_text_is_read_or_refused(text):
+    try:
+        flagred.loads(text)
+    except flagred.RuleSetError as error:
+        assert error.findings
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.data())
+def test_damaged_rule_sets_are_read_or_refused(data):
+    at = data.draw(st.integers(0, len(TIP)))
+    removed = data.draw(st.integers(0, 12))
+    text = TIP[:at] + data.draw(st.text(max_size=5)) + TIP[at + removed :]
+    try:
+        model = flagred.loads(text)
+        model(*[1.0] * len(model.inputs))
+    except (flagred.RuleSetError, flagred.DataError):
+        pass

@@ -1,0 +1,140 @@
+"""The estimators for scikit-learn."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+pytest.importorskip("sklearn", reason="scikit-learn is not installed: `pip install flagred[sklearn]`")
+
+from sklearn.base import clone
+from sklearn.datasets import load_breast_cancer, load_diabetes
+from sklearn.metrics import roc_auc_score
+from sklearn.model_selection import GridSearchCV, GroupKFold, cross_val_predict, cross_val_score
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import StandardScaler
+from sklearn.utils.estimator_checks import parametrize_with_checks
+
+import flagred
+from flagred.sklearn import FuzzyRegressor, FuzzyRiskClassifier
+
+
+@parametrize_with_checks([FuzzyRegressor(), FuzzyRiskClassifier()])
+def test_scikit_learn_checks(estimator, check):
+    check(estimator)
+
+
+@pytest.fixture(scope="module")
+def wave():
+    random = np.random.default_rng(1)
+    X = random.uniform(0, 6, (400, 2))
+    return X, np.sin(X[:, 0]) + 0.5 * X[:, 1]
+
+
+def test_a_surface_is_learned_by_rules_that_people_read(wave):
+    X, y = wave
+    regressor = FuzzyRegressor(n_terms=5, n_output_terms=7).fit(X[:300], y[:300])
+    assert regressor.score(X[300:], y[300:]) > 0.9
+    assert 10 <= regressor.n_rules_ == len(regressor.rule_set_.rules) <= 25
+    assert regressor.rule_set_.rules[0].text.startswith("IF x0 IS very_low AND x1 IS ")
+    untuned = clone(regressor).set_params(tune=False).fit(X[:300], y[:300])
+    assert untuned.score(X[:300], y[:300]) < regressor.score(X[:300], y[:300])
+
+
+def test_predictions_are_those_of_the_rule_set(wave):
+    X, y = wave
+    regressor = FuzzyRegressor().fit(X, y)
+    found = regressor.predict(X[:50])
+    rule_set = flagred.loads(regressor.rule_set_.to_yaml())
+    assert [rule_set(*row) for row in X[:50].tolist()] == found.tolist()
+    assert pickle.loads(pickle.dumps(regressor)).predict(X[:50]).tolist() == found.tolist()
+    explained = regressor.explain(X[:3])
+    assert [one.outputs[0].value for one in explained] == found[:3].tolist()
+
+
+def test_names_come_from_a_frame(wave):
+    pandas = pytest.importorskip("pandas")
+    X, y = wave
+    frame = pandas.DataFrame(X, columns=["wind speed", "y"])
+    regressor = FuzzyRegressor(monotonic_cst={"y": 1}).fit(frame, y)
+    assert [*regressor.rule_set_.inputs] == ["wind speed", "y_in"]
+    assert regressor.predict(frame).tolist() == FuzzyRegressor(monotonic_cst=[0, 1]).fit(X, y).predict(X).tolist()
+
+
+@pytest.mark.parametrize("spacing", ["quantile", "uniform"])
+def test_partitions_are_made_from_the_data(spacing):
+    x = np.concatenate((np.linspace(0, 1, 90), np.linspace(2, 10, 10)))[:, None]
+    x = np.column_stack((x, np.arange(100) % 2, np.full(100, 7.0)))
+    model = FuzzyRegressor(n_terms=4, spacing=spacing, tune=False).fit(x, x[:, 0]).rule_set_.to_dict()
+    peaks = [[*variable["partition"].values()] for variable in model["inputs"].values()]
+    if spacing == "uniform":
+        assert np.allclose(peaks[0], [0, 10 / 3, 20 / 3, 10])
+    else:
+        assert peaks[0][2] < 1 and peaks[1] == [0, 1]
+    assert peaks[2][0] < 7 < peaks[2][-1]
+
+
+@pytest.mark.parametrize("tune", [False, True])
+def test_monotone_constraints_hold(tune):
+    random = np.random.default_rng(2)
+    X = random.uniform(0, 1, (200, 2))
+    y = X[:, 0] - X[:, 1] + random.normal(0, 0.5, 200)
+    grid = np.linspace(0, 1, 60)
+    other, along = (axis.ravel() for axis in np.meshgrid(grid, grid, indexing="ij"))
+    regressor = FuzzyRegressor(n_terms=4, monotonic_cst=[1, -1], tune=tune).fit(X, y)
+    rising = regressor.predict(np.column_stack((along, other))).reshape(60, 60)
+    falling = regressor.predict(np.column_stack((other, along))).reshape(60, 60)
+    assert np.all(np.diff(rising, axis=1) >= -1e-12) and np.all(np.diff(falling, axis=1) <= 1e-12)
+    assert np.ptp(rising) > 0.5
+    risk = FuzzyRiskClassifier(n_terms=4, monotonic_cst=[1, -1], tune=tune).fit(X, y > 0)
+    assert np.all(np.diff(risk.predict_proba(np.column_stack((along, other)))[:, 1].reshape(60, 60)) >= -1e-12)
+
+
+def test_probabilities_rank_and_stay_in_0_to_1():
+    data = load_breast_cancer()
+    X = data.data[:, [1, 20, 27]]
+    pipeline = make_pipeline(StandardScaler(), FuzzyRiskClassifier())
+    found = cross_val_predict(pipeline, X, data.target, cv=3, method="predict_proba")
+    assert np.all((found >= 0) & (found <= 1)) and np.allclose(found.sum(axis=1), 1)
+    assert roc_auc_score(data.target, found[:, 1]) > 0.95
+
+
+def test_groups_stay_together_in_cross_validation(wave):
+    X, y = wave
+    groups = np.arange(len(y)) % 4
+    scores = cross_val_score(FuzzyRegressor(iterations=5), X, y, groups=groups, cv=GroupKFold(4))
+    assert len(scores) == 4 and scores.min() > 0.5
+
+
+def test_a_grid_is_searched():
+    X, y = load_diabetes(return_X_y=True)
+    search = GridSearchCV(FuzzyRegressor(iterations=5), {"n_terms": [2, 3]}, cv=3).fit(X[:, [2, 8]], y)
+    assert search.best_score_ > 0.3
+
+
+def test_weights_count(wave):
+    X, y = wave
+    one = FuzzyRegressor(tune=False).fit(X, y, sample_weight=np.where(X[:, 0] < 3, 1, 0))
+    two = FuzzyRegressor(tune=False).fit(X[X[:, 0] < 3], y[X[:, 0] < 3])
+    assert one.rule_set_ == two.rule_set_
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"n_terms": 1}, "n_terms is 1"),
+        ({"spacing": "even"}, "spacing is 'even'"),
+        ({"monotonic_cst": [1]}, "for each of the 2 features"),
+        ({"monotonic_cst": {"x7": 1}}, "'x7', which is no feature"),
+        ({"complete": True, "n_terms": 1000, "spacing": "uniform"}, "1e\\+06 combinations"),
+        ({"min_support": 1000}, "min_support=1000"),
+    ],
+)
+def test_settings_that_cannot_be_used(wave, settings, message):
+    with pytest.raises(ValueError, match=message):
+        FuzzyRegressor(**settings).fit(*wave)
+
+
+def test_one_class_is_no_risk():
+    with pytest.raises(ValueError, match="1 class"):
+        FuzzyRiskClassifier().fit([[0.0], [1.0]], [1, 1])

@@ -1,5 +1,0 @@
-//! The assessment of a flight in words and as a document.
-
-pub(crate) mod document;
-pub(crate) mod finding;
-pub(crate) mod words;

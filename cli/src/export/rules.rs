@@ -1,0 +1,104 @@
+//! A rule set without a profile, in Rust or C: its outputs as a function of its inputs.
+
+use std::path::Path;
+
+use flagred::{
+    board::{
+        Rules,
+        table::{Outcome, Partial, Strongest},
+    },
+    estimator,
+};
+use fuzzy::model::{Model, Variable};
+
+use super::{Arguments, bytes_of_rules, c, harmless, rust};
+use crate::{
+    failure::{Exit, Failure},
+    output::{Files, Replace, say},
+    rule_set,
+};
+
+/// More would overflow the stack of many a thread.
+const MOST_STACK_BYTES: usize = 1 << 20;
+
+/// Writes a rule set in Rust or C.
+pub(super) fn export(arguments: &Arguments, text: &str) -> Result<Exit, Failure> {
+    let file = &arguments.file;
+    let mut document = rule_set::parse(file, text)?;
+    for output in &mut document.model.outputs {
+        if let Some(sampling) = output.samples.take_if(|_| arguments.lossy) {
+            say(&format!(
+                "warning: output `{}` is exact, and not of {} samples",
+                output.variable.name, sampling.samples
+            ));
+        }
+    }
+    let engine = rule_set::compile(&document, file, text)?;
+    let output = Files::reading([Path::new(file)])?.output(&arguments.output, Replace::Yes)?;
+    let model = &document.model;
+    let rules = estimator::rules(&engine).map_err(|refused| {
+        let sampled = model.outputs.iter().any(|output| output.samples.is_some());
+        let help = match sampled {
+            true => "`--lossy` leaves `samples` out: the value is exact then",
+            false => refused.help(),
+        };
+        Failure::unreadable(format!("`{file}`: {refused}")).help(help)
+    })?;
+    let stack = stack_bytes(&rules);
+    if arguments.rust && stack > MOST_STACK_BYTES {
+        return Err(Failure::unreadable(format!(
+            "`{file}`: an evaluation takes {stack} bytes, which is too much for a stack"
+        ))
+        .help("in C the memory is lent"));
+    }
+    let written = match arguments.rust {
+        true => rust::function(&rules, &heading(model, &rules, "--rust", stack)),
+        false => {
+            let heading = heading(model, &rules, "--c", rules.bytes());
+            c::rules(&rules, &model.name, &heading)
+        }
+    };
+    output.write(&written)?;
+    Ok(Exit::Clean)
+}
+
+/// The comment above the data.
+fn heading(model: &Model, rules: &Rules<'_>, option: &str, memory: usize) -> Vec<String> {
+    let named = |variable: &Variable| {
+        let unit = variable.unit.as_deref().unwrap_or_default();
+        format!(
+            "{} ({} to {}{}{unit})",
+            variable.name,
+            variable.low,
+            variable.high,
+            if unit.is_empty() { "" } else { " " }
+        )
+    };
+    let inputs: Vec<String> = model.inputs.iter().map(named).collect();
+    let outputs = model.outputs.iter().map(|output| named(&output.variable));
+    let lines = [
+        format!(
+            "The rule set `{}`, written by `flagred export {option}` {}. Do not edit.",
+            model.name,
+            env!("CARGO_PKG_VERSION")
+        ),
+        format!("Inputs, in this order: {}.", inputs.join(", ")),
+        format!(
+            "Outputs, in this order: {}.",
+            outputs.collect::<Vec<String>>().join(", ")
+        ),
+        format!(
+            "{} bytes of constants. An evaluation takes {memory} bytes of memory.",
+            size_of::<Rules<'_>>() + bytes_of_rules(rules)
+        ),
+    ];
+    lines.into_iter().map(harmless).collect()
+}
+
+/// What an evaluation in Rust takes of the stack.
+fn stack_bytes(rules: &Rules<'_>) -> usize {
+    let outputs = rules.table.outputs.len();
+    rules.numbers() * size_of::<f64>()
+        + rules.partials() * size_of::<Partial>()
+        + outputs * (size_of::<Strongest>() + 2 * size_of::<Outcome>())
+}

@@ -1,0 +1,65 @@
+//! The steps of a flight as CSV.
+
+use std::io::Write;
+
+use flagred::{
+    estimator::Estimator,
+    flight::{Assessment, Step},
+};
+
+use crate::{failure::Failure, output::cell};
+
+/// A step as columns and fields: margin and spread always, then what the rules said, then the rules' other inputs. What is
+/// unknown is an empty field.
+fn row<'a>(estimator: &'a Estimator, step: &Step) -> Vec<(&'a str, String)> {
+    let number = |value: Option<f64>| {
+        let known = value.filter(|value| value.is_finite());
+        known.map(|value| value.to_string()).unwrap_or_default()
+    };
+    let estimate = step.estimate;
+    let filled = estimate.map(|e| u8::from(e.filled_from.is_some()).to_string());
+    let mut row = vec![
+        ("t_s", number(Some(step.t_s))),
+        ("margin", number(step.margin)),
+        ("spread", number(step.spread)),
+        ("coverage", number(estimate.map(|e| e.coverage))),
+        ("filled", filled.unwrap_or_default()),
+        ("risk", number(estimate.map(|e| e.risk_pct))),
+        ("elevated_risk", number(step.elevated_risk_pct)),
+    ];
+    for (i, input) in estimator.profile().inputs.iter().enumerate() {
+        let field = number(step.inputs.get(i).copied());
+        match row.iter_mut().find(|(known, _)| *known == input.name) {
+            // A profile may define its margin or spread differently; the rules' is the one to show.
+            Some(known) => known.1 = field,
+            None => row.push((&input.name, field)),
+        }
+    }
+    row
+}
+
+/// Writes the steps of one flight as CSV; `log` becomes the first column where there are several flights.
+pub(crate) fn write_csv(
+    out: &mut impl Write,
+    log: Option<&str>,
+    head: bool,
+    estimator: &Estimator,
+    assessed: &Assessment,
+) -> Result<(), Failure> {
+    let mut table = csv::Writer::from_writer(out);
+    if head {
+        let columns = row(estimator, &Step::default());
+        let names = columns.iter().map(|(name, _)| cell(name));
+        let names = log.map(|_| "log".into()).into_iter().chain(names);
+        table.write_record(names.map(|name| name.into_owned()))?;
+    }
+    for step in &assessed.steps {
+        let fields = row(estimator, step).into_iter().map(|(_, field)| field);
+        table.write_record(
+            log.map(|log| cell(log).into_owned())
+                .into_iter()
+                .chain(fields),
+        )?;
+    }
+    Ok(table.flush()?)
+}

@@ -1,0 +1,413 @@
+//! `flagred tune`: the numbers of a rule set from rows of data.
+
+mod report;
+
+use std::{
+    io::{IsTerminal, Write as _},
+    ops::ControlFlow,
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use clap::ValueEnum;
+use fuzzy::{Model, drawing::variables_svg};
+use indicatif::{ProgressBar, ProgressStyle};
+use tuning::{Data, Loss, Progress, Settings, TuneError, Tuned, Validation, cross_validate, tune};
+
+use crate::{
+    failure::{Exit, Failure},
+    learn,
+    output::{self, Files, Output, Replace, Stdout},
+    rows::{self, Source},
+    rule_set,
+    table::Format,
+};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The rule set with the numbers to begin with
+    #[arg(value_name = "MODEL")]
+    model: PathBuf,
+
+    /// Tables with a column for each input and the output
+    #[arg(required = true, value_name = "DATA.csv")]
+    data: Vec<PathBuf>,
+
+    /// The file for the tuned rule set; `-` is standard output
+    #[arg(short, long, value_name = "OUT.yaml")]
+    output: PathBuf,
+
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+
+    /// What is made small
+    #[arg(long, value_enum, default_value = "squared", value_name = "LOSS")]
+    loss: LossName,
+
+    /// Move only this variable, or only this term: `heat`, `heat.warm`
+    #[arg(long, value_name = "NAME")]
+    only: Vec<String>,
+
+    /// Leave this variable, or this term, as it is
+    #[arg(long, value_name = "NAME")]
+    fix: Vec<String>,
+
+    /// Move the weights of the rules, too
+    #[arg(long)]
+    weights: bool,
+
+    /// The least distance between neighbouring peaks, as a share of the range
+    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = share)]
+    least_distance: f64,
+
+    /// The output must not fall when this input rises
+    #[arg(long, value_name = "INPUT")]
+    rising: Vec<String>,
+
+    /// The output must not rise when this input rises
+    #[arg(long, value_name = "INPUT")]
+    falling: Vec<String>,
+
+    /// Round what moved to so many significant digits
+    #[arg(long, value_name = "DIGITS", value_parser = clap::value_parser!(u32).range(1..=17))]
+    round: Option<u32>,
+
+    /// How often the search starts: at the rule set, then at random places around it
+    #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    starts: u32,
+
+    /// The most steps of a start
+    #[arg(long, default_value_t = 100, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    iterations: u32,
+
+    /// The seed of what is random: places to start, parts of cross-validation
+    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    seed: u64,
+
+    /// Keep the best rule set so far in this file, and begin with it where it exists
+    #[arg(long, value_name = "FILE.yaml")]
+    checkpoint: Option<PathBuf>,
+
+    /// The column with the weights of the rows
+    #[arg(long, value_name = "COLUMN")]
+    weight: Option<String>,
+
+    /// In cross-validation, leave out all rows with one value of this column together: `vehicle`
+    #[arg(long, value_name = "COLUMN")]
+    group_by: Option<String>,
+
+    /// Into how many parts cross-validation divides the rows or groups
+    #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=100))]
+    folds: u32,
+
+    /// Skip cross-validation
+    #[arg(long, conflicts_with = "group_by")]
+    no_validation: bool,
+
+    #[command(flatten)]
+    format: Format,
+
+    /// Draw the variables that moved, before and after, as an SVG picture
+    #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
+    svg: Option<PathBuf>,
+
+    /// Print the report as a JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum LossName {
+    /// The mean square of the error
+    Squared,
+    /// The mean of -ln p, where the output's column is 0 or 1 and p the place of the value in the range
+    Log,
+    /// The share of pairs of a 1 and a 0 in the wrong order: 1 less the area under the ROC curve
+    Ranking,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share: Option<f64> = text.parse().ok();
+    share
+        .filter(|share| (0.0..1.0).contains(share))
+        .ok_or_else(|| "write a share of the range, at least 0 and less than 1".into())
+}
+
+/// What the report tells.
+struct Outcome {
+    rows: usize,
+    refused: Vec<String>,
+    tuned: Tuned,
+    /// `None` where it was not wanted, or ended.
+    validation: Option<Validation>,
+    /// Whether the search began with a checkpoint.
+    is_resumed: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut files = Files::reading(arguments.data.iter().chain([&arguments.model]))?;
+    let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
+    let svg = files.optional(arguments.svg.as_ref())?;
+    let checkpoint = files.optional(arguments.checkpoint.as_ref())?;
+    let name = arguments.model.display().to_string();
+    let (document, text) = rule_set::read(&arguments.model)?;
+    rule_set::compile(&document, &name, &text)?;
+    let original = document.model;
+    let resumed = resumed(arguments, &original)?;
+    let begun = resumed.as_ref().unwrap_or(&original);
+    let (data, refused) = data(arguments, begun)?;
+    let settings = settings(arguments);
+    let failed = |error: TuneError| failure(&name, &error);
+
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+        .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
+    let mut watch = Watch::new(arguments, stop, checkpoint.as_ref());
+    let tuned = tune(begun, &data, &settings, &mut |progress| {
+        watch.step(progress, None)
+    });
+    let tuned = tuned.map_err(failed)?;
+    watch.keep(&tuned.model)?;
+    let validation = match arguments.no_validation || tuned.is_stopped {
+        true => None,
+        false => {
+            let mut told = |fold: u32, progress: &Progress<'_>| watch.step(progress, Some(fold));
+            cross_validate(&original, &data, &settings, arguments.folds, &mut told)
+                .map_err(failed)?
+        }
+    };
+    watch.bar.finish_and_clear();
+    let outcome = Outcome {
+        rows: data.len(),
+        refused,
+        tuned,
+        validation,
+        is_resumed: resumed.is_some(),
+    };
+    output.write(&report::rule_set(arguments, &outcome, &text))?;
+    if let Some(svg) = &svg {
+        svg.write(&variables_svg(
+            &moved_variables(&original, &outcome.tuned.model),
+            &[],
+        ))?;
+    }
+    let written: Vec<&Output> = [Some(&output), svg.as_ref()]
+        .into_iter()
+        .flatten()
+        .collect();
+    let mut out = Stdout::beside(&written);
+    if arguments.json {
+        let document = report::Document::new(arguments, &outcome);
+        serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        report::words(&mut out, arguments, &outcome)?;
+    }
+    out.finish()?;
+    Ok(Exit::Clean)
+}
+
+fn settings(arguments: &Arguments) -> Settings {
+    Settings {
+        loss: match arguments.loss {
+            LossName::Squared => Loss::Squared,
+            LossName::Log => Loss::Log,
+            LossName::Ranking => Loss::Ranking,
+        },
+        only: arguments.only.clone(),
+        fix: arguments.fix.clone(),
+        weights: arguments.weights,
+        least_distance: arguments.least_distance,
+        monotone: learn::monotone(&arguments.rising, &arguments.falling).collect(),
+        digits: arguments.round,
+        starts: arguments.starts,
+        seed: arguments.seed,
+        iterations: arguments.iterations,
+    }
+}
+
+/// The rows as columns, and why others cannot be used.
+fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
+    let source = Source {
+        tables: &arguments.data,
+        format: &arguments.format,
+        weight: arguments.weight.as_deref(),
+        group: arguments.group_by.as_deref(),
+    };
+    let rows::Data { rows, mut refused } = rows::read(&source, model)?;
+    let mut data = Data {
+        inputs: vec![Vec::with_capacity(rows.len()); model.inputs.len()],
+        ..Data::default()
+    };
+    for (row, place) in rows {
+        let truth = row.values.last().copied().unwrap_or(f64::NAN);
+        let wrong = if arguments.loss != LossName::Squared && truth != 0.0 && truth != 1.0 {
+            Some(format!(
+                "the output's value is {truth}, but must be 0 or 1 for this loss"
+            ))
+        } else if row.weight < 0.0 {
+            Some(format!(
+                "the weight is {}, but must not be negative",
+                row.weight
+            ))
+        } else {
+            None
+        };
+        if let Some(wrong) = wrong {
+            refused.push(format!("{place}: {wrong}"));
+            continue;
+        }
+        for (column, value) in data.inputs.iter_mut().zip(&row.values) {
+            column.push(*value);
+        }
+        data.truths.push(truth);
+        data.weights.push(row.weight);
+        data.groups.extend(row.group);
+    }
+    if !refused.is_empty() && (!arguments.format.skip_bad_rows || data.is_empty()) {
+        return Err(rows::refuse(&refused, "used"));
+    }
+    Ok((data, refused))
+}
+
+/// The rule set of a checkpoint that exists. It has the variables, terms and rules of the one to tune.
+fn resumed(arguments: &Arguments, model: &Model) -> Result<Option<Model>, Failure> {
+    let Some(path) = arguments.checkpoint.as_ref().filter(|path| path.exists()) else {
+        return Ok(None);
+    };
+    let (document, _) = rule_set::read(path)?;
+    let names = |model: &Model| {
+        let numbers = tuning::numbers(model).into_iter();
+        numbers
+            .map(|number| (number.of, number.name))
+            .collect::<Vec<_>>()
+    };
+    if names(&document.model) != names(model) {
+        let message = format!("`{}` is a checkpoint of another rule set", path.display());
+        return Err(Failure::usage(message).help("name a new file, or remove this one"));
+    }
+    Ok(Some(document.model))
+}
+
+fn failure(name: &str, error: &TuneError) -> Failure {
+    let help = match error {
+        TuneError::Outputs { .. } => {
+            "tune a rule set with this output alone; outputs that chain are tuned one by one"
+        }
+        TuneError::Unknown { .. } => "name a variable, or a term as `variable.term`",
+        TuneError::NothingMoves => {
+            "`--only` and `--fix` leave nothing; `--weights` moves the weights"
+        }
+        TuneError::NoRows => "the tables have a header and no rows",
+        TuneError::OneClass => "ranking needs rows of 1 and rows of 0",
+        TuneError::NotMonotone { .. } => {
+            "`flagred check --monotone` shows where; begin with a rule set that holds it: `flagred learn --rising`"
+        }
+        _ => "`flagred check` shows what is wrong with the rule set",
+    };
+    let message = format!("`{name}`: {error}");
+    match error {
+        TuneError::Unknown { .. } | TuneError::NothingMoves | TuneError::Claim { .. } => {
+            Failure::usage(message).help(help)
+        }
+        _ => Failure::unreadable(message).help(help),
+    }
+}
+
+/// The variables of a model that moved, each as it was and as it is.
+fn moved_variables(before: &Model, after: &Model) -> Model {
+    let mut drawn = before.clone();
+    let all = |model: &Model| {
+        let outputs = model.outputs.iter().map(|output| output.variable.clone());
+        model
+            .inputs
+            .iter()
+            .cloned()
+            .chain(outputs)
+            .collect::<Vec<_>>()
+    };
+    drawn.outputs.clear();
+    drawn.inputs.clear();
+    for (before, after) in all(before).into_iter().zip(all(after)) {
+        if before.terms != after.terms {
+            for (mut variable, when) in [(before, "before"), (after, "after")] {
+                variable.name = format!("{}, {when}", variable.name);
+                drawn.inputs.push(variable);
+            }
+        }
+    }
+    drawn
+}
+
+/// Follows a search: shows how far it is, keeps a checkpoint, ends it when the user asks.
+struct Watch<'a> {
+    stop: Arc<AtomicBool>,
+    bar: ProgressBar,
+    starts: u32,
+    iterations: u32,
+    checkpoint: Option<&'a Output>,
+    kept: Instant,
+}
+
+impl<'a> Watch<'a> {
+    fn new(
+        arguments: &Arguments,
+        stop: Arc<AtomicBool>,
+        checkpoint: Option<&'a Output>,
+    ) -> Watch<'a> {
+        let parts = if arguments.no_validation {
+            1
+        } else {
+            arguments.folds + 1
+        };
+        let steps = arguments.starts * arguments.iterations;
+        let style = ProgressStyle::with_template("{msg} {wide_bar} at most {eta} left");
+        let bar = match (std::io::stderr().is_terminal(), style) {
+            (true, Ok(style)) => ProgressBar::new(u64::from(steps * parts)).with_style(style),
+            _ => ProgressBar::hidden(),
+        };
+        Watch {
+            stop,
+            bar,
+            starts: arguments.starts,
+            iterations: arguments.iterations,
+            checkpoint,
+            kept: Instant::now(),
+        }
+    }
+
+    /// A step of the search, or of a part of cross-validation.
+    fn step(&mut self, progress: &Progress<'_>, fold: Option<u32>) -> ControlFlow<()> {
+        const BETWEEN: Duration = Duration::from_secs(5);
+        let part = fold.map_or(0, |fold| fold + 1);
+        let before = part * self.starts + progress.start - 1;
+        self.bar
+            .set_position(u64::from(before * self.iterations + progress.iteration));
+        self.bar.set_message(match fold {
+            None => format!("loss {:.6}", progress.loss),
+            Some(fold) => format!("validation, part {}", fold + 1),
+        });
+        if fold.is_none() && self.kept.elapsed() > BETWEEN {
+            // A checkpoint that cannot be written now may be written later; in the end it is an error.
+            let _ = self.keep(progress.model);
+        }
+        match self.stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+
+    fn keep(&mut self, model: &Model) -> Result<(), Failure> {
+        self.kept = Instant::now();
+        match self.checkpoint {
+            Some(checkpoint) => checkpoint.write(&fuzzy::yaml::to_string(model)),
+            None => Ok(()),
+        }
+    }
+}

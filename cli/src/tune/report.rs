@@ -1,0 +1,221 @@
+//! What moved, in words, as JSON, and as the rule set itself.
+
+use std::io::Write;
+
+use fuzzy::drawing::{short, visible};
+use serde::Serialize;
+use tuning::{Interval, Loss, Moved};
+
+use super::{Arguments, LossName, Outcome};
+
+/// The reasons for rows without use that are shown.
+const SHOWN: usize = 12;
+
+fn loss(arguments: &Arguments) -> &'static str {
+    match arguments.loss {
+        LossName::Squared => "RMS error",
+        LossName::Log => "log loss",
+        LossName::Ranking => "wrong pairs",
+    }
+}
+
+/// The rule set under the comments that the model began with, and lines that say where its numbers came from.
+pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome, model_text: &str) -> String {
+    let head = model_text.split_inclusive('\n');
+    let head: String = head.take_while(|line| line.starts_with('#')).collect();
+    let gap = if head.is_empty() { "" } else { "#\n" };
+    let tuned = &outcome.tuned;
+    let mut text = format!(
+        "{head}{gap}# Tuned by `flagred tune` on {} rows, seed {}: {} {} before, {} after.\n",
+        outcome.rows,
+        arguments.seed,
+        loss(arguments),
+        short(tuned.before),
+        short(tuned.after),
+    );
+    if let Some(validation) = &outcome.validation {
+        text += &format!(
+            "# On rows left out, in {} parts: {} before, {} after.\n",
+            validation.folds,
+            short(validation.before.value),
+            short(validation.after.value),
+        );
+    }
+    text + &fuzzy::yaml::to_string(&tuned.model)
+}
+
+pub(super) fn words(
+    out: &mut dyn Write,
+    arguments: &Arguments,
+    outcome: &Outcome,
+) -> std::io::Result<()> {
+    let tuned = &outcome.tuned;
+    writeln!(
+        out,
+        "rows        {} used, {} refused",
+        outcome.rows,
+        outcome.refused.len()
+    )?;
+    for refused in outcome.refused.iter().take(SHOWN) {
+        writeln!(out, "            {}", visible(refused))?;
+    }
+    if tuned.without_value > 0 {
+        writeln!(
+            out,
+            "            {} without a value: no rule fires there; they count as the middle of the range",
+            tuned.without_value
+        )?;
+    }
+    if outcome.is_resumed {
+        writeln!(out, "begun       with the checkpoint")?;
+    }
+    let ended = if tuned.is_stopped {
+        "; ended early"
+    } else {
+        ""
+    };
+    let name = loss(arguments);
+    writeln!(
+        out,
+        "{name:<11} {} before, {} after{ended}",
+        short(tuned.before),
+        short(tuned.after)
+    )?;
+    if let Some(validation) = &outcome.validation {
+        let shown = |interval: &Interval| {
+            format!(
+                "{} [{}, {}]",
+                short(interval.value),
+                short(interval.low),
+                short(interval.high)
+            )
+        };
+        let parts = match &arguments.group_by {
+            Some(column) => format!("groups of `{}`", visible(column)),
+            None => "rows".to_owned(),
+        };
+        writeln!(
+            out,
+            "left out    {} before, {} after; gain {} ({} parts of {parts}, 95 % intervals)",
+            shown(&validation.before),
+            shown(&validation.after),
+            shown(&validation.gain),
+            validation.folds
+        )?;
+    }
+    let width = tuned
+        .moved
+        .iter()
+        .map(|moved| moved.of.chars().count())
+        .max()
+        .unwrap_or(0);
+    for (i, moved) in tuned.moved.iter().enumerate() {
+        let title = if i == 0 { "moved" } else { "" };
+        let Moved {
+            of,
+            name,
+            before,
+            after,
+        } = moved;
+        writeln!(
+            out,
+            "{title:<11} {:<width$} {} {} -> {}",
+            visible(of),
+            visible(name),
+            short(*before),
+            short(*after)
+        )?;
+    }
+    if tuned.moved.is_empty() {
+        writeln!(out, "moved       nothing: no step makes the loss smaller")?;
+    }
+    Ok(())
+}
+
+/// The document of `--json`.
+#[derive(Serialize)]
+pub(super) struct Document<'a> {
+    schema: &'static str,
+    rows: Rows<'a>,
+    loss: &'static str,
+    before: f64,
+    after: f64,
+    ended_early: bool,
+    from_checkpoint: bool,
+    /// `None` where validation was not wanted.
+    validation: Option<OfValidation>,
+    moved: Vec<OfNumber<'a>>,
+}
+
+#[derive(Serialize)]
+struct Rows<'a> {
+    used: usize,
+    without_value: usize,
+    refused: usize,
+    reasons: &'a [String],
+}
+
+#[derive(Serialize)]
+struct OfValidation {
+    parts: usize,
+    before: OfInterval,
+    after: OfInterval,
+    gain: OfInterval,
+}
+
+#[derive(Serialize)]
+struct OfInterval {
+    value: f64,
+    low: f64,
+    high: f64,
+}
+
+#[derive(Serialize)]
+struct OfNumber<'a> {
+    of: &'a str,
+    name: &'a str,
+    before: f64,
+    after: f64,
+}
+
+impl<'a> Document<'a> {
+    pub(super) fn new(arguments: &Arguments, outcome: &'a Outcome) -> Document<'a> {
+        let interval = |interval: &Interval| OfInterval {
+            value: interval.value,
+            low: interval.low,
+            high: interval.high,
+        };
+        let tuned = &outcome.tuned;
+        let moved = tuned.moved.iter().map(|moved| OfNumber {
+            of: &moved.of,
+            name: &moved.name,
+            before: moved.before,
+            after: moved.after,
+        });
+        Document {
+            schema: "flagred.tune/1",
+            rows: Rows {
+                used: outcome.rows,
+                without_value: tuned.without_value,
+                refused: outcome.refused.len(),
+                reasons: &outcome.refused,
+            },
+            loss: match super::settings(arguments).loss {
+                Loss::Squared => "squared",
+                Loss::Log => "log",
+                Loss::Ranking => "ranking",
+            },
+            before: tuned.before,
+            after: tuned.after,
+            ended_early: tuned.is_stopped,
+            from_checkpoint: outcome.is_resumed,
+            validation: outcome.validation.as_ref().map(|validation| OfValidation {
+                parts: validation.folds,
+                before: interval(&validation.before),
+                after: interval(&validation.after),
+                gain: interval(&validation.gain),
+            }),
+            moved: moved.collect(),
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! A profile by its name or from a file, with the rule set that it names, ready to use.
+
+use std::{
+    env,
+    path::{Path, PathBuf},
+};
+
+use alloc::{
+    borrow::ToOwned,
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+
+use fuzzy::{Engine, Findings, Model, validate};
+
+use crate::{check, estimator::Estimator, profile::Profile, shipped};
+
+/// A profile and its rule set, ready to use and as they were written.
+#[derive(Debug, Clone)]
+pub struct Loaded {
+    /// Profile and rule set, compiled.
+    pub estimator: Estimator,
+    /// The profile.
+    pub profile_text: String,
+    /// The rule set.
+    pub rules_text: String,
+    /// What does not keep the profile from being used.
+    pub warnings: Findings,
+    /// Where it may have been read from; empty for a shipped one.
+    pub files: Vec<PathBuf>,
+}
+
+/// Why a profile cannot be used. `E` is why a file cannot be read.
+#[derive(Debug)]
+pub enum LoadError<E> {
+    /// The profile cannot be read.
+    Read(E),
+    /// A text has errors.
+    Findings {
+        /// Its file.
+        file: String,
+        /// The text.
+        text: String,
+        /// What is wrong with it.
+        findings: Findings,
+    },
+    /// A file is something else, is missing, or lies where it may not be.
+    Unusable {
+        /// Which, and why.
+        message: String,
+        /// What to do about it.
+        help: Option<String>,
+    },
+}
+
+impl<E> LoadError<E> {
+    fn unusable(message: String) -> Self {
+        LoadError::Unusable {
+            message,
+            help: None,
+        }
+    }
+
+    fn help(self, help: impl Into<String>) -> Self {
+        match self {
+            LoadError::Unusable { message, .. } => LoadError::Unusable {
+                message,
+                help: Some(help.into()),
+            },
+            other => other,
+        }
+    }
+}
+
+/// Compiles a profile, which is a shipped one's name or a file, with its rule set. `read` gives the text of a file.
+///
+/// A shipped name wins over a file of that name (`./flagred` is the file); a file's rule set is looked for beside it first,
+/// and then among the shipped ones. A profile may come from somebody else: the rule set lies in its folder, or in the one
+/// that `FLAGRED_RULES` names, and a file that is no rule set is not quoted.
+///
+/// # Errors
+/// A file cannot be read, or what is in it cannot be used.
+///
+/// # Example
+/// ```
+/// use flagred::loaded::load;
+///
+/// let loaded = load("flagred", |path| std::fs::read_to_string(path)).map_err(|_| "no profile")?;
+/// assert_eq!(loaded.estimator.profile().name, "flagred");
+/// # Ok::<(), &str>(())
+/// ```
+pub fn load<E>(
+    name: &str,
+    read: impl Fn(&Path) -> Result<String, E>,
+) -> Result<Loaded, LoadError<E>> {
+    let (profile, text, folder) = self::read(name, &read)?;
+    compile(name, &profile, text, folder.as_deref(), read)
+}
+
+/// As [`load`], of a text that was read from a file in a folder, or from no file.
+///
+/// # Errors
+/// As [`load`].
+pub fn from_text<E>(
+    name: &str,
+    text: String,
+    folder: Option<&Path>,
+    read: impl Fn(&Path) -> Result<String, E>,
+) -> Result<Loaded, LoadError<E>> {
+    let profile = parse(name, &text)?;
+    compile(name, &profile, text, folder, read)
+}
+
+fn compile<E>(
+    name: &str,
+    profile: &Profile,
+    profile_text: String,
+    folder: Option<&Path>,
+    read: impl Fn(&Path) -> Result<String, E>,
+) -> Result<Loaded, LoadError<E>> {
+    let (model, rules_text) = model(profile, folder, read)?;
+    let (findings, estimator) = examine(&profile_text, &model);
+    let Some(estimator) = estimator else {
+        return Err(LoadError::Findings {
+            file: name.to_owned(),
+            text: profile_text,
+            findings,
+        });
+    };
+    let beside = |folder: &Path| [PathBuf::from(name), folder.join(&profile.rules)];
+    Ok(Loaded {
+        files: folder.into_iter().flat_map(beside).collect(),
+        estimator,
+        profile_text,
+        rules_text,
+        warnings: findings,
+    })
+}
+
+/// The findings about the text of a profile and the rule set that it names.
+pub fn examine(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
+    let known = flightlog::known_signals();
+    let signals: Vec<(&str, &str)> = known.iter().map(|s| (s.name, s.unit)).collect();
+    check::profile(profile_text, model, &signals)
+}
+
+/// The rule set that a profile names, and its text.
+///
+/// # Errors
+/// As [`load`].
+pub fn model<E>(
+    profile: &Profile,
+    folder: Option<&Path>,
+    read: impl Fn(&Path) -> Result<String, E>,
+) -> Result<(Model, String), LoadError<E>> {
+    let (file, text) = rules(profile, folder, read)?;
+    let document = match fuzzy::yaml::parse(&text) {
+        Err(_) if !is_meant_as_rules(&text) => {
+            return Err(LoadError::unusable(format!(
+                "profile `{}` names `{file}`, which is not a rule set",
+                profile.name
+            ))
+            .help("a rule set has the keys `inputs`, `outputs` and `rules`"));
+        }
+        parsed => parsed,
+    };
+    let compiled = document.and_then(|document| {
+        let invalid = validate(&document.model, &document.spans);
+        match invalid.is_empty() {
+            true => Engine::new(&document.model).map(|_| document.model),
+            false => Err(Findings::locate(invalid, &text)),
+        }
+    });
+    match compiled {
+        Ok(model) => Ok((model, text)),
+        Err(findings) => Err(LoadError::Findings {
+            file,
+            text,
+            findings,
+        }),
+    }
+}
+
+/// Reads a profile without its rule set: also its text, and of a file the folder it is in.
+///
+/// # Errors
+/// As [`load`].
+pub fn read<E>(
+    name: &str,
+    read: impl Fn(&Path) -> Result<String, E>,
+) -> Result<(Profile, String, Option<PathBuf>), LoadError<E>> {
+    let path = Path::new(name);
+    let shipped = shipped::PROFILES.iter().find(|known| known.name == name);
+    let (text, folder) = match shipped {
+        Some(known) => (known.text.to_owned(), None),
+        None => {
+            let text = read(path).map_err(LoadError::Read)?;
+            (text, path.parent().map(Path::to_owned))
+        }
+    };
+    Ok((parse(name, &text)?, text, folder))
+}
+
+fn parse<E>(name: &str, text: &str) -> Result<Profile, LoadError<E>> {
+    text.parse::<Profile>().map_err(|findings| {
+        if fuzzy::yaml::parse(text).is_ok() {
+            let file = Path::new(name);
+            let file = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
+            return LoadError::unusable(format!("`{name}` is a rule set, not a profile"))
+                .help(format!("write a profile that names it, with `rules: {file}` and where each input comes from"));
+        }
+        LoadError::Findings { file: name.to_owned(), text: text.to_owned(), findings }
+    })
+}
+
+/// The file and the text of the rule set that a profile names.
+///
+/// # Errors
+/// As [`load`].
+pub fn rules<E>(
+    profile: &Profile,
+    folder: Option<&Path>,
+    read: impl Fn(&Path) -> Result<String, E>,
+) -> Result<(String, String), LoadError<E>> {
+    let beside = folder.map(|folder| folder.join(&profile.rules));
+    if let Some(path) = beside.filter(|path| path.is_file()) {
+        if !is_allowed(&path, folder) {
+            return Err(LoadError::unusable(format!(
+                "profile `{}` names the rule set `{}`, which is not in the profile's folder",
+                profile.name, profile.rules
+            ))
+            .help("move it there, or allow its folder with FLAGRED_RULES=FOLDER"));
+        }
+        let text = read(&path).map_err(LoadError::Read)?;
+        return Ok((path.display().to_string(), text));
+    }
+    let shipped = shipped::RULE_SETS
+        .iter()
+        .find(|known| known.name == profile.rules);
+    shipped
+        .map(|known| (known.file.to_owned(), known.text.to_owned()))
+        .ok_or_else(|| {
+            LoadError::unusable(format!(
+                "profile `{}` names the rule set `{}`, which is neither a file beside it nor built in",
+                profile.name, profile.rules
+            ))
+        })
+}
+
+/// Whether a line of a text begins with a key that only rule sets and profiles have. No other file is quoted: it may hold
+/// secrets, and be named by somebody else.
+pub fn is_meant_as_rules(text: &str) -> bool {
+    text.lines().any(|line| {
+        let line = line.trim_start_matches([' ', '-', '{', '"', '\'']);
+        ["fuzzy", "flagred", "inputs", "outputs", "rules"]
+            .iter()
+            .any(|key| {
+                let rest = line.strip_prefix(key);
+                rest.is_some_and(|rest| rest.trim_start_matches(['"', '\'', ' ']).starts_with(':'))
+            })
+    })
+}
+
+/// Whether a file, all links followed, lies in the folder of its profile or in the folder that the caller allows.
+fn is_allowed(path: &Path, folder: Option<&Path>) -> bool {
+    let Ok(path) = path.canonicalize() else {
+        return false;
+    };
+    // The folder of `profile.yaml` has no name.
+    let folder = folder.map(|folder| match folder.as_os_str().is_empty() {
+        true => PathBuf::from("."),
+        false => folder.to_owned(),
+    });
+    let allowed = env::var_os("FLAGRED_RULES").map(PathBuf::from);
+    [folder, allowed]
+        .into_iter()
+        .flatten()
+        .filter_map(|folder| folder.canonicalize().ok())
+        .any(|folder| path.starts_with(folder))
+}

@@ -1,0 +1,252 @@
+//! Variables of FCL and their terms.
+
+use fuzzy::{
+    diagnostic::nearest,
+    format::{TermSpans, VariableSpans},
+    model::{Defuzzifier, MembershipFunction, NoRuleFires, Output, Term, Variable},
+};
+
+use super::{extent::extent, read::Reader, term};
+use crate::{
+    fll::{self, habits},
+    words,
+};
+
+impl<'t> Reader<'_, 't> {
+    /// `name : REAL;` up to END_VAR.
+    pub(super) fn variables(&mut self, outputs: bool) {
+        while !self.take("END_VAR") {
+            let statement = self.statement(&["END_VAR"]);
+            let Some(&name) = statement.first() else {
+                if self.peek().is_none() {
+                    self.unexpected("`END_VAR`");
+                    return;
+                }
+                continue;
+            };
+            if outputs {
+                self.outputs.push(name);
+            } else {
+                self.draft
+                    .model
+                    .inputs
+                    .push(Variable::new(name, f64::NAN, f64::NAN));
+                let mut spans = VariableSpans::default();
+                spans.name = self.draft.span(name);
+                self.draft.spans.inputs.push(spans);
+            }
+        }
+    }
+
+    pub(super) fn fuzzify(&mut self) {
+        let Some(name) = self.word() else {
+            return self.unexpected("an input");
+        };
+        self.computes = false;
+        let Some(index) = self
+            .draft
+            .model
+            .inputs
+            .iter()
+            .position(|input| input.name == name)
+        else {
+            let known = self
+                .draft
+                .model
+                .inputs
+                .iter()
+                .map(|input| input.name.clone());
+            let known: Vec<String> = known.collect();
+            let help = match nearest(name, known.iter().map(String::as_str)) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => "name it between `VAR_INPUT` and `END_VAR`".into(),
+            };
+            let message = format!("`{name}` is no input");
+            self.draft.error("unknown-variable", name, message, &help);
+            return self.skip("FUZZIFY");
+        };
+        let mut variable = Variable::new(name, f64::NAN, f64::NAN);
+        let mut spans = VariableSpans::default();
+        spans.name = self.draft.span(name);
+        while !self.take("END_FUZZIFY") && self.peek().is_some() {
+            if !self.part(&mut variable, &mut spans) {
+                self.unexpected("`TERM`, `RANGE` or `END_FUZZIFY`");
+                return self.skip("FUZZIFY");
+            }
+        }
+        self.universe(&mut variable, &mut spans, name);
+        if let Some(input) = self.draft.model.inputs.get_mut(index) {
+            *input = variable;
+        }
+        if let Some(input) = self.draft.spans.inputs.get_mut(index) {
+            *input = spans;
+        }
+    }
+
+    pub(super) fn defuzzify(&mut self) {
+        let Some(name) = self.word() else {
+            return self.unexpected("an output");
+        };
+        let section = self.words.get(self.next..).unwrap_or_default().iter();
+        let mut section = section.take_while(|word| !word.eq_ignore_ascii_case("END_DEFUZZIFY"));
+        self.computes = section.any(|word| {
+            ["COGS", "COGSS"]
+                .iter()
+                .any(|m| m.eq_ignore_ascii_case(word))
+        });
+        let mut output = Output::new(Variable::new(name, f64::NAN, f64::NAN));
+        let mut accumulation = None;
+        let mut spans = VariableSpans::default();
+        spans.name = self.draft.span(name);
+        while !self.take("END_DEFUZZIFY") && self.peek().is_some() {
+            if self.take("METHOD") {
+                if let Some(method) = self.setting("METHOD", words::DEFUZZIFIERS) {
+                    output.defuzzifier = method;
+                }
+            } else if self.take("ACCU") {
+                accumulation = Some(self.setting("ACCU", words::AGGREGATIONS));
+            } else if self.take("DEFAULT") {
+                self.default(&mut output, &mut spans);
+            } else if !self.part(&mut output.variable, &mut spans) {
+                self.unexpected("`TERM`, `METHOD`, `DEFAULT`, `RANGE` or `END_DEFUZZIFY`");
+                return self.skip("DEFUZZIFY");
+            }
+        }
+        if output.defuzzifier == Defuzzifier::WeightedAverage
+            && !self.is_fuzzylite
+            && output.variable.terms.iter().all(term::is_number)
+        {
+            // The centre of gravity for singletons: degrees are aggregated before they weigh the places.
+            output.defuzzifier = Defuzzifier::Centroid;
+        }
+        let weighted = words::is_weighted(output.defuzzifier);
+        if weighted {
+            // The places of singletons are values here.
+            for term in &mut output.variable.terms {
+                if let MembershipFunction::Singleton { at } = term.membership_function {
+                    term.membership_function = MembershipFunction::Constant { value: at };
+                }
+            }
+        }
+        if self.is_fuzzylite {
+            habits::tsukamoto(&mut output);
+            habits::unfired(&mut self.draft, &mut output, name);
+        }
+        self.universe(&mut output.variable, &mut spans, name);
+        self.accumulations.push(accumulation);
+        self.draft.model.outputs.push(output);
+        self.draft.spans.outputs.push(spans);
+    }
+
+    /// `DEFAULT := 0;`, `DEFAULT := NC;`: some files write `=`, and no semicolon.
+    pub(super) fn default(&mut self, output: &mut Output, spans: &mut VariableSpans) {
+        if !self.take(":=") && !self.take("=") && !self.take(":") {
+            return self.unexpected("`:=`");
+        }
+        let Some(word) = self.word() else {
+            return self.unexpected("a number or `NC`");
+        };
+        self.take(";");
+        spans.default = self.draft.span(word);
+        if word.eq_ignore_ascii_case("NC") {
+            output.when_no_rule_fires = NoRuleFires::Previous(None);
+        } else if let Some(value) = self.draft.number(word).filter(|value| !value.is_nan()) {
+            output.when_no_rule_fires = NoRuleFires::Value(value);
+        }
+    }
+
+    /// `TERM name := ...;` or `RANGE := (low .. high);`
+    pub(super) fn part(&mut self, variable: &mut Variable, spans: &mut VariableSpans) -> bool {
+        if self.take("TERM") {
+            let statement = self.statement(&[
+                "TERM",
+                "END_FUZZIFY",
+                "END_DEFUZZIFY",
+                "METHOD",
+                "RANGE",
+                "DEFAULT",
+            ]);
+            let [name, ":=", shape @ ..] = statement else {
+                self.unexpected("`NAME := SHAPE;` before this");
+                return true;
+            };
+            let read = match self.is_fuzzylite && term::is_named(shape) {
+                true => self.fuzzylite_term(variable, name, shape),
+                false => term::read(&mut self.draft, &variable.name, name, shape),
+            };
+            match read {
+                Some(read) if self.is_fuzzylite => {
+                    habits::add(&mut self.draft, (variable, spans), read, name);
+                }
+                Some((term, span)) => {
+                    variable.terms.push(term);
+                    spans.terms.push(span);
+                }
+                None => {}
+            }
+            return true;
+        }
+        if self.take("RANGE") {
+            let (first, statement) = (self.here(), self.statement(&[]));
+            let [":=", "(", low, "..", high, ")"] = *statement else {
+                let message = "expected `RANGE := (LOW .. HIGH);`".into();
+                self.draft
+                    .error("no-range", first, message, "write both ends as numbers");
+                return true;
+            };
+            spans.range = self.draft.span(low).start..self.draft.span(high).end;
+            if let Some(range) = self.draft.range(first, low, high, self.computes) {
+                (variable.low, variable.high) = range;
+            }
+            return true;
+        }
+        false
+    }
+
+    /// A term as FLL writes it, of the words behind `:=`.
+    pub(super) fn fuzzylite_term(
+        &mut self,
+        variable: &Variable,
+        name: &str,
+        words: &[&'t str],
+    ) -> Option<(Term, TermSpans)> {
+        let (first, last) = (words.first()?, words.last()?);
+        let span = self.draft.span(first).start..self.draft.span(last).end;
+        let written = self.draft.text.get(span)?;
+        // An output with computed values reads the inputs, a degree its own variable.
+        let inputs = self.draft.model.inputs.iter();
+        let inputs: Vec<String> = inputs.map(|input| input.name.clone()).collect();
+        let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+        let own = (!self.computes).then_some(variable.name.as_str());
+        fll::term::of_shape(&mut self.draft, name, written, &inputs, own)
+    }
+
+    /// The range of a variable that names none: from the first to the last place where a term changes.
+    pub(super) fn universe(
+        &mut self,
+        variable: &mut Variable,
+        spans: &mut VariableSpans,
+        name: &str,
+    ) {
+        if !variable.low.is_nan() {
+            return;
+        }
+        let ends = variable
+            .terms
+            .iter()
+            .map(|term| extent(&term.membership_function));
+        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| {
+            (low.min(a), high.max(b))
+        });
+        let (found, (low, high)) = match low <= high {
+            true if low < high => ("its terms lie between", (low, high)),
+            true => ("its terms lie within", (low - 0.5, low + 0.5)),
+            false => ("its terms tell none, and it is from", (0.0, 1.0)),
+        };
+        (variable.low, variable.high) = (low, high);
+        spans.range = spans.name.clone();
+        let message = format!("`{name}` has no range");
+        let help = format!("{found} {low} and {high}; write `RANGE := (LOW .. HIGH);` for another");
+        self.draft.note("guessed-range", name, message, &help);
+    }
+}

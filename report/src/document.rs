@@ -1,0 +1,134 @@
+//! A flight's assessment for programs: one JSON document.
+
+use flagred::{
+    estimator::Estimator,
+    flight::{Assessment, Finding, Steps, Summary, Verdict},
+    verdict::VerdictSettings,
+};
+use flightlog::{Flight, Motor, Parameter, Range, Report};
+use serde::Serialize;
+
+use crate::finding::Teller;
+
+/// The version of the document's layout; it grows when a name changes its meaning or goes.
+const SCHEMA: &str = "flagred.assess/1";
+
+/// `docs/json.md` and `cli/schemas/assess.json` describe it.
+#[derive(Serialize)]
+pub struct Document<'a> {
+    schema: &'static str,
+    log: Log<'a>,
+    vehicle: Vehicle<'a>,
+    read: &'a Report,
+    profile: Profile<'a>,
+    #[serde(flatten)]
+    verdict: &'a Verdict,
+    findings: Vec<FindingDocument<'a>>,
+    findings_left_out: u64,
+    summary: &'a Summary,
+    steps: Steps<'a>,
+    widened_step_s: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Log<'a> {
+    path: &'a str,
+    format: String,
+}
+
+#[derive(Serialize)]
+struct Vehicle<'a> {
+    kind: String,
+    frame: Option<&'a str>,
+    firmware: Option<&'a str>,
+    motors: &'a [Motor],
+    range: Option<&'a Range>,
+    effective_range: &'a Range,
+    effective_range_doubt: Option<&'a str>,
+    parameters: &'a [Parameter],
+}
+
+/// What the verdict rests on beside the flight.
+#[derive(Serialize)]
+struct Profile<'a> {
+    name: &'a str,
+    rules: &'a str,
+    verdict: VerdictSettings,
+}
+
+/// A finding with the output of its motor, and in words.
+#[derive(Serialize)]
+pub struct FindingDocument<'a> {
+    #[serde(flatten)]
+    finding: Finding,
+    output: Option<&'a str>,
+    text: String,
+}
+
+impl<'a> FindingDocument<'a> {
+    /// A finding of the flight that the teller knows.
+    pub fn new(finding: &'a Finding, teller: Teller<'a>) -> Self {
+        FindingDocument {
+            output: teller.motor(finding).map(|motor| motor.output.as_str()),
+            text: teller.finding(finding),
+            finding: numbered(finding, teller.motors),
+        }
+    }
+}
+
+/// The finding with the autopilot's number of its motor, where it is not its place in the samples.
+pub fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
+    let mut finding = finding.clone();
+    if let Some(named) = &mut finding.found.motor
+        && let Some(motor) = motors.get(named.motor)
+    {
+        named.motor = usize::from(motor.number).saturating_sub(1);
+    }
+    finding
+}
+
+/// The document of one flight.
+pub fn document<'a>(
+    name: &'a str,
+    flight: &'a Flight,
+    estimator: &'a Estimator,
+    assessed: &'a Assessment,
+) -> Document<'a> {
+    let profile = estimator.profile();
+    let findings = assessed.findings.iter();
+    let teller = Teller {
+        model: estimator.model(),
+        motors: &flight.motors,
+    };
+    Document {
+        schema: SCHEMA,
+        log: Log {
+            path: name,
+            format: flight.format.to_string(),
+        },
+        vehicle: Vehicle {
+            kind: flight.vehicle.kind.to_string(),
+            frame: flight.vehicle.frame.as_deref(),
+            firmware: flight.vehicle.firmware.as_deref(),
+            motors: &flight.motors,
+            range: flight.range.as_ref(),
+            effective_range: &flight.effective,
+            effective_range_doubt: flight.effective_doubt.as_deref(),
+            parameters: &flight.parameters,
+        },
+        read: &flight.report,
+        profile: Profile {
+            name: &profile.name,
+            rules: &profile.rules,
+            verdict: profile.verdict,
+        },
+        verdict: &assessed.verdict,
+        findings: findings
+            .map(|finding| FindingDocument::new(finding, teller))
+            .collect(),
+        findings_left_out: assessed.findings_left_out,
+        summary: &assessed.summary,
+        steps: assessed.steps_by_name(),
+        widened_step_s: assessed.widened_step_s,
+    }
+}

@@ -1,0 +1,10 @@
+#!/bin/sh
+# Asks Octave's fuzzy-logic-toolkit for the values of rule sets that are written for it. Exits with 3 where there is no Octave
+# (Debian: apt-get install octave octave-fuzzy-logic-toolkit, 126 MB).
+set -eu
+cd "$(dirname "$0")/../.."
+if ! octave-cli --quiet --eval 'pkg load fuzzy-logic-toolkit' > /dev/null 2>&1; then
+  echo "Octave was not asked: it takes octave with the fuzzy-logic-toolkit" >&2
+  exit 3
+fi
+cargo test -p flagred-tests --test peers octave -- --ignored

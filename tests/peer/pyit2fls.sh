@@ -1,0 +1,11 @@
+#!/bin/sh
+# Asks PyIT2FLS for the values of FCL that are written for it. Exits with 3 where there is no Python.
+set -eu
+cd "$(dirname "$0")/../.."
+venv=target/pyit2fls
+if [ ! -x "$venv/bin/pip" ] && ! python3 -m venv "$venv"; then
+  echo "PyIT2FLS was not asked: it takes python3 with venv (Debian: apt-get install python3-venv)" >&2
+  exit 3
+fi
+"$venv/bin/pip" install --quiet "pyit2fls==0.9.0"
+FLAGRED_PYTHON="$PWD/$venv/bin/python" cargo test -p flagred-tests --test peers pyit2fls -- --ignored

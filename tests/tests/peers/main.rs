@@ -1,0 +1,79 @@
+//! Other programs read the rule sets that are written for them, and compute the same values. `tests/peer` has what runs them.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod fuzzylite;
+mod octave;
+mod pyit2fls;
+
+use std::{path::Path, process::Command};
+
+use fastrand::Rng;
+use flagred_tests::Folder;
+use fuzzy::{Engine, Model};
+use interchange::{Format, Losses};
+
+/// Rule sets that come with the program.
+const SHIPPED: [(&str, &str); 3] = [
+    ("tipper", include_str!("../../../rules/tipper.yaml")),
+    ("flagred", include_str!("../../../rules/flagred.yaml")),
+    (
+        "flagred-paper",
+        include_str!("../../../rules/flagred-paper.yaml"),
+    ),
+];
+
+fn model(text: &str) -> Model {
+    text.parse()
+        .unwrap_or_else(|findings| panic!("{text}\n{findings}"))
+}
+
+/// Writes a rule set in a format, and beside it a table of its values at so many points that are spread over its inputs. Where
+/// rules hardly fire, programs differ in what they take for none.
+fn write(folder: &Folder, name: &str, model: &Model, format: Format, points: usize) {
+    let written = interchange::write(model, format, Losses::Refuse);
+    let written = written.unwrap_or_else(|findings| panic!("{name}: {findings}"));
+    // What fuzzylite samples is sampled here: the values are those of the text as it is read again.
+    let read = interchange::read(&written.text, format, Losses::Refuse).unwrap();
+    let engine = Engine::new(&read.model).unwrap();
+    let names = engine.input_names().chain(engine.output_names());
+    let mut table = names.collect::<Vec<_>>().join(",") + "\n";
+    let (mut rng, mut rows) = (Rng::with_seed(7), 0);
+    for _ in 0..20 * points {
+        let at = |input: &fuzzy::model::Variable| input.low + (input.high - input.low) * rng.f64();
+        let inputs: Vec<f64> = read.model.inputs.iter().map(at).collect();
+        let outcomes = engine.evaluate(&inputs).unwrap();
+        if outcomes.iter().any(|outcome| outcome.coverage < 1e-3) {
+            continue;
+        }
+        let values = outcomes.iter().map(|outcome| outcome.value());
+        let cells = inputs.iter().map(f64::to_string);
+        let cells =
+            cells.chain(values.map(|value| value.map_or("NA".into(), |value| value.to_string())));
+        table += &(cells.collect::<Vec<_>>().join(",") + "\n");
+        rows += 1;
+        if rows == points {
+            break;
+        }
+    }
+    assert!(rows > points / 4, "{name}: {rows} points");
+    folder.file(&format!("{name}.{}", format.ending()), written.text);
+    folder.file(&format!("{name}.csv"), table);
+}
+
+/// Runs a script of `tests/peer` on a folder, and holds what it says.
+fn ask(mut program: Command, script: &str, folder: &Folder, expected: &str) {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("peer")
+        .join(script);
+    let output = program.arg(script).arg(folder.path()).output().unwrap();
+    let told = String::from_utf8_lossy(&output.stdout);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}{errors}");
+    assert!(told.contains(expected), "{told}");
+}
+
+/// The Python that `FLAGRED_PYTHON` names.
+fn python() -> Command {
+    Command::new(std::env::var("FLAGRED_PYTHON").unwrap_or_else(|_| "python3".to_owned()))
+}

@@ -1,0 +1,226 @@
+//! The consequents of a Takagi-Sugeno output as a linear problem: its value is a sum of their numbers, each times what the
+//! firing strengths and the inputs make of it. Least squares has a closed form (Jang's hybrid learning, ANFIS, 1993).
+
+use fuzzy::{
+    Engine, Model,
+    model::{Defuzzifier, MembershipFunction, Output, Variable},
+};
+use nalgebra::{DMatrix, DVector};
+
+use crate::{TuneError, data::Data};
+
+/// Pulls numbers that the rows say nothing about to what they are; relative to the largest curvature.
+const RIDGE: f64 = 1e-8;
+
+/// The rows whose firing strengths are held at a time.
+const ROWS: usize = 4096;
+
+/// Moves the numbers of the terms `fitted` of the only output to where the sum of squared errors is smallest.
+pub(crate) fn fit(model: &mut Model, fitted: &[usize], data: &Data) -> Result<(), TuneError> {
+    let Some((probe, terms)) = probe(model) else {
+        return Ok(());
+    };
+    let engine = Engine::new(&probe)?;
+    let Some(output) = model.outputs.first() else {
+        return Ok(());
+    };
+    let is_mean = output.defuzzifier == Defuzzifier::WeightedAverage;
+    let consequents: Vec<Consequent> = terms
+        .iter()
+        .map(|term| Consequent::new(model, output, *term, fitted))
+        .collect();
+    let numbers: usize = consequents.iter().map(Consequent::free).sum();
+    if numbers == 0 {
+        return Ok(());
+    }
+    let mut squares = DMatrix::<f64>::zeros(numbers, numbers);
+    let mut products = DVector::<f64>::zeros(numbers);
+    for first in (0..data.len()).step_by(ROWS) {
+        let rows = first..(first + ROWS).min(data.len());
+        let columns: Vec<&[f64]> = data.inputs.iter().map(|c| &c[rows.clone()]).collect();
+        let strengths = engine.evaluate_batch(&columns)?;
+        for (row, strengths) in rows.zip(strengths.chunks_exact(terms.len())) {
+            let strength = |i: usize| strengths[i].value().unwrap_or(0.0);
+            let sum: f64 = (0..terms.len()).map(strength).sum();
+            if sum == 0.0 {
+                continue;
+            }
+            let divisor = if is_mean { sum } else { 1.0 };
+            let mut error = data.truths[row];
+            let mut factors: Vec<(usize, f64)> = Vec::new();
+            let mut place = 0;
+            for (i, consequent) in consequents.iter().enumerate() {
+                let share = strength(i) / divisor;
+                if share != 0.0 {
+                    let x = |input: usize| data.inputs[input][row];
+                    error -= share * consequent.value(&x);
+                    let own = consequent.factors(&x).enumerate();
+                    factors.extend(own.map(|(k, factor)| (place + k, share * factor)));
+                }
+                place += consequent.free();
+            }
+            let weight = data.weight(row);
+            for (i, &(p, a)) in factors.iter().enumerate() {
+                products[p] += weight * a * error;
+                for &(q, b) in &factors[..=i] {
+                    squares[(p, q)] += weight * a * b;
+                }
+            }
+        }
+    }
+    squares.fill_upper_triangle_with_lower_triangle();
+    let Some(steps) = solve(squares, &products, RIDGE) else {
+        return Ok(());
+    };
+    let mut steps = steps.iter();
+    for consequent in consequents {
+        let output = model.outputs.first_mut();
+        let term = output.and_then(|output| output.variable.terms.get_mut(consequent.term));
+        if let Some(term) = term {
+            consequent.move_by(&mut term.membership_function, &mut steps);
+        }
+    }
+    Ok(())
+}
+
+/// Solves `(squares + ridge) x = products`. The ridge is a share of each diagonal, and grows until the matrix is positive.
+pub(crate) fn solve(
+    squares: DMatrix<f64>,
+    products: &DVector<f64>,
+    ridge: f64,
+) -> Option<DVector<f64>> {
+    let largest = squares.diagonal().max();
+    if !largest.is_finite() || largest <= 0.0 {
+        return None;
+    }
+    let mut ridge = ridge;
+    while ridge <= 1.0 {
+        let mut ridged = squares.clone();
+        for i in 0..ridged.nrows() {
+            ridged[(i, i)] += ridge * (ridged[(i, i)] + 1e-3 * largest);
+        }
+        if let Some(cholesky) = ridged.cholesky() {
+            return Some(cholesky.solve(products));
+        }
+        ridge *= 100.0;
+    }
+    None
+}
+
+/// A model whose outputs are the firing strengths of the consequents, and the terms that they are of: the same rules, each
+/// with the constant 1 of an output of its own.
+fn probe(model: &Model) -> Option<(Model, Vec<usize>)> {
+    let output = model.outputs.first()?;
+    let mut probe = model.clone();
+    let mut terms = Vec::new();
+    for rule in &mut probe.rules {
+        for consequent in &mut rule.rule.consequents {
+            let mut known = output.variable.terms.iter();
+            let term = known.position(|term| term.name == consequent.term.text)?;
+            if !terms.contains(&term) {
+                terms.push(term);
+            }
+            consequent.output.text = strength_of(term);
+            consequent.term.text = ONE.into();
+        }
+    }
+    terms.sort_unstable();
+    let one = MembershipFunction::Constant { value: 1.0 };
+    let strengths = terms.iter().map(|term| Output {
+        variable: Variable::new(strength_of(*term), 0.0, 1.0).term(ONE, one.clone()),
+        defuzzifier: Defuzzifier::WeightedSum,
+        clamp: false,
+        when_no_rule_fires: fuzzy::model::NoRuleFires::Value(0.0),
+        ..output.clone()
+    });
+    probe.outputs = strengths.collect();
+    (!terms.is_empty()).then_some((probe, terms))
+}
+
+const ONE: &str = "one";
+
+/// No input has such a name: rule sets that are read have no spaces at the end of names.
+fn strength_of(term: usize) -> String {
+    format!("strength of {term} ")
+}
+
+/// A consequent of the output.
+struct Consequent {
+    term: usize,
+    constant: f64,
+    /// Inputs by their index, and their coefficients.
+    coefficients: Vec<(usize, f64)>,
+    /// Whether its numbers move.
+    moves: bool,
+}
+
+impl Consequent {
+    fn new(model: &Model, output: &Output, term: usize, fitted: &[usize]) -> Consequent {
+        let function = output
+            .variable
+            .terms
+            .get(term)
+            .map(|term| &term.membership_function);
+        let input = |name: &String| model.inputs.iter().position(|input| input.name == *name);
+        let (constant, coefficients) = match function {
+            Some(MembershipFunction::Constant { value }) => (*value, Vec::new()),
+            Some(MembershipFunction::Linear {
+                coefficients,
+                constant,
+            }) => {
+                let known = coefficients
+                    .iter()
+                    .filter_map(|(name, c)| Some((input(name)?, *c)));
+                (*constant, known.collect())
+            }
+            _ => (0.0, Vec::new()),
+        };
+        Consequent {
+            term,
+            constant,
+            coefficients,
+            moves: fitted.contains(&term),
+        }
+    }
+
+    /// The number of numbers that move.
+    fn free(&self) -> usize {
+        if self.moves {
+            self.coefficients.len() + 1
+        } else {
+            0
+        }
+    }
+
+    fn value(&self, x: &dyn Fn(usize) -> f64) -> f64 {
+        let terms = self.coefficients.iter().map(|(input, c)| c * x(*input));
+        self.constant + terms.sum::<f64>()
+    }
+
+    /// What each number that moves is multiplied with.
+    fn factors(&self, x: &dyn Fn(usize) -> f64) -> impl Iterator<Item = f64> {
+        let inputs = self.coefficients.iter().map(|(input, _)| x(*input));
+        inputs.chain([1.0]).take(self.free())
+    }
+
+    fn move_by<'s>(
+        &self,
+        function: &mut MembershipFunction,
+        steps: &mut impl Iterator<Item = &'s f64>,
+    ) {
+        let mut steps = steps.take(self.free());
+        match function {
+            MembershipFunction::Constant { value } => *value += steps.next().unwrap_or(&0.0),
+            MembershipFunction::Linear {
+                coefficients,
+                constant,
+            } => {
+                let numbers = coefficients.iter_mut().map(|(_, number)| number);
+                for (number, step) in numbers.chain([constant]).zip(steps) {
+                    *number += step;
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! Tunes fuzzy rule sets on data: peaks of partitions, parameters of membership functions, consequents and weights.
+//!
+//! The rules stay as they are, and so does what keeps them readable: the order of the terms of a variable, a least distance
+//! between their peaks, partitions whose degrees sum to 1, vertical edges, what touches the end of a range; no width, slope or
+//! flank grows or shrinks by more than five times. These hold by construction: the search moves free numbers, each value of
+//! which makes such a model.
+//!
+//! [`tune`] makes a [`Loss`] small by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). With squared errors the
+//! consequents of a Takagi-Sugeno output are solved for at every step, as ANFIS does (Jang 1993). [`cross_validate`] tells
+//! what tuning is worth on rows that were left out.
+
+mod consequents;
+mod data;
+mod loss;
+mod numbers;
+mod objective;
+mod ordered;
+mod parameters;
+mod search;
+mod settings;
+mod validation;
+
+use std::ops::ControlFlow;
+
+use fuzzy::{Model, check};
+
+pub use data::Data;
+pub use numbers::{Moved, Number, numbers};
+pub use settings::{Loss, Settings, TuneError};
+pub use validation::{Interval, Validation, cross_validate};
+
+use objective::{Objective, Point};
+use parameters::Parameters;
+
+/// A tuned model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tuned {
+    /// The model.
+    pub model: Model,
+    /// The loss of the model as it was; see [`Loss`].
+    pub before: f64,
+    /// The loss of the tuned model.
+    pub after: f64,
+    /// The rows without a value of the tuned model, which count as the middle of the range.
+    pub without_value: usize,
+    /// The numbers that moved.
+    pub moved: Vec<Moved>,
+    /// Whether the watcher ended the search.
+    pub is_stopped: bool,
+}
+
+/// How far a search is.
+#[derive(Debug)]
+pub struct Progress<'a> {
+    /// The start, counted from 1.
+    pub start: u32,
+    /// The step of this start, counted from 1.
+    pub iteration: u32,
+    /// The loss of the best model so far, over all starts.
+    pub loss: f64,
+    /// That model.
+    pub model: &'a Model,
+}
+
+/// Moves what may move of a model so that the loss on the rows becomes small. Only steps that help are taken; rounding, where
+/// [`Settings::digits`] asks for it, may cost some of the gain. The same arguments give the same result.
+///
+/// `watch` is called before every step; with `Break` the search ends with the best model so far.
+///
+/// # Errors
+/// The rows do not fit the model or the loss, a name is unknown, nothing may move, or the model cannot be used.
+///
+/// # Example: where warm begins
+/// ```
+/// use std::ops::ControlFlow;
+/// use tuning::{Data, Settings, tune};
+///
+/// let model = fuzzy::yaml::parse("
+/// fuzzy: 1
+/// name: fan
+/// inputs:
+///   heat: {range: [0, 40], partition: {cool: 5, hot: 35}}
+/// outputs:
+///   speed:
+///     range: [0, 10]
+///     terms: {slow: {singleton: 2}, fast: {singleton: 8}}
+/// rules:
+///   - IF heat IS cool THEN speed IS slow
+///   - IF heat IS hot THEN speed IS fast
+/// ")?.model;
+/// // The fan turns slowly up to 20 degrees, fast from 30 degrees on.
+/// let heat: Vec<f64> = (0..=40).map(f64::from).collect();
+/// let speed = |heat: &f64| 2.0 + 6.0 * ((heat - 20.0) / 10.0).clamp(0.0, 1.0);
+/// let data = Data { truths: heat.iter().map(speed).collect(), inputs: vec![heat], ..Data::default() };
+/// let tuned = tune(&model, &data, &Settings::default(), &mut |_| ControlFlow::Continue(()))?;
+/// assert!(tuned.before > 1.0 && tuned.after < 0.01);
+/// let peaks = tuned.model.inputs[0].partition_peaks().unwrap();
+/// assert!((peaks[0] - 20.0).abs() < 0.1 && (peaks[1] - 30.0).abs() < 0.1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn tune(
+    model: &Model,
+    data: &Data,
+    settings: &Settings,
+    watch: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Tuned, TuneError> {
+    data.check(model, settings.loss)?;
+    let parameters = Parameters::new(model, settings)?;
+    let objective = Objective::new(model, &parameters, data, settings);
+    let before = objective.point(model.clone())?;
+    if let Some(claim) = objective.broken_claim(model)? {
+        return Err(TuneError::NotMonotone {
+            input: claim.input,
+            direction: match claim.direction {
+                check::Direction::Increasing => "increasing",
+                check::Direction::Decreasing => "decreasing",
+            },
+        });
+    }
+    let mut best = before.clone();
+    let mut is_stopped = false;
+    let mut random = fastrand::Rng::with_seed(settings.seed);
+    for start in 1..=settings.starts.max(1) {
+        // A free number of 1 is a factor of e.
+        let mut jitter = || {
+            if start == 1 {
+                0.0
+            } else {
+                2.0 * random.f64() - 1.0
+            }
+        };
+        let from: Vec<f64> = (0..parameters.free()).map(|_| jitter()).collect();
+        let told = &mut |iteration: u32, at: &Point| {
+            if is_better(&objective, at, &best)? {
+                best = at.clone();
+            }
+            Ok(watch(&Progress {
+                start,
+                iteration,
+                loss: objective.measure(&best),
+                model: &best.model,
+            }))
+        };
+        let (found, flow) =
+            search::search(&objective, &parameters, &from, settings.iterations, told)?;
+        if is_better(&objective, &found, &best)? {
+            best = found;
+        }
+        is_stopped = flow.is_break();
+        if is_stopped {
+            break;
+        }
+    }
+    if let Some(digits) = settings.digits {
+        best = rounded(&objective, &parameters, model, best, digits)?;
+    }
+    Ok(Tuned {
+        before: objective.measure(&before),
+        after: objective.measure(&best),
+        without_value: best
+            .predictions
+            .iter()
+            .filter(|place| place.is_nan())
+            .count(),
+        moved: numbers::moved(model, &best.model),
+        model: best.model,
+        is_stopped,
+    })
+}
+
+/// Whether a point has a smaller loss and breaks no claim. A start at a random place may break one.
+fn is_better(objective: &Objective<'_>, point: &Point, than: &Point) -> Result<bool, TuneError> {
+    Ok(point.slopes.loss < than.slopes.loss && objective.broken_claim(&point.model)?.is_none())
+}
+
+/// Rounds what moved, a number at a time, to the neighbour with the smaller loss. A number whose neighbours both break a
+/// constraint stays.
+fn rounded(
+    objective: &Objective<'_>,
+    parameters: &Parameters,
+    before: &Model,
+    mut at: Point,
+    digits: u32,
+) -> Result<Point, TuneError> {
+    let originals = numbers(before);
+    for (index, original) in originals.iter().enumerate() {
+        let known = numbers(&at.model);
+        let Some(number) = known
+            .get(index)
+            .filter(|number| number.value != original.value)
+        else {
+            continue;
+        };
+        // What touches stays together: the sides of a vertical edge, two terms that begin at one place.
+        let variable = |number: &Number| number.of.split('.').next().map(str::to_owned);
+        let is_equal = |(_, other): &(usize, &Number)| {
+            other.value == number.value && variable(other) == variable(number)
+        };
+        let equal = known.iter().enumerate().filter(is_equal).map(|(i, _)| i);
+        let equal: Vec<usize> = equal.collect();
+        let mut nearest: Option<Point> = None;
+        for value in numbers::round(number.value, digits) {
+            let model = numbers::with(&at.model, &equal, value);
+            if !parameters.keeps(&model) || objective.broken_claim(&model)?.is_some() {
+                continue;
+            }
+            let point = objective.point(model)?;
+            if nearest
+                .as_ref()
+                .is_none_or(|best| point.slopes.loss < best.slopes.loss)
+            {
+                nearest = Some(point);
+            }
+        }
+        at = nearest.unwrap_or(at);
+    }
+    Ok(at)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,123 @@
+//! What free numbers are worth.
+
+use fuzzy::{Engine, Model, check, engine::Outcome};
+
+use crate::{
+    TuneError, consequents,
+    data::Data,
+    loss::{self, Slopes},
+    parameters::Parameters,
+    settings::Settings,
+};
+
+/// Rows, a loss and constraints.
+pub(crate) struct Objective<'a> {
+    data: &'a Data,
+    settings: &'a Settings,
+    /// The terms of a Takagi-Sugeno output that are solved for.
+    fitted: Vec<usize>,
+    low: f64,
+    width: f64,
+    truths: Vec<f64>,
+}
+
+/// A model, and what it is worth.
+#[derive(Debug, Clone)]
+pub(crate) struct Point {
+    pub(crate) model: Model,
+    /// Places in the range of the output; NaN where there is no value.
+    pub(crate) predictions: Vec<f64>,
+    pub(crate) slopes: Slopes,
+}
+
+impl<'a> Objective<'a> {
+    pub(crate) fn new(
+        model: &Model,
+        parameters: &Parameters,
+        data: &'a Data,
+        settings: &'a Settings,
+    ) -> Objective<'a> {
+        let variable = model.outputs.first().map(|output| &output.variable);
+        let (low, high) = variable.map_or((0.0, 1.0), |variable| (variable.low, variable.high));
+        let width = high - low;
+        let truths = match settings.loss {
+            crate::Loss::Squared => data
+                .truths
+                .iter()
+                .map(|truth| (truth - low) / width)
+                .collect(),
+            _ => data.truths.clone(),
+        };
+        Objective {
+            data,
+            settings,
+            fitted: parameters.fitted.clone(),
+            low,
+            width,
+            truths,
+        }
+    }
+
+    /// What a model is worth, its consequents fitted first.
+    pub(crate) fn fitted(&self, mut model: Model) -> Result<Point, TuneError> {
+        if !self.fitted.is_empty() {
+            consequents::fit(&mut model, &self.fitted, self.data)?;
+        }
+        self.point(model)
+    }
+
+    /// What a model is worth as it is.
+    pub(crate) fn point(&self, model: Model) -> Result<Point, TuneError> {
+        let predictions = self.predictions(&Engine::new(&model)?)?;
+        let slopes = loss::slopes(self.settings.loss, &predictions, &self.truths, self.data);
+        Ok(Point {
+            model,
+            predictions,
+            slopes,
+        })
+    }
+
+    fn predictions(&self, engine: &Engine) -> Result<Vec<f64>, TuneError> {
+        let outcomes = engine.evaluate_batch(&self.data.columns())?;
+        let place = |outcome: &Outcome| {
+            let value = outcome.value().map(|value| (value - self.low) / self.width);
+            value.unwrap_or(f64::NAN)
+        };
+        Ok(outcomes.iter().map(place).collect())
+    }
+
+    /// The truths as predictions are: places in the range, or 0 and 1.
+    pub(crate) fn truths(&self) -> &[f64] {
+        &self.truths
+    }
+
+    /// The width of the output's range.
+    pub(crate) fn width(&self) -> f64 {
+        self.width
+    }
+
+    /// The loss that is reported.
+    pub(crate) fn measure(&self, point: &Point) -> f64 {
+        loss::measure(
+            self.settings.loss,
+            &point.predictions,
+            &self.truths,
+            self.data,
+            self.width,
+        )
+    }
+
+    /// The first claim of [`Settings::monotone`] that a model does not hold.
+    pub(crate) fn broken_claim(&self, model: &Model) -> Result<Option<check::Monotone>, TuneError> {
+        if self.settings.monotone.is_empty() {
+            return Ok(None);
+        }
+        let engine = Engine::new(model)?;
+        let found = check::counterexamples(&engine, &self.settings.monotone).map_err(|wrong| {
+            TuneError::Claim {
+                message: wrong.message.clone(),
+            }
+        })?;
+        Ok(found.into_iter().next().map(|found| found.claim))
+    }
+}

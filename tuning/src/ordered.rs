@@ -1,0 +1,207 @@
+//! Positions in ascending order, as free numbers.
+
+/// Positions that keep their order and a least distance, whatever the free numbers are.
+///
+/// Fixed positions, and the two ends, divide the line into segments. The length of a segment, less the least distances in it,
+/// is shared out among its distances in the proportions `exp(z)`; the first `z` of each segment is 0. A distance that is 0
+/// stays 0.
+#[derive(Debug, Clone)]
+pub(crate) struct Ordered {
+    segments: Vec<Segment>,
+    count: usize,
+}
+
+/// What lies between two fixed positions.
+#[derive(Debug, Clone)]
+struct Segment {
+    from: f64,
+    to: f64,
+    /// From one position to the next, the ends included: none where it stays 0, else the least distance and the first share.
+    distances: Vec<Option<(f64, f64)>>,
+}
+
+/// The least share of a segment that a distance begins with, so that it can grow.
+const LEAST_SHARE: f64 = 1e-3;
+
+impl Ordered {
+    /// `positions` rise from `low` to `high`. Where one is closer to the next than `apart`, that distance is the least one.
+    pub(crate) fn new(positions: &[(f64, bool)], low: f64, high: f64, apart: f64) -> Ordered {
+        let mut segments = Vec::new();
+        // Beside an end of the range there is no neighbour to keep away from.
+        let mut inner = vec![(low, 0.0)];
+        let fixed_end = [(high, true)];
+        for (i, (position, is_fixed)) in positions.iter().chain(&fixed_end).enumerate() {
+            let is_beside_end = i == 0 || i == positions.len();
+            inner.push((*position, if is_beside_end { 0.0 } else { apart }));
+            if *is_fixed {
+                segments.push(Segment::new(&inner));
+                inner = vec![(*position, 0.0)];
+            }
+        }
+        Ordered {
+            segments,
+            count: positions.len(),
+        }
+    }
+
+    /// The number of free numbers.
+    pub(crate) fn free(&self) -> usize {
+        self.segments.iter().map(Segment::free).sum()
+    }
+
+    /// The positions for free numbers; all 0 are those it was made of.
+    pub(crate) fn positions(&self, free: &[f64]) -> Vec<f64> {
+        let mut rest = free;
+        let mut positions = Vec::with_capacity(self.count + 1);
+        for segment in &self.segments {
+            let (own, behind) = rest.split_at(segment.free().min(rest.len()));
+            rest = behind;
+            segment.place(own, &mut positions);
+        }
+        // The upper end.
+        positions.truncate(self.count);
+        positions
+    }
+}
+
+impl Ordered {
+    /// Whether positions could be those of some free numbers.
+    pub(crate) fn holds(&self, positions: &[f64]) -> bool {
+        let mut rest = positions;
+        self.segments.iter().all(|segment| {
+            let inner = segment.distances.len().saturating_sub(1).min(rest.len());
+            let (own, behind) = rest.split_at(inner);
+            // Behind the own ones stands the fixed one that ends the segment.
+            rest = behind.get(1..).unwrap_or_default();
+            segment.holds(own) && behind.first().is_none_or(|fixed| *fixed == segment.to)
+        })
+    }
+}
+
+impl Segment {
+    fn holds(&self, positions: &[f64]) -> bool {
+        let slack = 1e-12 * (self.to - self.from);
+        let ends = positions.iter().copied().chain([self.to]);
+        let mut before = self.from;
+        ends.zip(&self.distances).all(|(position, distance)| {
+            let least = distance.map_or(0.0, |(least, _)| least);
+            let apart = position - before;
+            before = position;
+            match distance {
+                Some(_) => apart > 0.0 && apart >= least - slack,
+                None => apart == 0.0,
+            }
+        })
+    }
+
+    /// Positions, each with the least distance from the one before; the first and the last are fixed.
+    fn new(positions: &[(f64, f64)]) -> Segment {
+        let least = |pair: &[(f64, f64)]| {
+            let [(before, _), (position, apart)] = *pair else {
+                return None;
+            };
+            let distance = position - before;
+            let least = apart.min(distance);
+            (distance > 0.0).then_some((least, distance - least))
+        };
+        let mut distances: Vec<Option<(f64, f64)>> = positions.windows(2).map(least).collect();
+        let spare: f64 = distances.iter().flatten().map(|(_, rest)| rest).sum();
+        for (_, share) in distances.iter_mut().flatten() {
+            *share = if spare > 0.0 {
+                (*share / spare).max(LEAST_SHARE)
+            } else {
+                1.0
+            };
+        }
+        let end = |position: Option<&(f64, f64)>| position.map_or(0.0, |(position, _)| *position);
+        Segment {
+            from: end(positions.first()),
+            to: end(positions.last()),
+            distances,
+        }
+    }
+
+    fn free(&self) -> usize {
+        self.distances.iter().flatten().count().saturating_sub(1)
+    }
+
+    /// Adds the positions behind `from`, with `to`.
+    fn place(&self, free: &[f64], positions: &mut Vec<f64>) {
+        let moved = || std::iter::once(0.0).chain(free.iter().copied());
+        let known = || self.distances.iter().flatten().zip(moved());
+        let least: f64 = known().map(|((least, _), _)| least).sum();
+        let sum: f64 = known().map(|((_, share), z)| share * z.exp()).sum();
+        let spare = (self.to - self.from - least).max(0.0);
+        let mut z = moved();
+        let mut at = self.from;
+        let first = positions.len();
+        for distance in &self.distances {
+            if let Some((least, share)) = distance {
+                at += least + spare * share * z.next().unwrap_or(0.0).exp() / sum;
+            }
+            positions.push(at.min(self.to));
+        }
+        // What touches the upper end is there exactly, whatever the sums round to.
+        let touching = self
+            .distances
+            .iter()
+            .rev()
+            .take_while(|distance| distance.is_none());
+        let touching = touching.count() + 1;
+        let last = positions.len().saturating_sub(touching).max(first);
+        for position in positions.iter_mut().skip(last) {
+            *position = self.to;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn zeros_are_the_positions_it_was_made_of() {
+        let positions = [(0.0, false), (0.2, false), (0.5, false)];
+        let ordered = Ordered::new(&positions, 0.0, 1.0, 0.05);
+        // The first one stays at the end of the range.
+        assert_eq!(ordered.free(), 2);
+        let same = ordered.positions(&[0.0; 2]);
+        for ((position, _), same) in positions.iter().zip(same) {
+            assert!((position - same).abs() < 1e-12, "{same}");
+        }
+    }
+
+    #[test]
+    fn what_is_fixed_stays() {
+        let ordered = Ordered::new(&[(0.2, false), (0.5, true), (0.7, false)], 0.0, 1.0, 0.0);
+        let moved = ordered.positions(&[3.0, -2.0]);
+        assert_eq!(moved[1], 0.5);
+        assert!(moved[0] < 0.1 && moved[2] > 0.9, "{moved:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn order_distance_and_range_are_kept(
+            mut positions in prop::collection::vec((0.0..10.0_f64, any::<bool>()), 1..8),
+            apart in 0.0..2.0_f64,
+            free in prop::collection::vec(-30.0..30.0_f64, 16),
+        ) {
+            positions.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let ordered = Ordered::new(&positions, 0.0, 10.0, apart);
+            let moved = ordered.positions(&free[..ordered.free()]);
+            prop_assert_eq!(moved.len(), positions.len());
+            let as_given: Vec<f64> = positions.iter().map(|(position, _)| *position).collect();
+            prop_assert!(ordered.holds(&as_given));
+            for ((before, is_fixed), after) in positions.iter().zip(&moved) {
+                prop_assert!(!is_fixed || before == after);
+                prop_assert!((0.0..=10.0).contains(after));
+            }
+            for i in 1..moved.len() {
+                let least = apart.min(positions[i].0 - positions[i - 1].0);
+                prop_assert!(moved[i] - moved[i - 1] >= least - 1e-9, "{:?}", moved);
+            }
+        }
+    }
+}

@@ -1,0 +1,440 @@
+//! What of a model may move, as free numbers. Whatever they are, the model keeps its constraints; all 0 is the model itself.
+
+use fuzzy::{
+    Model,
+    model::{Defuzzifier, MembershipFunction, Output, Role, Term, Variable},
+};
+
+use crate::{TuneError, ordered::Ordered, settings::Settings};
+
+/// The parameters of a model that may move.
+#[derive(Debug, Clone)]
+pub(crate) struct Parameters {
+    model: Model,
+    variables: Vec<(Place, Movable)>,
+    /// The rules whose weights may move, by their index.
+    weights: Vec<usize>,
+    /// The terms that are fitted in closed form.
+    pub(crate) fitted: Vec<usize>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Place {
+    Input(usize),
+    Output(usize),
+}
+
+/// What of a variable may move.
+#[derive(Debug, Clone)]
+enum Movable {
+    /// The peaks of a partition.
+    Partition(Ordered),
+    /// Terms with shapes of their own: their anchors from left to right, and what hangs on each.
+    Terms { anchors: Ordered, hung: Vec<Hung> },
+    /// The consequents of a Takagi-Sugeno output: for each number of each term its scale.
+    Consequents(Vec<(usize, Vec<f64>)>),
+}
+
+/// A term whose parameters hang on its anchor: the place where it is highest.
+#[derive(Debug, Clone)]
+struct Hung {
+    term: usize,
+    parameters: Vec<Link>,
+    /// The order in which the parameters are known: the anchor first.
+    outward: Vec<usize>,
+}
+
+/// How a parameter depends on its free number `z`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Link {
+    /// The anchor itself.
+    Anchor,
+    /// A position: the parameter of this index and [`factor`] times a distance. A distance of 0, a vertical edge, stays 0.
+    Beyond(usize, f64),
+    /// A width or a slope: the number times [`factor`]. A slope of 0 stays 0.
+    Scale(f64),
+    /// It does not move.
+    Fixed(f64),
+}
+
+/// The most that a width, a slope or a distance from an anchor grows or shrinks by: one that vanishes is not readable.
+pub(crate) const MOST_FACTOR: f64 = 5.0;
+
+/// The factor of a free number: about `exp(z)`, between 1 / [`MOST_FACTOR`] and [`MOST_FACTOR`].
+fn factor(z: f64) -> f64 {
+    let most = MOST_FACTOR.ln();
+    (most * (z / most).tanh()).exp()
+}
+
+/// A weight of 1 begins here: at 1 itself it could not move.
+const LARGEST_WEIGHT: f64 = 0.98;
+
+impl Parameters {
+    /// What of `model` may move as `settings` say.
+    pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Parameters, TuneError> {
+        let names = || settings.only.iter().chain(&settings.fix);
+        if let Some(name) = names().find(|name| !is_known(model, name)) {
+            return Err(TuneError::Unknown { name: name.clone() });
+        }
+        let may_move = |variable: &str, term: &str| {
+            let named = |names: &[String]| {
+                let is_it = |name: &String| {
+                    *name == variable || name.split_once('.') == Some((variable, term))
+                };
+                names.iter().any(is_it)
+            };
+            (settings.only.is_empty() || named(&settings.only)) && !named(&settings.fix)
+        };
+        let mut parameters = Parameters {
+            model: model.clone(),
+            variables: Vec::new(),
+            weights: Vec::new(),
+            fitted: Vec::new(),
+        };
+        for (i, variable) in model.inputs.iter().enumerate() {
+            let moves = |term: &Term| may_move(&variable.name, &term.name);
+            parameters.add(Place::Input(i), terms(variable, settings, &moves));
+        }
+        for (i, output) in model.outputs.iter().enumerate() {
+            let moves = |term: &Term| may_move(&output.variable.name, &term.name);
+            let movable = match is_takagi_sugeno(output) {
+                false => terms(&output.variable, settings, &moves),
+                true if settings.fits_consequents() && is_linear_problem(output) => {
+                    let terms = output.variable.terms.iter().enumerate();
+                    let fitted = terms.filter(|(_, term)| is_linear(term) && moves(term));
+                    parameters.fitted = fitted.map(|(term, _)| term).collect();
+                    continue;
+                }
+                true => Movable::Consequents(consequents(model, output, &moves)),
+            };
+            parameters.add(Place::Output(i), movable);
+        }
+        if settings.weights {
+            parameters.weights = (0..model.rules.len()).collect();
+        }
+        match parameters.free() + parameters.fitted.len() {
+            0 => Err(TuneError::NothingMoves),
+            _ => Ok(parameters),
+        }
+    }
+
+    fn add(&mut self, place: Place, movable: Movable) {
+        if movable.free() > 0 {
+            self.variables.push((place, movable));
+        }
+    }
+
+    /// The number of free numbers.
+    pub(crate) fn free(&self) -> usize {
+        let variables = self.variables.iter().map(|(_, movable)| movable.free());
+        variables.sum::<usize>() + self.weights.len()
+    }
+
+    /// Whether a model keeps order and least distances, and what is fixed.
+    pub(crate) fn keeps(&self, model: &Model) -> bool {
+        self.variables.iter().all(|(place, movable)| {
+            let variable = match *place {
+                Place::Input(input) => model.inputs.get(input),
+                Place::Output(output) => model.outputs.get(output).map(|o| &o.variable),
+            };
+            variable.is_some_and(|variable| movable.keeps(variable))
+        })
+    }
+
+    /// The model for free numbers.
+    pub(crate) fn model(&self, free: &[f64]) -> Model {
+        let mut model = self.model.clone();
+        let mut rest = free;
+        for (place, movable) in &self.variables {
+            let (own, behind) = rest.split_at(movable.free().min(rest.len()));
+            rest = behind;
+            let variable = match *place {
+                Place::Input(input) => model.inputs.get_mut(input),
+                Place::Output(output) => model.outputs.get_mut(output).map(|o| &mut o.variable),
+            };
+            if let Some(variable) = variable {
+                movable.apply(own, variable);
+            }
+        }
+        for (rule, z) in self.weights.iter().zip(rest) {
+            if let Some(rule) = model.rules.get_mut(*rule) {
+                let weight = rule.rule.weight.clamp(1.0 - LARGEST_WEIGHT, LARGEST_WEIGHT);
+                let logit = (weight / (1.0 - weight)).ln();
+                if *z != 0.0 {
+                    rule.rule.weight = 1.0 / (1.0 + (-(logit + z)).exp());
+                }
+            }
+        }
+        model
+    }
+}
+
+/// Whether a name of `--only` or `--fix` is a variable or a term.
+fn is_known(model: &Model, name: &str) -> bool {
+    let outputs = model.outputs.iter().map(|output| &output.variable);
+    model.inputs.iter().chain(outputs).any(|variable| {
+        let is_term = |term: &Term| name.split_once('.') == Some((&variable.name, &term.name));
+        variable.name == name || variable.terms.iter().any(is_term)
+    })
+}
+
+fn is_takagi_sugeno(output: &Output) -> bool {
+    matches!(
+        output.defuzzifier,
+        Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum
+    )
+}
+
+/// Whether the value of the output is linear in the numbers of all its consequents.
+fn is_linear_problem(output: &Output) -> bool {
+    let mut terms = output.variable.terms.iter();
+    !output.clamp && terms.all(|term| is_linear(term) && term.height == 1.0)
+}
+
+/// Whether the value of a consequent is linear in its numbers.
+fn is_linear(term: &Term) -> bool {
+    matches!(
+        term.membership_function,
+        MembershipFunction::Constant { .. } | MembershipFunction::Linear { .. }
+    )
+}
+
+/// What of the membership functions of a variable may move.
+fn terms(variable: &Variable, settings: &Settings, moves: &dyn Fn(&Term) -> bool) -> Movable {
+    let apart = settings.least_distance * (variable.high - variable.low);
+    if let Some(peaks) = variable.partition_peaks() {
+        let fixed = variable.terms.iter().map(|term| !moves(term));
+        let positions: Vec<(f64, bool)> = peaks.into_iter().zip(fixed).collect();
+        let ordered = Ordered::new(&positions, variable.low, variable.high, apart);
+        return Movable::Partition(ordered);
+    }
+    let mut anchored: Vec<(f64, bool, Hung)> = Vec::new();
+    for (index, term) in variable.terms.iter().enumerate() {
+        let parameters = term.membership_function.parameters();
+        let is_constant = matches!(
+            term.membership_function,
+            MembershipFunction::Constant { .. }
+        );
+        if let Some(anchor) = anchor(&parameters).filter(|_| !is_constant) {
+            let may_move = moves(term);
+            let hung = Hung::new(index, &parameters, anchor, may_move);
+            let position = parameters.get(anchor).map_or(0.0, |(_, _, value)| *value);
+            anchored.push((position, !may_move, hung));
+        }
+    }
+    anchored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let positions: Vec<(f64, bool)> = anchored
+        .iter()
+        .map(|(at, fixed, _)| (*at, *fixed))
+        .collect();
+    let low = positions
+        .first()
+        .map_or(variable.low, |(at, _)| at.min(variable.low));
+    let high = positions
+        .last()
+        .map_or(variable.high, |(at, _)| at.max(variable.high));
+    Movable::Terms {
+        anchors: Ordered::new(&positions, low, high, apart),
+        hung: anchored.into_iter().map(|(.., hung)| hung).collect(),
+    }
+}
+
+/// The index of the parameter that the others hang on.
+fn anchor(parameters: &[(&str, Role, f64)]) -> Option<usize> {
+    const TOPS: [&str; 6] = ["peak", "left_top", "top", "mean", "center", "at"];
+    let place = |name: &str| parameters.iter().position(|(known, ..)| *known == name);
+    let top = TOPS.iter().find_map(|top| place(top));
+    top.or(parameters.first().map(|_| 0))
+}
+
+fn is_width(name: &str, role: Role) -> bool {
+    role == Role::Positive || name.ends_with("slope")
+}
+
+/// The numbers of the consequents that may move, each with what one step of its free number is.
+fn consequents(
+    model: &Model,
+    output: &Output,
+    moves: &dyn Fn(&Term) -> bool,
+) -> Vec<(usize, Vec<f64>)> {
+    let height = output.variable.high - output.variable.low;
+    let width = |name: &String| {
+        let input = model.inputs.iter().find(|input| input.name == *name);
+        input.map_or(1.0, |input| input.high - input.low)
+    };
+    let scales = |(index, term): (usize, &Term)| match &term.membership_function {
+        _ if !moves(term) => None,
+        MembershipFunction::Constant { .. } => Some((index, vec![height])),
+        MembershipFunction::Linear { coefficients, .. } => {
+            let scales = coefficients.iter().map(|(name, _)| height / width(name));
+            Some((index, scales.chain([height]).collect()))
+        }
+        _ => None,
+    };
+    output
+        .variable
+        .terms
+        .iter()
+        .enumerate()
+        .filter_map(scales)
+        .collect()
+}
+
+impl Movable {
+    fn free(&self) -> usize {
+        match self {
+            Movable::Partition(peaks) => peaks.free(),
+            Movable::Terms { anchors, hung, .. } => {
+                anchors.free() + hung.iter().map(Hung::free).sum::<usize>()
+            }
+            Movable::Consequents(terms) => terms.iter().map(|(_, scales)| scales.len()).sum(),
+        }
+    }
+
+    fn keeps(&self, variable: &Variable) -> bool {
+        match self {
+            Movable::Partition(ordered) => variable
+                .partition_peaks()
+                .is_some_and(|peaks| ordered.holds(&peaks)),
+            Movable::Terms { anchors, hung } => {
+                let anchor = |hung: &Hung| {
+                    let parameters = variable
+                        .terms
+                        .get(hung.term)?
+                        .membership_function
+                        .parameters();
+                    parameters
+                        .get(*hung.outward.first()?)
+                        .map(|(.., value)| *value)
+                };
+                let positions: Option<Vec<f64>> = hung.iter().map(anchor).collect();
+                positions.is_some_and(|positions| anchors.holds(&positions))
+            }
+            Movable::Consequents(_) => true,
+        }
+    }
+
+    /// Moves the terms of a variable.
+    fn apply(&self, free: &[f64], variable: &mut Variable) {
+        match self {
+            Movable::Partition(peaks) => {
+                let names: Vec<String> = variable.terms.drain(..).map(|term| term.name).collect();
+                let peaks = peaks.positions(free);
+                let moved = names.iter().map(String::as_str).zip(peaks);
+                *variable = variable.clone().partition_at(moved);
+            }
+            Movable::Terms { anchors, hung, .. } => {
+                let (of_anchors, mut rest) = free.split_at(anchors.free().min(free.len()));
+                for (anchor, hung) in anchors.positions(of_anchors).into_iter().zip(hung) {
+                    let (own, behind) = rest.split_at(hung.free().min(rest.len()));
+                    rest = behind;
+                    if let Some(term) = variable.terms.get_mut(hung.term) {
+                        let moved = term
+                            .membership_function
+                            .with_parameters(&hung.moved(anchor, own));
+                        if let Ok(moved) = moved {
+                            term.membership_function = moved;
+                        }
+                    }
+                }
+            }
+            Movable::Consequents(terms) => {
+                let mut z = free.iter();
+                for (index, scales) in terms {
+                    let mut steps = scales.iter().map(|scale| scale * z.next().unwrap_or(&0.0));
+                    match variable
+                        .terms
+                        .get_mut(*index)
+                        .map(|t| &mut t.membership_function)
+                    {
+                        Some(MembershipFunction::Constant { value }) => {
+                            *value += steps.next().unwrap_or(0.0);
+                        }
+                        Some(MembershipFunction::Linear {
+                            coefficients,
+                            constant,
+                        }) => {
+                            let numbers = coefficients.iter_mut().map(|(_, number)| number);
+                            for (number, step) in numbers.chain([constant]).zip(steps) {
+                                *number += step;
+                            }
+                        }
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Hung {
+    fn new(term: usize, parameters: &[(&str, Role, f64)], anchor: usize, may_move: bool) -> Hung {
+        let is_position = |i: usize| {
+            parameters
+                .get(i)
+                .is_some_and(|(name, role, _)| !is_width(name, *role))
+        };
+        let link = |(i, (_, _, value)): (usize, &(&str, Role, f64))| {
+            if i == anchor {
+                return Link::Anchor;
+            }
+            if !may_move {
+                return Link::Fixed(*value);
+            }
+            if !is_position(i) {
+                return Link::Scale(*value);
+            }
+            let next = match i < anchor {
+                true => (i + 1..=anchor).find(|next| is_position(*next)),
+                false => (anchor..i).rev().find(|next| is_position(*next)),
+            };
+            let next = next.unwrap_or(anchor);
+            let at = parameters.get(next).map_or(*value, |(_, _, at)| *at);
+            Link::Beyond(next, value - at)
+        };
+        let links: Vec<Link> = parameters.iter().enumerate().map(link).collect();
+        let mut outward: Vec<usize> = (0..links.len()).collect();
+        outward.sort_by_key(|i| i.abs_diff(anchor));
+        Hung {
+            term,
+            parameters: links,
+            outward,
+        }
+    }
+
+    fn free(&self) -> usize {
+        self.parameters.iter().filter(|link| link.is_free()).count()
+    }
+
+    /// The parameters for a place of the anchor and free numbers.
+    fn moved(&self, anchor: f64, free: &[f64]) -> Vec<f64> {
+        let mut z = free.iter();
+        let of_link = |link: &Link| match link.is_free() {
+            true => z.next().map_or(1.0, |z| factor(*z)),
+            false => 1.0,
+        };
+        let factors: Vec<f64> = self.parameters.iter().map(of_link).collect();
+        let mut moved = vec![0.0; factors.len()];
+        for &i in &self.outward {
+            moved[i] = match self.parameters[i] {
+                Link::Anchor => anchor,
+                Link::Beyond(next, distance) => moved[next] + distance * factors[i],
+                Link::Scale(number) => number * factors[i],
+                Link::Fixed(number) => number,
+            };
+        }
+        moved
+    }
+}
+
+impl Link {
+    fn is_free(&self) -> bool {
+        match self {
+            Link::Beyond(_, number) | Link::Scale(number) => *number != 0.0,
+            Link::Anchor | Link::Fixed(_) => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

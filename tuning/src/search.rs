@@ -1,0 +1,134 @@
+//! The search: Levenberg and Marquardt's damped Gauss-Newton steps, with derivatives by differences.
+
+use std::ops::ControlFlow;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::{
+    TuneError,
+    consequents::solve,
+    objective::{Objective, Point},
+    parameters::Parameters,
+};
+
+/// The step of a difference. All free numbers are of the order of 1.
+const DIFFERENCE: f64 = 1e-4;
+
+/// The longest step of a free number. All are of the order of 1.
+const LONGEST: f64 = 2.0;
+
+/// A step that gains a smaller share of the loss is as good as none.
+const LEAST_GAIN: f64 = 1e-7;
+
+/// So many poor steps end a search.
+const PATIENCE: u32 = 3;
+
+/// Is told the step and the point, and says whether to go on.
+pub(crate) type Watch<'a> = dyn FnMut(u32, &Point) -> Result<ControlFlow<()>, TuneError> + 'a;
+
+/// Searches from free numbers, for at most so many steps. `watch` is told each new best point, and can end the search.
+pub(crate) fn search(
+    objective: &Objective<'_>,
+    parameters: &Parameters,
+    from: &[f64],
+    iterations: u32,
+    watch: &mut Watch<'_>,
+) -> Result<(Point, ControlFlow<()>), TuneError> {
+    let mut z = from.to_vec();
+    let mut at = objective.fitted(parameters.model(&z))?;
+    let mut damping = 1e-2;
+    let mut poor = 0;
+    for iteration in 1..=iterations {
+        if watch(iteration, &at)?.is_break() {
+            return Ok((at, ControlFlow::Break(())));
+        }
+        if z.is_empty() {
+            break;
+        }
+        let (squares, products) = normal_equations(objective, parameters, &z, &at)?;
+        let before = at.slopes.loss;
+        let Some((step, next, used)) =
+            step(objective, parameters, &z, &at, &squares, &products, damping)?
+        else {
+            break;
+        };
+        z = step;
+        at = next;
+        damping = (used / 4.0).max(1e-9);
+        let gain = before - at.slopes.loss;
+        poor = if gain < LEAST_GAIN * before {
+            poor + 1
+        } else {
+            0
+        };
+        if poor == PATIENCE {
+            break;
+        }
+    }
+    Ok((at, ControlFlow::Continue(())))
+}
+
+/// The curvature of the loss in the free numbers, and minus its gradient.
+fn normal_equations(
+    objective: &Objective<'_>,
+    parameters: &Parameters,
+    z: &[f64],
+    at: &Point,
+) -> Result<(DMatrix<f64>, DVector<f64>), TuneError> {
+    let mut columns: Vec<Vec<f64>> = Vec::with_capacity(z.len());
+    for i in 0..z.len() {
+        let mut moved = z.to_vec();
+        moved[i] += DIFFERENCE;
+        let moved = objective.fitted(parameters.model(&moved))?;
+        let pairs = moved.predictions.iter().zip(&at.predictions);
+        let slope = |(moved, at): (&f64, &f64)| {
+            let slope = (moved - at) / DIFFERENCE;
+            if slope.is_finite() { slope } else { 0.0 }
+        };
+        columns.push(pairs.map(slope).collect());
+    }
+    let sum = |terms: &mut dyn Iterator<Item = f64>| terms.sum::<f64>();
+    let products = columns.iter().map(|column| {
+        let terms = column.iter().zip(&at.slopes.first);
+        -sum(&mut terms.map(|(slope, first)| slope * first))
+    });
+    let products = DVector::from_iterator(z.len(), products);
+    let squares = DMatrix::from_fn(z.len(), z.len(), |i, j| {
+        if j > i {
+            return 0.0;
+        }
+        let slopes = columns[i].iter().zip(&columns[j]).zip(&at.slopes.second);
+        sum(&mut slopes.map(|((a, b), second)| a * b * second))
+    });
+    let mut squares = squares;
+    squares.fill_upper_triangle_with_lower_triangle();
+    Ok((squares, products))
+}
+
+/// The next point: more and more damped until the loss falls and no constraint breaks. `None` where no step helps.
+fn step(
+    objective: &Objective<'_>,
+    parameters: &Parameters,
+    z: &[f64],
+    at: &Point,
+    squares: &DMatrix<f64>,
+    products: &DVector<f64>,
+    mut damping: f64,
+) -> Result<Option<(Vec<f64>, Point, f64)>, TuneError> {
+    const MOST_TRIES: u32 = 12;
+    for _ in 0..MOST_TRIES {
+        let Some(step) = solve(squares.clone(), products, damping) else {
+            return Ok(None);
+        };
+        let moved = z.iter().zip(step.iter());
+        let moved: Vec<f64> = moved
+            .map(|(z, step)| z + step.clamp(-LONGEST, LONGEST))
+            .collect();
+        let next = objective.fitted(parameters.model(&moved))?;
+        if next.slopes.loss < at.slopes.loss && objective.broken_claim(&next.model)?.is_none() {
+            return Ok(Some((moved, next, damping)));
+        }
+        damping *= 5.0;
+    }
+    Ok(None)
+}

@@ -1,0 +1,299 @@
+use proptest::prelude::*;
+
+use super::*;
+use fuzzy::{Engine, check::Monotone, model::Defuzzifier};
+
+fn go_on(_: &Progress<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+fn parse(text: &str) -> Model {
+    fuzzy::yaml::parse(text).unwrap().model
+}
+
+/// Rows of a model: what it says of points at random.
+fn rows_of(model: &Model, rows: usize, seed: u64) -> Data {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let column = |input: &fuzzy::model::Variable| -> Vec<f64> {
+        (0..rows)
+            .map(|_| input.low + random.f64() * (input.high - input.low))
+            .collect()
+    };
+    let inputs: Vec<Vec<f64>> = model.inputs.iter().map(column).collect();
+    let engine = Engine::new(model).unwrap();
+    let columns: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+    let outcomes = engine.evaluate_batch(&columns).unwrap();
+    Data {
+        truths: outcomes
+            .iter()
+            .map(|outcome| outcome.value().unwrap())
+            .collect(),
+        inputs,
+        ..Data::default()
+    }
+}
+
+fn tipper(peaks: [f64; 3], output: [f64; 3]) -> Model {
+    let ([a, b, c], [small, middle, large]) = (peaks, output);
+    parse(&format!(
+        "
+fuzzy: 1
+name: tipper
+inputs:
+  service: {{range: [0, 10], partition: {{poor: {a}, good: {b}, excellent: {c}}}}}
+  food: {{range: [0, 10], partition: {{rancid: 2, delicious: 8}}}}
+outputs:
+  tip:
+    range: [0, 30]
+    terms: {{small: {{singleton: {small}}}, middle: {{singleton: {middle}}}, large: {{singleton: {large}}}}}
+operators: {{and: product, implication: product, aggregation: sum}}
+rules:
+  - IF service IS poor AND food IS rancid THEN tip IS small
+  - IF service IS poor AND food IS delicious THEN tip IS middle
+  - IF service IS good THEN tip IS middle
+  - IF service IS excellent THEN tip IS large
+"
+    ))
+}
+
+#[test]
+fn a_model_is_found_again_from_what_it_says() {
+    let hidden = tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]);
+    let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
+    let data = rows_of(&hidden, 500, 1);
+    let tuned = tune(&begun, &data, &Settings::default(), &mut go_on).unwrap();
+    assert!(
+        tuned.before > 1.0 && tuned.after < 1e-3,
+        "{} {}",
+        tuned.before,
+        tuned.after
+    );
+    for (number, hidden) in numbers(&tuned.model).iter().zip(numbers(&hidden)) {
+        assert!(
+            (number.value - hidden.value).abs() < 0.01,
+            "{number:?} {}",
+            hidden.value
+        );
+    }
+    assert_eq!(
+        tuned
+            .moved
+            .iter()
+            .filter(|moved| moved.of == "service.poor")
+            .count(),
+        1
+    );
+}
+
+#[test]
+fn rounded_numbers_have_so_many_digits_and_keep_most_of_the_gain() {
+    let data = rows_of(&tipper([1.04, 4.13, 9.02], [3.0, 14.0, 27.0]), 500, 1);
+    let settings = Settings {
+        digits: Some(2),
+        ..Settings::default()
+    };
+    let tuned = tune(
+        &tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]),
+        &data,
+        &settings,
+        &mut go_on,
+    )
+    .unwrap();
+    let values: Vec<f64> = tuned.moved.iter().map(|moved| moved.after).collect();
+    assert!(
+        values
+            .iter()
+            .all(|value| format!("{value}").trim_matches(['0', '.']).len() <= 3),
+        "{values:?}"
+    );
+    assert!(
+        values.contains(&4.1) && values.contains(&27.0),
+        "{values:?}"
+    );
+    assert!(tuned.after < 0.2, "{}", tuned.after);
+}
+
+#[test]
+fn the_same_arguments_give_the_same_model() {
+    let data = rows_of(&tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]), 200, 2);
+    let settings = Settings {
+        starts: 3,
+        seed: 7,
+        ..Settings::default()
+    };
+    let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
+    let once = tune(&begun, &data, &settings, &mut go_on).unwrap();
+    assert_eq!(once, tune(&begun, &data, &settings, &mut go_on).unwrap());
+}
+
+#[test]
+fn a_search_that_is_ended_keeps_the_best_so_far() {
+    let data = rows_of(&tipper([1.0, 4.0, 9.0], [3.0, 14.0, 27.0]), 200, 2);
+    let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
+    let mut seen = Vec::new();
+    let tuned = tune(&begun, &data, &Settings::default(), &mut |progress| {
+        seen.push(progress.loss);
+        match progress.iteration {
+            4 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        }
+    })
+    .unwrap();
+    assert!(tuned.is_stopped);
+    assert_eq!(seen.len(), 4);
+    assert!(seen.is_sorted_by(|a, b| a >= b));
+    assert_eq!(tuned.after, seen[3]);
+}
+
+#[test]
+fn linear_consequents_are_solved_for() {
+    let text = |line: [f64; 4]| {
+        let [a, b, c, d] = line;
+        parse(&format!(
+            "
+fuzzy: 1
+name: curve
+inputs:
+  x: {{range: [0, 10], terms: {{low: {{gaussian: {{mean: 2, sd: 2}}}}, high: {{gaussian: {{mean: 8, sd: 2}}}}}}}}
+outputs:
+  y:
+    range: [-100, 100]
+    terms: {{left: {{linear: {{x: {a}, constant: {b}}}}}, right: {{linear: {{x: {c}, constant: {d}}}}}}}
+    defuzzifier: weighted_average
+rules:
+  - IF x IS low THEN y IS left
+  - IF x IS high THEN y IS right
+"
+        ))
+    };
+    let hidden = text([3.0, -1.0, -2.0, 5.0]);
+    let begun = text([0.0, 0.0, 0.0, 0.0]);
+    assert_eq!(begun.outputs[0].defuzzifier, Defuzzifier::WeightedAverage);
+    let settings = Settings {
+        only: vec!["y".into()],
+        ..Settings::default()
+    };
+    let tuned = tune(&begun, &rows_of(&hidden, 100, 3), &settings, &mut go_on).unwrap();
+    assert!(tuned.after < 1e-6, "{}", tuned.after);
+    for (number, hidden) in numbers(&tuned.model).iter().zip(numbers(&hidden)) {
+        assert!(
+            (number.value - hidden.value).abs() < 1e-4,
+            "{number:?} {}",
+            hidden.value
+        );
+    }
+}
+
+/// What is rare is above the line.
+fn classes(rows: usize) -> Data {
+    let mut random = fastrand::Rng::with_seed(5);
+    let mut column = || (0..rows).map(|_| 10.0 * random.f64()).collect::<Vec<f64>>();
+    let inputs = vec![column(), column()];
+    let truth = |row: usize| f64::from(u8::from(inputs[0][row] + 0.2 * inputs[1][row] > 7.0));
+    Data {
+        truths: (0..rows).map(truth).collect(),
+        groups: (0..rows as u32).map(|row| row % 12).collect(),
+        inputs,
+        ..Data::default()
+    }
+}
+
+#[test]
+fn classes_are_told_apart_better_by_both_losses() {
+    let data = classes(600);
+    for (loss, at_most) in [(Loss::Log, 0.25), (Loss::Ranking, 0.02)] {
+        let settings = Settings {
+            loss,
+            weights: true,
+            ..Settings::default()
+        };
+        let begun = tipper([1.0, 2.0, 3.0], [5.0, 15.0, 25.0]);
+        let tuned = tune(&begun, &data, &settings, &mut go_on).unwrap();
+        assert!(
+            tuned.after < tuned.before && tuned.after < at_most,
+            "{loss:?} {} {}",
+            tuned.before,
+            tuned.after
+        );
+        let mut folds = 0;
+        let validation = cross_validate(&begun, &data, &settings, 4, &mut |fold, _| {
+            folds = folds.max(fold + 1);
+            ControlFlow::Continue(())
+        });
+        let validation = validation.unwrap().unwrap();
+        assert_eq!((validation.folds, folds), (4, 4));
+        assert!(validation.gain.low > 0.0, "{validation:?}");
+        assert!(
+            validation.after.low <= validation.after.value
+                && validation.after.value <= validation.after.high
+        );
+    }
+}
+
+#[test]
+fn wrong_rows_are_errors() {
+    let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
+    let error = |data: &Data, loss| {
+        let settings = Settings {
+            loss,
+            ..Settings::default()
+        };
+        tune(&begun, data, &settings, &mut go_on)
+            .unwrap_err()
+            .to_string()
+    };
+    let mut data = classes(20);
+    assert_eq!(error(&Data::default(), Loss::Squared), "there are no rows");
+    data.truths[3] = 0.5;
+    assert_eq!(
+        error(&data, Loss::Log),
+        "row 3: the truth is neither 0 nor 1"
+    );
+    data.inputs[1][2] = f64::NAN;
+    assert_eq!(
+        error(&data, Loss::Squared),
+        "row 2: a value is not a finite number"
+    );
+    data.inputs.pop();
+    assert_eq!(
+        error(&data, Loss::Squared),
+        "there must be a column for each input of the model"
+    );
+    let mut same = classes(20);
+    same.truths.fill(0.0);
+    assert_eq!(error(&same, Loss::Ranking), "all rows have the same truth");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Noise pulls the peaks and consequents anywhere; order and monotone inputs hold all the same.
+    #[test]
+    fn constraints_hold_on_random_rows(seed in any::<u64>()) {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let mut column = |scale: f64| (0..40).map(|_| scale * random.f64()).collect::<Vec<f64>>();
+        let data = Data {
+            inputs: vec![column(10.0), column(10.0)],
+            truths: column(30.0),
+            ..Data::default()
+        };
+        let settings = Settings {
+            monotone: vec![Monotone {
+                input: "service".into(),
+                direction: check::Direction::Increasing,
+                output: None,
+            }],
+            iterations: 10,
+            ..Settings::default()
+        };
+        let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);
+        let tuned = tune(&begun, &data, &settings, &mut go_on).unwrap();
+        prop_assert!(tuned.after <= tuned.before);
+        let engine = Engine::new(&tuned.model).unwrap();
+        prop_assert!(check::counterexamples(&engine, &settings.monotone).unwrap().is_empty());
+        let peaks = tuned.model.inputs[0].partition_peaks().unwrap();
+        prop_assert!(peaks.windows(2).all(|pair| pair[1] - pair[0] >= 0.1 - 1e-9), "{:?}", peaks);
+        let places: Vec<f64> = numbers(&tuned.model)[5..8].iter().map(|number| number.value).collect();
+        prop_assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{:?}", places);
+    }
+}
