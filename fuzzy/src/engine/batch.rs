@@ -80,14 +80,85 @@ impl Engine {
                 .par_chunks_mut(ROWS_A_TASK * outputs)
                 .enumerate()
                 .for_each_init(
-                    || self.memory(),
+                    || self.memory(ROWS_A_TASK),
                     |memory, (index, outcomes)| task(memory, index * ROWS_A_TASK, outcomes),
                 );
             return Ok(());
         }
-        #[cfg(not(feature = "parallel"))]
-        let _ = rows;
-        task(&mut self.memory(), 0, outcomes);
+        task(&mut self.memory(rows), 0, outcomes);
+        Ok(())
+    }
+
+    /// The values alone, in a column for each output: NaN where a row has none. Each has the bits of [`Outcome::value`] at
+    /// [`Engine::evaluate`].
+    ///
+    /// # Errors
+    /// As [`Engine::evaluate_batch`], or there is not one column of values for each output, of the length of those of the
+    /// inputs.
+    ///
+    /// # Example: a column of temperatures
+    /// ```
+    /// use fuzzy::{Engine, Model};
+    ///
+    /// let model: Model = "
+    /// fuzzy: 1
+    /// name: fan
+    /// inputs: {heat: {range: [0, 40], terms: {high: {right_shoulder: [20, 30]}}}}
+    /// outputs: {speed: {range: [0, 9], partition: [slow, fast]}}
+    /// rules: [IF heat IS high THEN speed IS fast]
+    /// ".parse()?;
+    /// let engine = Engine::new(&model)?;
+    /// let mut speed = [0.0; 3];
+    /// engine.evaluate_columns(&[&[10.0, 30.0, 40.0]], &mut [&mut speed])?;
+    /// assert!(speed[0].is_nan()); // no rule fires
+    /// assert_eq!(Some(speed[1]), engine.evaluate(&[30.0])?[0].value());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn evaluate_columns(
+        &self,
+        columns: &[&[f64]],
+        values: &mut [&mut [f64]],
+    ) -> Result<(), EvaluateError> {
+        let rows = self.rows_of(columns)?;
+        if values.len() != self.outputs.len() {
+            return Err(EvaluateError::WrongNumberOfOutputs {
+                expected: self.outputs.len(),
+                got: values.len(),
+            });
+        }
+        if let Some(column) = values.iter().find(|column| column.len() != rows) {
+            return Err(EvaluateError::ColumnsOfDifferentLengths {
+                first: rows,
+                other: column.len(),
+            });
+        }
+        let task = |memory: &mut Memory, first: usize, values: &mut [&mut [f64]]| {
+            let length = values.first().map_or(0, |column| column.len());
+            let range = first..first + length;
+            self.evaluate_rows(memory, columns, range, |rows, output, results| {
+                let places = &mut values[output][rows.start - first..rows.end - first];
+                for (row, place) in places.iter_mut().enumerate() {
+                    *place = results.value(row);
+                }
+            });
+        };
+        #[cfg(feature = "parallel")]
+        if rows > ROWS_A_TASK {
+            use rayon::prelude::*;
+            let mut tasks: Vec<Vec<&mut [f64]>> = Vec::new();
+            tasks.resize_with(rows.div_ceil(ROWS_A_TASK), Vec::new);
+            for column in values {
+                for (task, part) in tasks.iter_mut().zip(column.chunks_mut(ROWS_A_TASK)) {
+                    task.push(part);
+                }
+            }
+            tasks.into_par_iter().enumerate().for_each_init(
+                || self.memory(ROWS_A_TASK),
+                |memory, (index, mut values)| task(memory, index * ROWS_A_TASK, &mut values),
+            );
+            return Ok(());
+        }
+        task(&mut self.memory(rows), 0, values);
         Ok(())
     }
 
@@ -97,19 +168,7 @@ impl Engine {
         columns: &[&[f64]],
         outcomes: &[Outcome],
     ) -> Result<usize, EvaluateError> {
-        if columns.len() != self.inputs.len() {
-            return Err(EvaluateError::WrongNumberOfInputs {
-                expected: self.inputs.len(),
-                got: columns.len(),
-            });
-        }
-        let rows = columns.first().map_or(0, |column| column.len());
-        if let Some(column) = columns.iter().find(|column| column.len() != rows) {
-            return Err(EvaluateError::ColumnsOfDifferentLengths {
-                first: rows,
-                other: column.len(),
-            });
-        }
+        let rows = self.rows_of(columns)?;
         if outcomes.len() != rows * self.outputs.len() {
             return Err(EvaluateError::WrongNumberOfOutputs {
                 expected: rows * self.outputs.len(),
@@ -119,13 +178,31 @@ impl Engine {
         Ok(rows)
     }
 
-    /// The working memory of [`Engine::evaluate_rows`].
-    pub(crate) fn memory(&self) -> Memory {
+    /// The length of the columns, one for each input.
+    fn rows_of(&self, columns: &[&[f64]]) -> Result<usize, EvaluateError> {
+        if columns.len() != self.inputs.len() {
+            return Err(EvaluateError::WrongNumberOfInputs {
+                expected: self.inputs.len(),
+                got: columns.len(),
+            });
+        }
+        let rows = columns.first().map_or(0, |column| column.len());
+        match columns.iter().find(|column| column.len() != rows) {
+            None => Ok(rows),
+            Some(column) => Err(EvaluateError::ColumnsOfDifferentLengths {
+                first: rows,
+                other: column.len(),
+            }),
+        }
+    }
+
+    /// The working memory of [`Engine::evaluate_rows`] for so many rows.
+    pub(crate) fn memory(&self, rows: usize) -> Memory {
         let stage = &self.first;
         // Models that chain and those with rule blocks are evaluated row by row.
         let is_plain = self.chain.is_none() && stage.arrays.blocks.is_empty();
         Memory {
-            rows: is_plain.then(|| {
+            rows: (is_plain && rows >= FEWEST_ROWS).then(|| {
                 let arrays = stage.batch.as_ref().unwrap_or(&stage.arrays);
                 RowsScratch {
                     stage: stage.scratch(arrays),

@@ -275,6 +275,10 @@ mod laws {
             let engine = Engine::new(&slopes(when)).unwrap();
             let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
             let batch = engine.evaluate_batch(&[&x, &y]).unwrap();
+            let mut values = vec![0.0; points.len()];
+            engine.evaluate_columns(&[&x, &y], &mut [&mut values]).unwrap();
+            let values = values.into_iter().map(|value| Some(value).filter(|value| !value.is_nan()));
+            prop_assert!(values.eq(batch.iter().map(Outcome::value)));
             for ((x, y), outcome) in points.iter().zip(&batch) {
                 let single = engine.evaluate(&[*x, *y]).unwrap()[0];
                 prop_assert!(same_bits(&single, outcome), "at {x}, {y}: {single:?}, {outcome:?}");

@@ -78,7 +78,7 @@ impl<'a> Worker<'a> {
             engine,
             grid,
             output,
-            memory: engine.memory(),
+            memory: engine.memory(CELLS_A_TASK),
             coordinates: coordinates.collect(),
             columns,
         }
