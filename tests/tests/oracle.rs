@@ -417,9 +417,9 @@ fn two_thousand_models() {
     assert_right(&compare(1_000_000, 2000));
 }
 
-/// `cargo test --release -p flagred-tests --test oracle -- --ignored twenty_thousand`
+/// Fails today: 55 of 59,945 values differ (docs/validation.md, The engine).
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes, and some values differ"]
 fn twenty_thousand_models() {
     assert_right(&compare(2_000_000, 20_000));
 }
