@@ -212,16 +212,16 @@ fn alive_terms<A: Arrays, const L: usize>(
         alive[counts[row]].set(row, degree, literal * dimension.stride);
         counts[row] += usize::from(degree > 0.0);
     };
-    for row in 0..L {
-        for line in lines(table, input, values[row]) {
-            add(row, line.literal, line.degree(values[row]));
+    for (row, &x) in values.iter().enumerate() {
+        for line in lines(table, input, x) {
+            add(row, line.literal, line.degree(x));
         }
     }
     let mut degrees = [0.0; L];
     for curve in curves(table, input) {
         along(table, curve, values, &mut degrees);
-        for row in 0..L {
-            add(row, curve.literal, degrees[row]);
+        for (row, &degree) in degrees.iter().enumerate() {
+            add(row, curve.literal, degree);
         }
     }
     if dimension.any != Dimension::NONE {

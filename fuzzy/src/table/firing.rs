@@ -112,13 +112,13 @@ impl<const L: usize> Act<L> for Firing<'_, L> {
             }
             let rule = number_of(action.rule);
             if self.strongest.len() == 1 {
-                for row in 0..L {
-                    self.one.or(row, strengths[row], rule);
+                for (row, &strength) in strengths.iter().enumerate() {
+                    self.one.or(row, strength, rule);
                 }
             } else {
                 let strongest = &mut self.strongest[action.output as usize];
-                for row in 0..L {
-                    strongest.or(row, strengths[row], rule);
+                for (row, &strength) in strengths.iter().enumerate() {
+                    strongest.or(row, strength, rule);
                 }
             }
         }
@@ -148,12 +148,13 @@ fn fire_cells<const L: usize>(
 ) -> Strongest<L> {
     let mut strongest = Strongest::NONE;
     for cell in &mut *reached {
-        for row in 0..L {
-            let action = &cells.actions[cell.at[row] as usize];
-            let strength = fires(action.weight * cell.degree[row], least);
+        let rows = cell.degree.iter_mut().zip(&mut cell.at).enumerate();
+        for (row, (degree, at)) in rows {
+            let action = &cells.actions[*at as usize];
+            let strength = fires(action.weight * *degree, least);
             let kept = &mut strengths[action.strength as usize][row];
             *kept = larger(*kept, strength);
-            (cell.degree[row], cell.at[row]) = (strength, action.rule);
+            (*degree, *at) = (strength, action.rule);
         }
         join(&mut strongest.strength, &cell.degree, larger);
     }

@@ -306,8 +306,8 @@ fn clamp<A: Arrays, const L: usize>(
         }
         // What is not finite is outside, which is rare.
         if given.clamped != [0; L] {
-            for row in 0..L {
-                given.infinite[row] |= u64::from(!values[row].is_finite());
+            for (infinite, value) in given.infinite.iter_mut().zip(&values) {
+                *infinite |= u64::from(!value.is_finite());
             }
         }
         *inside = nearest;
