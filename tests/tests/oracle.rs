@@ -417,7 +417,7 @@ fn two_thousand_models() {
     assert_right(&compare(1_000_000, 2000));
 }
 
-/// Fails today: 55 of 59,945 values differ (docs/validation.md, The engine).
+/// Fails today: in 55 of 59,945 values one of the two is wrong (docs/validation.md, The engine).
 #[test]
 #[ignore = "minutes, and some values differ"]
 fn twenty_thousand_models() {
