@@ -82,7 +82,7 @@ Examples:
   flagred export --fis my-rules.yaml --output my-rules.fis
 
 `--fis`, `--fll`, `--fcl` and `--fml` write a rule set for MATLAB, fuzzylite, jFuzzyLogic and JFML. What such a file
-cannot say is an error; with `--lossy` it is left out with a warning.";
+cannot say is an error; with `--lossy` it is left out with a warning, except a term that rules need.";
 
 pub(crate) const IMPORT: &str = "\
 Examples:

@@ -44,6 +44,12 @@ impl Paper {
         self.findings.push(finding.help(help));
     }
 
+    /// Something without which the rest means nothing, such as a term that rules name: an error, also where losses are accepted.
+    pub(crate) fn refuse(&mut self, code: &'static str, message: String, help: &str) {
+        self.findings
+            .push(Diagnostic::error(code, 0..0, message).help(help));
+    }
+
     /// Something that is said in another way.
     pub(crate) fn note(&mut self, code: &'static str, message: String, help: &str) {
         self.findings

@@ -171,9 +171,13 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<String> 
                 paper.note("not-in-iec", message, "write it as points: `piecewise`");
                 Some(written)
             });
-            if written.is_none() || height != 1.0 {
-                let message = format!("the term {name} has a shape or a height that FCL has not");
-                paper.loss("no-shape", message, "write it as points: `piecewise`");
+            let help = "write it as points: `piecewise`";
+            if written.is_none() {
+                let message = format!("the term {name} has a shape that FCL has not");
+                paper.refuse("no-shape", message, help);
+            } else if height != 1.0 {
+                let message = format!("the term {name} has a height, which FCL has not");
+                paper.loss("no-shape", message, help);
             }
             written.map(|(shape, parameters)| format!("{shape} {}", numbers(&parameters)))
         }

@@ -200,7 +200,7 @@ fn shape(
     match written {
         None => {
             let message = format!("the term {name} has a shape that FIS has not");
-            paper.loss("no-shape", message, "write it as points: `piecewise`");
+            paper.refuse("no-shape", message, "write it as points: `piecewise`");
         }
         Some((shape @ ("discretemf" | "cosinemf" | "spikemf" | "concavemf"), _)) => {
             let message = format!("MATLAB has no shape `{shape}`, of the term {name}");

@@ -155,7 +155,7 @@ fn term(paper: &mut Paper, term: &Term, model: &Model, own: Option<&str>) {
             "the term `{}` is a singleton among fuzzy sets, or a formula with a height",
             term.name
         );
-        paper.loss("no-shape", message, "write it as points: `piecewise`");
+        paper.refuse("no-shape", message, "write it as points: `piecewise`");
         return;
     };
     if term.height != 1.0 {

@@ -249,7 +249,7 @@ fn tsk(paper: &mut Paper, output: &Output, model: &Model) -> Element {
             _ => {
                 let message = format!("the term {} is a formula", named(term, variable));
                 let help = "FML has constants and linear functions";
-                paper.loss("no-shape", message, help);
+                paper.refuse("no-shape", message, help);
                 continue;
             }
         };
@@ -327,7 +327,7 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<Element>
     };
     if shape.is_none() {
         let message = format!("the term {name} has a shape that FML has not");
-        paper.loss("no-shape", message, "write it as points: `piecewise`");
+        paper.refuse("no-shape", message, "write it as points: `piecewise`");
     }
     shape
 }

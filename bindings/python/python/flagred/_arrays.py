@@ -15,14 +15,16 @@ def array(value: Any) -> NDArray[np.float64]:
     if isinstance(value, np.ma.MaskedArray):
         filled: NDArray[np.float64] = np.ma.filled(value.astype(np.float64), np.nan)
         return filled
-    if type(value).__module__.startswith("pandas.") and hasattr(value, "to_numpy"):
-        # pandas has types of its own, with null as a value of them.
-        value = value.to_numpy(dtype=np.float64, na_value=np.nan)
-    found = np.asarray(value)
-    if found.dtype.kind not in "biufO":
-        raise DataError(f"an array of {found.dtype} holds no numbers\n  help: convert it to numbers first")
     try:
+        if type(value).__module__.startswith("pandas.") and hasattr(value, "to_numpy"):
+            # pandas has types of its own, with null as a value of them.
+            value = value.to_numpy(dtype=np.float64, na_value=np.nan)
+        found = np.asarray(value)
+        if found.dtype.kind not in "biufO":
+            raise DataError(f"an array of {found.dtype} holds no numbers\n  help: convert it to numbers first")
         return found.astype(np.float64, copy=False)
+    except DataError:
+        raise
     except (TypeError, ValueError) as error:
         raise DataError(f"an array of objects holds something that is no number: {error}") from None
 
