@@ -6,6 +6,7 @@
 mod arrays;
 mod arrow;
 mod assessment;
+mod compiled;
 mod errors;
 mod evaluate;
 mod explanation;
@@ -16,6 +17,7 @@ mod monitor;
 mod outcome;
 mod profile;
 mod rule_set;
+mod source;
 mod table;
 mod threads;
 
