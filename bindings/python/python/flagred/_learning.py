@@ -214,8 +214,8 @@ def tune(
     ----------
     model
         The rule set to begin with. It does not change.
-    data
-        A frame, or a mapping of columns, with a column for each input and the output.
+    data, columns, weight, group_by, skip_bad_rows, rising, falling
+        As for :func:`learn`.
     loss
         ``squared`` errors; ``log`` and ``ranking`` for an output of 0 and 1: the mean of -ln p, and 1 less the area under
         the ROC curve.
@@ -225,8 +225,6 @@ def tune(
         Whether the weights of the rules may move.
     least_distance
         The least distance between neighbouring peaks, as a share of the range.
-    rising, falling
-        Inputs in which the output must not fall, or not rise, when they rise.
     digits
         Round what moved to so many significant digits.
     starts
@@ -235,16 +233,8 @@ def tune(
         The most steps of a start.
     seed
         Of what is random: places to start, parts of cross-validation.
-    columns
-        The names of columns that are not those of their variables: ``{"risk": "failed"}``.
-    weight
-        The column with the weights of the rows.
-    group_by
-        In cross-validation, leave out all rows with one value of this column together.
     folds
         Cross-validate in so many parts. None skips it.
-    skip_bad_rows
-        Leave out rows that cannot be used, and say why in ``refused``, rather than raise an error.
     threads
         The number of threads; as many as there are cores for None.
 
