@@ -16,7 +16,7 @@ use tuning::{Data, Loss, Settings, TuneError, cross_validate};
 use crate::{
     rows::{Failed, Rows, choice, claims},
     rule_set::RuleSet,
-    threads::{interruptible, pool},
+    threads::{pool, stoppable},
 };
 
 #[derive(FromPyObject)]
@@ -90,14 +90,14 @@ impl TuneOptions {
     }
 }
 
-/// Numbers from rows. Ctrl-C ends the search before its next step.
+/// Numbers from rows, and whether Ctrl-C ended the search before its next step.
 #[pyfunction]
 pub(crate) fn _tune(
     py: Python<'_>,
     rule_set: &RuleSet,
     rows: Rows<'_>,
     options: TuneOptions,
-) -> PyResult<Tuned> {
+) -> PyResult<(Tuned, bool)> {
     rule_set.compile(py)?;
     let settings = options.settings()?;
     let model = rule_set.model(Model::clone);
@@ -105,11 +105,11 @@ pub(crate) fn _tune(
     let pool = pool(options.threads)?;
     let stop = Arc::new(AtomicBool::new(false));
     let is_stopped = Arc::clone(&stop);
-    let tuned = interruptible(py, move || {
+    let (tuned, was_interrupted) = stoppable(py, &stop, move || {
         pool.install(|| tune_numbers(&model, all, skip, &settings, options.folds, &is_stopped))
-    });
-    stop.store(true, Ordering::Relaxed);
-    tuned?.map_err(|failed| failed.raise(py))
+    })?;
+    let tuned = tuned.map_err(|failed| failed.raise(py))?;
+    Ok((tuned, was_interrupted))
 }
 
 fn tune_numbers(

@@ -13,7 +13,7 @@ from ._core import _learn, _tune
 from ._errors import DataError
 from ._model import Model, _read
 
-__all__ = ["Errors", "Figure", "Learned", "Moved", "TuneValidation", "Tuned", "learn", "tune"]
+__all__ = ["Errors", "Figure", "Learned", "Moved", "TuneInterrupted", "TuneValidation", "Tuned", "learn", "tune"]
 
 
 class Errors(NamedTuple):
@@ -101,6 +101,23 @@ class Tuned(NamedTuple):
     moved: list[Moved]
     validation: TuneValidation | None
     """None where ``folds`` was not given."""
+
+
+class TuneInterrupted(KeyboardInterrupt):
+    """Ctrl-C during :func:`tune`. It holds the best rule set so far.
+
+    ``except flagred.TuneInterrupted as stop: tuned = stop.best``. A program that does not catch it ends, as by any Ctrl-C.
+    """
+
+    best: Tuned
+    """What was found until then. It has no validation."""
+
+    def __init__(self, best: Tuned) -> None:
+        super().__init__(best)
+        self.best = best
+
+    def __str__(self) -> str:
+        return "tuning was interrupted; `best` of this exception is the best rule set so far"
 
 
 def learn(
@@ -208,7 +225,7 @@ def tune(
     skip_bad_rows: bool = False,
     threads: int | None = None,
 ) -> Tuned:
-    """Tunes the numbers of a rule set on rows; its rules stay. ``flagred tune`` does the same. Ctrl-C ends the search.
+    """Tunes the numbers of a rule set on rows; its rules stay. ``flagred tune`` does the same.
 
     Parameters
     ----------
@@ -244,6 +261,9 @@ def tune(
         A column is missing, rows cannot be used, or nothing may move.
     RuleSetError
         The rule set cannot be used.
+    TuneInterrupted
+        Ctrl-C ended the search, before its next step; ``best`` of the exception is what was found until then. A second
+        Ctrl-C does not wait for it and raises KeyboardInterrupt.
 
     Examples
     --------
@@ -275,13 +295,16 @@ def tune(
         "folds": folds,
         "threads": threads,
     }
-    found = _tune(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), options)
+    found, was_interrupted = _tune(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), options)
     moved = [Moved(*one) for one in found.pop("moved")]
     worth = found.pop("validation")
     if worth is not None:
         folds = worth.pop("folds")
         worth = TuneValidation(folds=folds, **{name: Figure(*figure) for name, figure in worth.items()})
-    return Tuned(model=_read(found.pop("model"), "<model>"), moved=moved, validation=worth, **found)
+    tuned = Tuned(model=_read(found.pop("model"), "<model>"), moved=moved, validation=worth, **found)
+    if was_interrupted:
+        raise TuneInterrupted(tuned)
+    return tuned
 
 
 def _rows(
