@@ -11,6 +11,7 @@
 
 mod consequents;
 mod data;
+mod folds;
 mod loss;
 mod numbers;
 mod objective;
@@ -25,9 +26,10 @@ use std::ops::ControlFlow;
 use fuzzy::{Model, check};
 
 pub use data::Data;
+pub use folds::Interval;
 pub use numbers::{Moved, Number, numbers};
 pub use settings::{Loss, Settings, TuneError};
-pub use validation::{Interval, Validation, cross_validate};
+pub use validation::{Validation, cross_validate};
 
 use objective::{Objective, Point};
 use parameters::Parameters;
