@@ -7,11 +7,12 @@
 //!
 //! [`tune`] makes a [`Loss`] small by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). With squared errors the
 //! consequents of a Takagi-Sugeno output are solved for at every step, as ANFIS does (Jang 1993). [`cross_validate`] tells
-//! what tuning is worth on rows that were left out.
+//! what tuning is worth on rows that were left out. [`identify`] finds inputs, partitions and rules where none are known.
 
 mod consequents;
 mod data;
 mod folds;
+pub mod identify;
 mod loss;
 mod numbers;
 mod objective;
