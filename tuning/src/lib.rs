@@ -8,6 +8,8 @@
 //! [`tune`] makes a [`Loss`] small by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). With squared errors the
 //! consequents of a Takagi-Sugeno output are solved for at every step, as ANFIS does (Jang 1993). [`cross_validate`] tells
 //! what tuning is worth on rows that were left out.
+//!
+//! [`simplify`] says the same with fewer rules.
 
 mod consequents;
 mod data;
@@ -18,6 +20,7 @@ mod ordered;
 mod parameters;
 mod search;
 mod settings;
+mod simplify;
 mod validation;
 
 use std::ops::ControlFlow;
@@ -27,6 +30,7 @@ use fuzzy::{Model, check};
 pub use data::Data;
 pub use numbers::{Moved, Number, numbers};
 pub use settings::{Loss, Settings, TuneError};
+pub use simplify::{Difference, EQUAL, Simplified, SimplifyError, SimplifySettings, simplify};
 pub use validation::{Interval, Validation, cross_validate};
 
 use objective::{Objective, Point};
