@@ -1,4 +1,4 @@
-//! What `learn` and `tune` share: their arguments, and rows from tables, each with its place for messages.
+//! What `identify`, `learn` and `tune` share: arguments, and rows from tables, each with its place for messages.
 
 use std::{collections::BTreeMap, path::PathBuf};
 
@@ -16,6 +16,7 @@ use crate::{
 
 /// The arguments of a command that makes a rule set of another one and of rows.
 #[derive(clap::Args)]
+#[group(skip)]
 pub(crate) struct Arguments {
     /// The rule set to begin with
     #[arg(value_name = "MODEL")]
@@ -95,21 +96,40 @@ pub(crate) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
     let inputs = model.inputs.iter();
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
+    let source = Source {
+        tables: &arguments.data,
+        format: &arguments.format,
+        weight: arguments.weight.as_deref(),
+        group_by: arguments.group_by.as_deref(),
+    };
+    read_columns(&source, &names)
+}
+
+/// Where rows come from.
+pub(crate) struct Source<'a> {
+    pub(crate) tables: &'a [PathBuf],
+    pub(crate) format: &'a Format,
+    /// The columns with the weights and the groups.
+    pub(crate) weight: Option<&'a str>,
+    pub(crate) group_by: Option<&'a str>,
+}
+
+/// Reads the values of named columns from all tables.
+pub(crate) fn read_columns(source: &Source<'_>, names: &[&str]) -> Result<Data, Failure> {
     let mut data = Data {
         rows: Vec::new(),
         refused: Vec::new(),
     };
     let mut groups: BTreeMap<String, u32> = BTreeMap::new();
-    for path in &arguments.data {
-        let table = Table::read(path, arguments.format.delimiter)?;
-        let columns = arguments.format.columns(&names, &table.header)?;
-        let optional = |name: &Option<String>| {
-            name.as_ref()
-                .map(|name| table.header.require(name, "or leave that option out"))
+    for path in source.tables {
+        let table = Table::read(path, source.format.delimiter)?;
+        let columns = source.format.columns(names, &table.header)?;
+        let optional = |name: Option<&str>| {
+            name.map(|name| table.header.require(name, "or leave that option out"))
                 .transpose()
         };
-        let weight = optional(&arguments.weight)?;
-        let group = optional(&arguments.group_by)?;
+        let weight = optional(source.weight)?;
+        let group = optional(source.group_by)?;
         for row in 0..table.len() {
             let mut bad = Vec::new();
             let mut number = |column: usize| {
@@ -142,6 +162,43 @@ pub(crate) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
         }
     }
     Ok(data)
+}
+
+/// Rows as columns, and those that cannot be used, with the reason. `wrong` says what is wrong with a value of the output.
+pub(crate) fn in_columns(
+    read: Data,
+    inputs: usize,
+    wrong: impl Fn(f64) -> Option<String>,
+) -> (tuning::Data, Vec<String>) {
+    let Data { rows, mut refused } = read;
+    let mut data = tuning::Data {
+        inputs: vec![Vec::with_capacity(rows.len()); inputs],
+        ..tuning::Data::default()
+    };
+    for (row, place) in rows {
+        let truth = row.values.last().copied().unwrap_or(f64::NAN);
+        let negative = (row.weight < 0.0)
+            .then(|| format!("the weight is {}, but must not be negative", row.weight));
+        if let Some(wrong) = wrong(truth).or(negative) {
+            refused.push(format!("{place}: {wrong}"));
+            continue;
+        }
+        for (column, value) in data.inputs.iter_mut().zip(&row.values) {
+            column.push(*value);
+        }
+        data.truths.push(truth);
+        data.weights.push(row.weight);
+        data.groups.extend(row.group);
+    }
+    (data, refused)
+}
+
+/// A share on the command line.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    let share: Option<f64> = text.parse().ok();
+    share
+        .filter(|share| (0.0..1.0).contains(share))
+        .ok_or_else(|| "write a share, at least 0 and less than 1".into())
 }
 
 /// Rows that cannot be used, as a failure.
