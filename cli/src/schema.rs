@@ -31,6 +31,8 @@ enum Format {
     Inspect,
     /// What `flagred learn --json` prints
     Learn,
+    /// What `flagred simplify --json` prints
+    Simplify,
     /// What `flagred tune --json` prints
     Tune,
     /// A line of `flagred watch --jsonl`
@@ -52,6 +54,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Format::Explain => include_str!("../schemas/explain.json"),
         Format::Inspect => include_str!("../schemas/inspect.json"),
         Format::Learn => include_str!("../schemas/learn.json"),
+        Format::Simplify => include_str!("../schemas/simplify.json"),
         Format::Tune => include_str!("../schemas/tune.json"),
         Format::Watch => include_str!("../schemas/watch.json"),
     };

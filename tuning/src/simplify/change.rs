@@ -300,6 +300,8 @@ fn merged(
             notes.push(note);
         }
     }
+    let of_some = rules().any(|rule| rule.note.is_none());
+    let note = if of_some { "in part: " } else { "" }.to_owned() + &notes.join("; ");
     Standing {
         rule: Rule {
             rule: rule::Rule {
@@ -313,7 +315,7 @@ fn merged(
                 .filter_map(|rule| rule.support)
                 .reduce(|a, b| a.saturating_add(b)),
             against: one.map_or_else(Vec::new, |one| one.against.clone()),
-            note: (!notes.is_empty()).then(|| notes.join("; ")),
+            note: (!notes.is_empty()).then_some(note),
         },
         of,
     }
