@@ -115,7 +115,9 @@ impl Finder<'_> {
 
     /// All rules without a variable. Of those that are then alike the one with most support stands for all.
     fn without_variable(&self, name: &str, changes: &mut Vec<Change>) {
-        let mut groups: BTreeMap<String, Vec<(usize, &Standing, Vec<Part>)>> = BTreeMap::new();
+        /// Place, rule, and its parts without the variable.
+        type Group<'a> = Vec<(usize, &'a Standing, Vec<Part>)>;
+        let mut groups: BTreeMap<String, Group<'_>> = BTreeMap::new();
         let mut names_it = false;
         for (place, standing, parts) in &self.rules {
             let Some(parts) = parts else {
