@@ -14,6 +14,7 @@ Examples:
   flagred learn my-rules.yaml rows.csv --output learned.yaml   rules from a table
   flagred tune learned.yaml rows.csv --output tuned.yaml    and their numbers
   flagred identify rows.csv --target risk --output found.yaml  inputs, terms and rules from a table
+  flagred simplify tuned.yaml --output shorter.yaml         the same with fewer rules
   flagred watch udpin:0.0.0.0:14550              assess a flight live
   flagred completions bash                       completions for your shell
 
@@ -130,6 +131,12 @@ Examples:
   flagred tune my-rules.yaml rows.csv --only heat --fix heat.hot --rising heat --output tuned.yaml
   flagred tune my-rules.yaml rows.csv --loss ranking --column risk=failed --group-by vehicle --weights --output tuned.yaml
 Ctrl-C ends the search; the best rule set so far is written.";
+
+pub(crate) const SIMPLIFY: &str = "\
+Examples:
+  flagred simplify my-rules.yaml --output shorter.yaml
+  flagred simplify my-rules.yaml --tolerance 2 --output shorter.yaml    in the unit of the output
+  flagred simplify my-rules.yaml rows.csv --rows-only --output shorter.yaml";
 
 pub(crate) const MAP: &str = "\
 Examples:

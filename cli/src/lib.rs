@@ -33,6 +33,7 @@ mod profile;
 mod rows;
 mod rule_set;
 mod schema;
+mod simplify;
 mod steps;
 mod table;
 mod tune;
@@ -104,6 +105,9 @@ enum Command {
     /// Move membership functions, consequents and weights of a rule set to fit a table of inputs and outputs
     #[command(after_help = help::TUNE)]
     Tune(tune::Arguments),
+    /// Say the same with fewer rules, shorter ones and fewer inputs
+    #[command(after_help = help::SIMPLIFY)]
+    Simplify(simplify::Arguments),
     /// Measure how well profiles predict attitude errors, compared with simple baselines
     #[command(after_help = help::EVALUATE)]
     Evaluate(evaluate::Arguments),
@@ -143,6 +147,7 @@ impl Command {
             Command::Identify(arguments) => identify::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Tune(arguments) => tune::run(&arguments),
+            Command::Simplify(arguments) => simplify::run(&arguments),
             Command::Evaluate(arguments) => evaluate::run(&arguments),
             Command::Import(arguments) => import::run(&arguments),
             Command::Export(arguments) => export::run(&arguments),

@@ -1,4 +1,4 @@
-//! What `identify`, `learn` and `tune` share: arguments, and rows from tables, each with its place for messages.
+//! What `identify`, `learn`, `tune` and `simplify` share: their arguments, and rows from tables, each with its place for messages.
 
 use std::{collections::BTreeMap, path::PathBuf};
 
@@ -14,17 +14,12 @@ use crate::{
     table::{Format, Table},
 };
 
-/// The arguments of a command that makes a rule set of another one and of rows.
+/// The arguments of a command that makes a rule set of another one.
 #[derive(clap::Args)]
-#[group(skip)]
-pub(crate) struct Arguments {
+pub(crate) struct Rewrite {
     /// The rule set to begin with
     #[arg(value_name = "MODEL")]
     pub(crate) model: PathBuf,
-
-    /// Tables with a column for each input and the output, as `flagred dataset` writes them
-    #[arg(required = true, value_name = "DATA.csv")]
-    pub(crate) data: Vec<PathBuf>,
 
     /// The file for the new rule set; `-` is standard output
     #[arg(short, long, value_name = "OUT.yaml")]
@@ -33,6 +28,24 @@ pub(crate) struct Arguments {
     /// Replace the file if it exists
     #[arg(long)]
     pub(crate) force: bool,
+
+    #[command(flatten)]
+    pub(crate) format: Format,
+
+    /// Print the report as a JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The arguments of a command that makes a rule set of another one and of rows.
+#[derive(clap::Args)]
+pub(crate) struct FromRows {
+    #[command(flatten)]
+    pub(crate) rewrite: Rewrite,
+
+    /// Tables with a column for each input and the output, as `flagred dataset` writes them
+    #[arg(required = true, value_name = "DATA.csv")]
+    pub(crate) data: Vec<PathBuf>,
 
     /// The output must not fall when this input rises
     #[arg(long, value_name = "INPUT")]
@@ -53,16 +66,9 @@ pub(crate) struct Arguments {
     /// Skip cross-validation
     #[arg(long, conflicts_with = "group_by")]
     pub(crate) no_validation: bool,
-
-    #[command(flatten)]
-    pub(crate) format: Format,
-
-    /// Print the report as a JSON document
-    #[arg(long)]
-    pub(crate) json: bool,
 }
 
-impl Arguments {
+impl FromRows {
     /// What `--rising` and `--falling` claim.
     pub(crate) fn claims(&self) -> Vec<Monotone> {
         let claim = |input: &String, direction| Monotone {
@@ -92,44 +98,35 @@ pub(crate) struct Data {
 }
 
 /// Reads the values of the inputs and of the outputs of a model from all tables.
-pub(crate) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure> {
+pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure> {
     let inputs = model.inputs.iter();
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
-    let source = Source {
-        tables: &arguments.data,
-        format: &arguments.format,
-        weight: arguments.weight.as_deref(),
-        group_by: arguments.group_by.as_deref(),
-    };
-    read_columns(&source, &names)
+    let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
+    columns(&arguments.data, &arguments.rewrite.format, &names, optional)
 }
 
-/// Where rows come from.
-pub(crate) struct Source<'a> {
-    pub(crate) tables: &'a [PathBuf],
-    pub(crate) format: &'a Format,
-    /// The columns with the weights and the groups.
-    pub(crate) weight: Option<&'a str>,
-    pub(crate) group_by: Option<&'a str>,
-}
-
-/// Reads the values of named columns from all tables.
-pub(crate) fn read_columns(source: &Source<'_>, names: &[&str]) -> Result<Data, Failure> {
+/// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows.
+pub(crate) fn columns(
+    tables: &[PathBuf],
+    format: &Format,
+    names: &[&str],
+    [weight, group]: [Option<&str>; 2],
+) -> Result<Data, Failure> {
     let mut data = Data {
         rows: Vec::new(),
         refused: Vec::new(),
     };
     let mut groups: BTreeMap<String, u32> = BTreeMap::new();
-    for path in source.tables {
-        let table = Table::read(path, source.format.delimiter)?;
-        let columns = source.format.columns(names, &table.header)?;
+    for path in tables {
+        let table = Table::read(path, format.delimiter)?;
+        let columns = format.columns(names, &table.header)?;
         let optional = |name: Option<&str>| {
             name.map(|name| table.header.require(name, "or leave that option out"))
                 .transpose()
         };
-        let weight = optional(source.weight)?;
-        let group = optional(source.group_by)?;
+        let weight = optional(weight)?;
+        let group = optional(group)?;
         for row in 0..table.len() {
             let mut bad = Vec::new();
             let mut number = |column: usize| {

@@ -33,6 +33,8 @@ enum Format {
     Inspect,
     /// What `flagred learn --json` prints
     Learn,
+    /// What `flagred simplify --json` prints
+    Simplify,
     /// What `flagred tune --json` prints
     Tune,
     /// A line of `flagred watch --jsonl`
@@ -55,6 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Format::Identify => include_str!("../schemas/identify.json"),
         Format::Inspect => include_str!("../schemas/inspect.json"),
         Format::Learn => include_str!("../schemas/learn.json"),
+        Format::Simplify => include_str!("../schemas/simplify.json"),
         Format::Tune => include_str!("../schemas/tune.json"),
         Format::Watch => include_str!("../schemas/watch.json"),
     };

@@ -130,6 +130,20 @@ fn tune() {
 }
 
 #[test]
+fn simplify() {
+    let folder = Folder::new();
+    let out = folder.at("out.yaml");
+    let arguments = ["simplify", PAPER, "--output", &out, "--json", "--force"];
+    let document = json(&arguments);
+    valid("simplify", &document);
+    assert!(document["rules"]["after"].as_u64() < document["rules"]["before"].as_u64());
+    assert_eq!(document["tolerance"], Value::Null);
+    let document = json(&[&arguments[..], &["--tolerance", "20"]].concat());
+    valid("simplify", &document);
+    assert!(document["difference"]["size"].as_f64() > Some(0.1));
+}
+
+#[test]
 fn inspect() {
     let folder = Folder::new();
     let ground = folder.file(

@@ -15,7 +15,7 @@ use tuning::{
 use crate::{
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
-    rows::{self, Source},
+    rows,
     table::{Cell, Format, Table},
 };
 
@@ -223,18 +223,17 @@ fn columns(arguments: &Arguments) -> Result<(Vec<String>, Vec<String>), Failure>
 
 /// The rows as columns, and why others cannot be used.
 fn data(arguments: &Arguments, names: &[String]) -> Result<(Data, Vec<String>), Failure> {
-    let source = Source {
-        tables: &arguments.data,
-        format: &arguments.format,
-        weight: arguments.weight.as_deref(),
-        group_by: arguments.group_by.as_deref(),
-    };
     let all: Vec<&str> = names
         .iter()
         .chain([&arguments.target])
         .map(String::as_str)
         .collect();
-    let read = rows::read_columns(&source, &all)?;
+    let read = rows::columns(
+        &arguments.data,
+        &arguments.format,
+        &all,
+        [&arguments.weight, &arguments.group_by].map(Option::as_deref),
+    )?;
     let (data, refused) = rows::in_columns(read, names.len(), |_| None);
     if !refused.is_empty() && (!arguments.format.skip_bad_rows || data.is_empty()) {
         return Err(rows::refuse(&refused, "used"));

@@ -27,7 +27,7 @@ use crate::{
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    rows: rows::Arguments,
+    rows: rows::FromRows,
 
     /// What is made small
     #[arg(long, value_enum, default_value = "squared", value_name = "LOSS")]
@@ -100,15 +100,21 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading(arguments.rows.data.iter().chain([&arguments.rows.model]))?;
+    let mut files = Files::reading(
+        arguments
+            .rows
+            .data
+            .iter()
+            .chain([&arguments.rows.rewrite.model]),
+    )?;
     let output = files.output(
-        &arguments.rows.output,
-        Replace::forced(arguments.rows.force),
+        &arguments.rows.rewrite.output,
+        Replace::forced(arguments.rows.rewrite.force),
     )?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let checkpoint = files.optional(arguments.checkpoint.as_ref())?;
-    let name = arguments.rows.model.display().to_string();
-    let (document, text) = rule_set::read(&arguments.rows.model)?;
+    let name = arguments.rows.rewrite.model.display().to_string();
+    let (document, text) = rule_set::read(&arguments.rows.rewrite.model)?;
     rule_set::compile(&document, &name, &text)?;
     let original = document.model;
     let resumed = resumed(arguments, &original)?;
@@ -155,7 +161,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .flatten()
         .collect();
     let mut out = Stdout::beside(&written);
-    if arguments.rows.json {
+    if arguments.rows.rewrite.json {
         let document = report::Document::new(arguments, &outcome);
         serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
         writeln!(out)?;
@@ -194,7 +200,7 @@ fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Fai
         is_refused(truth)
             .then(|| format!("the output's value is {truth}, but must be 0 or 1 for this loss"))
     });
-    if !refused.is_empty() && (!arguments.rows.format.skip_bad_rows || data.is_empty()) {
+    if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
         return Err(rows::refuse(&refused, "used"));
     }
     Ok((data, refused))
