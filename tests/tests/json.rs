@@ -102,7 +102,7 @@ fn identify() {
     valid("identify", &document);
     assert_eq!(document["columns"]["without_numbers"][0], "name");
     assert_eq!(document["columns"]["used"].as_array().unwrap().len(), 2);
-    assert!(document["validation"]["gain"]["low"].as_f64().unwrap() > 0.5);
+    assert!(document["validation"]["ratio"]["high"].as_f64().unwrap() < 0.5);
     let document = json(
         &[
             &arguments[..],

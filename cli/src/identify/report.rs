@@ -73,11 +73,12 @@ pub(super) fn words(
         1 => "; 1 combination of terms without rows has none".to_owned(),
         count => format!("; {count} combinations of terms without rows have none"),
     };
+    let inputs = identified.columns.len();
     writeln!(
         out,
-        "rules       {} over {} inputs{missing}",
+        "rules       {} over {inputs} input{}{missing}",
         identified.model.rules.len(),
-        identified.columns.len()
+        if inputs == 1 { "" } else { "s" }
     )?;
     if let Some(judged) = &outcome.judged {
         worth(out, arguments, judged)?;
@@ -101,15 +102,14 @@ fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io
         shown(&judged.identified),
         judged.folds
     )?;
-    let gain = judged.gain;
-    let pct = |share: f64| format!("{:.1}", 100.0 * share);
+    let ratio = match judged.ratio {
+        ratio if ratio.value < 100.0 => format!("{} of it", shown(&ratio)),
+        _ => "over 100 times as large".to_owned(),
+    };
     writeln!(
         out,
-        "            {} of a line over all columns; {} % [{}, {}] less than that",
-        shown(&judged.linear),
-        pct(gain.value),
-        pct(gain.low),
-        pct(gain.high)
+        "            {} of a line over all columns; the first is {ratio}",
+        shown(&judged.linear)
     )?;
     writeln!(out, "            {} of the mean", shown(&judged.mean))?;
     if judged.without_value > 0 {
@@ -163,7 +163,7 @@ struct Validation {
     identified: OfInterval,
     linear: OfInterval,
     mean: OfInterval,
-    gain: OfInterval,
+    ratio: OfInterval,
 }
 
 #[derive(Serialize)]
@@ -208,7 +208,7 @@ impl<'a> Document<'a> {
                 identified: interval(&judged.identified),
                 linear: interval(&judged.linear),
                 mean: interval(&judged.mean),
-                gain: interval(&judged.gain),
+                ratio: interval(&judged.ratio),
             }),
         }
     }

@@ -24,8 +24,8 @@ pub struct Judged {
     pub linear: Interval,
     /// Of the models identified on the other parts.
     pub identified: Interval,
-    /// By which share the last is lower than that of the line.
-    pub gain: Interval,
+    /// The last divided by that of the line.
+    pub ratio: Interval,
     /// The rows for which no rule fires; the mean of the other rows stands for them.
     pub without_value: usize,
 }
@@ -92,15 +92,15 @@ pub fn judge(
     };
     let figures = |data: &Data| {
         let [mean, linear, identified] = predictions.each_ref().map(|all| error(all, data));
-        [mean, linear, identified, 1.0 - identified / linear]
+        [mean, linear, identified, identified / linear]
     };
-    let [mean, linear, identified, gain] = folds.intervals(data, figures);
+    let [mean, linear, identified, ratio] = folds.intervals(data, figures);
     Ok(Some(Judged {
         folds: count,
         mean,
         linear,
         identified,
-        gain,
+        ratio,
         without_value,
     }))
 }
