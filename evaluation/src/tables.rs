@@ -70,7 +70,7 @@ pub(crate) fn tables(evaluation: &Evaluation) -> Vec<Table> {
     tables
 }
 
-/// What was evaluated, and what was not.
+/// What was evaluated, in lines.
 pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
     let Some(first) = evaluation.estimators.first() else {
         return Vec::new();
@@ -104,17 +104,16 @@ pub(crate) fn head(evaluation: &Evaluation) -> Vec<String> {
             "flights of kind `{APART}` are not in these figures, only under `by kind`: their errors are commanded"
         ));
     }
-    let left_out = &evaluation.left_out;
-    if !left_out.is_empty() {
-        let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
-        for left in left_out {
-            *reasons.entry(seen(&left.reason)).or_default() += 1;
-        }
-        lines.push(format!("{} files left out:", left_out.len()));
-        let reasons = reasons.into_iter();
-        lines.extend(reasons.map(|(reason, files)| format!("  {files:>4}  {reason}")));
-    }
     lines
+}
+
+/// The reasons for which files were left out, and of how many.
+pub(crate) fn left_out(evaluation: &Evaluation) -> BTreeMap<String, usize> {
+    let mut reasons = BTreeMap::new();
+    for left in &evaluation.left_out {
+        *reasons.entry(seen(&left.reason)).or_default() += 1;
+    }
+    reasons
 }
 
 /// The areas of each estimator.

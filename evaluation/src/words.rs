@@ -11,6 +11,12 @@ pub fn text(evaluation: &Evaluation) -> String {
     for line in tables::head(evaluation) {
         text += &format!("{line}\n");
     }
+    if !evaluation.left_out.is_empty() {
+        text += &format!("{} files left out:\n", evaluation.left_out.len());
+    }
+    for (reason, files) in tables::left_out(evaluation) {
+        text += &format!("  {files:>4}  {reason}\n");
+    }
     text += "\n";
     for table in tables::tables(evaluation) {
         write(&mut text, &table);

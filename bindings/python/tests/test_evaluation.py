@@ -129,7 +129,7 @@ def test_scores_and_curves_are_columns(evaluation):
 def test_the_page_and_the_picture(evaluation):
     html = evaluation.html()
     assert html.startswith("<!DOCTYPE html>") and "</html>" in html and evaluation.svg() in html
-    for said in ("verdicts by vehicle", "warnings of flagred-paper", "board 3", "1 files left out"):
+    for said in ("verdicts by vehicle", "warnings of flagred-paper", "board 3", "1 file left out: is a text file"):
         assert said in html, said
     assert html.count("<table>") == str(evaluation).count("\n\n") > 5
     assert evaluation._repr_html_().startswith("<iframe srcdoc=")
