@@ -115,7 +115,9 @@ impl Finder<'_> {
 
     /// All rules without a variable. Of those that are then alike the one with most support stands for all.
     fn without_variable(&self, name: &str, changes: &mut Vec<Change>) {
-        let mut groups: BTreeMap<String, Vec<(usize, &Standing, Vec<Part>)>> = BTreeMap::new();
+        /// Place, rule, and its parts without the variable.
+        type Group<'a> = Vec<(usize, &'a Standing, Vec<Part>)>;
+        let mut groups: BTreeMap<String, Group<'_>> = BTreeMap::new();
         let mut names_it = false;
         for (place, standing, parts) in &self.rules {
             let Some(parts) = parts else {
@@ -300,6 +302,8 @@ fn merged(
             notes.push(note);
         }
     }
+    let of_some = rules().any(|rule| rule.note.is_none());
+    let note = if of_some { "in part: " } else { "" }.to_owned() + &notes.join("; ");
     Standing {
         rule: Rule {
             rule: rule::Rule {
@@ -313,7 +317,7 @@ fn merged(
                 .filter_map(|rule| rule.support)
                 .reduce(|a, b| a.saturating_add(b)),
             against: one.map_or_else(Vec::new, |one| one.against.clone()),
-            note: (!notes.is_empty()).then(|| notes.join("; ")),
+            note: (!notes.is_empty()).then_some(note),
         },
         of,
     }
