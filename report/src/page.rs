@@ -188,7 +188,8 @@ pub fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
     Some(sheet.finish(&format!("{verdict} {}", subject.title())))
 }
 
-fn page(title: &str, body: &Markup) -> String {
+/// A page that needs nothing beside it.
+pub fn page(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
