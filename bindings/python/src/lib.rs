@@ -23,7 +23,7 @@ mod threads;
 mod _core {
     #[pymodule_export]
     use crate::{
-        assessment::AssessmentData,
+        assessment::{_page, AssessmentData},
         explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
         flight::FlightData,
         learning::{_learn, _tune},
