@@ -1,0 +1,31 @@
+"""Fleets: from a folder of logs, here or on object storage, to a dataset of Parquet files, on one machine or on a cluster.
+
+``python -m flagred.fleet assess LOGS --out DATASET`` does the same as :func:`assess`. docs/fleet.md has the tables.
+"""
+
+from .compaction import compact
+from .errors import FleetError
+from .process import Outcome, process
+from .run import Assessed, Watcher, assess
+from .schema import FINDINGS, FLIGHTS, STEPS, VERSION
+from .shards import Job, Shard, shards
+from .storage import Log, open_place
+
+__all__ = [
+    "FINDINGS",
+    "FLIGHTS",
+    "STEPS",
+    "VERSION",
+    "Assessed",
+    "FleetError",
+    "Job",
+    "Log",
+    "Outcome",
+    "Shard",
+    "Watcher",
+    "assess",
+    "compact",
+    "open_place",
+    "process",
+    "shards",
+]

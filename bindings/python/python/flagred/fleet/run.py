@@ -1,0 +1,170 @@
+"""A run: what is missing in a dataset, assessed and written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from .. import Profile
+from . import engine
+from .catalog import Catalog, Counts
+from .errors import FleetError
+from .process import Outcome
+from .repair import repair
+from .shards import Job, shards
+from .storage import LOGS, Place, absolute, matcher, open_place
+from .takeover import take_over
+
+__all__ = ["Assessed", "Watcher", "assess"]
+
+SHARD_BYTES = 128 << 20
+
+
+@dataclass(frozen=True)
+class Assessed:
+    """What a run did."""
+
+    listed: int
+    """Logs at the sources."""
+    assessed: int
+    """Logs that were read in this run."""
+    bytes: int
+    """Their size."""
+    not_assessed: int
+    """Those of them that have no assessment; their rows say why."""
+    unchanged: int
+    """Those of them whose content is that of before."""
+
+
+class Watcher(Protocol):
+    """Who is told how a run goes on."""
+
+    def planned(self, counts: Counts) -> None:
+        """The sources are listed."""
+
+    def started(self, dashboard: str) -> None:
+        """The engine runs; its dashboard is at this address."""
+
+    def went_on(self, done: Assessed, workers: int | None) -> None:
+        """A shard is done, or some time went by; how many workers there are, where it is known."""
+
+
+class _Nobody:
+    def planned(self, counts: Counts) -> None: ...
+    def started(self, dashboard: str) -> None: ...
+    def went_on(self, done: Assessed, workers: int | None) -> None: ...
+
+
+def assess(
+    sources: Sequence[str],
+    out: str,
+    *,
+    profile: Profile | str = "flagred",
+    step_s: float = 1.0,
+    recursive: bool = False,
+    include: Iterable[str] = LOGS,
+    compare_content: bool = False,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    dry_run: bool = False,
+    watcher: Watcher | None = None,
+) -> Assessed:
+    """Assesses the logs of folders that a dataset does not have yet, or that changed since.
+
+    Whatever ends it, the next call does what is missing: each log has one row.
+
+    Parameters
+    ----------
+    sources
+        Folders of logs: paths or addresses (``s3://``, ``gs://``, ``az://``).
+    out
+        The dataset: a folder or such an address.
+    profile
+        The profile, or its name, or its file.
+    step_s
+        How far apart the steps of the risk over time are, in seconds.
+    recursive
+        Whether the folders below are read too.
+    include
+        The names of logs, as patterns.
+    compare_content
+        Whether every log is read and hashed: one that has the content of before counts as the same, whatever its time.
+    scheduler
+        The address of a Dask scheduler; without it all cores of this machine work.
+    workers
+        How many processes work on this machine; one a core where it is None.
+    dry_run
+        Whether nothing is assessed and written: only counted.
+    watcher
+        Who is told how it goes on.
+
+    Raises
+    ------
+    FleetError
+        A source cannot be listed, or the engine or the dataset was lost.
+    RuleSetError
+        The profile or its rule set has errors.
+    """
+    told = watcher or _Nobody()
+    if not step_s > 0:
+        raise FleetError(f"a step of {step_s} s is none", "write a number of seconds above 0")
+    profile = profile if isinstance(profile, Profile) else Profile(profile)
+    include = tuple(include)
+    places = [open_place(absolute(source)) for source in sources]
+    dataset = open_place(absolute(out))
+    job = Job.of(dataset.uri, profile, step_s, compare_content)
+    with Catalog(job.settings, compare_content) as catalog:
+        for place in places:
+            catalog.take_in(place, place.logs(recursive, include))
+        if not dry_run:
+            # Before the dataset is read, so that nothing is committed unseen.
+            job = job.of_run(take_over(dataset))
+        catalog.load(dataset)
+        counts = catalog.counts()
+        told.planned(counts)
+        done = Assessed(counts.listed, 0, 0, 0, 0)
+        if dry_run:
+            return done
+        if counts.new or counts.changed:
+            done = _work(catalog, job, done, told, scheduler, workers)
+        repair(dataset, catalog, _listed(places, recursive, include))
+        return done
+
+
+def _work(
+    catalog: Catalog, job: Job, done: Assessed, told: Watcher, scheduler: str | None, workers: int | None
+) -> Assessed:
+    with engine.cluster(scheduler, workers) as client:
+        told.started(client.dashboard_link)
+        for outcome in engine.run(
+            client, shards(catalog.todo(), SHARD_BYTES), job, lambda workers: told.went_on(done, workers)
+        ):
+            done = _sum(done, outcome)
+            told.went_on(done, None)
+    return done
+
+
+def _sum(done: Assessed, outcome: Outcome) -> Assessed:
+    return Assessed(
+        done.listed,
+        done.assessed + outcome.logs,
+        done.bytes + outcome.bytes,
+        done.not_assessed + outcome.not_assessed,
+        done.unchanged + outcome.unchanged,
+    )
+
+
+def _listed(places: Sequence[Place], recursive: bool, include: Iterable[str]) -> Callable[[str], bool]:
+    """Whether a log would be listed if it were there."""
+    wanted = matcher(include)
+    roots = [place.shown(place.root) for place in places]
+
+    def is_listed(log: str) -> bool:
+        for root in roots:
+            rest = log.removeprefix(root + "/")
+            if log == root or (rest != log and (recursive or "/" not in rest) and wanted(log)):
+                return True
+        return False
+
+    return is_listed
