@@ -125,7 +125,11 @@ def _under_way(
             time.sleep(POLL_S)
             continue
         for future in finished:
-            yield waiting.pop(future), _result(future)
+            if future.status in ("pending", "lost"):
+                # Its worker ended before the outcome was fetched: it is made again.
+                done.add(future)
+            else:
+                yield waiting.pop(future), _result(future)
         submit()
 
 
