@@ -111,7 +111,9 @@ Examples:
   flagred learn my-rules.yaml rows.csv --resolve mean --min-support 5 --group-by vehicle --output learned.yaml
   flagred learn my-rules.yaml rows.csv --column margin=margin_mean --skip-bad-rows --output learned.yaml
   flagred learn my-rules.yaml rows.csv --compare-gaps --output learned.yaml
-  flagred check learned.yaml                     the gaps of the learned rules";
+  flagred check learned.yaml                     the gaps of the learned rules
+
+Exit code 1: the output does not go the way that --rising and --falling say.";
 
 pub(crate) const TUNE: &str = "\
 Examples:

@@ -1,22 +1,87 @@
-//! Rows to learn from and to tune on: from tables, each with its place for messages.
+//! What `learn` and `tune` share: their arguments, and rows from tables, each with its place for messages.
 
 use std::{collections::BTreeMap, path::PathBuf};
 
+use clap::ValueEnum;
 use flagred::learning::Row;
-use fuzzy::Model;
+use fuzzy::{
+    Model,
+    check::{Direction, Monotone},
+};
 
 use crate::{
     failure::Failure,
     table::{Format, Table},
 };
 
-/// Where rows come from.
-pub(crate) struct Source<'a> {
-    pub(crate) tables: &'a [PathBuf],
-    pub(crate) format: &'a Format,
-    /// The columns with the weights and the groups of the rows.
-    pub(crate) weight: Option<&'a str>,
-    pub(crate) group: Option<&'a str>,
+/// The arguments of a command that makes a rule set of another one and of rows.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The rule set to begin with
+    #[arg(value_name = "MODEL")]
+    pub(crate) model: PathBuf,
+
+    /// Tables with a column for each input and the output, as `flagred dataset` writes them
+    #[arg(required = true, value_name = "DATA.csv")]
+    pub(crate) data: Vec<PathBuf>,
+
+    /// The file for the new rule set; `-` is standard output
+    #[arg(short, long, value_name = "OUT.yaml")]
+    pub(crate) output: PathBuf,
+
+    /// Replace the file if it exists
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    /// The output must not fall when this input rises
+    #[arg(long, value_name = "INPUT")]
+    rising: Vec<String>,
+
+    /// The output must not rise when this input rises
+    #[arg(long, value_name = "INPUT")]
+    falling: Vec<String>,
+
+    /// The column with the weights of the rows
+    #[arg(long, value_name = "COLUMN")]
+    weight: Option<String>,
+
+    /// In cross-validation, leave out all rows with one value of this column together: `vehicle`
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) group_by: Option<String>,
+
+    /// Skip cross-validation
+    #[arg(long, conflicts_with = "group_by")]
+    pub(crate) no_validation: bool,
+
+    #[command(flatten)]
+    pub(crate) format: Format,
+
+    /// Print the report as a JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl Arguments {
+    /// What `--rising` and `--falling` claim.
+    pub(crate) fn claims(&self) -> Vec<Monotone> {
+        let claim = |input: &String, direction| Monotone {
+            input: input.clone(),
+            direction,
+            output: None,
+        };
+        let rising = self.rising.iter();
+        let rising = rising.map(|input| claim(input, Direction::Increasing));
+        let falling = self.falling.iter();
+        rising
+            .chain(falling.map(|input| claim(input, Direction::Decreasing)))
+            .collect()
+    }
+}
+
+/// The word of the command line for a value.
+pub(crate) fn word(value: &impl ValueEnum) -> String {
+    let word = value.to_possible_value();
+    word.map_or_else(String::new, |word| word.get_name().to_owned())
 }
 
 /// Rows, and those that cannot be used, with the reason.
@@ -26,7 +91,7 @@ pub(crate) struct Data {
 }
 
 /// Reads the values of the inputs and of the outputs of a model from all tables.
-pub(crate) fn read(source: &Source<'_>, model: &Model) -> Result<Data, Failure> {
+pub(crate) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure> {
     let inputs = model.inputs.iter();
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
@@ -35,15 +100,16 @@ pub(crate) fn read(source: &Source<'_>, model: &Model) -> Result<Data, Failure> 
         refused: Vec::new(),
     };
     let mut groups: BTreeMap<String, u32> = BTreeMap::new();
-    for path in source.tables {
-        let table = Table::read(path, source.format.delimiter)?;
-        let columns = source.format.columns(&names, &table.header)?;
-        let optional = |name: Option<&str>| {
-            name.map(|name| table.header.require(name, "or leave that option out"))
+    for path in &arguments.data {
+        let table = Table::read(path, arguments.format.delimiter)?;
+        let columns = arguments.format.columns(&names, &table.header)?;
+        let optional = |name: &Option<String>| {
+            name.as_ref()
+                .map(|name| table.header.require(name, "or leave that option out"))
                 .transpose()
         };
-        let weight = optional(source.weight)?;
-        let group = optional(source.group)?;
+        let weight = optional(&arguments.weight)?;
+        let group = optional(&arguments.group_by)?;
         for row in 0..table.len() {
             let mut bad = Vec::new();
             let mut number = |column: usize| {

@@ -63,6 +63,8 @@ mod moments;
 pub mod monitor;
 mod motor;
 #[cfg(feature = "std")]
+pub mod plan;
+#[cfg(feature = "std")]
 pub mod profile;
 pub mod sample;
 #[cfg(feature = "std")]

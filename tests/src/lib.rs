@@ -4,6 +4,7 @@ pub mod board;
 mod folder;
 pub mod fuzzing;
 pub mod log_writer;
+pub mod random_models;
 pub mod reference;
 pub mod schema;
 pub mod simulated;

@@ -41,7 +41,7 @@ fn sources(folder: &str) -> Vec<(String, String)> {
 
 /// What is compiled into the package: no tests and no comments.
 fn code(folder: &str) -> Vec<(String, String)> {
-    let is_test = |name: &str| name.ends_with("tests.rs");
+    let is_test = |name: &str| name.ends_with("tests.rs") || name.contains("/tests/");
     let files = sources(folder).into_iter().filter(|(n, _)| !is_test(n));
     let code = files.map(|(name, text)| {
         let (text, _) = text

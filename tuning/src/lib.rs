@@ -11,6 +11,7 @@
 
 mod consequents;
 mod data;
+mod folds;
 mod loss;
 mod numbers;
 mod objective;
@@ -25,9 +26,10 @@ use std::ops::ControlFlow;
 use fuzzy::{Model, check};
 
 pub use data::Data;
+pub use folds::Interval;
 pub use numbers::{Moved, Number, numbers};
 pub use settings::{Loss, Settings, TuneError};
-pub use validation::{Interval, Validation, cross_validate};
+pub use validation::{Validation, cross_validate};
 
 use objective::{Objective, Point};
 use parameters::Parameters;
@@ -117,7 +119,13 @@ pub fn tune(
             },
         });
     }
+    let before = (objective.measure(&before), before);
     let mut best = before.clone();
+    let improve = |best: &mut (f64, Point), point: &Point| {
+        if point.slopes.loss < best.1.slopes.loss {
+            *best = (objective.measure(point), point.clone());
+        }
+    };
     let mut is_stopped = false;
     let mut random = fastrand::Rng::with_seed(settings.seed);
     for start in 1..=settings.starts.max(1) {
@@ -130,32 +138,29 @@ pub fn tune(
             }
         };
         let from: Vec<f64> = (0..parameters.free()).map(|_| jitter()).collect();
-        let told = &mut |iteration: u32, at: &Point| {
-            if is_better(&objective, at, &best)? {
-                best = at.clone();
-            }
-            Ok(watch(&Progress {
+        let told = &mut |iteration: u32, at: Option<&Point>| {
+            at.into_iter().for_each(|at| improve(&mut best, at));
+            watch(&Progress {
                 start,
                 iteration,
-                loss: objective.measure(&best),
-                model: &best.model,
-            }))
+                loss: best.0,
+                model: &best.1.model,
+            })
         };
         let (found, flow) =
             search::search(&objective, &parameters, &from, settings.iterations, told)?;
-        if is_better(&objective, &found, &best)? {
-            best = found;
-        }
+        found.iter().for_each(|found| improve(&mut best, found));
         is_stopped = flow.is_break();
         if is_stopped {
             break;
         }
     }
+    let mut best = best.1;
     if let Some(digits) = settings.digits {
         best = rounded(&objective, &parameters, model, best, digits)?;
     }
     Ok(Tuned {
-        before: objective.measure(&before),
+        before: before.0,
         after: objective.measure(&best),
         without_value: best
             .predictions
@@ -166,11 +171,6 @@ pub fn tune(
         model: best.model,
         is_stopped,
     })
-}
-
-/// Whether a point has a smaller loss and breaks no claim. A start at a random place may break one.
-fn is_better(objective: &Objective<'_>, point: &Point, than: &Point) -> Result<bool, TuneError> {
-    Ok(point.slopes.loss < than.slopes.loss && objective.broken_claim(&point.model)?.is_none())
 }
 
 /// Rounds what moved, a number at a time, to the neighbour with the smaller loss. A number whose neighbours both break a

@@ -23,24 +23,26 @@ const LEAST_GAIN: f64 = 1e-7;
 /// So many poor steps end a search.
 const PATIENCE: u32 = 3;
 
-/// Is told the step and the point, and says whether to go on.
-pub(crate) type Watch<'a> = dyn FnMut(u32, &Point) -> Result<ControlFlow<()>, TuneError> + 'a;
+/// Is told the step and a point that breaks no claim, if there is one yet, and says whether to go on.
+pub(crate) type Watch<'a> = dyn FnMut(u32, Option<&Point>) -> ControlFlow<()> + 'a;
 
-/// Searches from free numbers, for at most so many steps. `watch` is told each new best point, and can end the search.
+/// Searches from free numbers, for at most so many steps. `watch` is told each point and can end the search. A start at a random
+/// place may break a claim: then there is no point until a step holds it.
 pub(crate) fn search(
     objective: &Objective<'_>,
     parameters: &Parameters,
     from: &[f64],
     iterations: u32,
     watch: &mut Watch<'_>,
-) -> Result<(Point, ControlFlow<()>), TuneError> {
+) -> Result<(Option<Point>, ControlFlow<()>), TuneError> {
     let mut z = from.to_vec();
     let mut at = objective.fitted(parameters.model(&z))?;
+    let mut holds = objective.broken_claim(&at.model)?.is_none();
     let mut damping = 1e-2;
     let mut poor = 0;
     for iteration in 1..=iterations {
-        if watch(iteration, &at)?.is_break() {
-            return Ok((at, ControlFlow::Break(())));
+        if watch(iteration, holds.then_some(&at)).is_break() {
+            return Ok((holds.then_some(at), ControlFlow::Break(())));
         }
         if z.is_empty() {
             break;
@@ -54,6 +56,7 @@ pub(crate) fn search(
         };
         z = step;
         at = next;
+        holds = true;
         damping = (used / 4.0).max(1e-9);
         let gain = before - at.slopes.loss;
         poor = if gain < LEAST_GAIN * before {
@@ -65,7 +68,7 @@ pub(crate) fn search(
             break;
         }
     }
-    Ok((at, ControlFlow::Continue(())))
+    Ok((holds.then_some(at), ControlFlow::Continue(())))
 }
 
 /// The curvature of the loss in the free numbers, and minus its gradient.

@@ -9,7 +9,7 @@ use fuzzy::{
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::{prelude::*, types::PyDict};
 
-use crate::rule_set::Compiled;
+use crate::compiled::Compiled;
 
 /// Why outputs are what they are at one point.
 #[pyclass(frozen, module = "flagred")]

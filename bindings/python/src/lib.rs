@@ -6,18 +6,22 @@
 mod arrays;
 mod arrow;
 mod assessment;
+mod compiled;
 mod errors;
 mod evaluate;
 mod explanation;
 mod flight;
-mod learning;
+mod learn;
 mod map;
 mod monitor;
 mod outcome;
 mod profile;
+mod rows;
 mod rule_set;
+mod source;
 mod table;
 mod threads;
+mod tune;
 
 #[pyo3::pymodule]
 mod _core {
@@ -26,13 +30,14 @@ mod _core {
         assessment::{_page, AssessmentData},
         explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
         flight::FlightData,
-        learning::{_learn, _tune},
+        learn::_learn,
         map::DecisionMap,
         monitor::{MonitorData, Update},
         outcome::{Outcome, Outcomes},
         profile::Profile,
         rule_set::RuleSet,
         table::Table,
+        tune::_tune,
     };
 
     #[pymodule_export]

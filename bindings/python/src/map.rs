@@ -9,7 +9,7 @@ use fuzzy::{
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use pyo3::{prelude::*, sync::PyOnceLock, types::PyDict};
 
-use crate::{errors::data_error, outcome::NO_RULE, rule_set::Compiled};
+use crate::{compiled::Compiled, errors::data_error, outcome::NO_RULE};
 
 /// One output of a rule set over a grid of its inputs.
 #[pyclass(frozen, module = "flagred")]

@@ -1,43 +1,32 @@
 //! Rule sets: read, edited, compiled when they are first used, and asked.
 
-use std::{
-    cell::RefCell,
-    sync::{
-        Arc, OnceLock, PoisonError, RwLock,
-        atomic::{AtomicU64, Ordering},
-    },
-};
+use std::sync::{Arc, PoisonError, RwLock};
 
 use fuzzy::{
-    Engine, Findings, Model,
+    Findings, Model,
     check::{self, Monotone},
     diagnostic::suggest,
     drawing::variables_svg,
-    engine::{Outcome as Raw, Scratch},
-    format::{self, Document},
+    format,
     map::Grid,
     rule,
     tree::Node,
-    validate, yaml,
+    yaml,
 };
-use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::{
-    IntoPyObjectExt,
     exceptions::PyIndexError,
     prelude::*,
     sync::PyOnceLock,
-    types::{PyDict, PyFloat, PyInt, PyString, PyTuple},
+    types::{PyDict, PyTuple},
 };
 
 use crate::{
-    arrays::Arrays,
-    arrow,
+    compiled::Asked,
     errors::{data_error, diagnostics, rule_set_error},
-    evaluate::Evaluator,
     explanation::Explanation,
     map::DecisionMap,
-    outcome::{Outcome, Outcomes},
-    table::{self, Table},
+    source::Source,
+    table::Table,
     threads::{interruptible, pool},
 };
 
@@ -47,87 +36,17 @@ pub(crate) struct RuleSet {
     current: RwLock<Arc<Source>>,
 }
 
-/// A rule set as it was read; an edit makes another.
-struct Source {
-    file: String,
-    text: String,
-    document: Document,
-    compiled: OnceLock<Result<Arc<Compiled>, Findings>>,
-}
-
-/// A rule set that can be evaluated.
-pub(crate) struct Compiled {
-    /// No other has it, as long as the process lives.
-    id: u64,
-    pub(crate) engine: Engine,
-    inputs: Vec<Py<PyString>>,
-}
-
 type RuleParts = (String, f64, Option<f64>, Option<u64>, Option<String>);
-
-/// What each thread keeps for single evaluations, of the rule sets it used last.
-struct Kept {
-    id: u64,
-    scratch: Scratch,
-    outcomes: Vec<Raw>,
-}
-
-thread_local! {
-    static KEPT: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
-}
-
-const MOST_KEPT: usize = 8;
-
-impl Source {
-    fn new(file: String, text: String, document: Document) -> Arc<Source> {
-        let compiled = OnceLock::new();
-        Arc::new(Source {
-            file,
-            text,
-            document,
-            compiled,
-        })
-    }
-
-    fn compile(&self, py: Python<'_>) -> Result<Arc<Compiled>, Findings> {
-        static NEXT: AtomicU64 = AtomicU64::new(0);
-        let invalid = validate(&self.document.model, &self.document.spans);
-        if !invalid.is_empty() {
-            return Err(Findings::locate(invalid, &self.text));
-        }
-        let engine = Engine::new(&self.document.model)?;
-        let inputs = engine.input_names();
-        Ok(Arc::new(Compiled {
-            id: NEXT.fetch_add(1, Ordering::Relaxed),
-            inputs: inputs
-                .map(|name| PyString::intern(py, name).unbind())
-                .collect(),
-            engine,
-        }))
-    }
-
-    /// The compiled rule set.
-    fn compiled(&self, py: Python<'_>) -> PyResult<&Arc<Compiled>> {
-        let compiled = self.compiled.get_or_init(|| self.compile(py));
-        let drawn = |findings| rule_set_error(py, findings, &self.file, &self.text);
-        compiled.as_ref().map_err(drawn)
-    }
-}
-
-/// What is asked for: a number, or a value for each row.
-enum Asked<'py> {
-    /// In the order of the inputs.
-    Numbers(Vec<f64>),
-    /// In the order of the inputs.
-    Arrays(Vec<Bound<'py, PyAny>>),
-    /// A table, or a dict by the names of the inputs.
-    Frame(Bound<'py, PyAny>),
-}
 
 impl RuleSet {
     fn source(&self) -> Arc<Source> {
         let current = self.current.read();
         Arc::clone(&current.unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn replace(&self, source: Arc<Source>) {
+        let mut current = self.current.write().unwrap_or_else(PoisonError::into_inner);
+        *current = source;
     }
 
     pub(crate) fn model<T>(&self, of: impl FnOnce(&Model) -> T) -> T {
@@ -140,168 +59,21 @@ impl RuleSet {
     }
 }
 
-impl Compiled {
-    /// Arguments in the order of the inputs.
-    fn asked<'py>(
-        &self,
-        py: Python<'py>,
-        args: &Bound<'py, PyTuple>,
-        named: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Asked<'py>> {
-        // `model({"service": 8, "food": 9})`, for names that are no words of Python.
-        let mapping = match named {
-            None if args.len() == 1 => args.get_item(0)?.cast_into::<PyDict>().ok(),
-            _ => None,
-        };
-        let values: Vec<Bound<'py, PyAny>> = match mapping.as_ref().or(named) {
-            Some(named) if args.is_empty() || mapping.is_some() => self.by_name(py, named)?,
-            Some(_) => {
-                let help = "write `model(8, 9)` or `model(service=8, food=9)`".to_owned();
-                return Err(data_error(
-                    "values are given by place and by name",
-                    Some(help),
-                ));
-            }
-            _ => args.iter().collect(),
-        };
-        let numbers: Option<Vec<f64>> = values.iter().map(number).collect();
-        match numbers {
-            Some(numbers) => Ok(Asked::Numbers(numbers)),
-            None => match values.as_slice() {
-                [one] if named.is_none() && is_frame(py, one)? => Ok(Asked::Frame(one.clone())),
-                _ => Ok(Asked::Arrays(values)),
-            },
-        }
+/// The values at what Python gives, or the outcomes `with_reasons`.
+fn answer<'py>(
+    rule_set: &Bound<'py, RuleSet>,
+    args: &Bound<'py, PyTuple>,
+    named: Option<&Bound<'py, PyDict>>,
+    threads: Option<usize>,
+    with_reasons: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (py, source) = (rule_set.py(), rule_set.get().source());
+    let compiled = source.compiled(py)?;
+    match compiled.asked(py, args, named)? {
+        Asked::Numbers(numbers) => compiled.point(py, &numbers, with_reasons),
+        Asked::Arrays(values) => compiled.arrays(py, &values, threads, with_reasons),
+        Asked::Frame(frame) => by_frame(rule_set, frame, threads, with_reasons),
     }
-
-    fn by_name<'py>(
-        &self,
-        py: Python<'py>,
-        named: &Bound<'py, PyDict>,
-    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let mut values = Vec::with_capacity(self.inputs.len());
-        for name in &self.inputs {
-            match named.get_item(name.bind(py))? {
-                Some(value) => values.push(value),
-                None => break,
-            }
-        }
-        if values.len() == self.inputs.len() && values.len() == named.len() {
-            return Ok(values);
-        }
-        let names = || self.engine.input_names();
-        for key in named.keys() {
-            let key: String = key.extract()?;
-            if self.engine.input(&key).is_none() {
-                let message = format!("there is no input `{key}`");
-                return Err(data_error(message, suggest(&key, names())));
-            }
-        }
-        let missing = names().find(|name| !named.contains(*name).unwrap_or(false));
-        let message = format!("input `{}` has no value", missing.unwrap_or_default());
-        Err(data_error(
-            message,
-            Some("None and NaN say that it is unknown".into()),
-        ))
-    }
-
-    /// Evaluates one point.
-    fn outcomes<T>(&self, numbers: &[f64], take: impl FnOnce(&[Raw]) -> T) -> PyResult<T> {
-        KEPT.with_borrow_mut(|kept| {
-            let at = match kept.iter().position(|kept| kept.id == self.id) {
-                Some(at) => at,
-                None => {
-                    kept.truncate(MOST_KEPT - 1);
-                    let outputs = self.engine.output_names().len();
-                    let new = Kept {
-                        id: self.id,
-                        scratch: self.engine.scratch(),
-                        outcomes: vec![Raw::default(); outputs],
-                    };
-                    kept.insert(0, new);
-                    0
-                }
-            };
-            let Kept {
-                scratch, outcomes, ..
-            } = &mut kept[at];
-            let done = self.engine.evaluate_with(scratch, numbers, outcomes);
-            done.map_err(|error| data_error(error, None))?;
-            Ok(take(outcomes))
-        })
-    }
-
-    /// The only thing, or a dict by the names of the outputs.
-    fn by_output<'py, T: IntoPyObject<'py>>(
-        &self,
-        py: Python<'py>,
-        things: impl IntoIterator<Item = T>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let mut things = things.into_iter();
-        if self.engine.output_names().len() == 1
-            && let Some(only) = things.next()
-        {
-            return only.into_bound_py_any(py);
-        }
-        let dict = PyDict::new(py);
-        for (name, thing) in self.engine.output_names().zip(things) {
-            dict.set_item(name, thing)?;
-        }
-        Ok(dict.into_any())
-    }
-
-    fn arrays<'py>(
-        &self,
-        py: Python<'py>,
-        values: &[Bound<'py, PyAny>],
-        threads: Option<usize>,
-        with_reasons: bool,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let expected = self.inputs.len();
-        if values.len() != expected {
-            let message = format!(
-                "the model has {expected} inputs, but {} values were given",
-                values.len()
-            );
-            return Err(data_error(message, None));
-        }
-        let arrays = Arrays::new(py, values)?;
-        let rows = arrays.shape.iter().product();
-        let mut evaluator = Evaluator::new(&self.engine, threads, with_reasons)?;
-        let results = evaluator.run(py, rows, &arrays.columns()?)?;
-        let shaped = results.into_iter().map(|result| match result.reasons {
-            Some(reasons) => {
-                let outcomes = Outcomes::new(py, result.value, reasons, &arrays.shape)?;
-                outcomes.into_bound_py_any(py)
-            }
-            // A number, as NumPy gives for arrays without axes.
-            None if arrays.shape.is_empty() => result.value[0].into_bound_py_any(py),
-            None => Ok(result
-                .value
-                .into_pyarray(py)
-                .reshape(arrays.shape.clone())?
-                .into_any()),
-        });
-        let shaped: Vec<Bound<'py, PyAny>> = shaped.collect::<PyResult<_>>()?;
-        self.by_output(py, shaped)
-    }
-}
-
-/// A number of Python, or None, which is unknown; `None` for anything else.
-fn number(value: &Bound<'_, PyAny>) -> Option<f64> {
-    if let Ok(float) = value.cast::<PyFloat>() {
-        return Some(float.value());
-    }
-    if value.is_instance_of::<PyInt>() {
-        return value.extract().ok();
-    }
-    value.is_none().then_some(f64::NAN)
-}
-
-fn is_frame(py: Python<'_>, value: &Bound<'_, PyAny>) -> PyResult<bool> {
-    static IS_FRAME: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    let is_frame = IS_FRAME.import(py, "flagred._frames", "is_frame")?;
-    is_frame.call1((value,))?.extract()
 }
 
 /// The answer to a frame is a frame of the same library, which Python knows.
@@ -316,23 +88,12 @@ fn by_frame<'py>(
     evaluate.call1((rule_set, frame, threads, with_reasons))
 }
 
-/// The model that a text holds, in whatever format; of an `unfinished` one in YAML.
-fn read(text: &str, unfinished: bool) -> Result<Document, Findings> {
-    if !unfinished {
-        return interchange::document(text);
-    }
-    let tree = yaml::read(text)?;
-    format::read_unfinished(&tree).map_err(|findings| Findings::locate(findings, text))
-}
-
 #[pymethods]
 impl RuleSet {
     #[new]
     #[pyo3(signature = (text, file = "<text>", unfinished = false))]
     fn new(py: Python<'_>, text: String, file: &str, unfinished: bool) -> PyResult<Self> {
-        let document = py.detach(|| read(&text, unfinished));
-        let document = document.map_err(|findings| rule_set_error(py, &findings, file, &text))?;
-        let source = Source::new(file.to_owned(), text, document);
+        let source = Source::read(py, text, file, unfinished)?;
         Ok(RuleSet {
             current: RwLock::new(source),
         })
@@ -408,16 +169,13 @@ impl RuleSet {
     fn _edit(&self, py: Python<'_>, json: &str) -> PyResult<()> {
         let tree: Result<Node, _> = serde_json::from_str(json);
         let text = yaml::to_text(&tree.map_err(|error| data_error(error, None))?);
-        let edited = RuleSet::new(py, text, "<model>", true)?;
-        let mut current = self.current.write().unwrap_or_else(PoisonError::into_inner);
-        *current = edited.source();
+        self.replace(Source::read(py, text, "<model>", true)?);
         Ok(())
     }
 
     /// Another model that is equal, and apart: an edit of one does not change the other.
     fn _share(&self, other: &RuleSet) {
-        let mut current = self.current.write().unwrap_or_else(PoisonError::into_inner);
-        *current = other.source();
+        self.replace(other.source());
     }
 
     fn _equals(&self, other: &RuleSet) -> bool {
@@ -460,16 +218,7 @@ impl RuleSet {
         threads: Option<usize>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (py, source) = (slf.py(), slf.get().source());
-        let compiled = source.compiled(py)?;
-        match compiled.asked(py, args, named)? {
-            Asked::Numbers(numbers) => compiled.outcomes(&numbers, |outcomes| {
-                let values = outcomes.iter().map(|o| o.value().unwrap_or(f64::NAN));
-                compiled.by_output(py, values)
-            })?,
-            Asked::Arrays(values) => compiled.arrays(py, &values, threads, false),
-            Asked::Frame(frame) => by_frame(slf, frame, threads, false),
-        }
+        answer(slf, args, named, threads, false)
     }
 
     /// Evaluates the rule set, and says what its values rest on.
@@ -498,15 +247,7 @@ impl RuleSet {
         threads: Option<usize>,
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (py, source) = (slf.py(), slf.get().source());
-        let compiled = source.compiled(py)?;
-        match compiled.asked(py, args, named)? {
-            Asked::Numbers(numbers) => compiled.outcomes(&numbers, |outcomes| {
-                compiled.by_output(py, outcomes.iter().map(|raw| Outcome::from(*raw)))
-            })?,
-            Asked::Arrays(values) => compiled.arrays(py, &values, threads, true),
-            Asked::Frame(frame) => by_frame(slf, frame, threads, true),
-        }
+        answer(slf, args, named, threads, true)
     }
 
     /// Evaluates a table that Arrow's C interface hands over.
@@ -520,34 +261,7 @@ impl RuleSet {
     ) -> PyResult<Table> {
         let source = self.source();
         let compiled = source.compiled(py)?;
-        let mut reader = arrow::import(frame)?;
-        let schema = reader.schema();
-        let names: Vec<&str> = compiled.engine.input_names().collect();
-        let columns = schema.fields().iter().map(|field| field.name().as_str());
-        let places = names.iter().map(|name| {
-            columns
-                .clone()
-                .position(|column| column == *name)
-                .ok_or_else(|| {
-                    let message = format!("the table has no column `{name}`");
-                    data_error(message, suggest(name, columns.clone()))
-                })
-        });
-        let places: Vec<usize> = places.collect::<PyResult<_>>()?;
-        let schema = table::schema(&self._output_names(), with_reasons);
-        let mut evaluator = Evaluator::new(&compiled.engine, threads, with_reasons)?;
-        let mut batches = Vec::new();
-        // A stream may be made in Python, which asks for the interpreter itself.
-        while let Some(batch) = py.detach(|| reader.next()) {
-            let batch = batch.map_err(|error| data_error(error, None))?;
-            let columns = names.iter().zip(&places);
-            let columns = columns.map(|(name, at)| arrow::numbers(name, batch.column(*at)));
-            let columns: Vec<_> = columns.collect::<PyResult<_>>()?;
-            let columns: Vec<&[f64]> = columns.iter().map(|column| &**column).collect();
-            let results = evaluator.run(py, batch.num_rows(), &columns)?;
-            batches.push(table::batch(&schema, results)?);
-        }
-        Ok(Table { batches, schema })
+        compiled.table(frame, threads, with_reasons)
     }
 
     /// Says why the outputs are what they are at one point.

@@ -3,12 +3,19 @@
 use std::{
     collections::HashMap,
     process,
-    sync::{Arc, Mutex, PoisonError, mpsc},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
     thread,
     time::Duration,
 };
 
-use pyo3::{exceptions::PyRuntimeError, prelude::*};
+use pyo3::{
+    exceptions::{PyKeyboardInterrupt, PyRuntimeError},
+    prelude::*,
+};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// The pools of this process, by the number of their threads.
@@ -41,6 +48,34 @@ pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
+    listening(py, work, Err)
+}
+
+/// As [`interruptible`], for work that ends soon with a result once `stop` is set. The first Ctrl-C sets it and waits for the
+/// result; the second does not wait. Gives also whether there was a Ctrl-C.
+pub(crate) fn stoppable<T: Send + 'static>(
+    py: Python<'_>,
+    stop: &AtomicBool,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<(T, bool)> {
+    let mut was_interrupted = false;
+    let result = listening(py, work, |error| {
+        stop.store(true, Ordering::Relaxed);
+        if was_interrupted || !error.is_instance_of::<PyKeyboardInterrupt>(py) {
+            return Err(error);
+        }
+        was_interrupted = true;
+        Ok(())
+    })?;
+    Ok((result, was_interrupted))
+}
+
+/// Does work on another thread. `heard` gets what signals raise, and says whether to go on waiting.
+fn listening<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+    mut heard: impl FnMut(PyErr) -> PyResult<()>,
+) -> PyResult<T> {
     /// Work that is shorter is not noticed to wait.
     const LISTEN_EVERY: Duration = Duration::from_millis(50);
     let (sender, mut receiver) = mpsc::sync_channel(1);
@@ -49,7 +84,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
         let receiver = &mut receiver;
         match py.detach(move || receiver.recv_timeout(LISTEN_EVERY)) {
             Ok(done) => return Ok(done),
-            Err(mpsc::RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(mpsc::RecvTimeoutError::Timeout) => py.check_signals().or_else(&mut heard)?,
             Err(mpsc::RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err("the work ended without a result"));
             }

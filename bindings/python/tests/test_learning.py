@@ -1,9 +1,13 @@
 """Rules and numbers from rows."""
 
 import os
+import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -149,14 +153,44 @@ def test_a_rule_set_without_rules_cannot_be_tuned():
         flagred.tune(model, {"heat": [1]})
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals are sent as POSIX does")
-def test_interrupts_end_a_search(tip):
+def search_without_end(tip: flagred.Model, **options: int) -> None:
     random = np.random.default_rng(0)
-    rows = 100_000
+    rows = 20_000
     data = {"service": random.uniform(0, 10, rows), "food": random.uniform(0, 10, rows), "tip": random.uniform(5, 25, rows)}
-    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
-    timer.start()
+    flagred.tune(tip, data, starts=100_000, iterations=10_000, **options)
+
+
+def interrupt_after(seconds: float) -> None:
+    threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT)).start()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are sent as POSIX does")
+@pytest.mark.parametrize("folds", [None, 3])
+def test_an_interrupt_ends_a_search_and_keeps_the_best(tip, folds):
+    interrupt_after(1.0)
     begun = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        flagred.tune(tip, data, starts=1000, iterations=10_000)
+    with pytest.raises(flagred.TuneInterrupted, match="`best` of this exception") as stop:
+        search_without_end(tip, folds=folds)
     assert time.monotonic() - begun < 30
+    best = stop.value.best
+    assert best.after < best.before and best.moved and best.validation is None
+    assert best.model != tip and 0 <= best.model(8, 9) <= 30
+    assert pickle.loads(pickle.dumps(stop.value)).best == best
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are sent as POSIX does")
+def test_an_interrupt_that_is_not_caught_ends_a_program():
+    program = "import test_learning, conftest, flagred; tip = flagred.loads(conftest.TIP); print(flush=True)\n"
+    program += "test_learning.search_without_end(tip)"
+    search = subprocess.Popen(
+        [sys.executable, "-c", program],
+        cwd=Path(__file__).parent,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert search.stdout is not None and search.stdout.readline()
+    time.sleep(1)
+    search.send_signal(signal.SIGINT)
+    _, told = search.communicate(timeout=60)
+    assert search.returncode != 0 and "TuneInterrupted: tuning was interrupted" in told, told

@@ -11,8 +11,9 @@ use flagred::{
         Plan, Rules,
         table::{self, Table},
     },
-    estimator::{Estimator, NoPlan},
+    estimator::Estimator,
     gap::FilledKnots,
+    plan::NoPlan,
 };
 use fuzzy::drawing::visible;
 use interchange::{Format, Losses};

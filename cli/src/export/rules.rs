@@ -7,7 +7,7 @@ use flagred::{
         Rules,
         table::{Outcome, Partial, Strongest},
     },
-    estimator,
+    plan,
 };
 use fuzzy::model::{Model, Variable};
 
@@ -36,7 +36,7 @@ pub(super) fn export(arguments: &Arguments, text: &str) -> Result<Exit, Failure>
     let engine = rule_set::compile(&document, file, text)?;
     let output = Files::reading([Path::new(file)])?.output(&arguments.output, Replace::Yes)?;
     let model = &document.model;
-    let rules = estimator::rules(&engine).map_err(|refused| {
+    let rules = plan::rules(&engine).map_err(|refused| {
         let sampled = model.outputs.iter().any(|output| output.samples.is_some());
         let help = match sampled {
             true => "`--lossy` leaves `samples` out: the value is exact then",

@@ -2,7 +2,7 @@
 
 pub(crate) mod report;
 
-use std::{io::Write as _, path::PathBuf};
+use std::io::Write as _;
 
 use clap::ValueEnum;
 use flagred::{
@@ -20,28 +20,13 @@ use fuzzy::{
 use crate::{
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
-    rows::{self, Source},
-    rule_set,
-    table::Format,
+    rows, rule_set,
 };
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set with the variables and terms; its rules are replaced
-    #[arg(value_name = "MODEL")]
-    model: PathBuf,
-
-    /// Tables with a column for each input and the output, as `flagred dataset` writes them
-    #[arg(required = true, value_name = "DATA.csv")]
-    data: Vec<PathBuf>,
-
-    /// The file for the learned rule set; `-` is standard output
-    #[arg(short, long, value_name = "OUT.yaml")]
-    output: PathBuf,
-
-    /// Replace the file if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    rows: rows::Arguments,
 
     /// How to choose the consequent of rows with the same terms
     #[arg(long, value_enum, default_value = "strongest", value_name = "HOW")]
@@ -59,40 +44,13 @@ pub(crate) struct Arguments {
     #[arg(long)]
     complete: bool,
 
-    /// The output must not fall when this input rises; where it does all the same, the exit code is 1
-    #[arg(long, value_name = "INPUT")]
-    rising: Vec<String>,
-
-    /// The output must not rise when this input rises; where it does all the same, the exit code is 1
-    #[arg(long, value_name = "INPUT")]
-    falling: Vec<String>,
-
-    /// Add the learned rules to those of MODEL
+    /// Keep the rules of MODEL, which the learned ones replace otherwise
     #[arg(long)]
     keep_rules: bool,
-
-    /// The column with the weights of the rows
-    #[arg(long, value_name = "COLUMN")]
-    weight: Option<String>,
-
-    /// In cross-validation, leave out all rows with one value of this column together: `vehicle`
-    #[arg(long, value_name = "COLUMN")]
-    group_by: Option<String>,
-
-    /// Skip cross-validation
-    #[arg(long, conflicts_with = "group_by")]
-    no_validation: bool,
-
-    #[command(flatten)]
-    format: Format,
 
     /// Compare the methods of interpolation on rows whose rule is left out
     #[arg(long)]
     compare_gaps: bool,
-
-    /// Print the report as a JSON document
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -120,10 +78,13 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading(arguments.data.iter().chain([&arguments.model]))?;
-    let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
-    let name = arguments.model.display().to_string();
-    let (document, text) = rule_set::read(&arguments.model)?;
+    let mut files = Files::reading(arguments.rows.data.iter().chain([&arguments.rows.model]))?;
+    let output = files.output(
+        &arguments.rows.output,
+        Replace::forced(arguments.rows.force),
+    )?;
+    let name = arguments.rows.model.display().to_string();
+    let (document, text) = rule_set::read(&arguments.rows.model)?;
     let mut model = document.model;
     if !arguments.keep_rules {
         model.rules.clear();
@@ -138,13 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         };
         Failure::usage(format!("`{name}`: {error}")).help(help)
     })?;
-    let source = Source {
-        tables: &arguments.data,
-        format: &arguments.format,
-        weight: arguments.weight.as_deref(),
-        group: arguments.group_by.as_deref(),
-    };
-    let data = rows::read(&source, &model)?;
+    let data = rows::read(&arguments.rows, &model)?;
     let mut rows = Vec::with_capacity(data.rows.len());
     let mut refused = data.refused;
     for (row, place) in data.rows {
@@ -153,7 +108,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             Err(refusal) => refused.push(format!("{place}: {refusal}")),
         }
     }
-    if !refused.is_empty() && (!arguments.format.skip_bad_rows || rows.is_empty()) {
+    if !refused.is_empty() && (!arguments.rows.format.skip_bad_rows || rows.is_empty()) {
         return Err(rows::refuse(&refused, "learned from"));
     }
     let learned = learner.finish();
@@ -167,7 +122,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         refused,
         coverage,
         after_filling,
-        errors: match arguments.no_validation {
+        errors: match arguments.rows.no_validation {
             true => None,
             false => Some(cross_validate(&model, &settings, &gap, &rows).map_err(examined)?),
         },
@@ -183,7 +138,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     output.write(&report::rule_set(arguments, &outcome, &text))?;
     let mut out = Stdout::beside(&[&output]);
-    if arguments.json {
+    if arguments.rows.json {
         let document = report::Document::new(arguments, &outcome);
         serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
         writeln!(out)?;
@@ -198,12 +153,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn settings(arguments: &Arguments) -> Settings {
-    let directed = |names: &[String], direction| {
-        let names = names.iter().cloned();
-        names.map(move |name| (name, direction)).collect::<Vec<_>>()
+    let directed = |claim: check::Monotone| match claim.direction {
+        check::Direction::Increasing => (claim.input, Direction::Rising),
+        check::Direction::Decreasing => (claim.input, Direction::Falling),
     };
-    let mut monotone = directed(&arguments.rising, Direction::Rising);
-    monotone.extend(directed(&arguments.falling, Direction::Falling));
+    let monotone = arguments.rows.claims().into_iter().map(directed).collect();
     Settings {
         resolution: match arguments.resolve {
             Resolve::Strongest => Resolution::Strongest,
@@ -219,29 +173,8 @@ fn settings(arguments: &Arguments) -> Settings {
 
 /// Where the learned rules contradict `--rising` and `--falling`, as `flagred check --monotone` finds it.
 fn counterexamples(arguments: &Arguments, model: &Model) -> Result<Vec<Counterexample>, Failure> {
-    let claims: Vec<check::Monotone> = claims(arguments).collect();
     let engine = Engine::new(model).map_err(unusable)?;
-    check::counterexamples(&engine, &claims).map_err(unusable)
-}
-
-fn claims(arguments: &Arguments) -> impl Iterator<Item = check::Monotone> {
-    monotone(&arguments.rising, &arguments.falling)
-}
-
-/// What `--rising` and `--falling` claim.
-pub(crate) fn monotone<'a>(
-    rising: &'a [String],
-    falling: &'a [String],
-) -> impl Iterator<Item = check::Monotone> + 'a {
-    let claim = |input: &String, direction| check::Monotone {
-        input: input.clone(),
-        direction,
-        output: None,
-    };
-    let rising = rising.iter();
-    let rising = rising.map(move |input| claim(input, check::Direction::Increasing));
-    let falling = falling.iter();
-    rising.chain(falling.map(move |input| claim(input, check::Direction::Decreasing)))
+    check::counterexamples(&engine, &arguments.rows.claims()).map_err(unusable)
 }
 
 /// What would make the output monotone, where that is known: inference by product and sum does not bend monotone rules where

@@ -9,18 +9,11 @@ use flagred::{
 use fuzzy::{check::Counterexample, drawing::visible};
 use serde::Serialize;
 
-use super::{Arguments, Outcome, Resolve};
+use super::{Arguments, Outcome};
+use crate::rows::word;
 
 /// The antecedents without a rule that are named.
 const SHOWN: usize = 12;
-
-fn resolution(arguments: &Arguments) -> &'static str {
-    match arguments.resolve {
-        Resolve::Strongest => "strongest",
-        Resolve::Heaviest => "heaviest",
-        Resolve::Mean => "mean",
-    }
-}
 
 /// The rule set under the comments that the model began with, and a line that says where its rules came from. Degrees
 /// are kept to six digits: authors read them.
@@ -40,7 +33,7 @@ pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome, model_text: &st
     format!(
         "{head}{gap}# Learned by `flagred learn` from {} rows, {} resolution: {} rules learned, {} of them without samples.\n{}",
         learned.samples,
-        resolution(arguments),
+        word(&arguments.resolve),
         learned.model.rules.len() - outcome.kept,
         learned.completed,
         fuzzy::yaml::to_string(&model)
@@ -65,7 +58,7 @@ pub(super) fn words(
     writeln!(
         out,
         "rules      {rules} learned ({}), {} of them completed from their neighbours; {} kept",
-        resolution(arguments),
+        word(&arguments.resolve),
         learned.completed,
         outcome.kept
     )?;
@@ -82,7 +75,7 @@ pub(super) fn words(
     for antecedent in learned.missing_antecedents.iter().take(SHOWN) {
         writeln!(out, "           {}", visible(&antecedent.to_string()))?;
     }
-    let asked = super::claims(arguments).count();
+    let asked = arguments.rows.claims().len();
     if asked > 0 {
         let found = &outcome.counterexamples;
         let holds = if found.is_empty() { "yes" } else { "no" };
@@ -106,7 +99,7 @@ pub(super) fn words(
         100.0 * outcome.after_filling,
         GapMethod::default().name()
     )?;
-    let parts = match &arguments.group_by {
+    let parts = match &arguments.rows.group_by {
         Some(column) => format!("groups of `{}` left out in turn", visible(column)),
         None => "tenths of the rows left out in turn".to_owned(),
     };
@@ -165,7 +158,7 @@ pub(super) fn words(
 pub(super) struct Document<'a> {
     schema: &'static str,
     rows: Rows<'a>,
-    resolution: &'static str,
+    resolution: String,
     rules: Rules,
     conflicts: u64,
     left_out: u64,
@@ -237,7 +230,7 @@ impl<'a> Document<'a> {
                 refused: outcome.refused_count,
                 reasons: &outcome.refused,
             },
-            resolution: resolution(arguments),
+            resolution: word(&arguments.resolve),
             rules: Rules {
                 learned: learned.model.rules.len() - outcome.kept,
                 kept: outcome.kept,
@@ -249,7 +242,7 @@ impl<'a> Document<'a> {
                 count: learned.missing,
                 antecedents: missing.map(ToString::to_string).collect(),
             },
-            monotone: (super::claims(arguments).count() > 0).then(|| Monotone {
+            monotone: (arguments.rows.claims().len() > 0).then(|| Monotone {
                 holds: outcome.counterexamples.is_empty(),
                 moved: learned.moved,
                 counterexamples: &outcome.counterexamples,

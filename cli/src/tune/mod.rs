@@ -20,30 +20,14 @@ use tuning::{Data, Loss, Progress, Settings, TuneError, Tuned, Validation, cross
 
 use crate::{
     failure::{Exit, Failure},
-    learn,
     output::{self, Files, Output, Replace, Stdout},
-    rows::{self, Source},
-    rule_set,
-    table::Format,
+    rows, rule_set,
 };
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The rule set with the numbers to begin with
-    #[arg(value_name = "MODEL")]
-    model: PathBuf,
-
-    /// Tables with a column for each input and the output
-    #[arg(required = true, value_name = "DATA.csv")]
-    data: Vec<PathBuf>,
-
-    /// The file for the tuned rule set; `-` is standard output
-    #[arg(short, long, value_name = "OUT.yaml")]
-    output: PathBuf,
-
-    /// Replace the file if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    rows: rows::Arguments,
 
     /// What is made small
     #[arg(long, value_enum, default_value = "squared", value_name = "LOSS")]
@@ -65,14 +49,6 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = share)]
     least_distance: f64,
 
-    /// The output must not fall when this input rises
-    #[arg(long, value_name = "INPUT")]
-    rising: Vec<String>,
-
-    /// The output must not rise when this input rises
-    #[arg(long, value_name = "INPUT")]
-    falling: Vec<String>,
-
     /// Round what moved to so many significant digits
     #[arg(long, value_name = "DIGITS", value_parser = clap::value_parser!(u32).range(1..=17))]
     round: Option<u32>,
@@ -93,32 +69,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE.yaml")]
     checkpoint: Option<PathBuf>,
 
-    /// The column with the weights of the rows
-    #[arg(long, value_name = "COLUMN")]
-    weight: Option<String>,
-
-    /// In cross-validation, leave out all rows with one value of this column together: `vehicle`
-    #[arg(long, value_name = "COLUMN")]
-    group_by: Option<String>,
-
     /// Into how many parts cross-validation divides the rows or groups
     #[arg(long, default_value_t = 5, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=100))]
     folds: u32,
 
-    /// Skip cross-validation
-    #[arg(long, conflicts_with = "group_by")]
-    no_validation: bool,
-
-    #[command(flatten)]
-    format: Format,
-
     /// Draw the variables that moved, before and after, as an SVG picture
     #[arg(long, value_name = "FILE", value_parser = output::svg_path)]
     svg: Option<PathBuf>,
-
-    /// Print the report as a JSON document
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -150,12 +107,15 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading(arguments.data.iter().chain([&arguments.model]))?;
-    let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
+    let mut files = Files::reading(arguments.rows.data.iter().chain([&arguments.rows.model]))?;
+    let output = files.output(
+        &arguments.rows.output,
+        Replace::forced(arguments.rows.force),
+    )?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let checkpoint = files.optional(arguments.checkpoint.as_ref())?;
-    let name = arguments.model.display().to_string();
-    let (document, text) = rule_set::read(&arguments.model)?;
+    let name = arguments.rows.model.display().to_string();
+    let (document, text) = rule_set::read(&arguments.rows.model)?;
     rule_set::compile(&document, &name, &text)?;
     let original = document.model;
     let resumed = resumed(arguments, &original)?;
@@ -174,7 +134,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     });
     let tuned = tuned.map_err(failed)?;
     watch.keep(&tuned.model)?;
-    let validation = match arguments.no_validation || tuned.is_stopped {
+    let validation = match arguments.rows.no_validation || tuned.is_stopped {
         true => None,
         false => {
             let mut told = |fold: u32, progress: &Progress<'_>| watch.step(progress, Some(fold));
@@ -202,7 +162,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .flatten()
         .collect();
     let mut out = Stdout::beside(&written);
-    if arguments.json {
+    if arguments.rows.json {
         let document = report::Document::new(arguments, &outcome);
         serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
         writeln!(out)?;
@@ -224,7 +184,7 @@ fn settings(arguments: &Arguments) -> Settings {
         fix: arguments.fix.clone(),
         weights: arguments.weights,
         least_distance: arguments.least_distance,
-        monotone: learn::monotone(&arguments.rising, &arguments.falling).collect(),
+        monotone: arguments.rows.claims(),
         digits: arguments.round,
         starts: arguments.starts,
         seed: arguments.seed,
@@ -234,13 +194,7 @@ fn settings(arguments: &Arguments) -> Settings {
 
 /// The rows as columns, and why others cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
-    let source = Source {
-        tables: &arguments.data,
-        format: &arguments.format,
-        weight: arguments.weight.as_deref(),
-        group: arguments.group_by.as_deref(),
-    };
-    let rows::Data { rows, mut refused } = rows::read(&source, model)?;
+    let rows::Data { rows, mut refused } = rows::read(&arguments.rows, model)?;
     let mut data = Data {
         inputs: vec![Vec::with_capacity(rows.len()); model.inputs.len()],
         ..Data::default()
@@ -270,7 +224,7 @@ fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Fai
         data.weights.push(row.weight);
         data.groups.extend(row.group);
     }
-    if !refused.is_empty() && (!arguments.format.skip_bad_rows || data.is_empty()) {
+    if !refused.is_empty() && (!arguments.rows.format.skip_bad_rows || data.is_empty()) {
         return Err(rows::refuse(&refused, "used"));
     }
     Ok((data, refused))
@@ -361,7 +315,7 @@ impl<'a> Watch<'a> {
         stop: Arc<AtomicBool>,
         checkpoint: Option<&'a Output>,
     ) -> Watch<'a> {
-        let parts = if arguments.no_validation {
+        let parts = if arguments.rows.no_validation {
             1
         } else {
             arguments.folds + 1

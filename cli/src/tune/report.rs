@@ -4,9 +4,10 @@ use std::io::Write;
 
 use fuzzy::drawing::{short, visible};
 use serde::Serialize;
-use tuning::{Interval, Loss, Moved};
+use tuning::{Interval, Moved};
 
 use super::{Arguments, LossName, Outcome};
+use crate::rows::word;
 
 /// The reasons for rows without use that are shown.
 const SHOWN: usize = 12;
@@ -90,7 +91,7 @@ pub(super) fn words(
                 short(interval.high)
             )
         };
-        let parts = match &arguments.group_by {
+        let parts = match &arguments.rows.group_by {
             Some(column) => format!("groups of `{}`", visible(column)),
             None => "rows".to_owned(),
         };
@@ -137,7 +138,7 @@ pub(super) fn words(
 pub(super) struct Document<'a> {
     schema: &'static str,
     rows: Rows<'a>,
-    loss: &'static str,
+    loss: String,
     before: f64,
     after: f64,
     ended_early: bool,
@@ -200,11 +201,7 @@ impl<'a> Document<'a> {
                 refused: outcome.refused.len(),
                 reasons: &outcome.refused,
             },
-            loss: match super::settings(arguments).loss {
-                Loss::Squared => "squared",
-                Loss::Log => "log",
-                Loss::Ranking => "ranking",
-            },
+            loss: word(&arguments.loss),
             before: tuned.before,
             after: tuned.after,
             ended_early: tuned.is_stopped,

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 use fuzzy::model::Defuzzifier;
 
-use super::rules::{ROUNDING, Set};
+use super::{operators::ROUNDING, rules::Set};
 
 /// The value of a set, `None` of one that is 0 everywhere; NaN where rounding decides, because the degree of a peak lies at the
 /// bound up to which it counts as the highest.

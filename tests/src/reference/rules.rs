@@ -4,12 +4,14 @@
 use std::collections::BTreeMap;
 
 use fuzzy::model::{
-    Activation, Aggregation, Comparison, Conjunction, Defuzzifier, Disjunction, MembershipFunction,
-    Model, NoRuleFires, Operators, Output, Rule, Term, Variable,
+    Activation, Comparison, Defuzzifier, MembershipFunction, Model, NoRuleFires, Output, Rule,
+    Term, Variable,
 };
-use fuzzy::rule::{Condition, Hedge, Proposition};
+use fuzzy::rule::{Condition, Proposition};
 
-use super::number::{Dual, Number};
+use super::number::Dual;
+use super::operators::{and, hedged, or};
+use super::sets::{Fired, Kinks, aggregated, crossings, highest, levels};
 use super::shapes::{membership, parameters};
 
 /// The aggregated set of an output, for a function that makes a number of it.
@@ -27,9 +29,6 @@ pub struct Set<'a> {
     /// Functions that change their sign where the set has a kink or a step: those of single terms, and those of several.
     pub kinks: [Kinks<'a>; 2],
 }
-
-/// Functions of the place along the range of an output.
-type Kinks<'a> = Vec<Box<dyn Fn(f64) -> f64 + 'a>>;
 
 /// Defuzzifies a [`Set`]; `None` of one that is 0 everywhere.
 pub type Defuzzify<'a> = &'a dyn Fn(&Set<'_>) -> Option<f64>;
@@ -264,123 +263,6 @@ fn proposed(values: &Values<'_>, proposition: &Proposition) -> f64 {
     hedged(&proposition.hedges, x)
 }
 
-fn hedged(hedges: &[Hedge], mut x: f64) -> f64 {
-    for hedge in hedges.iter().rev() {
-        x = match hedge {
-            Hedge::Not => 1.0 - x,
-            Hedge::Very => x.powi(2),
-            Hedge::Somewhat => x.sqrt(),
-            Hedge::Extremely if x <= 0.5 => 2.0 * x.powi(2),
-            Hedge::Extremely => 1.0 - 2.0 * (1.0 - x).powi(2),
-            Hedge::Seldom if x <= 0.5 => (x / 2.0).sqrt(),
-            Hedge::Seldom => 1.0 - ((1.0 - x) / 2.0).sqrt(),
-            Hedge::Any => 1.0,
-        };
-    }
-    x
-}
-
-/// Operators with a step take what is so close to it for it, and degrees so close to each other are equal.
-pub(super) const ROUNDING: f64 = 1e-12;
-
-fn and<T: Number>(operator: Conjunction, a: T, b: T) -> T {
-    let (x, y, one) = (a.value(), b.value(), T::of(1.0));
-    match operator {
-        Conjunction::Minimum => a.min(b),
-        Conjunction::Product => a * b,
-        Conjunction::BoundedDifference => (a + b - one).max(T::of(0.0)),
-        Conjunction::Drastic if x.max(y) >= 1.0 - ROUNDING => a.min(b),
-        Conjunction::Drastic => T::of(0.0),
-        Conjunction::Einstein => a * b / (T::of(2.0) - (a + b - a * b)),
-        Conjunction::Hamacher if x + y == 0.0 => T::of(0.0),
-        Conjunction::Hamacher => a * b / (a + b - a * b),
-        Conjunction::NilpotentMinimum if x + y - 1.0 > ROUNDING || x.max(y) == 1.0 => a.min(b),
-        Conjunction::NilpotentMinimum => T::of(0.0),
-    }
-}
-
-fn or<T: Number>(operator: Disjunction, a: T, b: T) -> T {
-    let (x, y, one) = (a.value(), b.value(), T::of(1.0));
-    match operator {
-        Disjunction::Maximum => a.max(b),
-        Disjunction::ProbabilisticSum => a + b - a * b,
-        Disjunction::BoundedSum => (a + b).min(one),
-        Disjunction::Drastic if x.min(y) <= ROUNDING => a.max(b),
-        Disjunction::Drastic => one,
-        Disjunction::Einstein => (a + b) / (one + a * b),
-        Disjunction::Hamacher if x == 1.0 || y == 1.0 => one,
-        Disjunction::Hamacher => (a * (one - b) + b * (one - a)) / (one - a * b),
-        Disjunction::NilpotentMaximum if 1.0 - x - y > ROUNDING || x.min(y) == 0.0 => a.max(b),
-        Disjunction::NilpotentMaximum => one,
-    }
-}
-
-/// Two activated degrees.
-fn aggregate<T: Number>(aggregation: Aggregation, a: T, b: T) -> T {
-    match aggregation {
-        Aggregation::Maximum => a.max(b),
-        Aggregation::ProbabilisticSum => or(Disjunction::ProbabilisticSum, a, b),
-        Aggregation::BoundedSum => or(Disjunction::BoundedSum, a, b),
-        Aggregation::Sum => a + b,
-        Aggregation::Drastic => or(Disjunction::Drastic, a, b),
-        Aggregation::Einstein => or(Disjunction::Einstein, a, b),
-        Aggregation::Hamacher => or(Disjunction::Hamacher, a, b),
-        Aggregation::NilpotentMaximum => or(Disjunction::NilpotentMaximum, a, b),
-    }
-}
-
-/// Whether a strength cuts nothing off a term.
-fn is_whole(strength: f64, highest: f64) -> bool {
-    strength >= highest * (1.0 - ROUNDING)
-}
-
-/// A fired term at `x`. A strength that is its highest degree but for rounding cuts nothing off, and of what it cuts the drastic
-/// operator leaves no single peak.
-fn activate<T: Number>(implication: Conjunction, (strength, highest, term): Fired<'_>, x: T) -> T {
-    let degree = T::of(term.height) * membership(&term.membership_function, x);
-    let whole = is_whole(strength, highest);
-    let activated = and(implication, T::of(strength), degree);
-    match implication {
-        Conjunction::Minimum if whole => degree,
-        Conjunction::NilpotentMinimum if whole && activated.value() > 0.0 => degree,
-        Conjunction::Drastic if strength >= 1.0 - ROUNDING => degree,
-        Conjunction::Drastic => {
-            let at = Dual {
-                value: x.value(),
-                slope: 1.0,
-            };
-            let slope = membership(&term.membership_function, at).slope;
-            if slope == 0.0 { activated } else { T::of(0.0) }
-        }
-        _ => activated,
-    }
-}
-
-/// The highest degree of a term within the range.
-fn highest(term: &Term, low: f64, high: f64) -> f64 {
-    const SAMPLES: usize = 500;
-    let of = |x: f64| term.height * membership(&term.membership_function, x);
-    let step = (high - low) / SAMPLES as f64;
-    let even = (0..=SAMPLES).map(|i| low + step * i as f64);
-    let places = parameters(&term.membership_function)
-        .into_iter()
-        .chain(even);
-    let inside = places.filter(|x| low <= *x && *x <= high);
-    let best = inside.reduce(|best, x| if of(x) > of(best) { x } else { best });
-    let best = best.unwrap_or(low);
-    // A top between two samples, by trisection.
-    let (mut from, mut to) = ((best - step).max(low), (best + step).min(high));
-    for _ in 0..80 {
-        let third = (to - from) / 3.0;
-        if of(from + third) < of(to - third) {
-            from += third;
-        } else {
-            to -= third;
-        }
-    }
-    of(best).max(of(0.5 * (from + to)))
-}
-
 fn number(
     model: &Model,
     output: &Output,
@@ -451,75 +333,6 @@ fn number(
         degree: &degree,
         slope: &slope,
         kinks: [levels(&fired, operators), crossings(&fired, operators)],
-    })
-}
-
-/// A term with its strength and its highest degree.
-type Fired<'m> = (f64, f64, &'m Term);
-
-/// Functions that change their sign where the implication of a term has a kink or a step.
-fn levels<'a>(fired: &'a [Fired<'a>], operators: Operators) -> Kinks<'a> {
-    let mut kinks: Kinks<'a> = Vec::new();
-    for (strength, highest, term) in fired {
-        let mut levels = match operators.implication {
-            Conjunction::Minimum => vec![*strength],
-            Conjunction::BoundedDifference => vec![1.0 - strength],
-            Conjunction::NilpotentMinimum => vec![*strength, 1.0 - strength + ROUNDING],
-            _ => vec![],
-        };
-        levels.retain(|level| level != strength || !is_whole(*strength, *highest));
-        for level in levels {
-            let degree = |x: f64| term.height * membership(&term.membership_function, x);
-            kinks.push(Box::new(move |x| degree(x) - level));
-        }
-    }
-    kinks
-}
-
-/// Functions that change their sign where the aggregation has a kink or a step.
-fn crossings<'a>(fired: &'a [Fired<'a>], operators: Operators) -> Kinks<'a> {
-    let mut kinks: Kinks<'a> = Vec::new();
-    for i in 0..fired.len() {
-        let part = move |j: usize, x: f64| aggregated(&fired[j..=j], operators, x);
-        let before = move |x: f64| aggregated(&fired[..i], operators, x);
-        match operators.aggregation {
-            Aggregation::Maximum | Aggregation::NilpotentMaximum => {
-                for j in 0..i {
-                    kinks.push(Box::new(move |x| part(i, x) - part(j, x)));
-                }
-            }
-            Aggregation::BoundedSum => {
-                kinks.push(Box::new(move |x| {
-                    (0..=i).map(|j| part(j, x)).sum::<f64>() - 1.0
-                }));
-            }
-            Aggregation::Drastic => {
-                kinks.push(Box::new(move |x| part(i, x) - ROUNDING));
-                kinks.push(Box::new(move |x| before(x) - ROUNDING));
-            }
-            _ => {}
-        }
-        if i > 0 && operators.aggregation == Aggregation::NilpotentMaximum {
-            kinks.push(Box::new(move |x| {
-                let (a, b) = (part(i, x), before(x));
-                if a.min(b) > 0.0 {
-                    1.0 - a - b - ROUNDING
-                } else {
-                    1.0
-                }
-            }));
-        }
-    }
-    kinks
-}
-
-/// The degree of an aggregated set of terms with their strengths and their highest degrees.
-fn aggregated<T: Number>(fired: &[Fired<'_>], operators: Operators, x: T) -> T {
-    let parts = fired
-        .iter()
-        .map(|one| activate(operators.implication, *one, x));
-    parts.fold(T::of(0.0), |y, part| {
-        aggregate(operators.aggregation, y, part)
     })
 }
 

@@ -1,15 +1,6 @@
 //! The exported script for ArduPilot, run by Lua 5.3 with floats and integers of 32 bits, says what the monitor says.
 
-use std::{
-    fmt::Write as _,
-    io::Write as _,
-    path::{Path, PathBuf},
-    process::{Command, Stdio},
-    sync::OnceLock,
-};
-
 use flagred::{
-    board::Factors,
     estimator::Estimator,
     flight::Assessor,
     monitor::{Craft, Monitor, Sample},
@@ -20,208 +11,12 @@ use flagred_tests::{
     board::{PROFILES, estimator, logs},
     flagred,
 };
-use flightlog::{Flight, Options, ardupilot_frames};
+use flightlog::Options;
+
+use crate::autopilot::{Record, Run, Said, Vehicle, records, run};
 
 /// The most that a risk may differ, in percentage points.
 const TOLERANCE_PCT: f64 = 0.1;
-/// SCR_VM_I_COUNT.
-const BUDGET: u64 = 10_000;
-/// What the script may keep of the heap where pointers have 32 bits, as on the autopilot; with 64 bits nearly everything is
-/// twice as large. `CFLAGS=-m32` builds Lua with 32 bits, where the compiler can.
-const HEAP_BYTES: u64 = 90_000;
-/// The clock of the autopilot begins anew after 71 minutes; in the tests that is a minute after the first sample.
-const FIRST_US: u64 = (1 << 32) - 60_000_000;
-
-/// The sources of Lua 5.3, which come with the package `lua-src`.
-fn sources() -> PathBuf {
-    let metadata = Command::new(env!("CARGO"))
-        .args(["metadata", "--format-version", "1", "--offline"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap();
-    let metadata: serde_json::Value = serde_json::from_slice(&metadata.stdout).unwrap();
-    let packages = metadata["packages"].as_array().unwrap();
-    let package = packages.iter().find(|package| package["name"] == "lua-src");
-    let manifest = package.unwrap()["manifest_path"].as_str().unwrap();
-    Path::new(manifest).parent().unwrap().join("lua-5.3.6")
-}
-
-/// `tests/lua/autopilot.c` with Lua, compiled by `cc`, with which Rust links too.
-fn autopilot() -> Command {
-    static BUILT: OnceLock<(PathBuf, Folder)> = OnceLock::new();
-    let (binary, _) = BUILT.get_or_init(|| {
-        let (sources, folder) = (sources(), Folder::new());
-        let files = std::fs::read_dir(&sources).unwrap();
-        let files = files.map(|file| file.unwrap().path());
-        let binary = folder.path().join("autopilot");
-        let mut cc = Command::new("cc");
-        cc.args(["-O2", "-w", "-DLUA_32BITS", "-I"]).arg(&sources);
-        cc.args(files.filter(|file| file.extension().is_some_and(|end| end == "c")));
-        cc.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/lua/autopilot.c"));
-        if let Ok(flags) = std::env::var("CFLAGS") {
-            cc.args(flags.split_whitespace());
-        }
-        let compiled = cc.arg("-lm").arg("-o").arg(&binary).output().unwrap();
-        let told = String::from_utf8_lossy(&compiled.stderr);
-        assert!(compiled.status.success(), "{told}");
-        (binary, folder)
-    });
-    Command::new(binary)
-}
-
-/// A vehicle: the range of its motors in us, the effective range, and its frame, with the factors of its motors.
-struct Vehicle {
-    pwm: (f64, f64),
-    spin: (f64, f64),
-    /// FRAME_CLASS and FRAME_TYPE.
-    frame: (i64, i64),
-    factors: Vec<Factors>,
-}
-
-/// What the autopilot knows at a time.
-#[derive(Clone)]
-struct Record {
-    t_us: u64,
-    flying: bool,
-    /// In us; NaN: no output.
-    pwm: Vec<f64>,
-    /// NaN: not monitored.
-    battery_pct: f64,
-}
-
-impl Vehicle {
-    fn of(flight: &Flight) -> Vehicle {
-        let range = flight.range.as_ref().unwrap();
-        let geometry = flight.geometry.as_ref().unwrap();
-        let name = geometry.frame.as_deref().unwrap();
-        let frame = ardupilot_frames().find(|frame| frame.name == name).unwrap();
-        Vehicle {
-            pwm: (range.low, range.high),
-            spin: (flight.effective.low, flight.effective.high),
-            frame: (frame.class, frame.kind),
-            factors: geometry.factors.clone(),
-        }
-    }
-
-    fn named(name: &str) -> Vehicle {
-        let frame = ardupilot_frames().find(|frame| frame.name == name).unwrap();
-        Vehicle {
-            pwm: (1000.0, 2000.0),
-            spin: (0.15, 0.95),
-            frame: (frame.class, frame.kind),
-            factors: frame.motors.iter().map(|(_, factors)| *factors).collect(),
-        }
-    }
-
-    fn parameters(&self) -> Vec<String> {
-        vec![
-            format!("MOT_PWM_MIN={}", self.pwm.0),
-            format!("MOT_PWM_MAX={}", self.pwm.1),
-            format!("MOT_SPIN_MIN={}", self.spin.0),
-            format!("MOT_SPIN_MAX={}", self.spin.1),
-            format!("FRAME_CLASS={}", self.frame.0),
-            format!("FRAME_TYPE={}", self.frame.1),
-        ]
-    }
-
-    fn effective(&self, pwm: f64) -> f64 {
-        let command = ((pwm - self.pwm.0) / (self.pwm.1 - self.pwm.0)).clamp(0.0, 1.0);
-        ((command - self.spin.0) / (self.spin.1 - self.spin.0)).clamp(0.0, 1.0)
-    }
-}
-
-/// What the autopilot knew during a flight. A command between two microseconds of a pulse is the nearer one.
-fn records(flight: &Flight) -> Vec<Record> {
-    let first_s = flight.commands.t_s()[0];
-    let mut battery = flight
-        .signal("battery_remaining_pct")
-        .map(|signal| signal.hold());
-    let rows = flight.commands.rows().map(|(t_s, row)| Record {
-        t_us: ((t_s - first_s) * 1e6).round() as u64,
-        flying: flight.is_in_air(t_s) == Some(true),
-        pwm: row.iter().map(|pwm| pwm.round()).collect(),
-        battery_pct: battery
-            .as_mut()
-            .and_then(|hold| hold.at(t_s))
-            .map_or(f64::NAN, f64::round),
-    });
-    rows.collect()
-}
-
-/// What was said at a record: risk and elevated risk in %, and level.
-type Said = (usize, f64, f64, Level);
-
-/// What the script said.
-#[derive(Default)]
-struct Run {
-    logged: Vec<Said>,
-    texts: String,
-    values: usize,
-    /// Of the first call, the set-up, the most of others, and their mean.
-    instructions: [f64; 4],
-    /// The bytes of a pointer; the bytes in use without the script, with it after a collection, and ever.
-    heap: [u64; 4],
-}
-
-fn run(script: &str, vehicle: &Vehicle, records: &[Record], parameters: &[&str]) -> Run {
-    let mut child = autopilot()
-        .arg(script)
-        .arg(vehicle.factors.len().to_string())
-        .arg(FIRST_US.to_string())
-        .args(vehicle.parameters())
-        .args(parameters)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let numbers = records.iter().flat_map(|record| {
-        [record.t_us as f64, f64::from(u8::from(record.flying))]
-            .into_iter()
-            .chain(record.pwm.iter().copied())
-            .chain([record.battery_pct])
-    });
-    let bytes: Vec<u8> = numbers.flat_map(f64::to_ne_bytes).collect();
-    let mut stdin = child.stdin.take().unwrap();
-    let writer = std::thread::spawn(move || stdin.write_all(&bytes));
-    let output = child.wait_with_output().unwrap();
-    let written = writer.join().unwrap();
-    let text = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success(), "{text}");
-    let mut run = Run::default();
-    for line in text.lines() {
-        let words: Vec<&str> = line.split(' ').collect();
-        let number = |i: usize| words[i].parse::<f64>().unwrap();
-        match words[0] {
-            "log" => {
-                let level = match words[4] {
-                    "0" => Level::Good,
-                    "2" => Level::Warn,
-                    "3" => Level::Fail,
-                    level => panic!("level {level}"),
-                };
-                run.logged
-                    .push((words[1].parse().unwrap(), number(2), number(3), level));
-            }
-            "float" => run.values += 1,
-            "text" => {
-                let t_s = match words[1] {
-                    "-1" => "start".to_owned(),
-                    record => format!(
-                        "{:.1} s",
-                        records[record.parse::<usize>().unwrap()].t_us as f64 / 1e6
-                    ),
-                };
-                let _ = writeln!(run.texts, "{t_s}, {}: {}", words[2], words[3..].join(" "));
-            }
-            "calls" => assert_eq!(number(1) as usize, records.len(), "{text}"),
-            "instructions" => run.instructions = [1, 2, 3, 4].map(number),
-            "heap" => run.heap = [1, 2, 3, 4].map(|i| number(i) as u64),
-            _ => panic!("{line}"),
-        }
-    }
-    written.unwrap();
-    run
-}
 
 /// What the monitor says of the first sample with a known risk in each tenth of a second, which is what the script logs.
 fn by_the_monitor(estimator: &Estimator, vehicle: &Vehicle, records: &[Record]) -> Vec<Said> {
@@ -316,22 +111,6 @@ fn the_script_says_what_the_monitor_says_of_every_flight() {
             run.assert_within_budget(&what);
             assert!(run.values > 100, "{what}: {}", run.values);
         }
-    }
-}
-
-impl Run {
-    fn assert_within_budget(&self, what: &str) {
-        let instructions = self.instructions;
-        assert!(
-            instructions.iter().all(|count| *count < BUDGET as f64),
-            "{what}: {instructions:?}"
-        );
-        let [pointer, before, kept, _] = self.heap;
-        assert!(
-            (kept - before) * 4 / pointer < HEAP_BYTES,
-            "{what}: {:?}",
-            self.heap
-        );
     }
 }
 

@@ -1,6 +1,7 @@
 //! On-board monitors have the bits of the monitor, with a lent plan, with exported Rust and with exported C, over grids of
 //! inputs and over every flight.
 
+mod autopilot;
 mod c;
 mod lua;
 mod rules;

@@ -7,7 +7,7 @@ use flagred::{
         Evaluator, RuleMemory, Rules,
         table::{Outcome, Partial, State, Strongest},
     },
-    estimator,
+    plan,
 };
 use flagred_tests::{Folder, flagred};
 use fuzzy::{Engine, Model};
@@ -170,7 +170,7 @@ fn rule_sets_say_what_the_engine_says_lent_and_in_c() {
     for (name, text) in &rule_sets {
         let model: Model = text.parse().unwrap();
         let engine = Engine::new(&model).unwrap();
-        let Ok(rules) = estimator::rules(&engine) else {
+        let Ok(rules) = plan::rules(&engine) else {
             refused.push(name.as_str());
             continue;
         };

@@ -46,7 +46,7 @@ from ._data import (
 )
 from ._errors import DataError, Diagnostic, FlagredError, LogError, RuleSetError
 from ._flight import Assessment, Flight, Signal, assess, read_log
-from ._learning import Errors, Figure, Learned, Moved, Tuned, TuneValidation, learn, tune
+from ._learning import Errors, Figure, Learned, Moved, Tuned, TuneInterrupted, TuneValidation, learn, tune
 from ._model import Model, load, loads
 from ._monitor import Followed, Monitor
 from ._picture import Picture
@@ -93,6 +93,7 @@ __all__ = [
     "Signal",
     "Summary",
     "Table",
+    "TuneInterrupted",
     "TuneValidation",
     "Tuned",
     "Update",

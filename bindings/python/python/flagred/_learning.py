@@ -13,7 +13,7 @@ from ._core import _learn, _tune
 from ._errors import DataError
 from ._model import Model, _read
 
-__all__ = ["Errors", "Figure", "Learned", "Moved", "TuneValidation", "Tuned", "learn", "tune"]
+__all__ = ["Errors", "Figure", "Learned", "Moved", "TuneInterrupted", "TuneValidation", "Tuned", "learn", "tune"]
 
 
 class Errors(NamedTuple):
@@ -101,6 +101,23 @@ class Tuned(NamedTuple):
     moved: list[Moved]
     validation: TuneValidation | None
     """None where ``folds`` was not given."""
+
+
+class TuneInterrupted(KeyboardInterrupt):
+    """Ctrl-C during :func:`tune`. It holds the best rule set so far.
+
+    ``except flagred.TuneInterrupted as stop: tuned = stop.best``. A program that does not catch it ends, as by any Ctrl-C.
+    """
+
+    best: Tuned
+    """What was found until then. It has no validation."""
+
+    def __init__(self, best: Tuned) -> None:
+        super().__init__(best)
+        self.best = best
+
+    def __str__(self) -> str:
+        return "tuning was interrupted; `best` of this exception is the best rule set so far"
 
 
 def learn(
@@ -208,14 +225,14 @@ def tune(
     skip_bad_rows: bool = False,
     threads: int | None = None,
 ) -> Tuned:
-    """Tunes the numbers of a rule set on rows; its rules stay. ``flagred tune`` does the same. Ctrl-C ends the search.
+    """Tunes the numbers of a rule set on rows; its rules stay. ``flagred tune`` does the same.
 
     Parameters
     ----------
     model
         The rule set to begin with. It does not change.
-    data
-        A frame, or a mapping of columns, with a column for each input and the output.
+    data, columns, weight, group_by, skip_bad_rows, rising, falling
+        As for :func:`learn`.
     loss
         ``squared`` errors; ``log`` and ``ranking`` for an output of 0 and 1: the mean of -ln p, and 1 less the area under
         the ROC curve.
@@ -225,8 +242,6 @@ def tune(
         Whether the weights of the rules may move.
     least_distance
         The least distance between neighbouring peaks, as a share of the range.
-    rising, falling
-        Inputs in which the output must not fall, or not rise, when they rise.
     digits
         Round what moved to so many significant digits.
     starts
@@ -235,16 +250,8 @@ def tune(
         The most steps of a start.
     seed
         Of what is random: places to start, parts of cross-validation.
-    columns
-        The names of columns that are not those of their variables: ``{"risk": "failed"}``.
-    weight
-        The column with the weights of the rows.
-    group_by
-        In cross-validation, leave out all rows with one value of this column together.
     folds
         Cross-validate in so many parts. None skips it.
-    skip_bad_rows
-        Leave out rows that cannot be used, and say why in ``refused``, rather than raise an error.
     threads
         The number of threads; as many as there are cores for None.
 
@@ -254,6 +261,9 @@ def tune(
         A column is missing, rows cannot be used, or nothing may move.
     RuleSetError
         The rule set cannot be used.
+    TuneInterrupted
+        Ctrl-C ended the search, before its next step; ``best`` of the exception is what was found until then. A second
+        Ctrl-C does not wait for it and raises KeyboardInterrupt.
 
     Examples
     --------
@@ -285,13 +295,16 @@ def tune(
         "folds": folds,
         "threads": threads,
     }
-    found = _tune(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), options)
+    found, was_interrupted = _tune(model, _rows(model, data, columns, weight, group_by, skip_bad_rows), options)
     moved = [Moved(*one) for one in found.pop("moved")]
     worth = found.pop("validation")
     if worth is not None:
         folds = worth.pop("folds")
         worth = TuneValidation(folds=folds, **{name: Figure(*figure) for name, figure in worth.items()})
-    return Tuned(model=_read(found.pop("model"), "<model>"), moved=moved, validation=worth, **found)
+    tuned = Tuned(model=_read(found.pop("model"), "<model>"), moved=moved, validation=worth, **found)
+    if was_interrupted:
+        raise TuneInterrupted(tuned)
+    return tuned
 
 
 def _rows(

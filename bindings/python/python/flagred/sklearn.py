@@ -193,6 +193,11 @@ class _FuzzyEstimator(BaseEstimator):  # type: ignore[misc]
         return [self.rule_set_.explain(*row.tolist()) for row in rows]
 
 
+def _weights(sample_weight: ArrayLike | None, rows: Floats) -> Floats:
+    weights: Floats = _check_sample_weight(sample_weight, rows, dtype=np.float64, ensure_non_negative=True)
+    return weights
+
+
 def _wider(peaks: Floats) -> tuple[float, float]:
     """The range of a variable. It is wider than its values: what touches the end of a range cannot move."""
     margin = (peaks[-1] - peaks[0]) / 10
@@ -269,7 +274,7 @@ class FuzzyRegressor(RegressorMixin, _FuzzyEstimator):  # type: ignore[misc]
         """
         rows, targets = validate_data(self, X, y, dtype=np.float64, y_numeric=True)
         targets = targets.astype(np.float64)
-        weight = _check_sample_weight(sample_weight, rows, dtype=np.float64, ensure_non_negative=True)
+        weight = _weights(sample_weight, rows)
         used = weight > 0
         peaks = self._peaks(targets[used], weight[used], self.n_output_terms) if used.any() else np.array([0.0, 1.0])
         self._fit(rows, targets, weight, "y", peaks, _wider(peaks), "squared")
@@ -324,21 +329,13 @@ class FuzzyRiskClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[mis
     classes_: NDArray[Any]
 
     def fit(self, X: ArrayLike, y: ArrayLike, sample_weight: ArrayLike | None = None) -> FuzzyRiskClassifier:
-        """Learns the rule set.
-
-        Parameters
-        ----------
-        X, y
-            The rows and their classes.
-        sample_weight
-            How much each row counts.
-        """
+        """Learns the rule set, as :meth:`FuzzyRegressor.fit` does, from rows ``X`` and their classes ``y``."""
         rows, classes = validate_data(self, X, y, dtype=np.float64)
         check_classification_targets(classes)
         kind = type_of_target(classes, input_name="y", raise_unknown=True)
         if kind != "binary":
             raise ValueError(f"Only binary classification is supported. The type of the target is {kind}.")
-        weight = _check_sample_weight(sample_weight, rows, dtype=np.float64, ensure_non_negative=True)
+        weight = _weights(sample_weight, rows)
         self.classes_, places = np.unique(classes, return_inverse=True)
         if len(np.unique(places[weight > 0])) < 2:
             raise ValueError("FuzzyRiskClassifier needs rows of 2 classes; there is 1 class")
@@ -347,24 +344,12 @@ class FuzzyRiskClassifier(ClassifierMixin, _FuzzyEstimator):  # type: ignore[mis
         return self
 
     def predict_proba(self, X: ArrayLike) -> Floats:
-        """The probabilities of both classes. That of the second is the value of the rule set.
-
-        Parameters
-        ----------
-        X
-            The rows. Values outside the range of a feature in the rule set count as its ends.
-        """
+        """The probabilities of both classes at rows ``X``. That of the second is the value of the rule set."""
         risk = self._evaluate(X)
         return np.column_stack((1.0 - risk, risk))
 
     def predict(self, X: ArrayLike) -> NDArray[Any]:
-        """The class with the greater probability; the first of equal ones.
-
-        Parameters
-        ----------
-        X
-            The rows.
-        """
+        """The class with the greater probability at each of the rows ``X``; the first of equal ones."""
         places = np.argmax(self.predict_proba(X), axis=1)
         found: NDArray[Any] = self.classes_[places]
         return found

@@ -1,0 +1,289 @@
+//! A compiled rule set, and what Python asks of it: a point, arrays, a table.
+
+use std::{
+    cell::RefCell,
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+use fuzzy::{
+    Engine,
+    diagnostic::suggest,
+    engine::{Outcome as Raw, Scratch},
+};
+use numpy::{IntoPyArray, PyArrayMethods};
+use pyo3::{
+    IntoPyObjectExt,
+    prelude::*,
+    sync::PyOnceLock,
+    types::{PyDict, PyFloat, PyInt, PyString, PyTuple},
+};
+
+use crate::{
+    arrays::Arrays,
+    arrow,
+    errors::data_error,
+    evaluate::Evaluator,
+    outcome::{Outcome, Outcomes},
+    table::{self, Table},
+};
+
+/// A rule set that can be evaluated.
+pub(crate) struct Compiled {
+    /// No other has it, as long as the process lives.
+    id: u64,
+    pub(crate) engine: Engine,
+    inputs: Vec<Py<PyString>>,
+}
+
+/// What each thread keeps for single evaluations, of the rule sets it used last.
+struct Kept {
+    id: u64,
+    scratch: Scratch,
+    outcomes: Vec<Raw>,
+}
+
+thread_local! {
+    static KEPT: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
+}
+
+const MOST_KEPT: usize = 8;
+
+/// What is asked for: a number, or a value for each row.
+pub(crate) enum Asked<'py> {
+    /// In the order of the inputs.
+    Numbers(Vec<f64>),
+    /// In the order of the inputs.
+    Arrays(Vec<Bound<'py, PyAny>>),
+    /// A table, or a dict by the names of the inputs.
+    Frame(Bound<'py, PyAny>),
+}
+
+impl Compiled {
+    pub(crate) fn new(py: Python<'_>, engine: Engine) -> Compiled {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        let inputs = engine.input_names();
+        let inputs = inputs.map(|name| PyString::intern(py, name).unbind());
+        Compiled {
+            id: NEXT.fetch_add(1, Ordering::Relaxed),
+            inputs: inputs.collect(),
+            engine,
+        }
+    }
+
+    /// Arguments in the order of the inputs.
+    pub(crate) fn asked<'py>(
+        &self,
+        py: Python<'py>,
+        args: &Bound<'py, PyTuple>,
+        named: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Asked<'py>> {
+        // `model({"service": 8, "food": 9})`, for names that are no words of Python.
+        let mapping = match named {
+            None if args.len() == 1 => args.get_item(0)?.cast_into::<PyDict>().ok(),
+            _ => None,
+        };
+        let values: Vec<Bound<'py, PyAny>> = match mapping.as_ref().or(named) {
+            Some(named) if args.is_empty() || mapping.is_some() => self.by_name(py, named)?,
+            Some(_) => {
+                let help = "write `model(8, 9)` or `model(service=8, food=9)`".to_owned();
+                return Err(data_error(
+                    "values are given by place and by name",
+                    Some(help),
+                ));
+            }
+            _ => args.iter().collect(),
+        };
+        let numbers: Option<Vec<f64>> = values.iter().map(number).collect();
+        match numbers {
+            Some(numbers) => Ok(Asked::Numbers(numbers)),
+            None => match values.as_slice() {
+                [one] if named.is_none() && is_frame(py, one)? => Ok(Asked::Frame(one.clone())),
+                _ => Ok(Asked::Arrays(values)),
+            },
+        }
+    }
+
+    fn by_name<'py>(
+        &self,
+        py: Python<'py>,
+        named: &Bound<'py, PyDict>,
+    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let mut values = Vec::with_capacity(self.inputs.len());
+        for name in &self.inputs {
+            match named.get_item(name.bind(py))? {
+                Some(value) => values.push(value),
+                None => break,
+            }
+        }
+        if values.len() == self.inputs.len() && values.len() == named.len() {
+            return Ok(values);
+        }
+        let names = || self.engine.input_names();
+        for key in named.keys() {
+            let key: String = key.extract()?;
+            if self.engine.input(&key).is_none() {
+                let message = format!("there is no input `{key}`");
+                return Err(data_error(message, suggest(&key, names())));
+            }
+        }
+        let missing = names().find(|name| !named.contains(*name).unwrap_or(false));
+        let message = format!("input `{}` has no value", missing.unwrap_or_default());
+        Err(data_error(
+            message,
+            Some("None and NaN say that it is unknown".into()),
+        ))
+    }
+
+    /// Evaluates one point: values, or outcomes `with_reasons`.
+    pub(crate) fn point<'py>(
+        &self,
+        py: Python<'py>,
+        numbers: &[f64],
+        with_reasons: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.outcomes(numbers, |outcomes| match with_reasons {
+            true => self.by_output(py, outcomes.iter().map(|raw| Outcome::from(*raw))),
+            false => {
+                let values = outcomes.iter().map(|o| o.value().unwrap_or(f64::NAN));
+                self.by_output(py, values)
+            }
+        })?
+    }
+
+    fn outcomes<T>(&self, numbers: &[f64], take: impl FnOnce(&[Raw]) -> T) -> PyResult<T> {
+        KEPT.with_borrow_mut(|kept| {
+            let at = match kept.iter().position(|kept| kept.id == self.id) {
+                Some(at) => at,
+                None => {
+                    kept.truncate(MOST_KEPT - 1);
+                    let outputs = self.engine.output_names().len();
+                    let new = Kept {
+                        id: self.id,
+                        scratch: self.engine.scratch(),
+                        outcomes: vec![Raw::default(); outputs],
+                    };
+                    kept.insert(0, new);
+                    0
+                }
+            };
+            let Kept {
+                scratch, outcomes, ..
+            } = &mut kept[at];
+            let done = self.engine.evaluate_with(scratch, numbers, outcomes);
+            done.map_err(|error| data_error(error, None))?;
+            Ok(take(outcomes))
+        })
+    }
+
+    /// The only thing, or a dict by the names of the outputs.
+    fn by_output<'py, T: IntoPyObject<'py>>(
+        &self,
+        py: Python<'py>,
+        things: impl IntoIterator<Item = T>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut things = things.into_iter();
+        if self.engine.output_names().len() == 1
+            && let Some(only) = things.next()
+        {
+            return only.into_bound_py_any(py);
+        }
+        let dict = PyDict::new(py);
+        for (name, thing) in self.engine.output_names().zip(things) {
+            dict.set_item(name, thing)?;
+        }
+        Ok(dict.into_any())
+    }
+
+    /// Evaluates arrays that broadcast against each other.
+    pub(crate) fn arrays<'py>(
+        &self,
+        py: Python<'py>,
+        values: &[Bound<'py, PyAny>],
+        threads: Option<usize>,
+        with_reasons: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let expected = self.inputs.len();
+        if values.len() != expected {
+            let message = format!(
+                "the model has {expected} inputs, but {} values were given",
+                values.len()
+            );
+            return Err(data_error(message, None));
+        }
+        let arrays = Arrays::new(py, values)?;
+        let rows = arrays.shape.iter().product();
+        let mut evaluator = Evaluator::new(&self.engine, threads, with_reasons)?;
+        let results = evaluator.run(py, rows, &arrays.columns()?)?;
+        let shaped = results.into_iter().map(|result| match result.reasons {
+            Some(reasons) => {
+                let outcomes = Outcomes::new(py, result.value, reasons, &arrays.shape)?;
+                outcomes.into_bound_py_any(py)
+            }
+            // A number, as NumPy gives for arrays without axes.
+            None if arrays.shape.is_empty() => result.value[0].into_bound_py_any(py),
+            None => Ok(result
+                .value
+                .into_pyarray(py)
+                .reshape(arrays.shape.clone())?
+                .into_any()),
+        });
+        let shaped: Vec<Bound<'py, PyAny>> = shaped.collect::<PyResult<_>>()?;
+        self.by_output(py, shaped)
+    }
+
+    /// Evaluates a table that Arrow's C interface hands over, a batch at a time.
+    pub(crate) fn table(
+        &self,
+        frame: &Bound<'_, PyAny>,
+        threads: Option<usize>,
+        with_reasons: bool,
+    ) -> PyResult<Table> {
+        let py = frame.py();
+        let mut reader = arrow::import(frame)?;
+        let schema = reader.schema();
+        let names: Vec<&str> = self.engine.input_names().collect();
+        let columns = schema.fields().iter().map(|field| field.name().as_str());
+        let places = names.iter().map(|name| {
+            columns
+                .clone()
+                .position(|column| column == *name)
+                .ok_or_else(|| {
+                    let message = format!("the table has no column `{name}`");
+                    data_error(message, suggest(name, columns.clone()))
+                })
+        });
+        let places: Vec<usize> = places.collect::<PyResult<_>>()?;
+        let outputs: Vec<String> = self.engine.output_names().map(str::to_owned).collect();
+        let schema = table::schema(&outputs, with_reasons);
+        let mut evaluator = Evaluator::new(&self.engine, threads, with_reasons)?;
+        let mut batches = Vec::new();
+        // A stream may be made in Python, which asks for the interpreter itself.
+        while let Some(batch) = py.detach(|| reader.next()) {
+            let batch = batch.map_err(|error| data_error(error, None))?;
+            let columns = names.iter().zip(&places);
+            let columns = columns.map(|(name, at)| arrow::numbers(name, batch.column(*at)));
+            let columns: Vec<_> = columns.collect::<PyResult<_>>()?;
+            let columns: Vec<&[f64]> = columns.iter().map(|column| &**column).collect();
+            let results = evaluator.run(py, batch.num_rows(), &columns)?;
+            batches.push(table::batch(&schema, results)?);
+        }
+        Ok(Table { batches, schema })
+    }
+}
+
+/// A number of Python, or None, which is unknown; `None` for anything else.
+fn number(value: &Bound<'_, PyAny>) -> Option<f64> {
+    if let Ok(float) = value.cast::<PyFloat>() {
+        return Some(float.value());
+    }
+    if value.is_instance_of::<PyInt>() {
+        return value.extract().ok();
+    }
+    value.is_none().then_some(f64::NAN)
+}
+
+fn is_frame(py: Python<'_>, value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    static IS_FRAME: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let is_frame = IS_FRAME.import(py, "flagred._frames", "is_frame")?;
+    is_frame.call1((value,))?.extract()
+}

@@ -1,0 +1,154 @@
+//! Rules from rows: `flagred.learn`.
+
+use flagred::{
+    gap::GapSettings,
+    learning::{self, Row},
+};
+use fuzzy::{
+    Engine, Model,
+    check::counterexamples,
+    learn::{Direction, Learner, Resolution, Settings},
+    yaml,
+};
+use pyo3::prelude::*;
+
+use crate::{
+    rows::{Failed, Rows, choice, claims, directed},
+    rule_set::RuleSet,
+    threads::interruptible,
+};
+
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct LearnOptions {
+    resolve: String,
+    min_support: u64,
+    min_degree: f64,
+    complete: bool,
+    rising: Vec<String>,
+    falling: Vec<String>,
+    keep_rules: bool,
+    validation: bool,
+}
+
+/// What `flagred.Learned` is made of.
+#[derive(IntoPyObject)]
+pub(crate) struct Learned {
+    model: String,
+    rows: u64,
+    refused: Vec<String>,
+    rules: usize,
+    conflicts: u64,
+    missing: u64,
+    left_out: u64,
+    completed: u64,
+    moved: u64,
+    counterexamples: Vec<String>,
+    validation: Option<Errors>,
+}
+
+#[derive(IntoPyObject)]
+struct Errors {
+    rows: usize,
+    without_prediction: usize,
+    rmse: f64,
+    mean_absolute: f64,
+    bias: f64,
+}
+
+impl LearnOptions {
+    fn settings(&self) -> PyResult<Settings> {
+        let directions = [Direction::Rising, Direction::Falling];
+        let resolutions = [
+            ("strongest", Resolution::Strongest),
+            ("heaviest", Resolution::Heaviest),
+            ("mean", Resolution::Mean),
+        ];
+        Ok(Settings {
+            resolution: choice("resolve", &self.resolve, &resolutions)?,
+            min_support: self.min_support,
+            min_degree: self.min_degree,
+            complete: self.complete,
+            monotone: directed(&self.rising, &self.falling, directions),
+        })
+    }
+}
+
+/// Rules from rows.
+#[pyfunction]
+pub(crate) fn _learn(
+    py: Python<'_>,
+    rule_set: &RuleSet,
+    rows: Rows<'_>,
+    options: LearnOptions,
+) -> PyResult<Learned> {
+    let settings = options.settings()?;
+    let model = rule_set.model(Model::clone);
+    let (all, skip) = (rows.rows(), rows.skip_bad_rows);
+    let learned = interruptible(py, move || {
+        learn_rules(model, all, skip, settings, &options)
+    })?;
+    learned.map_err(|failed| failed.raise(py))
+}
+
+fn learn_rules(
+    mut model: Model,
+    all: Vec<Row>,
+    skip_bad_rows: bool,
+    settings: Settings,
+    options: &LearnOptions,
+) -> Result<Learned, Failed> {
+    if !options.keep_rules {
+        model.rules.clear();
+    }
+    let mut learner = Learner::new(&model, settings.clone()).map_err(Failed::data)?;
+    let (mut rows, mut refused) = (Vec::with_capacity(all.len()), Vec::new());
+    for (place, row) in all.into_iter().enumerate() {
+        match learner.add(&row.values, row.weight) {
+            Ok(()) => rows.push(row),
+            Err(refusal) => refused.push(format!("row {place}: {refusal}")),
+        }
+    }
+    if !refused.is_empty() && !skip_bad_rows {
+        return Err(Failed::Refused(refused));
+    }
+    if rows.is_empty() {
+        return Err(Failed::Data("there are no rows to learn from".into()));
+    }
+    let validation = match options.validation {
+        true => {
+            let gap = GapSettings::default();
+            let errors = learning::cross_validate(&model, &settings, &gap, &rows);
+            Some(errors.map_err(Failed::data)?)
+        }
+        false => None,
+    };
+    let learned = learner.finish();
+    let claims = claims(&options.rising, &options.falling);
+    let broken = match claims.is_empty() || learned.model.rules.is_empty() {
+        true => Vec::new(),
+        false => {
+            let engine = Engine::new(&learned.model).map_err(Failed::Findings)?;
+            counterexamples(&engine, &claims).map_err(Failed::data)?
+        }
+    };
+    Ok(Learned {
+        rows: learned.samples,
+        refused,
+        rules: learned.model.rules.len() - model.rules.len(),
+        conflicts: learned.conflicts,
+        missing: learned.missing,
+        left_out: learned.left_out,
+        completed: learned.completed,
+        moved: learned.moved,
+        counterexamples: broken.iter().map(ToString::to_string).collect(),
+        validation: validation.map(|errors| Errors {
+            rows: errors.rows,
+            without_prediction: errors.without_prediction,
+            rmse: errors.rmse,
+            mean_absolute: errors.mean_absolute,
+            bias: errors.bias,
+        }),
+        model: yaml::to_string(&learned.model),
+    })
+}

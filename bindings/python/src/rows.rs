@@ -1,0 +1,110 @@
+//! Rows to learn from, and what `flagred.learn` and `flagred.tune` ask alike.
+
+use flagred::learning::Row;
+use fuzzy::{
+    Findings,
+    check::{Direction, Monotone},
+};
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+
+use crate::errors::{data_error, rule_set_error};
+
+/// The most refused rows that a message shows.
+const SHOWN: usize = 20;
+
+/// Rows as Python gives them.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Rows<'py> {
+    /// A column for each input, then the output.
+    columns: Vec<PyReadonlyArray1<'py, f64>>,
+    weights: Option<PyReadonlyArray1<'py, f64>>,
+    groups: Option<PyReadonlyArray1<'py, u32>>,
+    pub(crate) skip_bad_rows: bool,
+}
+
+impl Rows<'_> {
+    pub(crate) fn rows(&self) -> Vec<Row> {
+        let columns: Vec<_> = self.columns.iter().map(|c| c.as_array()).collect();
+        let weights = self.weights.as_ref().map(|weights| weights.as_array());
+        let groups = self.groups.as_ref().map(|groups| groups.as_array());
+        let row = |row: usize| Row {
+            values: columns.iter().map(|column| column[row]).collect(),
+            weight: weights.map_or(1.0, |weights| weights[row]),
+            group: groups.map(|groups| groups[row]),
+        };
+        (0..columns.first().map_or(0, |column| column.len()))
+            .map(row)
+            .collect()
+    }
+}
+
+/// Why there is no result.
+pub(crate) enum Failed {
+    Refused(Vec<String>),
+    Data(String),
+    Findings(Findings),
+}
+
+impl Failed {
+    pub(crate) fn data(error: impl std::fmt::Display) -> Failed {
+        Failed::Data(error.to_string())
+    }
+
+    pub(crate) fn raise(self, py: Python<'_>) -> PyErr {
+        match self {
+            Failed::Data(message) => data_error(message, None),
+            Failed::Findings(findings) => rule_set_error(py, &findings, "<model>", ""),
+            Failed::Refused(refused) => {
+                let plural = if refused.len() == 1 { "" } else { "s" };
+                let mut message = format!("{} row{plural} cannot be used", refused.len());
+                for row in refused.iter().take(SHOWN) {
+                    message += &format!("\n  {row}");
+                }
+                if refused.len() > SHOWN {
+                    message += &format!("\n  and {} more", refused.len() - SHOWN);
+                }
+                let help = "correct these rows, or leave them out with `skip_bad_rows=True`";
+                data_error(message, Some(help.into()))
+            }
+        }
+    }
+}
+
+/// The choice that a word names.
+pub(crate) fn choice<T: Copy>(key: &str, word: &str, choices: &[(&str, T)]) -> PyResult<T> {
+    if let Some((_, choice)) = choices.iter().find(|(name, _)| *name == word) {
+        return Ok(*choice);
+    }
+    let mut names: Vec<String> = choices
+        .iter()
+        .map(|(name, _)| format!("`{name}`"))
+        .collect();
+    let last = names.pop().unwrap_or_default();
+    let help = format!("write {} or {last}", names.join(", "));
+    Err(data_error(format!("`{key}` is `{word}`"), Some(help)))
+}
+
+/// Inputs in which the output must not fall, then those in which it must not rise, with a direction of each.
+pub(crate) fn directed<D: Copy>(
+    rising: &[String],
+    falling: &[String],
+    [up, down]: [D; 2],
+) -> Vec<(String, D)> {
+    let rising = rising.iter().map(|input| (input.clone(), up));
+    let falling = falling.iter().map(|input| (input.clone(), down));
+    rising.chain(falling).collect()
+}
+
+/// The claims that `rising` and `falling` make.
+pub(crate) fn claims(rising: &[String], falling: &[String]) -> Vec<Monotone> {
+    let directions = [Direction::Increasing, Direction::Decreasing];
+    let claims = directed(rising, falling, directions).into_iter();
+    let claims = claims.map(|(input, direction)| Monotone {
+        input,
+        direction,
+        output: None,
+    });
+    claims.collect()
+}

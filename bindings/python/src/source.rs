@@ -1,0 +1,63 @@
+//! The text of a rule set, its document, and the engine that it compiles to.
+
+use std::sync::{Arc, OnceLock};
+
+use fuzzy::{
+    Engine, Findings,
+    format::{self, Document},
+    validate, yaml,
+};
+use pyo3::prelude::*;
+
+use crate::{compiled::Compiled, errors::rule_set_error};
+
+/// A rule set as it was read; an edit makes another.
+pub(crate) struct Source {
+    pub(crate) file: String,
+    pub(crate) text: String,
+    pub(crate) document: Document,
+    compiled: OnceLock<Result<Arc<Compiled>, Findings>>,
+}
+
+impl Source {
+    /// Reads a text, in whatever format; an `unfinished` rule set is in YAML.
+    pub(crate) fn read(
+        py: Python<'_>,
+        text: String,
+        file: &str,
+        unfinished: bool,
+    ) -> PyResult<Arc<Source>> {
+        let document = py.detach(|| document(&text, unfinished));
+        let document = document.map_err(|findings| rule_set_error(py, &findings, file, &text))?;
+        Ok(Arc::new(Source {
+            file: file.to_owned(),
+            text,
+            document,
+            compiled: OnceLock::new(),
+        }))
+    }
+
+    fn compile(&self, py: Python<'_>) -> Result<Arc<Compiled>, Findings> {
+        let invalid = validate(&self.document.model, &self.document.spans);
+        if !invalid.is_empty() {
+            return Err(Findings::locate(invalid, &self.text));
+        }
+        let engine = Engine::new(&self.document.model)?;
+        Ok(Arc::new(Compiled::new(py, engine)))
+    }
+
+    /// The compiled rule set.
+    pub(crate) fn compiled(&self, py: Python<'_>) -> PyResult<&Arc<Compiled>> {
+        let compiled = self.compiled.get_or_init(|| self.compile(py));
+        let drawn = |findings| rule_set_error(py, findings, &self.file, &self.text);
+        compiled.as_ref().map_err(drawn)
+    }
+}
+
+fn document(text: &str, unfinished: bool) -> Result<Document, Findings> {
+    if !unfinished {
+        return interchange::document(text);
+    }
+    let tree = yaml::read(text)?;
+    format::read_unfinished(&tree).map_err(|findings| Findings::locate(findings, text))
+}

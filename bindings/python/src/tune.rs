@@ -1,0 +1,184 @@
+//! Numbers from rows: `flagred.tune`.
+
+use std::{
+    ops::ControlFlow,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use flagred::learning::Row;
+use fuzzy::{Model, yaml};
+use pyo3::prelude::*;
+use tuning::{Data, Loss, Settings, TuneError, cross_validate};
+
+use crate::{
+    rows::{Failed, Rows, choice, claims},
+    rule_set::RuleSet,
+    threads::{pool, stoppable},
+};
+
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct TuneOptions {
+    loss: String,
+    only: Vec<String>,
+    fix: Vec<String>,
+    weights: bool,
+    least_distance: f64,
+    rising: Vec<String>,
+    falling: Vec<String>,
+    digits: Option<u32>,
+    starts: u32,
+    iterations: u32,
+    seed: u64,
+    folds: Option<u32>,
+    threads: Option<usize>,
+}
+
+/// What `flagred.Tuned` is made of.
+#[derive(IntoPyObject)]
+pub(crate) struct Tuned {
+    model: String,
+    rows: usize,
+    refused: Vec<String>,
+    before: f64,
+    after: f64,
+    without_value: usize,
+    moved: Vec<(String, String, f64, f64)>,
+    validation: Option<Validation>,
+}
+
+/// Each figure with its interval.
+#[derive(IntoPyObject)]
+struct Validation {
+    folds: usize,
+    before: (f64, f64, f64),
+    after: (f64, f64, f64),
+    gain: (f64, f64, f64),
+}
+
+impl From<TuneError> for Failed {
+    fn from(error: TuneError) -> Failed {
+        match error {
+            TuneError::Compile(findings) => Failed::Findings(findings),
+            error => Failed::data(error),
+        }
+    }
+}
+
+impl TuneOptions {
+    fn settings(&self) -> PyResult<Settings> {
+        let losses = [
+            ("squared", Loss::Squared),
+            ("log", Loss::Log),
+            ("ranking", Loss::Ranking),
+        ];
+        Ok(Settings {
+            loss: choice("loss", &self.loss, &losses)?,
+            only: self.only.clone(),
+            fix: self.fix.clone(),
+            weights: self.weights,
+            least_distance: self.least_distance,
+            monotone: claims(&self.rising, &self.falling),
+            digits: self.digits,
+            starts: self.starts,
+            seed: self.seed,
+            iterations: self.iterations,
+        })
+    }
+}
+
+/// Numbers from rows, and whether Ctrl-C ended the search before its next step.
+#[pyfunction]
+pub(crate) fn _tune(
+    py: Python<'_>,
+    rule_set: &RuleSet,
+    rows: Rows<'_>,
+    options: TuneOptions,
+) -> PyResult<(Tuned, bool)> {
+    rule_set.compile(py)?;
+    let settings = options.settings()?;
+    let model = rule_set.model(Model::clone);
+    let (all, skip) = (rows.rows(), rows.skip_bad_rows);
+    let pool = pool(options.threads)?;
+    let stop = Arc::new(AtomicBool::new(false));
+    let is_stopped = Arc::clone(&stop);
+    let (tuned, was_interrupted) = stoppable(py, &stop, move || {
+        pool.install(|| tune_numbers(&model, all, skip, &settings, options.folds, &is_stopped))
+    })?;
+    let tuned = tuned.map_err(|failed| failed.raise(py))?;
+    Ok((tuned, was_interrupted))
+}
+
+fn tune_numbers(
+    model: &Model,
+    all: Vec<Row>,
+    skip_bad_rows: bool,
+    settings: &Settings,
+    folds: Option<u32>,
+    stop: &AtomicBool,
+) -> Result<Tuned, Failed> {
+    let (data, refused) = data(model, all, settings.loss);
+    if !refused.is_empty() && !skip_bad_rows {
+        return Err(Failed::Refused(refused));
+    }
+    let flow = || match stop.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    let tuned = tuning::tune(model, &data, settings, &mut |_| flow())?;
+    let validation = match folds {
+        Some(folds) => cross_validate(model, &data, settings, folds, &mut |_, _| flow())?,
+        None => None,
+    };
+    let interval = |figure: tuning::Interval| (figure.value, figure.low, figure.high);
+    let moved = tuned.moved.into_iter();
+    Ok(Tuned {
+        model: yaml::to_string(&tuned.model),
+        rows: data.len(),
+        refused,
+        before: tuned.before,
+        after: tuned.after,
+        without_value: tuned.without_value,
+        moved: moved
+            .map(|one| (one.of, one.name, one.before, one.after))
+            .collect(),
+        validation: validation.map(|validation| Validation {
+            folds: validation.folds,
+            before: interval(validation.before),
+            after: interval(validation.after),
+            gain: interval(validation.gain),
+        }),
+    })
+}
+
+/// The rows that can be used, as columns, and why others cannot.
+fn data(model: &Model, rows: Vec<Row>, loss: Loss) -> (Data, Vec<String>) {
+    let mut data = Data {
+        inputs: vec![Vec::with_capacity(rows.len()); model.inputs.len()],
+        ..Data::default()
+    };
+    let mut refused = Vec::new();
+    for (place, row) in rows.into_iter().enumerate() {
+        let truth = row.values.last().copied().unwrap_or(f64::NAN);
+        let wrong = if row.values.iter().any(|value| !value.is_finite()) {
+            "a value is not a finite number"
+        } else if loss != Loss::Squared && truth != 0.0 && truth != 1.0 {
+            "the output's value must be 0 or 1 for this loss"
+        } else if !(row.weight >= 0.0 && row.weight.is_finite()) {
+            "the weight is not a number from 0"
+        } else {
+            for (column, value) in data.inputs.iter_mut().zip(&row.values) {
+                column.push(*value);
+            }
+            data.truths.push(truth);
+            data.weights.push(row.weight);
+            data.groups.extend(row.group);
+            continue;
+        };
+        refused.push(format!("row {place}: {wrong}"));
+    }
+    (data, refused)
+}

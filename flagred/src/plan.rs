@@ -1,0 +1,161 @@
+//! What can fly on board: rule sets whose values have closed forms, as plain data.
+
+use alloc::string::String;
+use core::ops::Range;
+
+use fuzzy::{Engine, table::ClosedForm};
+
+use crate::board::Rules;
+
+/// Why a rule set, with or without a profile, cannot be exported.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoPlan {
+    /// The risk has no closed form.
+    #[error(
+        "the value of output `{output}` has no closed form, so it cannot be written as a table"
+    )]
+    NoClosedForm {
+        /// The output.
+        output: String,
+    },
+    /// An output keeps its previous value.
+    #[error(
+        "output `{output}` keeps its previous value where no rule fires, so it does not depend on the inputs alone"
+    )]
+    KeepsPrevious {
+        /// The output.
+        output: String,
+    },
+    /// The profile has several risks.
+    #[error("the profile has the risks `{output}` and `{other}`, and what flies on board has one")]
+    SeveralRisks {
+        /// The first risk.
+        output: String,
+        /// The second one.
+        other: String,
+    },
+}
+
+impl NoPlan {
+    /// What can be exported.
+    pub fn help(&self) -> &'static str {
+        match self {
+            NoPlan::NoClosedForm { .. } => {
+                "the defuzzifiers have a closed form with `implication: minimum` or `product` and `aggregation: maximum` or \
+                 `sum` (maxima: `maximum` only), over terms that are no functions, without `samples`; those of Takagi-Sugeno \
+                 and Tsukamoto have one always"
+            }
+            NoPlan::KeepsPrevious { .. } => {
+                "give the output a value for where no rule fires, as `when_no_rule_fires: 0`, or leave that key out"
+            }
+            NoPlan::SeveralRisks { .. } => {
+                "write a profile for each risk, and run a monitor of each: the findings are the same"
+            }
+        }
+    }
+}
+
+/// A rule set as plain data, to be evaluated on board without a profile.
+///
+/// # Errors
+///
+/// An output has no closed form, or keeps its previous value.
+pub fn rules(engine: &Engine) -> Result<Rules<'_>, NoPlan> {
+    let mut outputs = engine.model().outputs.iter();
+    if let Some(output) = outputs.find(|output| output.keeps_previous()) {
+        return Err(NoPlan::KeepsPrevious {
+            output: output.variable.name.clone(),
+        });
+    }
+    rules_for(engine, 0..engine.output_names().len())
+}
+
+/// The rule set for these outputs; of others the values are not asked for.
+pub(crate) fn rules_for(engine: &Engine, mut outputs: Range<usize>) -> Result<Rules<'_>, NoPlan> {
+    let (chain, table) = (engine.chain(), engine.table());
+    let open = match (chain, table) {
+        (Some(chain), _) => outputs.find_map(|output| chain.open(output).next()),
+        (None, table) => outputs.find(|output| {
+            let of = table.and_then(|table| table.outputs.get(*output));
+            of.is_none_or(|of| of.form == ClosedForm::NONE)
+        }),
+    };
+    match (open, chain.map(|chain| chain.table).or(table)) {
+        (None, Some(table)) => Ok(Rules {
+            table,
+            stages: chain.map_or(&[], |chain| chain.stages),
+            places: chain.map_or(&[], |chain| chain.places),
+        }),
+        (open, _) => Err(NoPlan::NoClosedForm {
+            output: engine
+                .output_names()
+                .nth(open.unwrap_or_default())
+                .unwrap_or_default()
+                .into(),
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{estimator::Estimator, shipped};
+    use fuzzy::model::{Sampling, SamplingRule};
+
+    const SAMPLED: Sampling = Sampling {
+        samples: 100,
+        rule: SamplingRule::Midpoint,
+    };
+
+    #[test]
+    fn an_output_without_a_closed_form_makes_no_plan() {
+        let profile = shipped::flagred_paper().profile().clone();
+        let mut rules = shipped::flagred_paper_rules();
+        rules.outputs[0].samples = Some(SAMPLED);
+        let estimator = Estimator::new(&profile, &rules).unwrap();
+        assert!(estimator.at(&[0.3, 0.1]).is_some());
+        let output = "risk".into();
+        assert_eq!(
+            estimator.plan().err(),
+            Some(NoPlan::NoClosedForm { output })
+        );
+    }
+
+    /// The risk of the paper through an output of its own, which the other one only passes on.
+    #[test]
+    fn a_chain_is_assessed_and_an_open_output_that_it_reads_makes_no_plan() {
+        let profile = shipped::flagred_paper().profile().clone();
+        let mut rules = shipped::flagred_paper_rules();
+        let mut passed_on = rules.outputs[0].clone();
+        rules.outputs[0].variable.name = "strain".into();
+        for rule in &mut rules.rules {
+            rule.rule.consequents[0].output = "strain".into();
+        }
+        for term in &passed_on.variable.terms {
+            let rule = format!("IF strain IS '{0}' THEN risk IS '{0}'", term.name);
+            let rule: fuzzy::rule::Rule = rule.parse().unwrap();
+            rules.rules.push(rule.into());
+        }
+        passed_on.variable.name = "risk".into();
+        rules.outputs.push(passed_on);
+        let estimator = Estimator::new(&profile, &rules).unwrap();
+        let direct = shipped::flagred_paper();
+        for inputs in [[0.05, 0.2], [0.12, 0.31], [0.3, 0.1]] {
+            let explained = estimator.engine().explain(&inputs).unwrap();
+            let strain = direct.engine().explain(&inputs).unwrap().outputs[0].value;
+            assert!(strain.is_some() && explained.outputs[0].value == strain);
+            let risk = estimator.at(&inputs).unwrap();
+            let is_filled = risk.filled_from.is_some();
+            assert!(is_filled || explained.outputs[1].value == Some(risk.risk_pct));
+        }
+        assert_eq!(estimator.plan().unwrap().check(), Ok(()));
+        rules.outputs[0].samples = Some(SAMPLED);
+        let estimator = Estimator::new(&profile, &rules).unwrap();
+        let output = "strain".into();
+        assert_eq!(
+            estimator.plan().err(),
+            Some(NoPlan::NoClosedForm { output })
+        );
+    }
+}
