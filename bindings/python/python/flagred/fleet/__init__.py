@@ -6,6 +6,8 @@
 from .compaction import compact
 from .errors import FleetError
 from .process import Outcome, process
+from .questions import QUESTIONS, ask, open_dataset
+from .report import rising, write_report
 from .run import Assessed, Watcher, assess
 from .schema import FINDINGS, FLIGHTS, STEPS, VERSION
 from .shards import Job, Shard, shards
@@ -14,6 +16,7 @@ from .storage import Log, open_place
 __all__ = [
     "FINDINGS",
     "FLIGHTS",
+    "QUESTIONS",
     "STEPS",
     "VERSION",
     "Assessed",
@@ -23,9 +26,13 @@ __all__ = [
     "Outcome",
     "Shard",
     "Watcher",
+    "ask",
     "assess",
     "compact",
+    "open_dataset",
     "open_place",
     "process",
+    "rising",
     "shards",
+    "write_report",
 ]

@@ -11,6 +11,7 @@ from .. import FlagredError
 from .catalog import Counts
 from .compaction import compact
 from .errors import FleetError
+from .report import write_report
 from .run import Assessed, assess
 from .storage import LOGS
 
@@ -93,6 +94,10 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("--include", action="append", metavar="PATTERN", help="names of logs, such as '*.BIN' (all formats)")
     one.add_argument("--compare-content", action="store_true", help="read every log: one with the content of before is the same")
     one.add_argument("--dry-run", action="store_true", help="count what is to do, and write nothing")
+    one = commands.add_parser("report", help="write a page about a dataset")
+    one.add_argument("dataset", metavar="DATASET")
+    one.add_argument("-o", "--out", required=True, metavar="FILE", help="the page, such as fleet.html")
+    one.add_argument("--alert", type=float, metavar="PCT", help="exit with 1 where a vehicle's risk surely rises by more per cent a week")
     one = commands.add_parser("compact", help="join the small files of a dataset")
     one.add_argument("dataset", metavar="DATASET")
     return parser
@@ -102,7 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs a command; gives the exit code: 0, 1 for an alert, 2 where it could not be done."""
     given = parser().parse_args(arguments)
     try:
-        return _assess(given) if given.command == "assess" else _compact(given)
+        return COMMANDS[given.command](given)
     except (FlagredError, OSError) as error:
         print(f"\nerror: {error}", file=sys.stderr)
         if isinstance(error, FleetError) and error.help:
@@ -134,9 +139,20 @@ def _assess(given: argparse.Namespace) -> int:
     return 0
 
 
+def _report(given: argparse.Namespace) -> int:
+    alerts = write_report(given.dataset, given.out, given.alert)
+    for row in alerts:
+        low, high = row["low_pct_week"], row["high_pct_week"]
+        print(f"{row['vehicle']} rises by {row['slope_pct_week']:.2f} % a week ({low:.2f} to {high:.2f}), by {row['flights']} flights")
+    return 1 if alerts else 0
+
+
 def _compact(given: argparse.Namespace) -> int:
     print(f"{compact(given.dataset)} files less")
     return 0
+
+
+COMMANDS = {"assess": _assess, "report": _report, "compact": _compact}
 
 
 if __name__ == "__main__":

@@ -33,8 +33,7 @@ CREATE INDEX flight_log ON flight(log);
 CREATE INDEX flight_file ON flight(file);
 """
 COLUMNS = ["log", "flight_id", "identity", "settings", "status", "deleted", "modified_utc", "sha256"]
-READERS = 8
-BATCH_ROWS = 10_000
+READERS = 4
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from dataclasses import replace
 import dask
 from dask.system import CPU_COUNT
 from distributed import Client, Future, KilledWorker, LocalCluster, as_completed
+from distributed.comm import CommClosedError
 from distributed.system import MEMORY_LIMIT
 
 from .errors import FleetError
@@ -139,7 +140,7 @@ def _result(future: Future) -> Outcome | BaseException:
     try:
         outcome: Outcome = future.result()
         return outcome
-    except CancelledError as error:
+    except (CancelledError, CommClosedError) as error:
         raise _lost() from error
     except Superseded:
         raise

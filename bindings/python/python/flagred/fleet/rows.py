@@ -24,7 +24,7 @@ class Rows:
     def __init__(self) -> None:
         self.flights: list[dict[str, Any]] = []
         self.findings: list[dict[str, Any]] = []
-        self.steps: list[pa.Table] = []
+        self.steps: list[tuple[str, pa.Table]] = []
 
     def tables(self) -> dict[str, pa.Table]:
         """The tables that have rows, by their names."""
@@ -32,7 +32,7 @@ class Rows:
         if self.findings:
             found["findings"] = pa.Table.from_pylist(self.findings, FINDINGS)
         if self.steps:
-            found["steps"] = pa.concat_tables(self.steps)
+            found["steps"] = _steps(self.steps)
         return found
 
 
@@ -64,9 +64,9 @@ def add(rows: dict[str | None, Rows], row: dict[str, Any], log: str | bytes, job
     of = rows.setdefault(month, Rows())
     of.flights.append(row)
     of.findings.extend(_findings(assessment, row))
-    steps = _steps(assessment, row["flight_id"])
+    steps = pa.table(assessment.steps)
     if len(steps):
-        of.steps.append(steps)
+        of.steps.append((row["flight_id"], steps))
 
 
 def _flight(assessment: Assessment) -> dict[str, Any]:
@@ -121,11 +121,9 @@ def _start_us(assessment: Assessment) -> int | None:
 
 
 def _wind(assessment: Assessment) -> float | None:
-    signals = assessment.flight.signals
     for name in ("wind_m_s", "ekf_wind_m_s"):
-        if name in signals:
-            values = signals[name].values
-            known = values[np.isfinite(values)]
+        if (signal := assessment.flight._signal(name)) is not None:
+            known = signal[1][np.isfinite(signal[1])]
             if len(known):
                 return float(known.mean())
     return None
@@ -161,9 +159,10 @@ _SAME = ("severity", "measure", "from_s", "raised_s", "failed_s", "to_s", "value
 _STEPS = {"risk": "risk_pct", "elevated_risk": "elevated_risk_pct"}
 
 
-def _steps(assessment: Assessment, flight_id: str) -> pa.Table:
-    steps = pa.table(assessment.steps)
-    steps = steps.rename_columns([_STEPS.get(name, name) for name in steps.column_names])
-    ids = pa.repeat(pa.scalar(flight_id), len(steps))
-    columns = [ids, *(steps[name] for name in STEPS.names[1:])]
+def _steps(of: list[tuple[str, pa.Table]]) -> pa.Table:
+    """The steps of several flights in one table."""
+    names = {_STEPS.get(name, name): name for name in of[0][1].column_names}
+    steps = pa.concat_tables(table.select([names[name] for name in STEPS.names[1:]]) for _, table in of)
+    ids = np.repeat(np.array([id for id, _ in of]), [len(table) for _, table in of])
+    columns = [pa.array(ids), *steps.columns]
     return pa.table([column.cast(field.type) for column, field in zip(columns, STEPS)], STEPS)
