@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import math
 from collections.abc import Sequence
 from html import escape
 from typing import NamedTuple
@@ -27,7 +28,7 @@ class Point(NamedTuple):
 def intervals(points: Sequence[Point], title: str, kind: str) -> str:
     """Values in per cent over days, each with its interval as a bar. ``kind`` is a class of the style sheet, which gives the colour."""
     first, last = points[0].day.toordinal(), points[-1].day.toordinal()
-    top = min(100.0, max(5.0, max(point.value for point in points) * 1.4))
+    top = min(100, 10 * math.ceil(max(point.value for point in points) * 0.13 + 0.1))
 
     def x(day: datetime.date) -> float:
         return LEFT + 6 + (day.toordinal() - first) / max(1, last - first) * (WIDTH - LEFT - RIGHT - 12)
@@ -39,7 +40,7 @@ def intervals(points: Sequence[Point], title: str, kind: str) -> str:
     for share in (0.0, 0.5, 1.0):
         level = y(share * top)
         parts.append(f"<line class=grid x1={LEFT} x2={WIDTH - RIGHT} y1={level:.1f} y2={level:.1f} />")
-        parts.append(f"<text x={LEFT - 5} y={level + 4:.1f} text-anchor=end>{share * top:.3g}</text>")
+        parts.append(f"<text x={LEFT - 5} y={level + 4:.1f} text-anchor=end>{share * top:g}</text>")
     for point in points:
         at = x(point.day)
         told = f"week of {point.day}: {point.value:.1f} % ({point.low:.1f} to {point.high:.1f}), {point.flights} flights"

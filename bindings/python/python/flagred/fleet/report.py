@@ -104,7 +104,7 @@ def _alerts(alerts: list[Row], limit: float | None) -> str:
     if not alerts:
         return f"<p>No vehicle's risk rises surely by more than {limit:g} % a week.</p>"
     lines = (
-        f"<li class=fail><b>{escape(row['vehicle'])}</b> rises by {_span(row, 'slope_pct_week', 'low_pct_week', 'high_pct_week')} % a week, "
+        f"<li class=fail><b>{escape(row['vehicle'])}</b> rises by {_slope(row)} % a week, "
         f"by {row['flights']} flights</li>"
         for row in alerts
     )
@@ -126,7 +126,7 @@ def _trends(trends: list[Row], weeks: list[Row]) -> str:
     pictures = []
     for row in trends[:SHOWN_VEHICLES]:
         if len(of[row["vehicle"]]) > 1:
-            caption = f"{row['vehicle']}: {_span(row, 'slope_pct_week', 'low_pct_week', 'high_pct_week')} % a week"
+            caption = f"{row['vehicle']}: {_slope(row)} % a week"
             pictures.append(_figure(caption, intervals(of[row["vehicle"]], f"mean risk of {row['vehicle']}, %", "value")))
     charts = f"<p class=soft>Mean risk of a week in %, of the vehicles that rise most surely.</p><div class=charts>{''.join(pictures)}</div>"
     none = "No vehicle has 8 judged flights in 3 weeks."
@@ -150,11 +150,16 @@ def _table(rows: Iterable[Row], columns: Sequence[tuple[str, str, Cell]], none: 
 
 
 def _known(value: float | None, digits: int) -> str:
-    return "NA" if value is None else f"{value:,.{digits}f}"
+    # Without a minus before zeros alone.
+    return "NA" if value is None else f"{round(value, digits) + 0.0:,.{digits}f}"
 
 
-def _span(row: Row, value: str, low: str, high: str) -> str:
-    return f"{_known(row[value], 1)} ({_known(row[low], 1)} to {_known(row[high], 1)})"
+def _span(row: Row, value: str, low: str, high: str, digits: int = 1) -> str:
+    return f"{_known(row[value], digits)} ({_known(row[low], digits)} to {_known(row[high], digits)})"
+
+
+def _slope(row: Row) -> str:
+    return _span(row, "slope_pct_week", "low_pct_week", "high_pct_week", 2)
 
 
 def text(title: str, name: str) -> tuple[str, str, Cell]:
@@ -203,7 +208,7 @@ TRENDS = (
     text("Vehicle", "vehicle"),
     number("Flights", "flights"),
     number("Mean risk, %", "risk_mean_pct", 1),
-    span("Slope, % a week", "slope_pct_week", "low_pct_week", "high_pct_week"),
+    ("Slope, % a week", "n", _slope),
     day("First", "first_utc"),
     day("Last", "last_utc"),
 )

@@ -96,7 +96,7 @@ class Place:
         with self.fs.open_input_file(path) as file:
             metadata = {} if self.is_local else file.metadata() or {}
             content: bytes = file.read()
-        tag = metadata.get(b"ETag")
+        tag = metadata.get("ETag")
         return content, None if tag is None else tag.decode().strip('"')
 
     def write(self, path: str, content: pa.Buffer | bytes) -> None:
