@@ -3,6 +3,7 @@
 import os
 import shutil
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -11,12 +12,14 @@ pytest.importorskip("distributed", reason="Dask is not installed: `pip install f
 
 import pyarrow as pa
 import pyarrow.parquet as pq
+from distributed.core import Status
 
 import flagred
 from flagred import fleet
-from flagred.fleet import run, takeover
+from flagred.fleet import engine, run, takeover
 from flagred.fleet.__main__ import main
 from flagred.fleet.catalog import Catalog
+from flagred.fleet.shards import shards
 from flagred.fleet.storage import absolute, matcher, open_place
 
 
@@ -45,12 +48,13 @@ def logs(tmp_path: Path, steady: Path) -> Path:
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shards are processed in this process: most tests need no cluster."""
 
-    def work(catalog, job, done, told, scheduler, workers):
-        for shard in fleet.shards(catalog.todo(), 100_000):
-            done = run._sum(done, fleet.process(shard, job))
+    def work(planned, done, told, scheduler, workers):
+        for shard in planned.shards:
+            done = run._sum(done, fleet.process(shard, planned.job))
         return done
 
     monkeypatch.setattr(run, "_work", work)
+    monkeypatch.setattr(run, "SHARD_BYTES", 100_000)
 
 
 def table(out: Path, kind: str) -> pa.Table:
@@ -250,7 +254,7 @@ def test_a_worker_of_a_run_before_commits_nothing(logs, tmp_path):
     place = open_place(str(out))
     job = fleet.Job.of(str(out), flagred.Profile(), 1.0, False).of_run(takeover.take_over(place))
     listed = [(str(logs), log) for log in open_place(str(logs)).logs(False, fleet.storage.LOGS)]
-    shard, *rest = fleet.shards(listed, 1 << 30)
+    shard, *rest = shards(listed, 1 << 30)
     assert not rest and len(shard.logs) == 3
     takeover.take_over(place)
     with pytest.raises(takeover.Superseded, match="another run writes"):
@@ -313,10 +317,10 @@ def test_a_dataset_of_another_version_is_refused(logs, tmp_path, here):
 
 def test_shards_are_cut_by_size_and_source():
     logs = [("a", fleet.Log(str(i), 40, 0)) for i in range(5)] + [("b", fleet.Log("x", 500, 0)), ("b", fleet.Log("y", 1, 0))]
-    cut = [(shard.source, len(shard.logs), shard.bytes) for shard in fleet.shards(logs, 100)]
+    cut = [(shard.source, len(shard.logs), shard.bytes) for shard in shards(logs, 100)]
     assert cut == [("a", 2, 80), ("a", 2, 80), ("a", 1, 40), ("b", 1, 500), ("b", 1, 1)]
-    one = next(fleet.shards(logs, 200))
-    assert one.id == next(fleet.shards(logs, 200)).id and one.id != one.halves()[0].id
+    one = next(shards(logs, 200))
+    assert one.id == next(shards(logs, 200)).id and one.id != one.halves()[0].id
     assert one.halves()[0].logs + one.halves()[1].logs == one.logs
 
 
@@ -365,3 +369,26 @@ def test_a_log_that_ends_its_worker_is_found(logs, tmp_path, monkeypatch):
     assert len(rows) == 9
     monkeypatch.delenv("PYTHONPATH")
     assert fleet.assess([str(logs)], str(out), recursive=True, workers=2).assessed == 0
+
+
+def test_a_worker_that_dask_gave_up_is_replaced(monkeypatch):
+    monkeypatch.setattr(engine, "LONGEST_RESTART_S", 1.0)
+    with engine.cluster(None, 1) as client:
+        client.wait_for_workers(1)
+        (nanny,) = client.cluster.workers.values()
+        # As where a worker ends while it starts.
+        nanny.status = Status.starting
+        os.kill(nanny.pid, 9)
+        attendance = engine._Attendance(client)
+
+        def wait_for(workers: int) -> None:
+            end_s = time.monotonic() + 60
+            while attendance.count() != workers:
+                assert time.monotonic() < end_s, f"there are not {workers} workers"
+                time.sleep(0.05)
+
+        wait_for(0)
+        wait_for(1)
+        monkeypatch.setattr(engine, "LONGEST_ALONE_S", -1.0)
+        with pytest.raises(fleet.FleetError, match="there was no worker"):
+            attendance.count()

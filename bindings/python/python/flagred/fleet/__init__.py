@@ -8,9 +8,9 @@ from .errors import FleetError
 from .process import Outcome, process
 from .questions import QUESTIONS, ask, open_dataset
 from .report import rising, write_report
-from .run import Assessed, Watcher, assess
+from .run import Assessed, Plan, Watcher, assess, plan
 from .schema import FINDINGS, FLIGHTS, STEPS, VERSION
-from .shards import Job, Shard, shards
+from .shards import Job, Shard
 from .storage import Log, open_place
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "Job",
     "Log",
     "Outcome",
+    "Plan",
     "Shard",
     "Watcher",
     "ask",
@@ -31,8 +32,8 @@ __all__ = [
     "compact",
     "open_dataset",
     "open_place",
+    "plan",
     "process",
     "rising",
-    "shards",
     "write_report",
 ]

@@ -31,6 +31,8 @@ RETRIES = 2
 """How often a shard is tried again whose files could not be written."""
 LONGEST_ALONE_S = 600.0
 """How long a cluster may be without workers."""
+LONGEST_RESTART_S = 15.0
+"""How long a worker here may take to start again. Dask starts none that ends while it starts."""
 POLL_S = 0.05
 
 
@@ -38,11 +40,11 @@ POLL_S = 0.05
 def cluster(scheduler: str | None, workers: int | None) -> Iterator[Client]:
     """A client of a cluster that runs, or of one that is started here and ends with it."""
     # A scheduler here counts how many workers a task has ended.
-    settings = {"distributed.scheduler.allowed-failures": TRIES - 1, "distributed.comm.timeouts.connect": "10s"}
+    settings = {"distributed.scheduler.allowed-failures": TRIES - 1}
     with dask.config.set(settings):
         if scheduler is not None:
             try:
-                client = Client(scheduler, set_as_default=False)
+                client = Client(scheduler, timeout="10s", set_as_default=False)
             except (OSError, ValueError) as error:
                 raise FleetError(f"no scheduler answers at `{scheduler}`: {error}", "start one with `dask scheduler`") from error
             with client:
@@ -111,16 +113,11 @@ def _under_way(
             done.add(future)
 
     submit()
-    seen_s = time.monotonic()
+    attendance = _Attendance(client)
     while waiting:
         finished: list[Future] = done.next_batch(block=False)
         if not finished:
-            workers = len(client.scheduler_info(n_workers=-1)["workers"])
-            wait(workers)
-            if workers:
-                seen_s = time.monotonic()
-            elif time.monotonic() - seen_s > LONGEST_ALONE_S:
-                raise FleetError(f"there was no worker for {LONGEST_ALONE_S:.0f} s", "run the same command again with workers")
+            wait(attendance.count())
             if client.status != "running":
                 raise _lost()
             time.sleep(POLL_S)
@@ -132,6 +129,31 @@ def _under_way(
             else:
                 yield waiting.pop(future), _result(future)
         submit()
+
+
+class _Attendance:
+    """How many workers there are. Those that are missing here are replaced; a cluster without any is given up."""
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+        self._seen_s = self._complete_s = time.monotonic()
+
+    def count(self) -> int:
+        workers = len(self._client.scheduler_info(n_workers=-1)["workers"])
+        here, now_s = self._client.cluster, time.monotonic()
+        wanted = len(here.worker_spec) if isinstance(here, LocalCluster) else workers
+        if workers:
+            self._seen_s = now_s
+        if workers >= wanted:
+            self._complete_s = now_s
+        if now_s - self._complete_s > LONGEST_RESTART_S:
+            self._complete_s = now_s
+            # Dask lets those go first that are missing.
+            here.scale(workers)
+            here.scale(wanted)
+        if now_s - self._seen_s > LONGEST_ALONE_S:
+            raise FleetError(f"there was no worker for {LONGEST_ALONE_S:.0f} s", "run the same command again with workers")
+        return workers
 
 
 def _result(future: Future) -> Outcome | BaseException:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -12,11 +13,11 @@ from .catalog import Catalog, Counts
 from .errors import FleetError
 from .process import Outcome
 from .repair import repair
-from .shards import Job, shards
+from .shards import Job, Shard, shards
 from .storage import LOGS, Place, absolute, matcher, open_place
 from .takeover import take_over
 
-__all__ = ["Assessed", "Watcher", "assess"]
+__all__ = ["Assessed", "Plan", "Watcher", "assess", "plan"]
 
 SHARD_BYTES = 128 << 20
 
@@ -107,6 +108,53 @@ def assess(
         The profile or its rule set has errors.
     """
     told = watcher or _Nobody()
+    with plan(
+        sources, out, profile=profile, step_s=step_s, recursive=recursive, include=include, compare_content=compare_content, dry_run=dry_run
+    ) as planned:
+        counts = planned.counts
+        told.planned(counts)
+        done = Assessed(counts.listed, 0, 0, 0, 0)
+        if dry_run or not counts.new + counts.changed:
+            return done
+        return _work(planned, done, told, scheduler, workers)
+
+
+def _work(planned: Plan, done: Assessed, told: Watcher, scheduler: str | None, workers: int | None) -> Assessed:
+    with engine.cluster(scheduler, workers) as client:
+        told.started(client.dashboard_link)
+        for outcome in engine.run(client, planned.shards, planned.job, lambda workers: told.went_on(done, workers)):
+            done = _sum(done, outcome)
+            told.went_on(done, None)
+    return done
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is to do: :func:`process` of each shard with the job, by whatever engine, in whatever order."""
+
+    counts: Counts
+    shards: Iterator[Shard]
+    """The logs that are missing or changed. They are made one by one."""
+    job: Job
+
+
+@contextmanager
+def plan(
+    sources: Sequence[str],
+    out: str,
+    *,
+    profile: Profile | str = "flagred",
+    step_s: float = 1.0,
+    recursive: bool = False,
+    include: Iterable[str] = LOGS,
+    compare_content: bool = False,
+    dry_run: bool = False,
+) -> Iterator[Plan]:
+    """What :func:`assess` does before and after its engine, for another engine: see docs/fleet.md.
+
+    The dataset is taken over from runs before. When the plan is left without an error the dataset is put right: one row a log.
+    Parameters and errors are those of :func:`assess`.
+    """
     if not step_s > 0:
         raise FleetError(f"a step of {step_s} s is none", "write a number of seconds above 0")
     profile = profile if isinstance(profile, Profile) else Profile(profile)
@@ -121,28 +169,9 @@ def assess(
             # Before the dataset is read, so that nothing is committed unseen.
             job = job.of_run(take_over(dataset))
         catalog.load(dataset)
-        counts = catalog.counts()
-        told.planned(counts)
-        done = Assessed(counts.listed, 0, 0, 0, 0)
-        if dry_run:
-            return done
-        if counts.new or counts.changed:
-            done = _work(catalog, job, done, told, scheduler, workers)
-        repair(dataset, catalog, _listed(places, recursive, include))
-        return done
-
-
-def _work(
-    catalog: Catalog, job: Job, done: Assessed, told: Watcher, scheduler: str | None, workers: int | None
-) -> Assessed:
-    with engine.cluster(scheduler, workers) as client:
-        told.started(client.dashboard_link)
-        for outcome in engine.run(
-            client, shards(catalog.todo(), SHARD_BYTES), job, lambda workers: told.went_on(done, workers)
-        ):
-            done = _sum(done, outcome)
-            told.went_on(done, None)
-    return done
+        yield Plan(catalog.counts(), shards(catalog.todo(), SHARD_BYTES), job)
+        if not dry_run:
+            repair(dataset, catalog, _listed(places, recursive, include))
 
 
 def _sum(done: Assessed, outcome: Outcome) -> Assessed:
