@@ -28,7 +28,7 @@ mod tune;
 mod _core {
     #[pymodule_export]
     use crate::{
-        assessment::AssessmentData,
+        assessment::{_page, AssessmentData},
         evaluation::EvaluationData,
         explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
         flight::FlightData,
