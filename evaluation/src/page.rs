@@ -1,7 +1,7 @@
 //! The evaluation as one HTML page that needs nothing beside it.
 
 use maud::{Markup, PreEscaped, html};
-use report::page::page;
+use report::page::around;
 
 use crate::{
     Evaluation, svg,
@@ -19,7 +19,7 @@ pub fn html(evaluation: &Evaluation) -> String {
         figure.picture { (PreEscaped(svg::draw(evaluation))) }
         @for one in tables::tables(evaluation) { (table(&one)) }
     };
-    page("Evaluation", &body)
+    around("Evaluation", body.into_string())
 }
 
 fn table(table: &Table) -> Markup {

@@ -194,8 +194,7 @@ pub fn around(title: &str, body: String) -> String {
     page(title, &PreEscaped(body))
 }
 
-/// A page that needs nothing beside it.
-pub fn page(title: &str, body: &Markup) -> String {
+fn page(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
