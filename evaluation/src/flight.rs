@@ -48,16 +48,6 @@ pub struct Record {
     pub(crate) said: Vec<Said>,
 }
 
-impl Record {
-    pub(crate) fn vehicle_name(&self) -> &str {
-        self.vehicle.as_deref().unwrap_or("unknown")
-    }
-
-    pub(crate) fn air_s(&self) -> f64 {
-        self.air.iter().map(Span::length_s).sum()
-    }
-}
-
 /// The first upset of a time in the air.
 pub(crate) struct Upset {
     pub(crate) t_s: f64,
@@ -145,73 +135,73 @@ impl Record {
             name: name.to_owned(),
             lacks,
         })?;
-        evaluate(name, flight, estimators, horizon_s)
+        let header = |key| log::header(flight, key).map(str::to_owned);
+        let attitudes: Vec<(f64, Attitude)> = log::attitudes(flight)
+            .filter(|(t_s, _)| flight.is_in_air(*t_s) == Some(true))
+            .collect();
+        let errors = ErrorRecord::new(attitudes.iter().copied());
+        let air: Vec<Span> = flight
+            .in_air
+            .iter()
+            .flat_map(|air| &air.spans)
+            .map(|span| Span {
+                from_s: span.start_s,
+                to_s: span.end_s,
+            })
+            .collect();
+        let upsets: Vec<Upset> = air
+            .iter()
+            .filter_map(|air| {
+                let t_s = upset_s(&errors, &attitudes, *air)?;
+                Some(Upset { t_s, air: *air })
+            })
+            .collect();
+        let mut steps = steps(flight, &upsets, &errors, horizon_s);
+        let warned =
+            follow(flight, estimators, &mut steps).map_err(|problem| Unusable::Baselines {
+                name: name.to_owned(),
+                problem,
+            })?;
+        let lost_s = flight
+            .in_air
+            .iter()
+            .filter_map(|air| air.spans.last())
+            .find(|span| span.ends_with_log)
+            .map(|span| span.end_s);
+        let judged = log::judged_spans(flight, &VerdictSettings::default());
+        let said = warned.into_iter().map(|(mut said, warnings)| {
+            said.judged = judge(&warnings, errors.episodes(), &judged, lost_s);
+            said
+        });
+        Ok(Record {
+            file: name.to_owned(),
+            vehicle: flight.vehicle.id.clone().or_else(|| header("vehicle")),
+            kind: header("kind").unwrap_or_else(|| "unnamed".to_owned()),
+            judged_s: judged.iter().map(Span::length_s).sum(),
+            largest_error_deg: errors.largest_deg(),
+            largest_tilt_deg: attitudes
+                .iter()
+                .map(|(_, attitude)| attitude.tilt_deg())
+                .reduce(f64::max),
+            said: said.collect(),
+            steps,
+            upsets,
+            air,
+        })
     }
 
     /// The name of its file.
     pub fn file(&self) -> &str {
         &self.file
     }
-}
 
-fn evaluate(
-    name: &str,
-    flight: &Flight,
-    estimators: &Estimators,
-    horizon_s: f64,
-) -> Result<Record, Unusable> {
-    let header = |key| log::header(flight, key).map(str::to_owned);
-    let attitudes: Vec<(f64, Attitude)> = log::attitudes(flight)
-        .filter(|(t_s, _)| flight.is_in_air(*t_s) == Some(true))
-        .collect();
-    let errors = ErrorRecord::new(attitudes.iter().copied());
-    let air: Vec<Span> = flight
-        .in_air
-        .iter()
-        .flat_map(|air| &air.spans)
-        .map(|span| Span {
-            from_s: span.start_s,
-            to_s: span.end_s,
-        })
-        .collect();
-    let upsets: Vec<Upset> = air
-        .iter()
-        .filter_map(|air| {
-            let t_s = upset_s(&errors, &attitudes, *air)?;
-            Some(Upset { t_s, air: *air })
-        })
-        .collect();
-    let mut steps = steps(flight, &upsets, &errors, horizon_s);
-    let warned = follow(flight, estimators, &mut steps).map_err(|problem| Unusable::Baselines {
-        name: name.to_owned(),
-        problem,
-    })?;
-    let lost_s = flight
-        .in_air
-        .iter()
-        .filter_map(|air| air.spans.last())
-        .find(|span| span.ends_with_log)
-        .map(|span| span.end_s);
-    let judged = log::judged_spans(flight, &VerdictSettings::default());
-    let said = warned.into_iter().map(|(mut said, warnings)| {
-        said.judged = judge(&warnings, errors.episodes(), &judged, lost_s);
-        said
-    });
-    Ok(Record {
-        file: name.to_owned(),
-        vehicle: flight.vehicle.id.clone().or_else(|| header("vehicle")),
-        kind: header("kind").unwrap_or_else(|| "unnamed".to_owned()),
-        judged_s: judged.iter().map(Span::length_s).sum(),
-        largest_error_deg: errors.largest_deg(),
-        largest_tilt_deg: attitudes
-            .iter()
-            .map(|(_, attitude)| attitude.tilt_deg())
-            .reduce(f64::max),
-        said: said.collect(),
-        steps,
-        upsets,
-        air,
-    })
+    pub(crate) fn vehicle_name(&self) -> &str {
+        self.vehicle.as_deref().unwrap_or("unknown")
+    }
+
+    pub(crate) fn air_s(&self) -> f64 {
+        self.air.iter().map(Span::length_s).sum()
+    }
 }
 
 /// The steps of a flight, without scores yet, where it is known what became of them.
