@@ -50,6 +50,7 @@ from ._learning import Errors, Figure, Learned, Moved, Tuned, TuneInterrupted, T
 from ._model import Model, load, loads
 from ._monitor import Followed, Monitor
 from ._picture import Picture
+from ._simplify import Difference, Simplified, simplify
 
 __all__ = [
     "Assessment",
@@ -57,6 +58,7 @@ __all__ = [
     "DataError",
     "DecisionMap",
     "Diagnostic",
+    "Difference",
     "Errors",
     "Event",
     "ExplainedInput",
@@ -91,6 +93,7 @@ __all__ = [
     "RuleSetError",
     "Share",
     "Signal",
+    "Simplified",
     "Summary",
     "Table",
     "TuneInterrupted",
@@ -104,5 +107,6 @@ __all__ = [
     "load",
     "loads",
     "read_log",
+    "simplify",
     "tune",
 ]

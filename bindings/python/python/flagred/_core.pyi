@@ -26,6 +26,7 @@ __all__ = [
     "Table",
     "Update",
     "_learn",
+    "_simplify",
     "_tune",
 ]
 
@@ -280,4 +281,7 @@ class MonitorData:
     def _finish(self) -> tuple[str, Table] | None: ...
 
 def _learn(rule_set: RuleSet, rows: dict[str, Any], options: dict[str, Any]) -> dict[str, Any]: ...
+def _simplify(
+    rule_set: RuleSet, columns: list[NDArray[np.float64]], options: dict[str, Any]
+) -> dict[str, Any]: ...
 def _tune(rule_set: RuleSet, rows: dict[str, Any], options: dict[str, Any]) -> tuple[dict[str, Any], bool]: ...
