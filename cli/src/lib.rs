@@ -18,6 +18,7 @@ mod fmt;
 #[doc(hidden)] // For fuzz targets and tests of other packages.
 pub mod fuzzing;
 mod help;
+mod identify;
 mod import;
 mod inspect;
 mod learn;
@@ -96,6 +97,9 @@ enum Command {
     /// Make a table of flights for `learn`: inputs, attitude error and risk of each
     #[command(after_help = help::DATASET)]
     Dataset(dataset::Arguments),
+    /// Find inputs, partitions and rules for a column of a table
+    #[command(after_help = help::IDENTIFY)]
+    Identify(identify::Arguments),
     /// Learn rules from a table of inputs and outputs
     #[command(after_help = help::LEARN)]
     Learn(learn::Arguments),
@@ -141,6 +145,7 @@ impl Command {
             Command::Map(arguments) => map::run(&arguments),
             Command::Plot(arguments) => plot::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
+            Command::Identify(arguments) => identify::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Tune(arguments) => tune::run(&arguments),
             Command::Simplify(arguments) => simplify::run(&arguments),

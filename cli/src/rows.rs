@@ -1,4 +1,4 @@
-//! What `learn`, `tune` and `simplify` share: their arguments, and rows from tables, each with its place for messages.
+//! What `identify`, `learn`, `tune` and `simplify` share: their arguments, and rows from tables, each with its place for messages.
 
 use std::{collections::BTreeMap, path::PathBuf};
 
@@ -159,6 +159,43 @@ pub(crate) fn columns(
         }
     }
     Ok(data)
+}
+
+/// Rows as columns, and those that cannot be used, with the reason. `wrong` says what is wrong with a value of the output.
+pub(crate) fn in_columns(
+    read: Data,
+    inputs: usize,
+    wrong: impl Fn(f64) -> Option<String>,
+) -> (tuning::Data, Vec<String>) {
+    let Data { rows, mut refused } = read;
+    let mut data = tuning::Data {
+        inputs: vec![Vec::with_capacity(rows.len()); inputs],
+        ..tuning::Data::default()
+    };
+    for (row, place) in rows {
+        let truth = row.values.last().copied().unwrap_or(f64::NAN);
+        let negative = (row.weight < 0.0)
+            .then(|| format!("the weight is {}, but must not be negative", row.weight));
+        if let Some(wrong) = wrong(truth).or(negative) {
+            refused.push(format!("{place}: {wrong}"));
+            continue;
+        }
+        for (column, value) in data.inputs.iter_mut().zip(&row.values) {
+            column.push(*value);
+        }
+        data.truths.push(truth);
+        data.weights.push(row.weight);
+        data.groups.extend(row.group);
+    }
+    (data, refused)
+}
+
+/// A share on the command line.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    let share: Option<f64> = text.parse().ok();
+    share
+        .filter(|share| (0.0..1.0).contains(share))
+        .ok_or_else(|| "write a share, at least 0 and less than 1".into())
 }
 
 /// Rows that cannot be used, as a failure.

@@ -27,6 +27,8 @@ enum Format {
     Evaluate,
     /// What `flagred explain --json` prints
     Explain,
+    /// What `flagred identify --json` prints
+    Identify,
     /// What `flagred inspect --json` prints
     Inspect,
     /// What `flagred learn --json` prints
@@ -52,6 +54,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Format::Check => include_str!("../schemas/check.json"),
         Format::Evaluate => include_str!("../schemas/evaluate.json"),
         Format::Explain => include_str!("../schemas/explain.json"),
+        Format::Identify => include_str!("../schemas/identify.json"),
         Format::Inspect => include_str!("../schemas/inspect.json"),
         Format::Learn => include_str!("../schemas/learn.json"),
         Format::Simplify => include_str!("../schemas/simplify.json"),

@@ -4,7 +4,7 @@
 use crate::geometry::tables;
 use crate::outputs::{FRACTIONS, PULSES_US};
 use crate::parameters::{Parameters, name_of};
-use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind};
+use crate::{Flight, Intervals, Motor, Range, Vehicle, VehicleKind, identity};
 
 /// Whether the log has any SERVOn_FUNCTION: firmware before 3.5 has none.
 pub(crate) fn has_functions(parameters: &Parameters) -> bool {
@@ -319,15 +319,23 @@ pub(crate) fn vehicle<'a>(
         kind = VehicleKind::Vtol;
         source.push_str(" and Q_ENABLE");
     }
-    Vehicle {
+    let mut vehicle = Vehicle {
         kind,
         source,
         motors: frame.as_deref().and_then(motors_of_frame),
         frame,
         firmware: firmware.map(str::to_owned),
-        id: id.map(str::to_owned),
+        ..Vehicle::default()
+    };
+    if let Some(id) = id {
+        identity::name(&mut vehicle, id.to_owned(), BOARD);
     }
+    identity::add(&mut vehicle, parameters);
+    vehicle
 }
+
+/// Where the id of a vehicle came from whose board wrote it as a text.
+pub(crate) const BOARD: &str = "message of the board";
 
 /// Whether a text names the board and the 96 bits of its serial number: `Pixhawk4 0047002B 34385105 36363539`.
 fn is_board_id(text: &str) -> bool {

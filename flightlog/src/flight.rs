@@ -103,6 +103,12 @@ pub struct Vehicle {
     pub firmware: Option<String>,
     /// What tells this vehicle from others of its kind: the serial number of the board, or `vehicle_id` of a flight CSV.
     pub id: Option<String>,
+    /// Where [`Vehicle::id`] came from, such as `sys_uuid`.
+    pub id_source: Option<String>,
+    /// Its MAVLink system id. Vehicles share it unless somebody numbers them: it is 1 on a new autopilot.
+    pub system_id: Option<u8>,
+    /// How often the autopilot booted in its life, as ArduPilot counts it (`STAT_BOOTCNT`).
+    pub boot_count: Option<u32>,
 }
 
 /// One motor, and the output that drives it.

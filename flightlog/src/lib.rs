@@ -34,6 +34,7 @@ mod field;
 mod flight;
 mod gap;
 mod geometry;
+mod identity;
 mod input;
 mod interval;
 mod known;

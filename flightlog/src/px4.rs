@@ -3,7 +3,7 @@
 
 use crate::mav_type::{MavType, mav_type};
 use crate::parameters::Parameters;
-use crate::{Motor, Range, Vehicle};
+use crate::{Motor, Range, Vehicle, identity};
 
 /// Raw commands above this are counts of a bus, not pulse widths in us.
 const LONGEST_PULSE_US: f64 = 2200.0;
@@ -28,6 +28,7 @@ pub(crate) fn vehicle(
         source: "the log has no MAV_TYPE".into(),
         ..Vehicle::default()
     };
+    identity::add(&mut vehicle, parameters);
     let Some((MavType { kind, name, motors }, source)) = found else {
         return vehicle;
     };

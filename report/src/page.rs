@@ -188,7 +188,14 @@ pub fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
     Some(sheet.finish(&format!("{verdict} {}", subject.title())))
 }
 
-fn page(title: &str, body: &Markup) -> String {
+/// A page that looks like a report, around a body that the caller wrote as HTML: it may load nothing, and shows no control
+/// characters.
+pub fn around(title: &str, body: String) -> String {
+    page(title, &PreEscaped(body))
+}
+
+/// A page that needs nothing beside it.
+pub fn page(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {

@@ -73,7 +73,9 @@ fn standard_output_and_failures() {
         .unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(
-        text.starts_with("# vehicle: QUAD/X\n# vehicle_kind: multirotor\n"),
+        text.starts_with(
+            "# vehicle: QUAD/X\n# system_id: 1\n# boot_count: 1\n# vehicle_kind: multirotor\n"
+        ),
         "{}",
         &text[..200]
     );

@@ -7,6 +7,7 @@ use flightlog::{
 };
 
 const EXTENDED_SYS_STATE: Message = (245, 130, 2);
+const AUTOPILOT_VERSION: Message = (148, 178, 60);
 const ARDUPILOT: u8 = 3;
 const PX4: u8 = 12;
 const START_US: u64 = 1_700_000_000_000_000;
@@ -193,6 +194,30 @@ fn an_ardupilot_vehicle_by_its_heartbeats() {
     assert_eq!(spans(&flight), [(2.0, 6.0)]);
     // From the first row of commands on.
     assert!((flight.armed.unwrap().duration_s() - 5.95).abs() < 1e-6);
+}
+
+/// The id of the board is that which PX4 writes into its own logs.
+#[test]
+fn a_vehicle_is_told_from_others() {
+    let mut vehicle = Vehicle::default();
+    vehicle.heartbeat(0.0, PX4, false, 3);
+    vehicle.parameter("STAT_BOOTCNT", 81_i32.to_le_bytes(), 6);
+    let mut version = vec![0; 78];
+    version[8] = 7;
+    vehicle.send(1.0, AUTOPILOT_VERSION, &version);
+    let by_uid = vehicle.recorded().vehicle;
+    assert_eq!(by_uid.id.as_deref(), Some("0000000000000007"));
+    assert_eq!(by_uid.id_source.as_deref(), Some("AUTOPILOT_VERSION.uid"));
+    assert_eq!((by_uid.system_id, by_uid.boot_count), (Some(1), Some(81)));
+
+    let mut vehicle = Vehicle::default();
+    vehicle.heartbeat(0.0, PX4, false, 3);
+    version[60..].fill(0xa5);
+    vehicle.send(1.0, AUTOPILOT_VERSION, &version);
+    let by_uid2 = vehicle.recorded().vehicle;
+    assert_eq!(by_uid2.id, Some("a5".repeat(18)));
+    assert_eq!(by_uid2.id_source.as_deref(), Some("AUTOPILOT_VERSION.uid2"));
+    assert_eq!(by_uid2.boot_count, None);
 }
 
 #[test]

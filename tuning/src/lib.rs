@@ -9,10 +9,12 @@
 //! consequents of a Takagi-Sugeno output are solved for at every step, as ANFIS does (Jang 1993). [`cross_validate`] tells
 //! what tuning is worth on rows that were left out.
 //!
-//! [`simplify`] says the same with fewer rules.
+//! [`identify`] finds inputs, partitions and rules where none are known; [`simplify()`] says the same with fewer rules.
 
 mod consequents;
 mod data;
+mod folds;
+pub mod identify;
 mod loss;
 mod numbers;
 mod objective;
@@ -28,10 +30,11 @@ use std::ops::ControlFlow;
 use fuzzy::{Model, check};
 
 pub use data::Data;
+pub use folds::Interval;
 pub use numbers::{Moved, Number, numbers};
 pub use settings::{Loss, Settings, TuneError};
 pub use simplify::{Difference, EQUAL, Simplified, SimplifyError, SimplifySettings, simplify};
-pub use validation::{Interval, Validation, cross_validate};
+pub use validation::{Validation, cross_validate};
 
 use objective::{Objective, Point};
 use parameters::Parameters;

@@ -46,6 +46,13 @@ def test_what_a_log_holds(flight):
     assert np.array_equal(table["motor3"], flight.commands[:, 2], equal_nan=True)
 
 
+def test_what_tells_the_vehicle_from_others(flight):
+    assert flight.vehicle.system_id == 1
+    named = flagred.read_log(("# vehicle_id: seven\n# boot_count: 812\n" + CSV).encode()).vehicle
+    assert (named.id, named.id_source, named.boot_count) == ("seven", "header vehicle_id", 812)
+    assert flagred.read_log(CSV.encode()).vehicle[5:] == (None, None, None, None)
+
+
 def test_signals(flight):
     roll = flight.signals["roll_deg"]
     assert (roll.unit, roll.source) == ("deg", "ATT.Roll") and len(roll) == len(roll.values)

@@ -15,6 +15,7 @@ const MODES: usize = 200;
 pub(crate) fn write(out: &mut impl Write, name: &str, flight: &Flight) -> io::Result<()> {
     writeln!(out, "{}: {}", visible(name), flight.format)?;
     line(out, "vehicle", &vehicle(flight))?;
+    line(out, "identity", &identity(flight))?;
     lines(out, "motors", motors(flight))?;
     lines(out, "geometry", geometry(flight))?;
     line(out, "range", &range(flight.range.as_ref(), ""))?;
@@ -68,6 +69,22 @@ fn vehicle(flight: &Flight) -> String {
         "" => text,
         _ if told => text,
         source => format!("{text} ({source})"),
+    }
+}
+
+/// What tells the vehicle from others, and where it came from.
+fn identity(flight: &Flight) -> String {
+    let vehicle = &flight.vehicle;
+    let id = vehicle.id.as_ref().zip(vehicle.id_source.as_ref());
+    let known = [
+        id.map(|(id, source)| format!("{id} ({source})")),
+        vehicle.system_id.map(|id| format!("system id {id}")),
+        vehicle.boot_count.map(|count| format!("boot {count}")),
+    ];
+    let known: Vec<String> = known.into_iter().flatten().collect();
+    match known.is_empty() {
+        true => "NA".into(),
+        false => known.join(", "),
     }
 }
 

@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     weights: bool,
 
     /// The least distance between neighbouring peaks, as a share of the range
-    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = share)]
+    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = rows::share)]
     least_distance: f64,
 
     /// Round what moved to so many significant digits
@@ -86,13 +86,6 @@ enum LossName {
     Log,
     /// The share of pairs of a 1 and a 0 in the wrong order: 1 less the area under the ROC curve
     Ranking,
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    let share: Option<f64> = text.parse().ok();
-    share
-        .filter(|share| (0.0..1.0).contains(share))
-        .ok_or_else(|| "write a share of the range, at least 0 and less than 1".into())
 }
 
 /// What the report tells.
@@ -197,36 +190,13 @@ fn settings(arguments: &Arguments) -> Settings {
 
 /// The rows as columns, and why others cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
-    let rows::Data { rows, mut refused } = rows::read(&arguments.rows, model)?;
-    let mut data = Data {
-        inputs: vec![Vec::with_capacity(rows.len()); model.inputs.len()],
-        ..Data::default()
-    };
-    for (row, place) in rows {
-        let truth = row.values.last().copied().unwrap_or(f64::NAN);
-        let wrong = if arguments.loss != LossName::Squared && truth != 0.0 && truth != 1.0 {
-            Some(format!(
-                "the output's value is {truth}, but must be 0 or 1 for this loss"
-            ))
-        } else if row.weight < 0.0 {
-            Some(format!(
-                "the weight is {}, but must not be negative",
-                row.weight
-            ))
-        } else {
-            None
-        };
-        if let Some(wrong) = wrong {
-            refused.push(format!("{place}: {wrong}"));
-            continue;
-        }
-        for (column, value) in data.inputs.iter_mut().zip(&row.values) {
-            column.push(*value);
-        }
-        data.truths.push(truth);
-        data.weights.push(row.weight);
-        data.groups.extend(row.group);
-    }
+    let read = rows::read(&arguments.rows, model)?;
+    let is_refused =
+        |truth: f64| arguments.loss != LossName::Squared && truth != 0.0 && truth != 1.0;
+    let (data, refused) = rows::in_columns(read, model.inputs.len(), |truth| {
+        is_refused(truth)
+            .then(|| format!("the output's value is {truth}, but must be 0 or 1 for this loss"))
+    });
     if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
         return Err(rows::refuse(&refused, "used"));
     }

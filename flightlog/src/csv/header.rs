@@ -8,7 +8,7 @@ use crate::flight::whole_range;
 use crate::geometry::{Declared, tables};
 use crate::input::Input;
 use crate::outputs::{Bounds, FRACTIONS, PULSES_US};
-use crate::{Flight, Range, ReadError, VehicleKind};
+use crate::{Flight, Range, ReadError, VehicleKind, identity};
 
 /// An entry, and the line it stands in.
 pub(super) struct HeaderLine {
@@ -126,7 +126,12 @@ pub(super) fn apply_header(
     for entry in &header {
         match entry.key.as_str() {
             "vehicle" => flight.vehicle.frame = Some(entry.value.clone()),
-            "vehicle_id" => flight.vehicle.id = Some(entry.value.clone()),
+            "vehicle_id" => {
+                let id = entry.value.clone();
+                identity::name(&mut flight.vehicle, id, "header vehicle_id");
+            }
+            "system_id" => flight.vehicle.system_id = entry.value.parse().ok(),
+            "boot_count" => flight.vehicle.boot_count = entry.value.parse().ok(),
             "firmware" => flight.vehicle.firmware = Some(entry.value.clone()),
             "vehicle_kind" => {
                 flight.vehicle.kind = VehicleKind::from_name(&entry.value);

@@ -93,6 +93,12 @@ impl Flight {
         if let Some(id) = &vehicle.id {
             line(out, "vehicle_id", id)?;
         }
+        if let Some(id) = vehicle.system_id {
+            line(out, "system_id", &id.to_string())?;
+        }
+        if let Some(count) = vehicle.boot_count {
+            line(out, "boot_count", &count.to_string())?;
+        }
         if vehicle.kind != VehicleKind::Unknown {
             line(out, "vehicle_kind", &vehicle.kind.to_string())?;
         }

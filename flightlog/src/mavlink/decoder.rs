@@ -6,7 +6,7 @@ use crate::geometry::Declared;
 use crate::mav_type::{MavType, mav_type};
 use crate::outputs::LONGEST_PULSE_US;
 use crate::parameters::Parameters;
-use crate::{Motor, Range, Vehicle, ardupilot, px4};
+use crate::{Motor, Range, Vehicle, ardupilot, identity, px4};
 
 use super::Packet;
 use super::servo::{bank, field, px4_motors};
@@ -79,6 +79,7 @@ pub(crate) struct Decoder {
     autopilot: Option<u8>,
     mav_type: Option<u8>,
     version: Option<u32>,
+    id: Option<(String, &'static str)>,
     pub(crate) parameters: Parameters,
     /// PARAM_VALUE messages that came before the autopilot was known: name, value, type.
     waiting: Vec<(String, [u8; 4], u8)>,
@@ -146,6 +147,8 @@ impl Decoder {
                 // Capabilities, uid, then the version.
                 let version = number(payload, 16, Kind::U32).map(|version| version as u32);
                 self.version = self.version.or(version);
+                let told = || identity::of_version(&payload[8..16], &payload[60..78]);
+                self.id = self.id.take().or_else(told);
                 Told::Nothing
             }
             EXTENDED_SYS_STATE => {
@@ -233,6 +236,7 @@ impl Decoder {
         *self = Self {
             autopilot: self.autopilot,
             mav_type: self.mav_type,
+            id: self.id.take(),
             ..Self::default()
         };
     }
@@ -253,6 +257,9 @@ impl Decoder {
             Some(PX4) => Some("PX4".to_owned()),
             _ => None,
         };
+        if let Some((id, source)) = &self.id {
+            identity::name(&mut vehicle, id.clone(), source);
+        }
         vehicle
     }
 

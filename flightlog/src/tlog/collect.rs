@@ -10,7 +10,9 @@ use crate::mavlink::packet::Packet;
 use crate::mavlink::servo::OUTPUTS_A_PORT;
 use crate::outputs::Outputs;
 use crate::signal::{Label, preferred};
-use crate::{Event, Flight, Format, Intervals, Options, Report, Series, VehicleKind, px4};
+use crate::{
+    Event, Flight, Format, Intervals, Options, Report, Series, VehicleKind, identity, px4,
+};
 
 /// Telemetry pauses while the link is lost; a time further ahead is damage.
 const LONGEST_PAUSE_S: f64 = 3600.0;
@@ -86,10 +88,11 @@ impl<'o> Collector<'o> {
         let mut systems = self.systems;
         let chosen = systems.iter().position(is_vehicle).unwrap_or(0);
         if chosen < systems.len() {
-            let heard = systems.swap_remove(chosen).1;
+            let (system, heard) = systems.swap_remove(chosen);
             let ahead_s = heard.ahead_s;
             flight.utc_at_zero_s = flight.utc_at_zero_s.map(|utc_s| utc_s - ahead_s);
             heard.finish(&mut flight);
+            flight.vehicle.system_id = Some(system);
         }
         flight
     }
@@ -255,10 +258,15 @@ impl Heard {
         if self.decoder.is_px4() {
             vehicle.firmware = self.decoder.px4_firmware();
         }
+        let told = self.decoder.vehicle();
+        if vehicle.id_source.as_deref() != Some(ardupilot::BOARD)
+            && let Some((id, source)) = told.id.zip(told.id_source)
+        {
+            identity::name(vehicle, id, &source);
+        }
         if self.decoder.mav_type().is_none() {
             return;
         }
-        let told = self.decoder.vehicle();
         // What sends the heartbeat of a quadplane may call itself a plane, not the reverse.
         if !(vehicle.kind == VehicleKind::Vtol && told.kind == VehicleKind::Plane) {
             vehicle.kind = told.kind;

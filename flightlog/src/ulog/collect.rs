@@ -11,7 +11,7 @@ use crate::geometry::{self, Declared};
 use crate::interval::both_hold;
 use crate::parameters::Parameters;
 use crate::signal::preferred;
-use crate::{Event, Flight, Format, Intervals, Options, Report, Series, px4};
+use crate::{Event, Flight, Format, Intervals, Options, Report, Series, identity, px4};
 
 /// A time this far after all times before it is damage, unless the next one agrees.
 const LONGEST_PAUSE_S: f64 = 60.0;
@@ -263,7 +263,9 @@ impl<'o> Collector<'o> {
         let firmware = self.release.map(px4::firmware);
         flight.parameters = self.parameters.of_motors("ULog parameter");
         flight.vehicle = px4::vehicle(&self.parameters, self.system_type, firmware);
-        flight.vehicle.id = self.id.take();
+        if let Some(id) = self.id.take() {
+            identity::name(&mut flight.vehicle, id, "sys_uuid");
+        }
         self.take_commands(&mut flight);
         self.series
             .sort_by_key(|(name, _)| SPECS.iter().position(|spec| spec.topic == *name));

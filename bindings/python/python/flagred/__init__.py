@@ -51,6 +51,7 @@ from ._model import Model, load, loads
 from ._monitor import Followed, Monitor
 from ._picture import Picture
 from ._simplify import Difference, Simplified, simplify
+from .evaluation import Evaluation, evaluate
 
 __all__ = [
     "Assessment",
@@ -60,6 +61,7 @@ __all__ = [
     "Diagnostic",
     "Difference",
     "Errors",
+    "Evaluation",
     "Event",
     "ExplainedInput",
     "ExplainedOutput",
@@ -103,6 +105,7 @@ __all__ = [
     "Vehicle",
     "__version__",
     "assess",
+    "evaluate",
     "learn",
     "load",
     "loads",

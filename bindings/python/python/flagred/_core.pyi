@@ -12,6 +12,7 @@ __all__ = [
     "VERSION",
     "AssessmentData",
     "DecisionMap",
+    "EvaluationData",
     "ExplainedInput",
     "ExplainedOutput",
     "Explanation",
@@ -26,6 +27,7 @@ __all__ = [
     "Table",
     "Update",
     "_learn",
+    "_page",
     "_simplify",
     "_tune",
 ]
@@ -246,6 +248,24 @@ class AssessmentData:
     def html(self) -> str: ...
     def svg(self) -> str | None: ...
 
+@disjoint_base
+class EvaluationData:
+    def __new__(
+        cls,
+        logs: Sequence[FlightData | str | PathLike[str]],
+        rows: dict[str, Any] | None,
+        profiles: Sequence[Profile],
+        horizon_s: float,
+        skip_bad_logs: bool,
+        threads: int | None,
+    ) -> Self: ...
+    def to_json(self) -> str: ...
+    def html(self) -> str: ...
+    def svg(self) -> str: ...
+    def _notes(self) -> list[str]: ...
+    def _scores(self) -> Table: ...
+    def _roc(self, estimator: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+
 @final
 class Update:
     @property
@@ -280,6 +300,7 @@ class MonitorData:
     def _ended(self) -> str: ...
     def _finish(self) -> tuple[str, Table] | None: ...
 
+def _page(title: str, body: str) -> str: ...
 def _learn(rule_set: RuleSet, rows: dict[str, Any], options: dict[str, Any]) -> dict[str, Any]: ...
 def _simplify(
     rule_set: RuleSet, columns: list[NDArray[np.float64]], options: dict[str, Any]

@@ -27,6 +27,12 @@ class Vehicle(NamedTuple):
     firmware: str | None
     id: str | None
     """What tells this vehicle from others of its kind."""
+    id_source: str | None
+    """Where the id came from, such as ``sys_uuid``."""
+    system_id: int | None
+    """The MAVLink system id, which vehicles may share."""
+    boot_count: int | None
+    """How often the autopilot booted in its life."""
 
 
 class Motor(NamedTuple):

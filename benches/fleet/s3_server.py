@@ -1,0 +1,60 @@
+"""moto's S3 server with the troubles of a real one: answers 503 for a while, and slow reads. Needs `pip install 'moto[server]'`.
+
+A key that holds `busy` answers 503 to its first eight reads, one that holds `down` to all until the file `recovered` is in the folder
+that the second argument names; one read in forty of the others is answered with 503. A read of a key that holds `slow` takes three
+seconds. What was answered is counted in the file `counts.json` of that folder.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import sys
+import threading
+import time
+from collections import Counter
+from pathlib import Path
+
+from moto.server import DomainDispatcherApplication, create_backend_app
+from werkzeug.serving import WSGIRequestHandler, run_simple
+
+BUSY = b"<Error><Code>SlowDown</Code><Message>Please reduce your request rate.</Message></Error>"
+
+
+class Troubled:
+    """The server, which some reads do not reach."""
+
+    def __init__(self, folder: Path) -> None:
+        self.app = DomainDispatcherApplication(create_backend_app)
+        self.folder, self.lock, self.chance = folder, threading.Lock(), random.Random(1)
+        self.reads: Counter[str] = Counter()
+        self.counts: Counter[str] = Counter()
+
+    def __call__(self, environ: dict, start_response):
+        path, method = environ["PATH_INFO"], environ["REQUEST_METHOD"]
+        is_read = method == "GET" and "/logs/" in path
+        is_listing = method == "GET" and "list-type" in environ.get("QUERY_STRING", "")
+        with self.lock:
+            self.reads[path] += is_read
+            count = self.reads[path]
+            down = "down" in path and not (self.folder / "recovered").exists()
+            busy = is_read and (down or ("busy" in path and count <= 8) or self.chance.random() < 1 / 40)
+            self.counts.update({"503": int(busy), "reads": int(is_read), "listings": int(is_listing)})
+            (self.folder / "counts.json").write_text(json.dumps(self.counts))
+        if busy:
+            start_response("503 Slow Down", [("Content-Type", "application/xml"), ("Content-Length", str(len(BUSY)))])
+            return [BUSY]
+        if is_read and "slow" in path:
+            time.sleep(3)
+        return self.app(environ, start_response)
+
+
+class Quiet(WSGIRequestHandler):
+    protocol_version = "HTTP/1.1"
+
+    def log(self, *_: object) -> None:
+        """Requests are counted and not written down."""
+
+
+if __name__ == "__main__":
+    run_simple("127.0.0.1", int(sys.argv[1]), Troubled(Path(sys.argv[2])), threaded=True, request_handler=Quiet)

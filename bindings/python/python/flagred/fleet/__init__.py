@@ -1,0 +1,39 @@
+"""Fleets: from a folder of logs, here or on object storage, to a dataset of Parquet files, on one machine or on a cluster.
+
+``python -m flagred.fleet assess LOGS --out DATASET`` does the same as :func:`assess`. docs/fleet.md has the tables.
+"""
+
+from .compaction import compact
+from .errors import FleetError
+from .process import Outcome, process
+from .questions import QUESTIONS, ask, open_dataset
+from .report import rising, write_report
+from .run import Assessed, Plan, Watcher, assess, plan
+from .schema import FINDINGS, FLIGHTS, STEPS, VERSION
+from .shards import Job, Shard
+from .storage import Log, open_place
+
+__all__ = [
+    "FINDINGS",
+    "FLIGHTS",
+    "QUESTIONS",
+    "STEPS",
+    "VERSION",
+    "Assessed",
+    "FleetError",
+    "Job",
+    "Log",
+    "Outcome",
+    "Plan",
+    "Shard",
+    "Watcher",
+    "ask",
+    "assess",
+    "compact",
+    "open_dataset",
+    "open_place",
+    "plan",
+    "process",
+    "rising",
+    "write_report",
+]

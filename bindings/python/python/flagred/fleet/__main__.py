@@ -1,0 +1,159 @@
+"""``python -m flagred.fleet``: the command line of fleets."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+
+from .. import FlagredError
+from .catalog import Counts
+from .compaction import compact
+from .errors import FleetError
+from .report import write_report
+from .run import Assessed, assess
+from .storage import LOGS
+
+__all__ = ["main"]
+
+
+class Progress:
+    """One line on a terminal: logs, bytes, rate, time left, failures; in a file a line each half minute."""
+
+    def __init__(self) -> None:
+        self._counts = Counts(0, 0, 0, 0, 0)
+        self._is_terminal = sys.stderr.isatty()
+        self._began_s = self._said_s = time.monotonic()
+
+    def planned(self, counts: Counts) -> None:
+        self._counts = counts
+        same = counts.listed - counts.new - counts.changed
+        print(
+            f"{counts.listed} logs, {_size(counts.listed_bytes)}: {counts.new} new, {counts.changed} changed, {same} done",
+            file=sys.stderr,
+        )
+
+    def started(self, dashboard: str) -> None:
+        print(f"dashboard: {dashboard}", file=sys.stderr)
+        self._began_s = self._said_s = time.monotonic()
+
+    def went_on(self, done: Assessed, workers: int | None) -> None:
+        now_s = time.monotonic()
+        if now_s - self._said_s < (0.2 if self._is_terminal else 30.0) and done.assessed < self._total:
+            return
+        self._said_s = now_s
+        text = self._line(done, now_s - self._began_s) + (", no worker" if workers == 0 else "")
+        print(f"\r\x1b[K{text}" if self._is_terminal else text, end="" if self._is_terminal else "\n", file=sys.stderr, flush=True)
+
+    @property
+    def _total(self) -> int:
+        return self._counts.new + self._counts.changed
+
+    def _line(self, done: Assessed, spent_s: float) -> str:
+        rate = done.bytes / spent_s if spent_s > 0 else 0.0
+        left = _time((self._counts.todo_bytes - done.bytes) / rate) if rate else "unknown"
+        return (
+            f"{done.assessed} of {self._total} logs, {_size(done.bytes)} of {_size(self._counts.todo_bytes)}, "
+            f"{_size(rate)}/s, {left} left, {done.not_assessed} not assessed"
+        )
+
+    def end(self) -> None:
+        """Ends the line."""
+        if self._is_terminal:
+            print(file=sys.stderr)
+
+
+def _size(count: float) -> str:
+    unit = "B"
+    for next_unit in ("kB", "MB", "GB", "TB"):
+        if count < 1000:
+            break
+        count, unit = count / 1000, next_unit
+    return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"
+
+
+def _time(seconds: float) -> str:
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {seconds:02} s"
+
+
+def parser() -> argparse.ArgumentParser:
+    """The arguments of the command line."""
+    parser = argparse.ArgumentParser(prog="python -m flagred.fleet", description="Assess fleets of flight logs.")
+    commands = parser.add_subparsers(dest="command", required=True)
+    one = commands.add_parser("assess", help="assess the logs that a dataset does not have yet")
+    one.add_argument("sources", nargs="+", metavar="SOURCE", help="a folder of logs, or s3://, gs://, az://")
+    one.add_argument("--out", required=True, metavar="DATASET", help="the dataset: a folder, or s3://, gs://, az://")
+    one.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://HOST:8786; without it all cores here")
+    one.add_argument("--workers", type=int, metavar="N", help="processes on this machine (one a core)")
+    one.add_argument("--profile", default="flagred", metavar="NAME|FILE", help="profile: a shipped one or a file (flagred)")
+    one.add_argument("--step-s", type=float, default=1.0, metavar="S", help="how far apart the steps are, in seconds (1)")
+    one.add_argument("--recursive", action="store_true", help="read the folders below too")
+    one.add_argument("--include", action="append", metavar="PATTERN", help="names of logs, such as '*.BIN' (all formats)")
+    one.add_argument("--compare-content", action="store_true", help="read every log: one with the content of before is the same")
+    one.add_argument("--dry-run", action="store_true", help="count what is to do, and write nothing")
+    one = commands.add_parser("report", help="write a page about a dataset")
+    one.add_argument("dataset", metavar="DATASET")
+    one.add_argument("-o", "--out", required=True, metavar="FILE", help="the page, such as fleet.html")
+    one.add_argument("--alert", type=float, metavar="PCT", help="exit with 1 where a vehicle's risk surely rises by more per cent a week")
+    one = commands.add_parser("compact", help="join the small files of a dataset")
+    one.add_argument("dataset", metavar="DATASET")
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs a command; gives the exit code: 0, 1 for an alert, 2 where it could not be done."""
+    given = parser().parse_args(arguments)
+    try:
+        return COMMANDS[given.command](given)
+    except (FlagredError, OSError) as error:
+        print(f"\nerror: {error}", file=sys.stderr)
+        if isinstance(error, FleetError) and error.help:
+            print(f"  help: {error.help}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("\nstopped: the same command goes on from here", file=sys.stderr)
+        return 2
+
+
+def _assess(given: argparse.Namespace) -> int:
+    progress = Progress()
+    done = assess(
+        given.sources,
+        given.out,
+        profile=given.profile,
+        step_s=given.step_s,
+        recursive=given.recursive,
+        include=given.include or LOGS,
+        compare_content=given.compare_content,
+        scheduler=given.scheduler,
+        workers=given.workers,
+        dry_run=given.dry_run,
+        watcher=progress,
+    )
+    if done.assessed:
+        progress.end()
+    print(f"{done.assessed} logs read, {done.unchanged} of them as before, {done.not_assessed} not assessed")
+    return 0
+
+
+def _report(given: argparse.Namespace) -> int:
+    alerts = write_report(given.dataset, given.out, given.alert)
+    for row in alerts:
+        low, high = row["low_pct_week"], row["high_pct_week"]
+        print(f"{row['vehicle']} rises by {row['slope_pct_week']:.2f} % a week ({low:.2f} to {high:.2f}), by {row['flights']} flights")
+    return 1 if alerts else 0
+
+
+def _compact(given: argparse.Namespace) -> int:
+    print(f"{compact(given.dataset)} files less")
+    return 0
+
+
+COMMANDS = {"assess": _assess, "report": _report, "compact": _compact}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,174 @@
+"""What a dataset holds beside what the sources list: what is missing, changed, twice there or gone.
+
+The catalog is a database in a temporary file, so that a fleet of millions takes little memory. The dataset is the truth: every
+run makes its catalog anew from the ``flights`` files.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import groupby, islice
+from types import TracebackType
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from .errors import FleetError
+from .schema import VERSION
+from .storage import Log, Place
+
+__all__ = ["Catalog", "Counts"]
+
+TABLES = """
+CREATE TABLE listed(log TEXT PRIMARY KEY, source TEXT, path TEXT, bytes INT, modified_us INT, identity TEXT) WITHOUT ROWID;
+CREATE TABLE file(id INTEGER PRIMARY KEY, name TEXT UNIQUE, stamp TEXT);
+CREATE TABLE flight(file INT, log TEXT, flight_id TEXT, identity TEXT, settings TEXT, status TEXT, deleted INT,
+  modified_us INT, sha256 TEXT);
+CREATE INDEX flight_log ON flight(log);
+CREATE INDEX flight_file ON flight(file);
+"""
+COLUMNS = ["log", "flight_id", "identity", "settings", "status", "deleted", "modified_utc", "sha256"]
+READERS = 4
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How many logs are listed, and what is to do."""
+
+    listed: int
+    listed_bytes: int
+    new: int
+    changed: int
+    todo_bytes: int
+
+
+class Catalog:
+    """The dataset and the listing, side by side."""
+
+    def __init__(self, settings: str, compare_content: bool = False) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="flagred-fleet-")
+        self._db = sqlite3.connect(f"{self._folder.name}/catalog.sqlite", isolation_level=None)
+        self._db.executescript("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA cache_size=-16384;" + TABLES)
+        self._settings = {"settings": settings, "compare": compare_content}
+
+    def __enter__(self) -> Catalog:
+        return self
+
+    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        self._db.close()
+        self._folder.cleanup()
+
+    def take_in(self, source: Place, logs: Iterable[Log]) -> None:
+        """Takes in the logs of a source."""
+        rows = ((source.shown(log.path), source.uri, log.path, log.bytes, log.modified_us, log.identity) for log in logs)
+        with self._transaction():
+            self._db.executemany("INSERT OR IGNORE INTO listed VALUES(?,?,?,?,?,?)", rows)
+
+    def load(self, out: Place) -> None:
+        """Takes in the flights of the dataset; called again, what changed since."""
+        now = {info.path: f"{info.size}-{info.mtime_ns}" for info in out.files("flights", ".parquet")}
+        known = dict(self._db.execute("SELECT name, stamp FROM file"))
+        changed = [path for path, stamp in now.items() if known.get(path) != stamp]
+        with self._transaction(), ThreadPoolExecutor(READERS) as readers:
+            for path in known.keys() - (now.keys() - set(changed)):
+                self._forget(path)
+            waiting = iter(changed)
+            while some := list(islice(waiting, READERS)):
+                for path, rows in zip(some, readers.map(lambda path: _rows(out, path), some)):
+                    id = self._db.execute("INSERT INTO file(name, stamp) VALUES(?,?)", (path, now[path])).lastrowid
+                    self._db.executemany(f"INSERT INTO flight VALUES({id},?,?,?,?,?,?,?,?)", rows)
+
+    def _forget(self, path: str) -> None:
+        self._db.execute("DELETE FROM flight WHERE file = (SELECT id FROM file WHERE name = ?)", (path,))
+        self._db.execute("DELETE FROM file WHERE name = ?", (path,))
+
+    def counts(self) -> Counts:
+        """How much is listed and to do."""
+        listed, size = self._one("SELECT count(*), coalesce(sum(bytes), 0) FROM listed")
+        todo = f"SELECT l.bytes, EXISTS(SELECT 1 FROM flight f WHERE f.log = l.log) AS known FROM listed l WHERE {TODO}"
+        new, changed, todo_bytes = self._one(
+            f"SELECT count(*) FILTER (WHERE NOT known), count(*) FILTER (WHERE known), coalesce(sum(bytes), 0) FROM ({todo})"
+        )
+        return Counts(listed, size, new, changed, todo_bytes)
+
+    def todo(self) -> Iterator[tuple[str, Log]]:
+        """The logs to assess with their sources, in their order."""
+        hash = "SELECT max(f.sha256) FROM flight f WHERE f.log = l.log AND f.settings = :settings AND f.status <> 'unavailable'"
+        query = f"SELECT source, path, bytes, modified_us, ({hash}) FROM listed l WHERE {TODO} ORDER BY source, l.log"
+        for source, path, size, modified_us, sha256 in self._db.execute(query, self._settings):
+            yield source, Log(path, size, modified_us, sha256 if self._settings["compare"] else None)
+
+    def doubled(self) -> Iterator[tuple[str, list[str]]]:
+        """The flights that another row replaces, by the file that they are to leave.
+
+        The row of the log as it is listed stays, then that of these settings, of a log that could be read, of the latest change.
+        """
+        query = """
+        WITH doubled AS (SELECT log FROM flight GROUP BY log HAVING count(*) > 1),
+        placed AS (
+          SELECT f.file, f.flight_id, row_number() OVER (PARTITION BY f.log ORDER BY f.settings = :settings DESC,
+            f.identity IS l.identity DESC, f.status = 'unavailable', f.modified_us DESC, n.name) AS place
+          FROM flight f JOIN doubled USING(log) JOIN file n ON n.id = f.file LEFT JOIN listed l USING(log))
+        SELECT name, flight_id FROM placed JOIN file ON file.id = placed.file WHERE place > 1 ORDER BY name
+        """
+        yield from self._by_file(query)
+
+    def misjudged(self, wanted: Callable[[str], bool]) -> Iterator[tuple[str, list[str]]]:
+        """The flights whose mark as deleted is wrong, by file, of the logs that the listing would have."""
+        self._db.create_function("wanted", 1, wanted, deterministic=True)
+        query = """
+        SELECT n.name, f.flight_id FROM flight f JOIN file n ON n.id = f.file LEFT JOIN listed l USING(log)
+        WHERE f.deleted <> (l.log IS NULL) AND wanted(f.log) ORDER BY n.name
+        """
+        yield from self._by_file(query)
+
+    def files(self) -> set[str]:
+        """The ``flights`` files of the dataset."""
+        return {name for (name,) in self._db.execute("SELECT name FROM file")}
+
+    def _by_file(self, query: str) -> Iterator[tuple[str, list[str]]]:
+        rows = self._db.execute(query, self._settings)
+        for name, of in groupby(rows, lambda row: row[0]):
+            yield name, [flight_id for _, flight_id in of]
+
+    def _one(self, query: str) -> tuple[int, ...]:
+        row: tuple[int, ...] = self._db.execute(query, self._settings).fetchone()
+        return row
+
+    def _transaction(self) -> _Transaction:
+        return _Transaction(self._db)
+
+
+TODO = """
+(:compare OR NOT EXISTS(SELECT 1 FROM flight f WHERE f.log = l.log AND f.identity = l.identity AND f.settings = :settings
+  AND f.status <> 'unavailable'))
+"""
+
+
+class _Transaction:
+    def __init__(self, db: sqlite3.Connection) -> None:
+        self._db = db
+
+    def __enter__(self) -> None:
+        self._db.execute("BEGIN")
+
+    def __exit__(self, kind: type[BaseException] | None, *_: Any) -> None:
+        self._db.execute("COMMIT" if kind is None else "ROLLBACK")
+
+
+def _rows(out: Place, path: str) -> list[tuple[Any, ...]]:
+    """What of a file's flights the catalog knows. Compaction bounds how many there are in a file."""
+    with out.fs.open_input_file(path) as source, pq.ParquetFile(source) as file:
+        version = (file.schema_arrow.metadata or {}).get(b"flagred.fleet", b"none").decode()
+        if version != VERSION:
+            help = f"this version of flagred reads and writes version {VERSION}: choose another dataset"
+            raise FleetError(f"`{out.shown(path)}` has version {version} of the tables", help)
+        table = file.read(columns=COLUMNS)
+    modified = table["modified_utc"].cast(pa.int64())
+    table = table.set_column(table.column_names.index("modified_utc"), "modified_utc", modified)
+    return list(zip(*(table[name].to_pylist() for name in COLUMNS)))

@@ -1,0 +1,79 @@
+"""Many small files of a month made into few."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from itertools import groupby
+
+import pyarrow as pa
+
+from .catalog import Catalog
+from .process import write
+from .repair import beside, read, repair
+from .schema import KINDS
+from .storage import Place, absolute, open_place
+from .takeover import take_over
+
+__all__ = ["compact"]
+
+MOST_BYTES = 64 << 20
+"""How large the steps of a file may become."""
+
+
+def compact(dataset: str) -> int:
+    """Joins the small files of each month. Gives how many files there are less.
+
+    Interrupted anywhere, it loses nothing: the flights that are then in two files lose one row in the next run.
+
+    Parameters
+    ----------
+    dataset
+        The dataset: a folder, or an address on object storage.
+    """
+    out = open_place(absolute(dataset))
+    take_over(out)
+    before = {info.path for info in out.files("flights", ".parquet")}
+    with Catalog("") as catalog:
+        repair(out, catalog, lambda log: False)
+        for part in _parts(out):
+            _join(out, part)
+        repair(out, catalog, lambda log: False)
+        return len(before) - len(catalog.files())
+
+
+def _parts(out: Place) -> Iterator[list[str]]:
+    """Files of ``flights`` of one month that go together into one."""
+    sizes = {info.path: info.size for info in out.files("steps", ".parquet")}
+    sizes = {beside(out, path, "flights", "steps"): size for path, size in sizes.items()}
+    paths = sorted(info.path for info in out.files("flights", ".parquet"))
+    for _, month in groupby(paths, lambda path: path.rpartition("/")[0]):
+        part: list[str] = []
+        size = 0
+        for path in month:
+            if part and size + sizes.get(path, 0) > MOST_BYTES:
+                yield part
+                part, size = [], 0
+            part.append(path)
+            size += sizes.get(path, 0)
+        yield part
+
+
+def _join(out: Place, part: list[str]) -> None:
+    if len(part) < 2:
+        return
+    # Names of joined files come first, and of two rows of a flight that in the first file stays.
+    name = "0-" + hashlib.sha256("\n".join(part).encode()).hexdigest()[:20]
+    joined = f"{part[0].rpartition('/')[0]}/{name}.parquet"
+    for kind in KINDS:
+        tables = []
+        for path in part:
+            try:
+                tables.append(read(out, beside(out, path, kind)))
+            except FileNotFoundError:
+                continue
+        if tables:
+            write(out, beside(out, joined, kind), pa.concat_tables(tables))
+    for kind in KINDS[::-1]:
+        for path in part:
+            out.delete(beside(out, path, kind))

@@ -1,0 +1,178 @@
+"""Dask as the engine: all cores here, or a cluster by the address of its scheduler. The one place that knows Dask."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from dataclasses import replace
+
+import dask
+from dask.system import CPU_COUNT
+from distributed import Client, Future, KilledWorker, LocalCluster, as_completed
+from distributed.comm import CommClosedError
+from distributed.system import MEMORY_LIMIT
+
+from .errors import FleetError
+from .process import Outcome, process
+from .shards import Job, Shard
+from .takeover import Superseded
+
+__all__ = ["cluster", "run"]
+
+MOST_WORKER_BYTES = 2 << 30
+"""The memory of a worker here; one that takes more is ended, and its log found."""
+TRIES = 2
+"""How often a shard may end its worker here before it is taken apart."""
+RETRIES = 2
+"""How often a shard is tried again whose files could not be written."""
+LONGEST_ALONE_S = 600.0
+"""How long a cluster may be without workers."""
+LONGEST_RESTART_S = 15.0
+"""How long a worker here may take to start again. Dask starts none that ends while it starts."""
+POLL_S = 0.05
+
+
+@contextmanager
+def cluster(scheduler: str | None, workers: int | None) -> Iterator[Client]:
+    """A client of a cluster that runs, or of one that is started here and ends with it."""
+    # A scheduler here counts how many workers a task has ended.
+    settings = {"distributed.scheduler.allowed-failures": TRIES - 1}
+    with dask.config.set(settings):
+        if scheduler is not None:
+            try:
+                client = Client(scheduler, timeout="10s", set_as_default=False)
+            except (OSError, ValueError) as error:
+                raise FleetError(f"no scheduler answers at `{scheduler}`: {error}", "start one with `dask scheduler`") from error
+            with client:
+                yield client
+            return
+        count = workers or CPU_COUNT
+        local = LocalCluster(
+            n_workers=count,
+            threads_per_worker=1,
+            memory_limit=min(MOST_WORKER_BYTES, MEMORY_LIMIT * 2 // (3 * count)),
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            silence_logs=logging.CRITICAL,
+        )
+        with local, Client(local, set_as_default=False) as client:
+            yield client
+
+
+def run(client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int], None]) -> Iterator[Outcome]:
+    """What became of each shard, as it becomes known. Only some are under way at a time, however many there are.
+
+    A shard that ends its worker again and again is halved when all others are done, and so on with the half that does, until one
+    log is left: that is written down as crashed. One shard is then under way alone, so that no other is blamed.
+
+    Parameters
+    ----------
+    wait
+        Is called while nothing new is known, with the number of workers.
+
+    Raises
+    ------
+    FleetError
+        The scheduler or all workers are lost, the dataset cannot be written, or another run writes to it.
+    """
+    suspects: deque[Shard] = deque()
+    for shard, result in _under_way(client, shards, job, wait):
+        if isinstance(result, Outcome):
+            yield result
+        else:
+            suspects.append(shard)
+    while suspects:
+        shard = suspects.popleft()
+        (_, result), *_ = _under_way(client, iter([shard]), job, wait)
+        if isinstance(result, Outcome):
+            yield result
+        elif shard.crashed:
+            raise FleetError(f"a log that is not even read ends its worker: {result}") from result
+        elif len(shard.logs) == 1:
+            suspects.appendleft(replace(shard, crashed=True))
+        else:
+            suspects.extendleft(shard.halves())
+
+
+def _under_way(
+    client: Client, shards: Iterator[Shard], job: Job, wait: Callable[[int], None]
+) -> Iterator[tuple[Shard, Outcome | BaseException]]:
+    """Each shard with its outcome, or with what stopped it."""
+    waiting: dict[Future, Shard] = {}
+    done = as_completed(loop=client.loop)
+
+    def submit() -> None:
+        most = 3 * max(1, sum(client.nthreads().values()))
+        while len(waiting) < most and (shard := next(shards, None)) is not None:
+            future = client.submit(process, shard, job, key=f"flagred-{shard.id}-{time.monotonic_ns()}", pure=False, retries=RETRIES)
+            waiting[future] = shard
+            done.add(future)
+
+    submit()
+    attendance = _Attendance(client)
+    while waiting:
+        finished: list[Future] = done.next_batch(block=False)
+        if not finished:
+            wait(attendance.count())
+            if client.status != "running":
+                raise _lost()
+            time.sleep(POLL_S)
+            continue
+        for future in finished:
+            if future.status in ("pending", "lost"):
+                # Its worker ended before the outcome was fetched: it is made again.
+                done.add(future)
+            else:
+                yield waiting.pop(future), _result(future)
+        submit()
+
+
+class _Attendance:
+    """How many workers there are. Those that are missing here are replaced; a cluster without any is given up."""
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+        self._seen_s = self._complete_s = time.monotonic()
+
+    def count(self) -> int:
+        workers = len(self._client.scheduler_info(n_workers=-1)["workers"])
+        here, now_s = self._client.cluster, time.monotonic()
+        wanted = len(here.worker_spec) if isinstance(here, LocalCluster) else workers
+        if workers:
+            self._seen_s = now_s
+        if workers >= wanted:
+            self._complete_s = now_s
+        if now_s - self._complete_s > LONGEST_RESTART_S:
+            self._complete_s = now_s
+            # Dask lets those go first that are missing.
+            here.scale(workers)
+            here.scale(wanted)
+        if now_s - self._seen_s > LONGEST_ALONE_S:
+            raise FleetError(f"there was no worker for {LONGEST_ALONE_S:.0f} s", "run the same command again with workers")
+        return workers
+
+
+def _result(future: Future) -> Outcome | BaseException:
+    if future.status not in ("finished", "error"):
+        raise _lost()
+    try:
+        outcome: Outcome = future.result()
+        return outcome
+    except (CancelledError, CommClosedError) as error:
+        raise _lost() from error
+    except Superseded:
+        raise
+    except OSError as error:
+        raise FleetError(f"the dataset cannot be written: {error}", "run the same command again when it can be") from error
+    except Exception as error:  # KilledWorker, or a fault of ours that one log brings out: the log is found.
+        if not isinstance(error, KilledWorker):
+            logging.getLogger(__name__).warning("a shard failed and is taken apart: %r", error)
+        return error
+
+
+def _lost() -> FleetError:
+    return FleetError("the scheduler was lost", "run the same command again: it does what is missing")

@@ -1,0 +1,110 @@
+"""The tables of a dataset. A column has its unit in the metadata of its field, and its meaning in ``MEANINGS``."""
+
+from __future__ import annotations
+
+import pyarrow as pa
+
+__all__ = ["FINDINGS", "FLIGHTS", "KINDS", "MEANINGS", "MONTH_UNKNOWN", "STEPS", "VERSION"]
+
+VERSION = "1"
+"""The version of the tables; it grows when a column changes its meaning or goes."""
+
+KINDS = ("steps", "findings", "flights")
+"""The tables in the order in which they are written: a flight counts when its row in ``flights`` is there."""
+
+MONTH_UNKNOWN = "__HIVE_DEFAULT_PARTITION__"
+"""How the folder of a month is called that is null, in all programs that read partitions."""
+
+MEANINGS: dict[str, str] = {}
+"""What the columns mean. A name means the same in all tables."""
+
+_TEXT, _REAL, _SMALL = pa.string(), pa.float64(), pa.float32()
+
+
+def _schema(*columns: tuple[str, pa.DataType, str, str]) -> pa.Schema:
+    """Columns by name, type, unit and meaning. Where the name ends in ``!`` no value is null."""
+    fields = []
+    for name, kind, unit, meaning in columns:
+        nullable, name = not name.endswith("!"), name.removesuffix("!")
+        fields.append(pa.field(name, kind, nullable, {"unit": unit} if unit else None))
+        assert MEANINGS.setdefault(name, meaning) == meaning
+    return pa.schema(fields, {"flagred.fleet": VERSION})
+
+
+FLIGHTS = _schema(
+    ("log!", _TEXT, "", "where the log is, without keys of the storage"),
+    ("bytes!", pa.int64(), "B", "its size"),
+    ("modified_utc", pa.timestamp("us", "UTC"), "", "when it was changed"),
+    ("identity!", _TEXT, "", "size and time of the change: another identity is another log"),
+    ("etag", _TEXT, "", "the tag of the object, where the storage has one"),
+    ("sha256", _TEXT, "", "the hash of its content, where contents are compared"),
+    ("deleted!", pa.bool_(), "", "the log was gone from its source when that was last listed"),
+    ("flight_id!", _TEXT, "", "tells flights apart in all tables"),
+    ("status!", _TEXT, "", "assessed, unreadable, unavailable (the storage did not give it), crashed (it ended its worker) or failed"),
+    ("error", _TEXT, "", "why it is not assessed"),
+    ("vehicle", _TEXT, "", "the vehicle: a folder vehicle=NAME of the log, else vehicle_id"),
+    ("vehicle_id", _TEXT, "", "what tells it from others"),
+    ("vehicle_id_source", _TEXT, "", "where vehicle_id came from"),
+    ("system_id", pa.int16(), "", "its MAVLink system id, which vehicles may share"),
+    ("boot_count", pa.int64(), "", "how often its autopilot booted"),
+    ("format", _TEXT, "", "the kind of log"),
+    ("kind", _TEXT, "", "the kind of vehicle"),
+    ("frame", _TEXT, "", "its frame"),
+    ("firmware", _TEXT, "", "its firmware with version"),
+    ("motors", pa.int16(), "", "the number of its motors"),
+    ("start_utc", pa.timestamp("us", "UTC"), "", "when the log begins"),
+    ("in_air_s", _REAL, "s", "time in the air"),
+    ("assessed_s", _REAL, "s", "judged time: in the air, with a known risk"),
+    ("filled_s", _REAL, "s", "time in the air with a risk interpolated where no rule applies"),
+    ("wind_m_s", _REAL, "m/s", "mean wind, as measured or else as the autopilot estimates it"),
+    ("verdict", _TEXT, "", "GOOD, WARN, FAIL or NA"),
+    ("reason", _TEXT, "", "why there is no verdict"),
+    ("findings", pa.int32(), "", "the number of findings"),
+    ("risk_mean_pct", _REAL, "%", "mean risk of judged time"),
+    ("risk_max_pct", _REAL, "%", "highest risk of judged time"),
+    ("risk_max_s", _REAL, "s", "when it was reached, on the clock of the log"),
+    ("elevated_risk_max_pct", _REAL, "%", "highest elevated risk"),
+    ("elevated_risk_max_s", _REAL, "s", "when it was reached, on the clock of the log"),
+    ("saturated_share", _REAL, "1", "share of motor commands in the air within 0.5 % of a limit"),
+    ("messages", pa.int64(), "", "messages that were read"),
+    ("skipped_bytes", pa.int64(), "B", "bytes that belong to no message"),
+    ("bad_messages", pa.int64(), "", "messages that were rejected as damaged"),
+    ("truncated", pa.bool_(), "", "the log ends inside a message"),
+    ("damage", _TEXT, "", "the first reason for which something was skipped"),
+    ("profile!", _TEXT, "", "the profile"),
+    ("settings!", _TEXT, "", "the hash of the profile and its rules, and the step: other settings are another answer"),
+    ("flagred!", _TEXT, "", "the version of flagred"),
+)
+
+FINDINGS = _schema(
+    ("flight_id!", _TEXT, "", "tells flights apart in all tables"),
+    ("vehicle", _TEXT, "", "the vehicle: a folder vehicle=NAME of the log, else vehicle_id"),
+    ("severity!", _TEXT, "", "INFO, WARN or FAIL"),
+    ("measure!", _TEXT, "", "risk, elevated_risk, or what a notice is about"),
+    ("from_s!", _REAL, "s", "when it began, on the clock of the log"),
+    ("raised_s!", _REAL, "s", "when the level was raised"),
+    ("failed_s", _REAL, "s", "when it became FAIL"),
+    ("to_s!", _REAL, "s", "when it ended"),
+    ("value_pct", _REAL, "%", "the worst value of the measure in that time"),
+    ("threshold_pct", _REAL, "%", "the threshold that it crossed"),
+    ("motor", pa.int16(), "", "the number of the motor at its limit, from 1"),
+    ("side", _TEXT, "", "the limit it was nearest to: lower or upper"),
+    ("margin_mean", _REAL, "1", "mean margin of that motor"),
+    ("margin_min", _REAL, "1", "smallest margin of that motor"),
+    ("rule", _TEXT, "", "the rule that raised the risk"),
+    ("cause", _TEXT, "", "the input of that rule and its term"),
+    ("text!", _TEXT, "", "the finding in words"),
+)
+
+STEPS = _schema(
+    ("flight_id!", _TEXT, "", "tells flights apart in all tables"),
+    ("t_s!", _REAL, "s", "time on the clock of the log"),
+    ("risk_pct", _SMALL, "%", "risk"),
+    ("elevated_risk_pct", _SMALL, "%", "elevated risk"),
+    ("coverage", _SMALL, "1", "how far the rules cover the inputs"),
+    ("filled", pa.bool_(), "", "interpolated where no rule applies"),
+    ("dominant_rule", pa.int16(), "", "the rule that fires most, from 0"),
+    ("margin", _SMALL, "1", "the margin of the motors"),
+    ("spread", _SMALL, "1", "the spread of the motors"),
+    ("judged!", pa.bool_(), "", "whether the step counts for the verdict"),
+)

@@ -1,0 +1,178 @@
+"""Where logs and datasets are: folders and object storage, all by pyarrow's file systems."""
+
+from __future__ import annotations
+
+import fnmatch
+import os
+import posixpath
+import re
+import uuid
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.fs as pafs
+
+from .errors import FleetError
+
+__all__ = ["LOGS", "Log", "Place", "absolute", "matcher", "open_place"]
+
+LOGS = ("*.bin", "*.log", "*.ulg", "*.tlog", "*.csv", "*.bin.gz", "*.log.gz", "*.ulg.gz", "*.tlog.gz", "*.csv.gz")
+"""The names of logs, in whatever case, where nothing else is asked for."""
+
+
+@dataclass(frozen=True)
+class Log:
+    """A log as its folder lists it."""
+
+    path: str
+    """Its path in the file system."""
+    bytes: int
+    modified_us: int
+    """When it was changed, in microseconds since 1970."""
+    sha256: str | None = None
+    """The hash of its content when it was read last, where contents are compared."""
+
+    @property
+    def identity(self) -> str:
+        """What changes when the log does."""
+        return f"{self.bytes}-{self.modified_us}"
+
+
+@dataclass(frozen=True)
+class Place:
+    """A folder, here or on object storage."""
+
+    uri: str
+    fs: pafs.FileSystem
+    root: str
+    """The path of the folder in its file system."""
+    prefix: str
+    """What stands before a path where it is shown, such as ``s3://``."""
+
+    @property
+    def is_local(self) -> bool:
+        return isinstance(self.fs, pafs.LocalFileSystem)
+
+    def shown(self, path: str) -> str:
+        """A path as a person writes it, without keys and options of the storage."""
+        return self.prefix + path
+
+    def file(self, *parts: str) -> str:
+        """The path of a file in it."""
+        return posixpath.join(self.root, *parts)
+
+    def logs(self, recursive: bool, include: Iterable[str]) -> Iterator[Log]:
+        """The logs in it. The folders directly in it are listed one after the other, to bound the memory."""
+        found = self.fs.get_file_info(self.root)
+        if found.type == pafs.FileType.File:
+            yield _log(found)
+            return
+        if found.type == pafs.FileType.NotFound:
+            help = "the folder, or the keys before the logs, must exist"
+            raise FleetError(f"there is no `{self.shown(self.root)}`", help)
+        wanted = matcher(include)
+        # The answer is let go of piece by piece.
+        folders = []
+        for info in self.fs.get_file_info(pafs.FileSelector(self.root)):
+            if info.type == pafs.FileType.Directory:
+                folders.append(info.path)
+            elif wanted(info.path):
+                yield _log(info)
+        for folder in folders if recursive else ():
+            for info in self.fs.get_file_info(pafs.FileSelector(folder, recursive=True)):
+                if info.is_file and wanted(info.path):
+                    yield _log(info)
+
+    def files(self, folder: str, suffix: str) -> Iterator[pafs.FileInfo]:
+        """The files in a folder and below whose names end so; none where there is no such folder."""
+        selector = pafs.FileSelector(self.file(folder), allow_not_found=True, recursive=True)
+        return (info for info in self.fs.get_file_info(selector) if info.is_file and info.path.endswith(suffix))
+
+    def read(self, path: str) -> tuple[bytes, str | None]:
+        """The content of a file, and its ETag where the storage has one."""
+        with self.fs.open_input_file(path) as file:
+            metadata = {} if self.is_local else file.metadata() or {}
+            content: bytes = file.read()
+        tag = metadata.get("ETag")
+        return content, None if tag is None else tag.decode().strip('"')
+
+    def write(self, path: str, content: pa.Buffer | bytes) -> None:
+        """Writes a file that appears at once and whole: objects do, and a local file gets its name when it is on the disk."""
+        if not self.is_local:
+            with self.fs.open_output_stream(path) as stream:
+                stream.write(content)
+            return
+        folder, name = os.path.split(path)
+        os.makedirs(folder, exist_ok=True)
+        unfinished = f"{folder}/.{name}.{uuid.uuid4().hex}{UNFINISHED}"
+        with open(unfinished, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(unfinished, path)
+        entry = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(entry)
+        finally:
+            os.close(entry)
+
+    def delete(self, path: str) -> None:
+        """Deletes a file; one that is gone is no error."""
+        try:
+            self.fs.delete_file(path)
+        except FileNotFoundError:
+            pass
+
+
+UNFINISHED = ".unfinished"
+"""How the name of a local file ends that is being written."""
+
+
+def _log(info: pafs.FileInfo) -> Log:
+    return Log(info.path, info.size, (info.mtime_ns or 0) // 1000)
+
+
+def absolute(uri: str) -> str:
+    """The place as a worker understands it, whose working folder is another one."""
+    return uri if "://" in uri else str(Path(uri).resolve())
+
+
+@lru_cache(maxsize=64)
+def open_place(uri: str) -> Place:
+    """The place that a path or an address names: ``s3://``, ``gs://``, ``az://``, ``abfs://``, ``file://`` or a path.
+
+    Raises
+    ------
+    FleetError
+        There is no such kind of storage, or it cannot be opened.
+    """
+    if "://" not in uri:
+        return Place(uri, pafs.LocalFileSystem(), absolute(uri), "")
+    scheme = uri.partition("://")[0]
+    try:
+        if scheme == "az":
+            fs, root = _azure(uri)
+        else:
+            fs, root = pafs.FileSystem.from_uri(uri)
+    except (OSError, ValueError, KeyError, pa.ArrowException) as error:
+        help = "places are folders and `s3://`, `gs://`, `az://`, `abfs://` addresses"
+        raise FleetError(f"`{scheme}://` storage cannot be opened: {error}", help) from error
+    prefix = "" if isinstance(fs, pafs.LocalFileSystem) else f"{scheme}://"
+    return Place(uri, fs, root.rstrip("/"), prefix)
+
+
+def _azure(uri: str) -> tuple[pafs.FileSystem, str]:
+    """``az://container/path`` of the account that the usual variables of the environment name."""
+    account = os.environ["AZURE_STORAGE_ACCOUNT"]
+    fs = pafs.AzureFileSystem(account_name=account, account_key=os.environ.get("AZURE_STORAGE_KEY"))
+    return fs, uri.removeprefix("az://")
+
+
+def matcher(include: Iterable[str]) -> Callable[[str], bool]:
+    """Whether a path ends in a name that one of the patterns fits, in whatever case."""
+    patterns = "|".join(fnmatch.translate(pattern) for pattern in include)
+    compiled = re.compile(patterns, re.IGNORECASE)
+    return lambda path: compiled.match(posixpath.basename(path)) is not None

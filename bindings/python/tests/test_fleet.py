@@ -1,0 +1,394 @@
+"""Fleets: every log is one row, whatever happens in between."""
+
+import os
+import shutil
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("distributed", reason="Dask is not installed: `pip install flagred[fleet]`")
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+from distributed.core import Status
+
+import flagred
+from flagred import fleet
+from flagred.fleet import engine, run, takeover
+from flagred.fleet.__main__ import main
+from flagred.fleet.catalog import Catalog
+from flagred.fleet.shards import shards
+from flagred.fleet.storage import absolute, matcher, open_place
+
+
+def csv(number: int) -> str:
+    head = f"# vehicle_id: v{number % 3}\n# utc_at_zero_s: {1_790_000_000 + number * 900_000}\n# firmware: test 1.{number % 2}\n"
+    rows = (f"{i / 25},{0.4 + number / 100},0.4,0.41,0.41,1\n" for i in range(500))
+    return head + "t_s,motor1,motor2,motor3,motor4,in_air\n" + "".join(rows)
+
+
+@pytest.fixture
+def logs(tmp_path: Path, steady: Path) -> Path:
+    """Seven logs that are flights, in two folders, and two that are not."""
+    folder = tmp_path / "logs"
+    for number in range(6):
+        file = folder / f"vehicle=v{number}" / f"{number}.csv"
+        file.parent.mkdir(parents=True)
+        file.write_text(csv(number))
+    shutil.copy(steady, folder / "steady.BIN")
+    (folder / "noise.bin").write_bytes(bytes(range(7, 200)) * 50)
+    (folder / "empty.ulg").write_bytes(b"")
+    (folder / "notes.txt").write_text("no log")
+    return folder
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Shards are processed in this process: most tests need no cluster."""
+
+    def work(planned, done, told, scheduler, workers):
+        for shard in planned.shards:
+            done = run._sum(done, fleet.process(shard, planned.job))
+        return done
+
+    monkeypatch.setattr(run, "_work", work)
+    monkeypatch.setattr(run, "SHARD_BYTES", 100_000)
+
+
+def table(out: Path, kind: str) -> pa.Table:
+    files = sorted((out / kind).rglob("*.parquet"))
+    return pa.concat_tables(pq.ParquetFile(file).read() for file in files)
+
+
+def flights(out: Path) -> dict[str, dict]:
+    rows = table(out, "flights").to_pylist()
+    assert len({row["log"] for row in rows}) == len(rows), "a log has two rows"
+    return {Path(row["log"]).name: row for row in rows}
+
+
+def content(out: Path) -> list[list]:
+    """All rows of all tables, in an order of their own."""
+    return [sorted(map(str, table(out, kind).to_pylist())) for kind in ("flights", "steps")]
+
+
+def test_a_folder_of_logs(logs, tmp_path, here):
+    out = tmp_path / "out"
+    done = fleet.assess([str(logs)], str(out), recursive=True)
+    assert (done.listed, done.assessed, done.not_assessed) == (9, 9, 2)
+    rows = flights(out)
+    assert len(rows) == 9
+    assert {name for name, row in rows.items() if row["status"] == "unreadable"} == {"noise.bin", "empty.ulg"}
+    assert rows["noise.bin"]["error"] == "is an unknown binary file, not a flight log"
+    assert rows["noise.bin"]["verdict"] is None
+    one = flagred.assess(logs / "steady.BIN", step_s=1.0)
+    row = rows["steady.BIN"]
+    assert (row["verdict"], row["risk_mean_pct"], row["frame"]) == (one.verdict, one.summary.risk_mean_pct, "QUAD/X")
+    assert row["bytes"] == (logs / "steady.BIN").stat().st_size and row["boot_count"] == 1
+    assert (rows["4.csv"]["vehicle"], rows["4.csv"]["vehicle_id"]) == ("v4", "v1")
+    assert rows["4.csv"]["start_utc"].timestamp() == 1_793_600_000
+    steps = table(out, "steps").filter(pa.compute.field("flight_id") == row["flight_id"])
+    assert len(steps) == len(one.steps["t_s"])
+    assert steps["risk_pct"].to_pylist() == pa.table(one.steps)["risk"].cast(pa.float32()).to_pylist()
+
+
+def test_months_and_units(logs, tmp_path, here):
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out), recursive=True)
+    months = {path.parent.name for path in (out / "flights").rglob("*.parquet")}
+    assert {"month=2026-09", "month=2026-10", "month=__HIVE_DEFAULT_PARTITION__"} < months
+    file = next((out / "flights").rglob("*.parquet"))
+    schema = pq.read_schema(file)
+    assert schema.metadata[b"flagred.fleet"] == fleet.VERSION.encode()
+    assert schema.field("in_air_s").metadata[b"unit"] == b"s"
+
+
+def test_only_what_is_missing_or_changed(logs, tmp_path, here):
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out))
+    assert len(flights(out)) == 3
+    assert fleet.assess([str(logs)], str(out), recursive=True).assessed == 6
+    before = flights(out)
+    assert fleet.assess([str(logs)], str(out), recursive=True).assessed == 0
+    assert flights(out) == before
+    changed = logs / "vehicle=v1" / "1.csv"
+    changed.write_text(csv(40))
+    assert fleet.assess([str(logs)], str(out), recursive=True).assessed == 1
+    after = flights(out)
+    assert after["1.csv"]["risk_mean_pct"] != before["1.csv"]["risk_mean_pct"]
+    assert {name: row for name, row in after.items() if name != "1.csv"} == {
+        name: row for name, row in before.items() if name != "1.csv"
+    }
+    assert set(table(out, "steps")["flight_id"].to_pylist()) == {
+        row["flight_id"] for row in after.values() if row["status"] == "assessed"
+    }
+
+
+def test_a_log_of_the_same_content(logs, tmp_path, here):
+    out = tmp_path / "out"
+    assert fleet.assess([str(logs)], str(out), compare_content=True).unchanged == 0
+    os.utime(logs / "steady.BIN", (0, 0))
+    done = fleet.assess([str(logs)], str(out), compare_content=True)
+    assert (done.assessed, done.unchanged) == (3, 3)
+    (logs / "steady.BIN").write_bytes((logs / "steady.BIN").read_bytes()[:-1000])
+    os.utime(logs / "steady.BIN", (0, 0))
+    assert fleet.assess([str(logs)], str(out), compare_content=True).unchanged == 2
+    assert len(flights(out)) == 3
+
+
+def test_other_settings_are_another_answer(logs, tmp_path, here):
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out))
+    assert fleet.assess([str(logs)], str(out), profile="flagred-paper").assessed == 3
+    assert {row["profile"] for row in flights(out).values()} == {"flagred-paper"}
+    with pytest.raises(fleet.FleetError, match="a step of 0 s is none"):
+        fleet.assess([str(logs)], str(out), step_s=0)
+
+
+def test_deleted_logs_are_kept_and_marked(logs, tmp_path, here):
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out), recursive=True)
+    away = tmp_path / "away.csv"
+    (logs / "vehicle=v2" / "2.csv").rename(away)
+    # What is not listed this time is not missing.
+    fleet.assess([str(logs)], str(out))
+    assert not any(row["deleted"] for row in flights(out).values())
+    fleet.assess([str(logs)], str(out), recursive=True)
+    assert [name for name, row in flights(out).items() if row["deleted"]] == ["2.csv"]
+    away.rename(logs / "vehicle=v2" / "2.csv")
+    assert fleet.assess([str(logs)], str(out), recursive=True).assessed == 0
+    assert not any(row["deleted"] for row in flights(out).values())
+
+
+def test_nothing_is_written_in_a_dry_run(logs, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["assess", str(logs), "--out", str(out), "--dry-run"]) == 0
+    assert "3 logs" in capsys.readouterr().err and not out.exists()
+
+
+class Killed(BaseException):
+    """What ends a process."""
+
+
+def test_every_write_can_be_the_last(logs, tmp_path, here, monkeypatch):
+    """A run that is killed at its nth write, and then one that is not, give the dataset of an undisturbed run."""
+    whole = tmp_path / "whole"
+    fleet.assess([str(logs)], str(whole), recursive=True)
+    original = fleet.storage.Place.write
+    for last in range(60):
+        out = tmp_path / f"out{last}"
+        left = last
+
+        def write(place, path, data):
+            nonlocal left
+            if left == 0:
+                raise Killed
+            left -= 1
+            original(place, path, data)
+
+        monkeypatch.setattr(fleet.storage.Place, "write", write)
+        try:
+            fleet.assess([str(logs)], str(out), recursive=True)
+        except Killed:
+            monkeypatch.setattr(fleet.storage.Place, "write", original)
+            fleet.assess([str(logs)], str(out), recursive=True)
+            assert content(out) == content(whole), f"killed at write {last}"
+        else:
+            break
+    assert last > 10, "the run ended before it was killed"
+
+
+def change_some(logs: Path) -> None:
+    for number in (1, 3, 4):
+        (logs / f"vehicle=v{number}" / f"{number}.csv").write_text(csv(number + 30))
+    (logs / "vehicle=v5" / "5.csv").unlink()
+
+
+def test_what_replaces_rows_can_be_interrupted(logs, tmp_path, here, monkeypatch):
+    """As above, with changed and deleted logs and small files joined, killed at writes and at deletions."""
+    first = tmp_path / "first"
+    fleet.assess([str(logs)], str(first), recursive=True)
+    fleet.compact(str(first))
+    change_some(logs)
+    whole = tmp_path / "whole"
+    shutil.copytree(first, whole)
+    fleet.assess([str(logs)], str(whole), recursive=True)
+    fleet.compact(str(whole))
+    original = {name: getattr(fleet.storage.Place, name) for name in ("write", "delete")}
+    for last in range(100):
+        out = tmp_path / "out"
+        shutil.rmtree(out, ignore_errors=True)
+        shutil.copytree(first, out)
+        left = last
+
+        def counted(name):
+            def call(*arguments):
+                nonlocal left
+                if left == 0:
+                    raise Killed
+                left -= 1
+                original[name](*arguments)
+
+            return call
+
+        for name in original:
+            monkeypatch.setattr(fleet.storage.Place, name, counted(name))
+        try:
+            fleet.assess([str(logs)], str(out), recursive=True)
+            fleet.compact(str(out))
+            was_killed = False
+        except Killed:
+            was_killed = True
+        for name, function in original.items():
+            monkeypatch.setattr(fleet.storage.Place, name, function)
+        fleet.assess([str(logs)], str(out), recursive=True)
+        assert content(out) == content(whole), f"killed at change {last}"
+        if not was_killed:
+            break
+    assert last > 10, "the run ended before it was killed"
+
+
+def test_a_worker_of_a_run_before_commits_nothing(logs, tmp_path):
+    out = tmp_path / "out"
+    place = open_place(str(out))
+    job = fleet.Job.of(str(out), flagred.Profile(), 1.0, False).of_run(takeover.take_over(place))
+    listed = [(str(logs), log) for log in open_place(str(logs)).logs(False, fleet.storage.LOGS)]
+    shard, *rest = shards(listed, 1 << 30)
+    assert not rest and len(shard.logs) == 3
+    takeover.take_over(place)
+    with pytest.raises(takeover.Superseded, match="another run writes"):
+        fleet.process(shard, job)
+    assert not (out / "flights").exists()
+
+
+def test_two_rows_of_a_log_become_one(logs, tmp_path, here):
+    """As a worker leaves them that commits while the next run begins."""
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out), recursive=True)
+    before = content(out)
+    for kind in ("flights", "steps"):
+        for file in list((out / kind).rglob("*.parquet")):
+            shutil.copy(file, file.with_name("late.parquet"))
+    assert len(table(out, "flights")) > 9
+    fleet.assess([str(logs)], str(out), recursive=True)
+    assert content(out) == before
+
+
+def test_a_vanished_log_is_no_row_and_a_busy_storage_is_asked_again(logs, tmp_path, monkeypatch):
+    out = tmp_path / "out"
+    place = open_place(str(out))
+    job = fleet.Job.of(str(out), flagred.Profile(), 1.0, True).of_run(takeover.take_over(place))
+    listed = sorted(open_place(str(logs)).logs(True, ["*.csv"]), key=lambda log: log.path)
+    Path(listed[0].path).unlink()
+    monkeypatch.setattr(sys.modules["flagred.fleet.process"], "TRIES_S", (0.0, 0.0))
+    original, asked = fleet.storage.Place.read, []
+
+    def read(place, path):
+        if path.endswith(("1.csv", "2.csv")):
+            asked.append(path)
+            if path.endswith("2.csv") or len(asked) < 3:
+                raise OSError("503 slow down")
+        return original(place, path)
+
+    monkeypatch.setattr(fleet.storage.Place, "read", read)
+    outcome = fleet.process(fleet.Shard(str(logs), tuple(listed)), job)
+    assert (outcome.logs, outcome.not_assessed, outcome.unchanged) == (6, 1, 1)
+    rows = flights(out)
+    assert len(rows) == 5 and rows["1.csv"]["status"] == "assessed"
+    assert (rows["2.csv"]["status"], rows["2.csv"]["error"]) == ("unavailable", "503 slow down")
+    # The next run asks for it again.
+    with Catalog(job.settings) as catalog:
+        source = open_place(str(logs))
+        catalog.take_in(source, source.logs(True, ["*.csv"]))
+        catalog.load(place)
+        assert [Path(log.path).name for _, log in catalog.todo()] == ["2.csv"]
+
+
+def test_a_dataset_of_another_version_is_refused(logs, tmp_path, here):
+    out = tmp_path / "out"
+    fleet.assess([str(logs)], str(out))
+    file = next((out / "flights").rglob("*.parquet"))
+    old = pq.ParquetFile(file).read().replace_schema_metadata({"flagred.fleet": "0"})
+    pq.write_table(old, file)
+    with pytest.raises(fleet.FleetError, match="has version 0 of the tables"):
+        fleet.assess([str(logs)], str(out))
+
+
+def test_shards_are_cut_by_size_and_source():
+    logs = [("a", fleet.Log(str(i), 40, 0)) for i in range(5)] + [("b", fleet.Log("x", 500, 0)), ("b", fleet.Log("y", 1, 0))]
+    cut = [(shard.source, len(shard.logs), shard.bytes) for shard in shards(logs, 100)]
+    assert cut == [("a", 2, 80), ("a", 2, 80), ("a", 1, 40), ("b", 1, 500), ("b", 1, 1)]
+    one = next(shards(logs, 200))
+    assert one.id == next(shards(logs, 200)).id and one.id != one.halves()[0].id
+    assert one.halves()[0].logs + one.halves()[1].logs == one.logs
+
+
+def test_names_of_logs():
+    wanted = matcher(fleet.storage.LOGS)
+    assert wanted("/a/b/FLIGHT.BIN") and wanted("x.ulg.gz") and not wanted("a.bin/readme.md")
+    assert absolute("s3://bucket/logs") == "s3://bucket/logs" and absolute("logs").startswith("/")
+    with pytest.raises(fleet.FleetError, match="cannot be opened"):
+        open_place("ftp://host/logs")
+
+
+def test_the_command_line_on_all_cores(logs, tmp_path, capsys):
+    out = tmp_path / "out"
+    arguments = ["assess", str(logs), "--recursive", "--out", str(out), "--workers", "2"]
+    assert main(arguments) == 0
+    said = capsys.readouterr()
+    assert said.out == "9 logs read, 0 of them as before, 2 not assessed\n" and "dashboard: http://127.0.0.1" in said.err
+    assert len(flights(out)) == 9
+    assert main(arguments) == 0
+    assert capsys.readouterr().out == "0 logs read, 0 of them as before, 0 not assessed\n"
+    assert main(["assess", str(tmp_path / "none"), "--out", str(out)]) == 2
+    assert "there is no" in capsys.readouterr().err
+
+
+def test_a_log_that_ends_its_worker_is_found(logs, tmp_path, monkeypatch):
+    """Workers have a `flagred.assess` that ends them at one of the logs, as running out of memory would."""
+    plugin = tmp_path / "plugin"
+    plugin.mkdir()
+    (plugin / "sitecustomize.py").write_text(
+        "import os, flagred\n"
+        "import flagred.fleet.rows as rows\n"
+        "assess = rows.assess\n"
+        "def lethal(log, *arguments, **named):\n"
+        "    if str(log).endswith('3.csv'):\n"
+        "        os.kill(os.getpid(), 9)\n"
+        "    return assess(log, *arguments, **named)\n"
+        "rows.assess = lethal\n"
+    )
+    path = os.pathsep.join(filter(None, [str(plugin), os.environ.get("PYTHONPATH")]))
+    monkeypatch.setenv("PYTHONPATH", path)
+    out = tmp_path / "out"
+    done = fleet.assess([str(logs)], str(out), recursive=True, workers=2)
+    assert (done.assessed, done.not_assessed) == (9, 3)
+    rows = flights(out)
+    assert {name: row["status"] for name, row in rows.items() if row["status"] not in ("assessed", "unreadable")} == {"3.csv": "crashed"}
+    assert len(rows) == 9
+    monkeypatch.delenv("PYTHONPATH")
+    assert fleet.assess([str(logs)], str(out), recursive=True, workers=2).assessed == 0
+
+
+def test_a_worker_that_dask_gave_up_is_replaced(monkeypatch):
+    monkeypatch.setattr(engine, "LONGEST_RESTART_S", 1.0)
+    with engine.cluster(None, 1) as client:
+        client.wait_for_workers(1)
+        (nanny,) = client.cluster.workers.values()
+        # As where a worker ends while it starts.
+        nanny.status = Status.starting
+        os.kill(nanny.pid, 9)
+        attendance = engine._Attendance(client)
+
+        def wait_for(workers: int) -> None:
+            end_s = time.monotonic() + 60
+            while attendance.count() != workers:
+                assert time.monotonic() < end_s, f"there are not {workers} workers"
+                time.sleep(0.05)
+
+        wait_for(0)
+        wait_for(1)
+        monkeypatch.setattr(engine, "LONGEST_ALONE_S", -1.0)
+        with pytest.raises(fleet.FleetError, match="there was no worker"):
+            attendance.count()

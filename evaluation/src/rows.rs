@@ -1,0 +1,164 @@
+//! Whole flights under evaluation: a table with a row for each.
+
+use flagred::{attitude::CRITICAL_ERROR_DEG, evaluation::Baseline, source::Source};
+
+use crate::{
+    estimators::Estimators,
+    recipe::{Recipe, recipe},
+    scores::Case,
+};
+
+/// The column with the attitude error of a flight, which a table must have.
+pub const ERROR: &str = "att_rmse_deg";
+
+/// A table with a row for each flight.
+pub struct Rows<'a, E> {
+    /// The names of its columns.
+    pub columns: Vec<&'a str>,
+    /// How many rows it has.
+    pub len: usize,
+    /// The number in a row and column, or what is wrong with it.
+    pub number: &'a dyn Fn(usize, usize) -> Result<f64, E>,
+    /// The text in a row and column.
+    pub text: &'a dyn Fn(usize, usize) -> &'a str,
+}
+
+impl<E> Rows<'_, E> {
+    fn column(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| *column == name)
+    }
+
+    fn named_number(&self, row: usize, name: &str) -> Result<Option<f64>, E> {
+        let column = self.column(name);
+        column.map(|column| (self.number)(row, column)).transpose()
+    }
+}
+
+/// Where a table has the value of an input.
+enum Column {
+    /// In a column of its own.
+    Own(usize),
+    /// In columns that it can be computed from.
+    Of(Recipe),
+}
+
+impl Column {
+    /// Under one of the names, or from columns that a table of flights has.
+    fn of<E>(table: &Rows<'_, E>, names: &[&str], source: &Source) -> Option<Column> {
+        let mut own = names.iter().filter_map(|name| table.column(name));
+        if let Some(column) = own.next() {
+            return Some(Column::Own(column));
+        }
+        let recipe = recipe(source)?;
+        let mut columns = recipe.columns.iter();
+        let has_all = columns.all(|name| table.column(name).is_some());
+        has_all.then_some(Column::Of(recipe))
+    }
+
+    fn value<E>(&self, table: &Rows<'_, E>, row: usize) -> Result<f64, E> {
+        match self {
+            Column::Own(column) => (table.number)(row, *column),
+            Column::Of(recipe) => recipe.value(|name| table.named_number(row, name)),
+        }
+    }
+}
+
+/// The rows of a table as cases, each a flight of its own unless a column `file` says which belong together; and what is
+/// to be said about it.
+///
+/// A row is critical where its attitude error (`att_rmse_deg`) is 5 degrees or more, or it crashed.
+///
+/// # Errors
+/// A cell that is not the number it should be.
+pub fn cases<E>(
+    table: &Rows<'_, E>,
+    estimators: &Estimators,
+) -> Result<(Vec<Case>, Vec<String>), E> {
+    let crashed = table.column("crashed");
+    let vehicle = table.column("vehicle").or_else(|| table.column("frame"));
+    let (kind, file) = (table.column("kind"), table.column("file"));
+    let mut notes = Vec::new();
+    let profiles: Vec<Option<Vec<Column>>> = estimators
+        .profiles
+        .iter()
+        .map(|named| {
+            let inputs = named.estimator.profile().inputs.iter();
+            let columns = inputs.map(|input| {
+                let column = Column::of(table, &[&input.name], &input.source);
+                if column.is_none() {
+                    notes.push(format!(
+                        "profile `{}` has no risk: the table has no column for its input `{}`",
+                        named.name, input.name
+                    ));
+                }
+                column
+            });
+            columns.collect()
+        })
+        .collect();
+    let baselines: Vec<(&Baseline, Option<Column>)> = estimators
+        .baselines
+        .iter()
+        .map(|baseline| {
+            // What `flagred dataset` calls the mean margin, and what a table of flights calls the wind.
+            let other = match baseline.name {
+                "margin_mean" => "margin",
+                "true_wind" => "wind_mean",
+                name => name,
+            };
+            let names: &[&str] = match baseline.name {
+                // On the full range it is something else.
+                "margin_mean" => &[other],
+                name => &[name, other],
+            };
+            let column = match baseline.per_motor {
+                // A row says nothing of single motors.
+                Some(_) => None,
+                None => Column::of(table, names, &baseline.source),
+            };
+            (baseline, column)
+        })
+        .collect();
+
+    let mut groups: Vec<&str> = Vec::new();
+    let mut cases = Vec::with_capacity(table.len);
+    for row in 0..table.len {
+        let read = |column: &Column| column.value(table, row);
+        let text = |column: Option<usize>| column.map_or("", |column| (table.text)(row, column));
+        let error_deg = table.named_number(row, ERROR)?.unwrap_or(f64::NAN);
+        let mut scores = Vec::new();
+        for (named, columns) in estimators.profiles.iter().zip(&profiles) {
+            let inputs = columns
+                .iter()
+                .flatten()
+                .map(read)
+                .collect::<Result<Vec<f64>, E>>()?;
+            let risk = columns.as_ref().and_then(|_| named.estimator.at(&inputs));
+            scores.push(risk.map_or(f64::NAN, |estimate| estimate.risk_pct));
+        }
+        for (baseline, column) in &baselines {
+            let value = column.as_ref().map(read).transpose()?;
+            scores.push(value.map_or(f64::NAN, |value| baseline.score(value)));
+        }
+        let group = match text(file) {
+            "" => row,
+            // Rows of a file stand together.
+            file if groups.last() == Some(&file) => groups.len() - 1,
+            file => {
+                groups.push(file);
+                groups.len() - 1
+            }
+        };
+        cases.push(Case {
+            group: u32::try_from(group).unwrap_or(u32::MAX),
+            t_s: None,
+            vehicle: text(vehicle).to_owned(),
+            kind: text(kind).to_owned(),
+            is_critical: error_deg >= CRITICAL_ERROR_DEG || text(crashed) == "1",
+            is_quiet: false,
+            is_onset: false,
+            scores,
+        });
+    }
+    Ok((cases, notes))
+}

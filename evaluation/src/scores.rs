@@ -1,0 +1,179 @@
+//! How well each estimator ranks what became critical, over everything, by vehicle and by kind.
+
+use std::collections::BTreeMap;
+
+use flagred::evaluation::{
+    Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
+};
+use rayon::prelude::*;
+
+/// The kind of flight that is reported apart: its attitude errors are real, but commanded.
+pub(crate) const APART: &str = "manoeuvre";
+
+/// How often whole flights are drawn for an interval, and from which seed.
+pub(crate) const RESAMPLES: usize = 1000;
+pub(crate) const SEED: u64 = 1;
+
+/// Steps along the curve that is drawn.
+const ROC_STEPS: u32 = 200;
+
+/// A moment or a flight that was predicted.
+pub struct Case {
+    /// The index of its flight.
+    pub group: u32,
+    /// Its time on the flight's clock; `None` of a whole flight.
+    pub t_s: Option<f64>,
+    /// What flew.
+    pub vehicle: String,
+    /// What the flight was about.
+    pub kind: String,
+    /// Whether it became critical.
+    pub is_critical: bool,
+    /// No critical error in the 5 s before.
+    pub is_quiet: bool,
+    /// No critical error in the 10 s before.
+    pub is_onset: bool,
+    /// For each estimator; NaN is unknown.
+    pub scores: Vec<f64>,
+}
+
+/// What an estimator comes to.
+pub(crate) struct Scores {
+    /// The cases in which it said something.
+    pub(crate) cases: usize,
+    /// Those in which it did not.
+    pub(crate) unknown: usize,
+    pub(crate) critical: usize,
+    /// `None` where all cases are critical, or none is.
+    pub(crate) areas: Option<Areas>,
+    pub(crate) intervals: Option<Intervals>,
+    /// Within single flights; `None` where none has critical cases and others.
+    pub(crate) within: Option<WithinGroups>,
+}
+
+impl Scores {
+    /// Why there is no area; `cases` is what the cases are: `steps`.
+    pub(crate) fn no_area(&self, cases: &str) -> Option<String> {
+        let case = cases.trim_end_matches('s');
+        match (self.areas, self.cases, self.critical) {
+            (Some(_), ..) => None,
+            (None, 0, _) if self.unknown == 0 => Some(format!("no {case}")),
+            (None, 0, _) => Some("unknown".to_owned()),
+            (None, _, 0) => Some(format!("no critical {case}")),
+            (None, ..) => Some(format!("only critical {cases}")),
+        }
+    }
+}
+
+/// An estimator under evaluation.
+pub(crate) struct Evaluated {
+    pub(crate) name: String,
+    pub(crate) description: String,
+    /// Over all kinds but the one apart.
+    pub(crate) all: Scores,
+    /// Over the quiet steps of those, and over the onsets.
+    pub(crate) quiet: Scores,
+    pub(crate) onset: Scores,
+    pub(crate) by_vehicle: Vec<(String, Scores)>,
+    pub(crate) by_kind: Vec<(String, Scores)>,
+    /// Of risks in %; other scores have no scale.
+    pub(crate) reliability: Option<[Band; 10]>,
+    pub(crate) roc: Vec<RocPoint>,
+}
+
+/// Scores every estimator; the first `risks` of them give risks in %. `done` is called after each.
+pub(crate) fn score<'a>(
+    names: impl Iterator<Item = (&'a str, &'a str)>,
+    risks: usize,
+    cases: &[Case],
+    done: &(dyn Fn() + Sync),
+) -> Vec<Evaluated> {
+    let names: Vec<(&str, &str)> = names.collect();
+    let all = names.into_par_iter().enumerate().map(|(i, name)| {
+        let evaluated = evaluated(i, name, i < risks, cases);
+        done();
+        evaluated
+    });
+    all.collect()
+}
+
+fn evaluated(
+    i: usize,
+    (name, description): (&str, &str),
+    is_risk: bool,
+    cases: &[Case],
+) -> Evaluated {
+    let main = || cases.iter().filter(|case| case.kind != APART);
+    let ranking = Ranking::new(predictions(main(), i));
+    let part = |is_in: fn(&Case) -> bool| {
+        let cases = || main().filter(|case| is_in(case));
+        let ranking = Ranking::new(predictions(cases(), i));
+        scores(cases().count(), &ranking, RESAMPLES)
+    };
+    Evaluated {
+        name: name.to_owned(),
+        description: description.to_owned(),
+        all: scores(main().count(), &ranking, RESAMPLES),
+        quiet: part(|case| case.is_quiet),
+        onset: part(|case| case.is_onset),
+        by_vehicle: grouped(main(), |case| &case.vehicle)
+            .into_iter()
+            .map(|(vehicle, cases)| {
+                let ranking = Ranking::new(predictions(cases.iter().copied(), i));
+                (vehicle.to_owned(), scores(cases.len(), &ranking, 0))
+            })
+            .collect(),
+        by_kind: grouped(cases.iter(), |case| &case.kind)
+            .into_iter()
+            .map(|(kind, cases)| {
+                let ranking = Ranking::new(predictions(cases.iter().copied(), i));
+                (kind.to_owned(), scores(cases.len(), &ranking, RESAMPLES))
+            })
+            .collect(),
+        reliability: is_risk.then(|| reliability(predictions(main(), i))),
+        roc: ranking.roc(ROC_STEPS),
+    }
+}
+
+fn predictions<'a>(
+    cases: impl Iterator<Item = &'a Case>,
+    estimator: usize,
+) -> impl Iterator<Item = Prediction> {
+    cases.map(move |case| Prediction {
+        score: case.scores.get(estimator).copied().unwrap_or(f64::NAN),
+        critical: case.is_critical,
+        group: case.group,
+    })
+}
+
+fn scores(cases: usize, ranking: &Ranking, resamples: usize) -> Scores {
+    Scores {
+        cases: ranking.len(),
+        unknown: cases - ranking.len(),
+        critical: ranking.critical(),
+        areas: ranking.areas(),
+        intervals: ranking.bootstrap(resamples, SEED),
+        within: ranking.within_groups(resamples, SEED),
+    }
+}
+
+fn grouped<'a>(
+    cases: impl Iterator<Item = &'a Case>,
+    key: fn(&Case) -> &String,
+) -> BTreeMap<&'a str, Vec<&'a Case>> {
+    let mut groups: BTreeMap<&str, Vec<&Case>> = BTreeMap::new();
+    for case in cases {
+        groups.entry(key(case)).or_default().push(case);
+    }
+    groups
+}
+
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let upper = *values.get(middle)?;
+    match values.len() % 2 {
+        1 => Some(upper),
+        _ => Some((values.get(middle - 1)? + upper) / 2.0),
+    }
+}

@@ -1,0 +1,116 @@
+//! The evaluation as a picture: the ROC curve of every estimator, and the reliability of risks.
+
+use flagred::evaluation::Band;
+use fuzzy::drawing::{Colour, Plot, Scale, Series, plots_svg};
+
+use crate::{Evaluation, scores::Evaluated};
+
+/// Draws an evaluation.
+pub fn draw(evaluation: &Evaluation) -> String {
+    let estimators = || evaluation.estimators.iter().enumerate();
+    let roc = estimators().map(|(i, evaluated)| {
+        let known = evaluated.all.areas.map(|_| evaluated.roc.iter());
+        let points = known.into_iter().flatten();
+        let points = points.map(|p| (p.false_positive_rate, p.true_positive_rate));
+        Series::new(i, name(evaluated), points.collect())
+    });
+    let reliability = estimators().map(|(i, evaluated)| {
+        let bands = evaluated.reliability.iter().flatten();
+        Series {
+            dots: true,
+            ..Series::new(i, name(evaluated), bands.filter_map(point).collect())
+        }
+    });
+    let diagonal = |end: f64| {
+        std::iter::once(Series {
+            colour: Colour(0xbb, 0xbb, 0xbb),
+            dash: "2 4",
+            ..Series::new(0, "", vec![(0.0, 0.0), (end, end)])
+        })
+    };
+    let (shares, percent) = (Scale::new(0.0, 1.0), Scale::new(0.0, 100.0));
+    let plots = [
+        Plot {
+            title: "ROC curve".into(),
+            x: (shares, "false positive rate".into()),
+            y: (shares, "true positive rate".into()),
+            series: diagonal(1.0).chain(roc).collect(),
+        },
+        Plot {
+            title: "Reliability".into(),
+            x: (percent, "risk [%]".into()),
+            y: (percent, "of these became critical [%]".into()),
+            series: diagonal(100.0).chain(reliability).collect(),
+        },
+    ];
+    plots_svg("ROC curves and reliability", &plots)
+}
+
+/// The name of an estimator and its area under the ROC curve.
+fn name(evaluated: &Evaluated) -> String {
+    let area = evaluated.all.areas;
+    let area = area.map_or("unknown".to_owned(), |area| format!("{:.3}", area.roc));
+    format!("{} {area}", evaluated.name)
+}
+
+/// The mean risk and the critical share of a band in percent; `None` where there are too few predictions in it.
+fn point(band: &Band) -> Option<(f64, f64)> {
+    const FEWEST: u64 = 5;
+    let risk_pct = band.mean_risk_pct.filter(|_| band.predictions >= FEWEST)?;
+    Some((
+        risk_pct,
+        100.0 * band.critical as f64 / band.predictions as f64,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use flagred::evaluation::{Prediction, Ranking, reliability};
+
+    use super::*;
+    use crate::scores::Scores;
+
+    #[test]
+    fn a_picture_holds_every_estimator_by_name_and_area() {
+        let cases = (0..200_u32).map(|i| Prediction {
+            score: f64::from(i) / 2.0,
+            critical: (i * 53) % 97 + i > 150,
+            group: i,
+        });
+        let ranking = Ranking::new(cases.clone());
+        let scores = || Scores {
+            cases: 200,
+            unknown: 0,
+            critical: ranking.critical(),
+            areas: ranking.areas(),
+            intervals: None,
+            within: None,
+        };
+        let evaluated = |name: &str, is_risk: bool| Evaluated {
+            name: name.into(),
+            description: String::new(),
+            all: scores(),
+            quiet: scores(),
+            onset: scores(),
+            by_vehicle: Vec::new(),
+            by_kind: Vec::new(),
+            reliability: is_risk.then(|| reliability(cases.clone())),
+            roc: ranking.roc(20),
+        };
+        let evaluation = Evaluation {
+            cases: "flights",
+            horizon_s: None,
+            flights: 200,
+            critical: ranking.critical(),
+            left_out: Vec::new(),
+            all: Vec::new(),
+            estimators: vec![evaluated("a<b", true), evaluated("spread", false)],
+            warnings: Vec::new(),
+            alarms: Vec::new(),
+            records: Vec::new(),
+        };
+        insta::with_settings!({snapshot_path => "../tests/snapshots"}, {
+            insta::assert_snapshot!(draw(&evaluation));
+        });
+    }
+}
