@@ -87,11 +87,6 @@ impl Failure {
         }
     }
 
-    /// What went wrong, without the help.
-    pub(crate) fn message(&self) -> &str {
-        &self.message
-    }
-
     /// Tells the user, and gives the exit code.
     pub(crate) fn report(self) -> ExitCode {
         if !self.message.is_empty() {

@@ -13,6 +13,8 @@ Examples:
   flagred map my-rules.yaml                      the output over the inputs
   flagred learn my-rules.yaml rows.csv --output learned.yaml   rules from a table
   flagred tune learned.yaml rows.csv --output tuned.yaml    and their numbers
+  flagred identify rows.csv --target risk --output found.yaml  inputs, terms and rules from a table
+  flagred simplify tuned.yaml --output shorter.yaml         the same with fewer rules
   flagred watch udpin:0.0.0.0:14550              assess a flight live
   flagred completions bash                       completions for your shell
 
@@ -105,6 +107,13 @@ Examples:
   flagred inspect flight.bin
   flagred inspect --json flight.ulg";
 
+pub(crate) const IDENTIFY: &str = "\
+Examples:
+  flagred identify cars.csv --target mpg --output cars.yaml
+  flagred identify cars.csv --target mpg --input weight --input year --output cars.yaml
+  flagred identify cars.csv --target mpg --clusters --lines --output cars.yaml
+  flagred tune cars.yaml cars.csv --round 3 --output tuned.yaml     its numbers";
+
 pub(crate) const LEARN: &str = "\
 Examples:
   flagred learn my-rules.yaml rows.csv --output learned.yaml
@@ -122,6 +131,12 @@ Examples:
   flagred tune my-rules.yaml rows.csv --only heat --fix heat.hot --rising heat --output tuned.yaml
   flagred tune my-rules.yaml rows.csv --loss ranking --column risk=failed --group-by vehicle --weights --output tuned.yaml
 Ctrl-C ends the search; the best rule set so far is written.";
+
+pub(crate) const SIMPLIFY: &str = "\
+Examples:
+  flagred simplify my-rules.yaml --output shorter.yaml
+  flagred simplify my-rules.yaml --tolerance 2 --output shorter.yaml    in the unit of the output
+  flagred simplify my-rules.yaml rows.csv --rows-only --output shorter.yaml";
 
 pub(crate) const MAP: &str = "\
 Examples:

@@ -18,6 +18,7 @@ mod fmt;
 #[doc(hidden)] // For fuzz targets and tests of other packages.
 pub mod fuzzing;
 mod help;
+mod identify;
 mod import;
 mod inspect;
 mod learn;
@@ -32,6 +33,7 @@ mod profile;
 mod rows;
 mod rule_set;
 mod schema;
+mod simplify;
 mod steps;
 mod table;
 mod tune;
@@ -94,12 +96,18 @@ enum Command {
     /// Make a table of flights for `learn`: inputs, attitude error and risk of each
     #[command(after_help = help::DATASET)]
     Dataset(dataset::Arguments),
+    /// Find inputs, partitions and rules for a column of a table
+    #[command(after_help = help::IDENTIFY)]
+    Identify(identify::Arguments),
     /// Learn rules from a table of inputs and outputs
     #[command(after_help = help::LEARN)]
     Learn(learn::Arguments),
     /// Move membership functions, consequents and weights of a rule set to fit a table of inputs and outputs
     #[command(after_help = help::TUNE)]
     Tune(tune::Arguments),
+    /// Say the same with fewer rules, shorter ones and fewer inputs
+    #[command(after_help = help::SIMPLIFY)]
+    Simplify(simplify::Arguments),
     /// Measure how well profiles predict attitude errors, compared with simple baselines
     #[command(after_help = help::EVALUATE)]
     Evaluate(evaluate::Arguments),
@@ -136,8 +144,10 @@ impl Command {
             Command::Map(arguments) => map::run(&arguments),
             Command::Plot(arguments) => plot::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),
+            Command::Identify(arguments) => identify::run(&arguments),
             Command::Learn(arguments) => learn::run(&arguments),
             Command::Tune(arguments) => tune::run(&arguments),
+            Command::Simplify(arguments) => simplify::run(&arguments),
             Command::Evaluate(arguments) => evaluate::run(&arguments),
             Command::Import(arguments) => import::run(&arguments),
             Command::Export(arguments) => export::run(&arguments),

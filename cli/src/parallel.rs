@@ -35,7 +35,7 @@ pub(crate) fn in_order<T: Sync, R: Send>(
 }
 
 /// A bar over so many items; hidden for a single one and where standard error is no terminal.
-fn progress(items: usize, unit: &'static str) -> ProgressBar {
+pub(crate) fn progress(items: usize, unit: &'static str) -> ProgressBar {
     if items < 2 {
         return ProgressBar::hidden();
     }

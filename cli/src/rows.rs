@@ -1,4 +1,4 @@
-//! What `learn` and `tune` share: their arguments, and rows from tables, each with its place for messages.
+//! What `identify`, `learn`, `tune` and `simplify` share: their arguments, and rows from tables, each with its place for messages.
 
 use std::{collections::BTreeMap, path::PathBuf};
 
@@ -14,16 +14,12 @@ use crate::{
     table::{Format, Table},
 };
 
-/// The arguments of a command that makes a rule set of another one and of rows.
+/// The arguments of a command that makes a rule set of another one.
 #[derive(clap::Args)]
-pub(crate) struct Arguments {
+pub(crate) struct Rewrite {
     /// The rule set to begin with
     #[arg(value_name = "MODEL")]
     pub(crate) model: PathBuf,
-
-    /// Tables with a column for each input and the output, as `flagred dataset` writes them
-    #[arg(required = true, value_name = "DATA.csv")]
-    pub(crate) data: Vec<PathBuf>,
 
     /// The file for the new rule set; `-` is standard output
     #[arg(short, long, value_name = "OUT.yaml")]
@@ -32,6 +28,24 @@ pub(crate) struct Arguments {
     /// Replace the file if it exists
     #[arg(long)]
     pub(crate) force: bool,
+
+    #[command(flatten)]
+    pub(crate) format: Format,
+
+    /// Print the report as a JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The arguments of a command that makes a rule set of another one and of rows.
+#[derive(clap::Args)]
+pub(crate) struct FromRows {
+    #[command(flatten)]
+    pub(crate) rewrite: Rewrite,
+
+    /// Tables with a column for each input and the output, as `flagred dataset` writes them
+    #[arg(required = true, value_name = "DATA.csv")]
+    pub(crate) data: Vec<PathBuf>,
 
     /// The output must not fall when this input rises
     #[arg(long, value_name = "INPUT")]
@@ -52,16 +66,9 @@ pub(crate) struct Arguments {
     /// Skip cross-validation
     #[arg(long, conflicts_with = "group_by")]
     pub(crate) no_validation: bool,
-
-    #[command(flatten)]
-    pub(crate) format: Format,
-
-    /// Print the report as a JSON document
-    #[arg(long)]
-    pub(crate) json: bool,
 }
 
-impl Arguments {
+impl FromRows {
     /// What `--rising` and `--falling` claim.
     pub(crate) fn claims(&self) -> Vec<Monotone> {
         let claim = |input: &String, direction| Monotone {
@@ -91,25 +98,35 @@ pub(crate) struct Data {
 }
 
 /// Reads the values of the inputs and of the outputs of a model from all tables.
-pub(crate) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure> {
+pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure> {
     let inputs = model.inputs.iter();
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
+    let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
+    columns(&arguments.data, &arguments.rewrite.format, &names, optional)
+}
+
+/// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows.
+pub(crate) fn columns(
+    tables: &[PathBuf],
+    format: &Format,
+    names: &[&str],
+    [weight, group]: [Option<&str>; 2],
+) -> Result<Data, Failure> {
     let mut data = Data {
         rows: Vec::new(),
         refused: Vec::new(),
     };
     let mut groups: BTreeMap<String, u32> = BTreeMap::new();
-    for path in &arguments.data {
-        let table = Table::read(path, arguments.format.delimiter)?;
-        let columns = arguments.format.columns(&names, &table.header)?;
-        let optional = |name: &Option<String>| {
-            name.as_ref()
-                .map(|name| table.header.require(name, "or leave that option out"))
+    for path in tables {
+        let table = Table::read(path, format.delimiter)?;
+        let columns = format.columns(names, &table.header)?;
+        let optional = |name: Option<&str>| {
+            name.map(|name| table.header.require(name, "or leave that option out"))
                 .transpose()
         };
-        let weight = optional(&arguments.weight)?;
-        let group = optional(&arguments.group_by)?;
+        let weight = optional(weight)?;
+        let group = optional(group)?;
         for row in 0..table.len() {
             let mut bad = Vec::new();
             let mut number = |column: usize| {
@@ -142,6 +159,43 @@ pub(crate) fn read(arguments: &Arguments, model: &Model) -> Result<Data, Failure
         }
     }
     Ok(data)
+}
+
+/// Rows as columns, and those that cannot be used, with the reason. `wrong` says what is wrong with a value of the output.
+pub(crate) fn in_columns(
+    read: Data,
+    inputs: usize,
+    wrong: impl Fn(f64) -> Option<String>,
+) -> (tuning::Data, Vec<String>) {
+    let Data { rows, mut refused } = read;
+    let mut data = tuning::Data {
+        inputs: vec![Vec::with_capacity(rows.len()); inputs],
+        ..tuning::Data::default()
+    };
+    for (row, place) in rows {
+        let truth = row.values.last().copied().unwrap_or(f64::NAN);
+        let negative = (row.weight < 0.0)
+            .then(|| format!("the weight is {}, but must not be negative", row.weight));
+        if let Some(wrong) = wrong(truth).or(negative) {
+            refused.push(format!("{place}: {wrong}"));
+            continue;
+        }
+        for (column, value) in data.inputs.iter_mut().zip(&row.values) {
+            column.push(*value);
+        }
+        data.truths.push(truth);
+        data.weights.push(row.weight);
+        data.groups.extend(row.group);
+    }
+    (data, refused)
+}
+
+/// A share on the command line.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    let share: Option<f64> = text.parse().ok();
+    share
+        .filter(|share| (0.0..1.0).contains(share))
+        .ok_or_else(|| "write a share, at least 0 and less than 1".into())
 }
 
 /// Rows that cannot be used, as a failure.

@@ -27,10 +27,14 @@ enum Format {
     Evaluate,
     /// What `flagred explain --json` prints
     Explain,
+    /// What `flagred identify --json` prints
+    Identify,
     /// What `flagred inspect --json` prints
     Inspect,
     /// What `flagred learn --json` prints
     Learn,
+    /// What `flagred simplify --json` prints
+    Simplify,
     /// What `flagred tune --json` prints
     Tune,
     /// A line of `flagred watch --jsonl`
@@ -50,8 +54,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Format::Check => include_str!("../schemas/check.json"),
         Format::Evaluate => include_str!("../schemas/evaluate.json"),
         Format::Explain => include_str!("../schemas/explain.json"),
+        Format::Identify => include_str!("../schemas/identify.json"),
         Format::Inspect => include_str!("../schemas/inspect.json"),
         Format::Learn => include_str!("../schemas/learn.json"),
+        Format::Simplify => include_str!("../schemas/simplify.json"),
         Format::Tune => include_str!("../schemas/tune.json"),
         Format::Watch => include_str!("../schemas/watch.json"),
     };

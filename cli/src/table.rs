@@ -337,6 +337,12 @@ impl Table {
         }
     }
 
+    /// The finite number in a column of this name; `None` where there is none.
+    pub(crate) fn named_number(&self, row: usize, name: &str) -> Result<Option<f64>, BadCell> {
+        let column = self.header.column(name);
+        column.map(|column| self.number(row, column)).transpose()
+    }
+
     /// A finding about a cell.
     pub(crate) fn bad(&self, row: usize, column: usize, problem: String) -> BadCell {
         BadCell {

@@ -1,8 +1,8 @@
 //! A flight log as samples: the one place where `flightlog` and FLAGRED meet.
 
-use alloc::{vec, vec::Vec};
+use alloc::{borrow::ToOwned, vec, vec::Vec};
 
-use flightlog::{Flight, Gap};
+use flightlog::{Flight, Gap, LeftOut, Options};
 
 use crate::{
     attitude::Attitude,
@@ -15,6 +15,50 @@ use crate::{
 
 /// The signals that an attitude error is made of.
 pub const ATTITUDE: [&str; 4] = ["roll_des_deg", "roll_deg", "pitch_des_deg", "pitch_deg"];
+
+/// Why a flight is not complete: see [`complete`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Incomplete {
+    /// The log has more than is kept of it.
+    #[error("not all of it is kept, which leaves out {0}")]
+    LeftOut(LeftOut),
+    /// The log lacks something.
+    #[error(transparent)]
+    Gap(Gap),
+}
+
+impl Incomplete {
+    /// What to do about it, apart from the message.
+    pub fn help(&self) -> Option<&'static str> {
+        match self {
+            Incomplete::LeftOut(_) => Some("docs/limits.md has the bounds"),
+            Incomplete::Gap(gap) => gap.help(),
+        }
+    }
+}
+
+/// What is read of a log to learn from it or to evaluate on it: the named signals, and the attitude.
+pub fn complete_options(names: &[&str]) -> Options {
+    let wanted = names.iter().chain(&ATTITUDE).map(|name| (*name).to_owned());
+    Options {
+        signals: Some(wanted.collect()),
+    }
+}
+
+/// Whether a flight can be learned from and evaluated on: with motors, attitude and times in the air, and nothing left out.
+///
+/// # Errors
+/// What it lacks.
+pub fn complete(flight: &Flight) -> Result<(), Incomplete> {
+    let left_out = &flight.report.left_out;
+    if left_out.messages > 0 || left_out.changes > 0 {
+        return Err(Incomplete::LeftOut(left_out.clone()));
+    }
+    let mut gaps = flight.gaps().into_iter();
+    let gap = gaps.find(|gap| !matches!(gap, Gap::TooSlow { .. }));
+    gap.map_or(Ok(()), |gap| Err(Incomplete::Gap(gap)))
+}
 
 /// Assesses a flight. Every motor sample counts; a step is kept every `step_s` seconds, or none.
 ///

@@ -194,7 +194,8 @@ pub fn around(title: &str, body: String) -> String {
     page(title, &PreEscaped(body))
 }
 
-fn page(title: &str, body: &Markup) -> String {
+/// A page that needs nothing beside it.
+pub fn page(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {

@@ -89,6 +89,32 @@ fn learn() {
 }
 
 #[test]
+fn identify() {
+    let folder = Folder::new();
+    let row = |i: i32| format!("{},{},car {i},{}\n", i % 7, i % 5, i % 7 * (i % 5));
+    let rows: String = (0..70).map(row).collect();
+    let data = folder.file("data.csv", &format!("width,length,name,area\n{rows}"));
+    let out = folder.at("out.yaml");
+    let arguments = [
+        "identify", &data, "--target", "area", "--output", &out, "--json", "--force",
+    ];
+    let document = json(&arguments);
+    valid("identify", &document);
+    assert_eq!(document["columns"]["without_numbers"][0], "name");
+    assert_eq!(document["columns"]["used"].as_array().unwrap().len(), 2);
+    assert!(document["validation"]["ratio"]["high"].as_f64().unwrap() < 0.5);
+    let document = json(
+        &[
+            &arguments[..],
+            &["--no-validation", "--clusters", "--lines"],
+        ]
+        .concat(),
+    );
+    valid("identify", &document);
+    assert!(document["validation"].is_null() && document["steps"][0]["terms"].is_u64());
+}
+
+#[test]
 fn tune() {
     let folder = Folder::new();
     let rows = "margin,spread,risk\n0.1,0.1,50\n0.1,0.1,70\n0.3,0.2,10\n0.3,0.1,5\n";
@@ -101,6 +127,20 @@ fn tune() {
     let document = json(&[&arguments[..], &["--no-validation"]].concat());
     valid("tune", &document);
     assert_eq!(document["rows"]["used"], 4);
+}
+
+#[test]
+fn simplify() {
+    let folder = Folder::new();
+    let out = folder.at("out.yaml");
+    let arguments = ["simplify", PAPER, "--output", &out, "--json", "--force"];
+    let document = json(&arguments);
+    valid("simplify", &document);
+    assert!(document["rules"]["after"].as_u64() < document["rules"]["before"].as_u64());
+    assert_eq!(document["tolerance"], Value::Null);
+    let document = json(&[&arguments[..], &["--tolerance", "20"]].concat());
+    valid("simplify", &document);
+    assert!(document["difference"]["size"].as_f64() > Some(0.1));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use fuzzy::{
     Engine, Model,
-    model::{Defuzzifier, MembershipFunction, Output, Variable},
+    model::{Defuzzifier, MembershipFunction, Output, Term, Variable},
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -69,18 +69,38 @@ pub(crate) fn fit(model: &mut Model, fitted: &[usize], data: &Data) -> Result<()
         }
     }
     squares.fill_upper_triangle_with_lower_triangle();
-    let Some(steps) = solve(squares, &products, RIDGE) else {
-        return Ok(());
-    };
-    let mut steps = steps.iter();
-    for consequent in consequents {
-        let output = model.outputs.first_mut();
-        let term = output.and_then(|output| output.variable.terms.get_mut(consequent.term));
-        if let Some(term) = term {
-            consequent.move_by(&mut term.membership_function, &mut steps);
+    let variable = &output.variable;
+    let before = variable.terms.clone();
+    let mut ridge = RIDGE;
+    while let Some(steps) = solve(squares.clone(), &products, ridge) {
+        let mut terms = before.clone();
+        let mut steps = steps.iter();
+        for consequent in &consequents {
+            if let Some(term) = terms.get_mut(consequent.term) {
+                consequent.move_by(&mut term.membership_function, &mut steps);
+            }
         }
+        if terms.iter().all(|term| is_near(term, variable)) || ridge > 1.0 {
+            if let Some(output) = model.outputs.first_mut() {
+                output.variable.terms = terms;
+            }
+            break;
+        }
+        ridge *= 10.0;
     }
     Ok(())
+}
+
+/// Whether a constant is less than the width of the range away from it. Rules that always fire together could have constants
+/// of any size whose errors cancel, on these rows and no others.
+fn is_near(term: &Term, variable: &Variable) -> bool {
+    let width = variable.high - variable.low;
+    match term.membership_function {
+        MembershipFunction::Constant { value } => {
+            (variable.low - width..=variable.high + width).contains(&value)
+        }
+        _ => true,
+    }
 }
 
 /// Solves `(squares + ridge) x = products`. The ridge is a share of each diagonal, and grows until the matrix is positive.

@@ -63,11 +63,16 @@ impl Data {
         if outputs != 1 {
             return Err(TuneError::Outputs { outputs });
         }
+        self.check_columns(model.inputs.len(), loss)
+    }
+
+    /// Whether the rows have so many inputs, and numbers that can be used.
+    pub(crate) fn check_columns(&self, inputs: usize, loss: Loss) -> Result<(), TuneError> {
         if self.is_empty() {
             return Err(TuneError::NoRows);
         }
         let wrong = |what| Err(TuneError::Columns { what });
-        if self.inputs.len() != model.inputs.len() {
+        if self.inputs.len() != inputs {
             return wrong("there must be a column for each input of the model");
         }
         let rows = self.len();

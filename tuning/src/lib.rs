@@ -8,10 +8,13 @@
 //! [`tune`] makes a [`Loss`] small by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). With squared errors the
 //! consequents of a Takagi-Sugeno output are solved for at every step, as ANFIS does (Jang 1993). [`cross_validate`] tells
 //! what tuning is worth on rows that were left out.
+//!
+//! [`identify`] finds inputs, partitions and rules where none are known; [`simplify()`] says the same with fewer rules.
 
 mod consequents;
 mod data;
 mod folds;
+pub mod identify;
 mod loss;
 mod numbers;
 mod objective;
@@ -19,6 +22,7 @@ mod ordered;
 mod parameters;
 mod search;
 mod settings;
+mod simplify;
 mod validation;
 
 use std::ops::ControlFlow;
@@ -29,6 +33,7 @@ pub use data::Data;
 pub use folds::Interval;
 pub use numbers::{Moved, Number, numbers};
 pub use settings::{Loss, Settings, TuneError};
+pub use simplify::{Difference, EQUAL, Simplified, SimplifyError, SimplifySettings, simplify};
 pub use validation::{Validation, cross_validate};
 
 use objective::{Objective, Point};

@@ -94,6 +94,9 @@ pub enum TuneError {
     /// All parameters are fixed, or there are none.
     #[error("nothing may move")]
     NothingMoves,
+    /// No input makes the error on rows left out smaller.
+    #[error("no input tells more about the output than its mean")]
+    NoInputHelps,
     /// There is nothing to learn from.
     #[error("there are no rows")]
     NoRows,

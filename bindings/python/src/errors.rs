@@ -2,6 +2,7 @@
 
 use std::io;
 
+use flightlog::ReadError;
 use fuzzy::{
     Findings,
     diagnostic::{Diagnostic, Severity},
@@ -50,6 +51,16 @@ pub(crate) fn os_error(
         }
         None => PyOSError::new_err(format!("`{path}` cannot be read: {error}{help}")),
     })
+}
+
+/// Why a log cannot be read.
+pub(crate) fn read_error(py: Python<'_>, error: &ReadError) -> PyErr {
+    match error {
+        ReadError::Io { path, source } => {
+            os_error(py, source, path, error.help()).unwrap_or_else(|error| error)
+        }
+        error => log_error(error, error.help()),
+    }
 }
 
 /// A [`RuleSetError`] whose text is the drawn findings.

@@ -49,10 +49,7 @@ impl<'e> Evaluator<'e> {
         threads: Option<usize>,
         with_reasons: bool,
     ) -> PyResult<Self> {
-        if threads == Some(0) {
-            let help = "write `threads=1`, or leave it out for as many as there are cores";
-            return Err(data_error("0 threads evaluate nothing", Some(help.into())));
-        }
+        threads::checked(threads)?;
         let keeps_previous = engine.model().keeps_previous();
         Ok(Evaluator {
             engine,

@@ -4,13 +4,13 @@ use std::{io, path::PathBuf, sync::Arc};
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
 use arrow_schema::{DataType, Field, Schema};
-use flightlog::{Flight, Options, ReadError, Series, Signal};
+use flightlog::{Flight, Options, Series, Signal};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::{prelude::*, types::PyBytes};
 use serde_json::json;
 
 use crate::{
-    errors::{data_error, log_error, os_error},
+    errors::{data_error, read_error},
     table::{Table, known},
     threads::interruptible,
 };
@@ -36,12 +36,7 @@ fn read(py: Python<'_>, source: Source, options: Options) -> PyResult<Flight> {
         Source::Path(path) => flightlog::open(path, &options),
         Source::Bytes(bytes) => flightlog::read(io::Cursor::new(bytes), &options),
     })?;
-    flight.map_err(|error| match &error {
-        ReadError::Io { path, source } => {
-            os_error(py, source, path, error.help()).unwrap_or_else(|error| error)
-        }
-        error => log_error(error, error.help()),
-    })
+    flight.map_err(|error| read_error(py, &error))
 }
 
 /// Columns as a table; those after the first may be unknown here and there.

@@ -9,6 +9,7 @@ mod assessment;
 mod compiled;
 mod errors;
 mod evaluate;
+mod evaluation;
 mod explanation;
 mod flight;
 mod learn;
@@ -28,6 +29,7 @@ mod _core {
     #[pymodule_export]
     use crate::{
         assessment::{_page, AssessmentData},
+        evaluation::EvaluationData,
         explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
         flight::FlightData,
         learn::_learn,

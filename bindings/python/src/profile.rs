@@ -33,7 +33,8 @@ use crate::errors::{data_error, diagnostics, os_error, rule_set_error};
 #[pyclass(frozen, module = "flagred")]
 pub(crate) struct Profile {
     pub(crate) loaded: Arc<Loaded>,
-    file: String,
+    /// What it was asked for by.
+    pub(crate) file: String,
 }
 
 impl Profile {
@@ -49,7 +50,7 @@ impl Profile {
 impl Profile {
     #[new]
     #[pyo3(signature = (name = "flagred"))]
-    fn load(py: Python<'_>, name: &str) -> PyResult<Self> {
+    pub(crate) fn load(py: Python<'_>, name: &str) -> PyResult<Self> {
         let loaded = loaded::load(name, |path: &Path| fs::read_to_string(path));
         match loaded {
             Ok(loaded) => Ok(Profile::new(name, loaded)),

@@ -18,14 +18,28 @@ use pyo3::{
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::errors::data_error;
+
 /// The pools of this process, by the number of their threads.
 type Pools = (u32, HashMap<usize, Arc<ThreadPool>>);
+
+/// Refuses 0 threads.
+pub(crate) fn checked(threads: Option<usize>) -> PyResult<()> {
+    match threads {
+        Some(0) => Err(data_error(
+            "0 threads evaluate nothing",
+            Some("write `threads=1`, or leave it out for as many as there are cores".into()),
+        )),
+        _ => Ok(()),
+    }
+}
 
 /// A pool of so many threads; of as many as there are cores for `None`.
 ///
 /// A fork copies a pool without its threads, which would wait for ever. So a child process makes its own.
 pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
+    checked(threads)?;
     let threads = threads.unwrap_or_else(|| thread::available_parallelism().map_or(1, Into::into));
     let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let here = process::id();

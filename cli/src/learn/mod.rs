@@ -26,7 +26,7 @@ use crate::{
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    rows: rows::Arguments,
+    rows: rows::FromRows,
 
     /// How to choose the consequent of rows with the same terms
     #[arg(long, value_enum, default_value = "strongest", value_name = "HOW")]
@@ -78,13 +78,19 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading(arguments.rows.data.iter().chain([&arguments.rows.model]))?;
-    let output = files.output(
-        &arguments.rows.output,
-        Replace::forced(arguments.rows.force),
+    let mut files = Files::reading(
+        arguments
+            .rows
+            .data
+            .iter()
+            .chain([&arguments.rows.rewrite.model]),
     )?;
-    let name = arguments.rows.model.display().to_string();
-    let (document, text) = rule_set::read(&arguments.rows.model)?;
+    let output = files.output(
+        &arguments.rows.rewrite.output,
+        Replace::forced(arguments.rows.rewrite.force),
+    )?;
+    let name = arguments.rows.rewrite.model.display().to_string();
+    let (document, text) = rule_set::read(&arguments.rows.rewrite.model)?;
     let mut model = document.model;
     if !arguments.keep_rules {
         model.rules.clear();
@@ -108,7 +114,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             Err(refusal) => refused.push(format!("{place}: {refusal}")),
         }
     }
-    if !refused.is_empty() && (!arguments.rows.format.skip_bad_rows || rows.is_empty()) {
+    if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || rows.is_empty()) {
         return Err(rows::refuse(&refused, "learned from"));
     }
     let learned = learner.finish();
@@ -138,7 +144,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     output.write(&report::rule_set(arguments, &outcome, &text))?;
     let mut out = Stdout::beside(&[&output]);
-    if arguments.rows.json {
+    if arguments.rows.rewrite.json {
         let document = report::Document::new(arguments, &outcome);
         serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
         writeln!(out)?;

@@ -75,8 +75,7 @@ pub(super) fn words(
     for antecedent in learned.missing_antecedents.iter().take(SHOWN) {
         writeln!(out, "           {}", visible(&antecedent.to_string()))?;
     }
-    let asked = arguments.rows.claims().len();
-    if asked > 0 {
+    if !arguments.rows.claims().is_empty() {
         let found = &outcome.counterexamples;
         let holds = if found.is_empty() { "yes" } else { "no" };
         writeln!(
@@ -242,7 +241,7 @@ impl<'a> Document<'a> {
                 count: learned.missing,
                 antecedents: missing.map(ToString::to_string).collect(),
             },
-            monotone: (arguments.rows.claims().len() > 0).then(|| Monotone {
+            monotone: (!arguments.rows.claims().is_empty()).then(|| Monotone {
                 holds: outcome.counterexamples.is_empty(),
                 moved: learned.moved,
                 counterexamples: &outcome.counterexamples,

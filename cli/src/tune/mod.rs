@@ -27,7 +27,7 @@ use crate::{
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    rows: rows::Arguments,
+    rows: rows::FromRows,
 
     /// What is made small
     #[arg(long, value_enum, default_value = "squared", value_name = "LOSS")]
@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
     weights: bool,
 
     /// The least distance between neighbouring peaks, as a share of the range
-    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = share)]
+    #[arg(long, default_value_t = 0.01, value_name = "SHARE", value_parser = rows::share)]
     least_distance: f64,
 
     /// Round what moved to so many significant digits
@@ -88,13 +88,6 @@ enum LossName {
     Ranking,
 }
 
-fn share(text: &str) -> Result<f64, String> {
-    let share: Option<f64> = text.parse().ok();
-    share
-        .filter(|share| (0.0..1.0).contains(share))
-        .ok_or_else(|| "write a share of the range, at least 0 and less than 1".into())
-}
-
 /// What the report tells.
 struct Outcome {
     rows: usize,
@@ -107,15 +100,21 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading(arguments.rows.data.iter().chain([&arguments.rows.model]))?;
+    let mut files = Files::reading(
+        arguments
+            .rows
+            .data
+            .iter()
+            .chain([&arguments.rows.rewrite.model]),
+    )?;
     let output = files.output(
-        &arguments.rows.output,
-        Replace::forced(arguments.rows.force),
+        &arguments.rows.rewrite.output,
+        Replace::forced(arguments.rows.rewrite.force),
     )?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let checkpoint = files.optional(arguments.checkpoint.as_ref())?;
-    let name = arguments.rows.model.display().to_string();
-    let (document, text) = rule_set::read(&arguments.rows.model)?;
+    let name = arguments.rows.rewrite.model.display().to_string();
+    let (document, text) = rule_set::read(&arguments.rows.rewrite.model)?;
     rule_set::compile(&document, &name, &text)?;
     let original = document.model;
     let resumed = resumed(arguments, &original)?;
@@ -162,7 +161,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .flatten()
         .collect();
     let mut out = Stdout::beside(&written);
-    if arguments.rows.json {
+    if arguments.rows.rewrite.json {
         let document = report::Document::new(arguments, &outcome);
         serde_json::to_writer_pretty(&mut out, &document).map_err(std::io::Error::from)?;
         writeln!(out)?;
@@ -194,37 +193,14 @@ fn settings(arguments: &Arguments) -> Settings {
 
 /// The rows as columns, and why others cannot be used.
 fn data(arguments: &Arguments, model: &Model) -> Result<(Data, Vec<String>), Failure> {
-    let rows::Data { rows, mut refused } = rows::read(&arguments.rows, model)?;
-    let mut data = Data {
-        inputs: vec![Vec::with_capacity(rows.len()); model.inputs.len()],
-        ..Data::default()
-    };
-    for (row, place) in rows {
-        let truth = row.values.last().copied().unwrap_or(f64::NAN);
-        let wrong = if arguments.loss != LossName::Squared && truth != 0.0 && truth != 1.0 {
-            Some(format!(
-                "the output's value is {truth}, but must be 0 or 1 for this loss"
-            ))
-        } else if row.weight < 0.0 {
-            Some(format!(
-                "the weight is {}, but must not be negative",
-                row.weight
-            ))
-        } else {
-            None
-        };
-        if let Some(wrong) = wrong {
-            refused.push(format!("{place}: {wrong}"));
-            continue;
-        }
-        for (column, value) in data.inputs.iter_mut().zip(&row.values) {
-            column.push(*value);
-        }
-        data.truths.push(truth);
-        data.weights.push(row.weight);
-        data.groups.extend(row.group);
-    }
-    if !refused.is_empty() && (!arguments.rows.format.skip_bad_rows || data.is_empty()) {
+    let read = rows::read(&arguments.rows, model)?;
+    let is_refused =
+        |truth: f64| arguments.loss != LossName::Squared && truth != 0.0 && truth != 1.0;
+    let (data, refused) = rows::in_columns(read, model.inputs.len(), |truth| {
+        is_refused(truth)
+            .then(|| format!("the output's value is {truth}, but must be 0 or 1 for this loss"))
+    });
+    if !refused.is_empty() && (!arguments.rows.rewrite.format.skip_bad_rows || data.is_empty()) {
         return Err(rows::refuse(&refused, "used"));
     }
     Ok((data, refused))

@@ -30,6 +30,8 @@ pub use crate::model::document::{
 pub use schema::schema;
 #[doc(hidden)]
 pub use shapes::text as shape_text;
+#[doc(hidden)]
+pub use words::word_of_or;
 
 /// The version of the format this library reads and writes.
 pub const VERSION: u64 = 1;

@@ -58,6 +58,11 @@ pub(super) fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'
         .map_or("", |(word, _)| *word)
 }
 
+/// The word for a disjunction.
+pub fn word_of_or(or: Disjunction) -> &'static str {
+    word_of(&DISJUNCTIONS, or)
+}
+
 /// Reads operators under some of the keys; what is not written is as in `otherwise`.
 pub(super) fn operators(
     node: &Node,

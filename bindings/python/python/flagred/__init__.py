@@ -50,6 +50,7 @@ from ._learning import Errors, Figure, Learned, Moved, Tuned, TuneInterrupted, T
 from ._model import Model, load, loads
 from ._monitor import Followed, Monitor
 from ._picture import Picture
+from .evaluation import Evaluation, evaluate
 
 __all__ = [
     "Assessment",
@@ -58,6 +59,7 @@ __all__ = [
     "DecisionMap",
     "Diagnostic",
     "Errors",
+    "Evaluation",
     "Event",
     "ExplainedInput",
     "ExplainedOutput",
@@ -100,6 +102,7 @@ __all__ = [
     "Vehicle",
     "__version__",
     "assess",
+    "evaluate",
     "learn",
     "load",
     "loads",

@@ -11,6 +11,7 @@ from typing import IO, TYPE_CHECKING, Any, Literal
 from . import _data
 from ._core import AssessmentData, FlightData, Profile, Table
 from ._data import Event, Finding, Gap, Geometry, Intervals, Motor, Parameter, Range, Report, Summary, Vehicle
+from ._picture import framed
 
 if TYPE_CHECKING:
     import numpy as np
@@ -282,10 +283,7 @@ class Assessment(AssessmentData):
         return self._steps()
 
     def _repr_html_(self) -> str:
-        from html import escape
-
-        # A frame keeps the styles of the report to itself.
-        return f'<iframe srcdoc="{escape(self.html())}" style="width:100%;height:40em;border:0" sandbox="allow-scripts"></iframe>'
+        return framed(self.html())
 
     def __str__(self) -> str:
         lines = [f"{self.verdict} {self.flight.name}"]

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ._arrays import array
 from ._core import _learn, _tune
 from ._errors import DataError
 from ._model import Model, _read
+from ._tables import column_of, same_length, table_of
 
 __all__ = ["Errors", "Figure", "Learned", "Moved", "TuneInterrupted", "TuneValidation", "Tuned", "learn", "tune"]
 
@@ -321,46 +321,11 @@ def _rows(
     for name in renamed:
         if name not in names:
             raise DataError(f"`columns` names `{name}`, which is no variable of the rule set")
-    data = _columns(data)
-    found = [array(_column(data, renamed.get(name, name))) for name in names]
-    weights = None if weight is None else array(_column(data, weight))
+    data = table_of(data)
+    found = [array(column_of(data, renamed.get(name, name))) for name in names]
+    weights = None if weight is None else array(column_of(data, weight))
     groups = None
     if group_by is not None:
-        groups = np.unique(np.asarray(_column(data, group_by)).astype(str), return_inverse=True)[1].astype(np.uint32)
-    _same_length([*found, *([] if weights is None else [weights]), *([] if groups is None else [groups])])
+        groups = np.unique(np.asarray(column_of(data, group_by)).astype(str), return_inverse=True)[1].astype(np.uint32)
+    same_length([*found, *([] if weights is None else [weights]), *([] if groups is None else [groups])])
     return {"columns": found, "weights": weights, "groups": groups, "skip_bad_rows": skip_bad_rows}
-
-
-def _same_length(columns: list[NDArray[Any]]) -> None:
-    if any(column.ndim != 1 for column in columns):
-        raise DataError("a column has no rows, or several columns have one name")
-    lengths = sorted({len(column) for column in columns})
-    if len(lengths) > 1:
-        raise DataError(f"the columns are not of one length: {', '.join(map(str, lengths))}")
-
-
-def _columns(data: Any) -> Any:
-    """What gives columns by their names."""
-    if hasattr(data, "fetchnumpy"):
-        return data.fetchnumpy()
-    if hasattr(data, "collect"):
-        raise DataError("a lazy frame has no rows yet\n  help: collect it first: `frame.collect()`")
-    return data
-
-
-def _names(data: Any) -> list[str]:
-    if hasattr(data, "schema") and hasattr(data.schema, "names") and not callable(data.schema.names):
-        return [str(name) for name in data.schema.names]
-    if isinstance(getattr(data, "columns", None), Iterable):
-        return [str(name) for name in data.columns]
-    if hasattr(data, "keys"):
-        return [str(name) for name in data.keys()]
-    raise DataError(f"`{type(data).__name__}` is no table\n  help: give a frame, or a dict of columns by their names")
-
-
-def _column(data: Any, name: str) -> Any:
-    there = _names(data)
-    if name not in there:
-        listed = ", ".join(f"`{column}`" for column in there)
-        raise DataError(f"the data have no column `{name}`\n  help: there are {listed}")
-    return data[name]

@@ -37,6 +37,13 @@ class Picture:
         return f"Picture({len(self.svg)} bytes of SVG)"
 
 
+def framed(page: str) -> str:
+    """An HTML page within another: a frame keeps its styles to itself."""
+    from html import escape
+
+    return f'<iframe srcdoc="{escape(page)}" style="width:100%;height:40em;border:0" sandbox="allow-scripts"></iframe>'
+
+
 def plot_map(map: DecisionMap, ax: Any | None) -> Any:
     """A map as a picture, or on axes of matplotlib."""
     if ax is None:

@@ -9,25 +9,25 @@ use flagred::{
 
 use serde::Serialize;
 
-use super::{
+use crate::{
     flight::{Record, Said},
     scores::{APART, RESAMPLES, SEED, median},
 };
 
 /// The alarms of a profile over all flights but the kind apart, and over each kind.
-pub(super) struct Alarms {
-    pub(super) ordinary: SmallErrors,
-    pub(super) mild: SmallErrors,
+pub(crate) struct Alarms {
+    pub(crate) ordinary: SmallErrors,
+    pub(crate) mild: SmallErrors,
     /// Found by any alarm, and by FAIL alone.
-    pub(super) upsets: Upsets,
-    pub(super) upsets_by_fail: Upsets,
+    pub(crate) upsets: Upsets,
+    pub(crate) upsets_by_fail: Upsets,
     /// Ordinary flights and upsets of each kind.
-    pub(super) by_kind: Vec<(String, SmallErrors, Upsets)>,
+    pub(crate) by_kind: Vec<(String, SmallErrors, Upsets)>,
 }
 
 impl Alarms {
     /// Of a profile.
-    pub(super) fn of(profile: usize, records: &[Record]) -> Alarms {
+    pub(crate) fn of(profile: usize, records: &[Record]) -> Alarms {
         let main = || records.iter().filter(|record| record.kind != APART);
         let of_kind = |kind: &str| {
             let records = || records.iter().filter(|record| record.kind == kind);
@@ -48,7 +48,7 @@ impl Alarms {
 }
 
 /// The kinds of flights, in order of their names.
-pub(super) fn kinds(records: &[Record]) -> Vec<&str> {
+pub(crate) fn kinds(records: &[Record]) -> Vec<&str> {
     let mut kinds: Vec<&str> = records.iter().map(|r| r.kind.as_str()).collect();
     kinds.sort_unstable();
     kinds.dedup();
@@ -65,26 +65,26 @@ const STEEP_DEG: f64 = 45.0;
 
 /// A figure with its interval over flights.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Figure {
-    pub(super) value: f64,
-    pub(super) interval: Option<Interval>,
+pub(crate) struct Figure {
+    pub(crate) value: f64,
+    pub(crate) interval: Option<Interval>,
 }
 
 /// The alarms of a profile in flights with small errors.
-pub(super) struct SmallErrors {
+pub(crate) struct SmallErrors {
     /// The flights with a verdict, and those without.
-    pub(super) flights: usize,
-    pub(super) not_assessed: usize,
-    pub(super) hours: f64,
+    pub(crate) flights: usize,
+    pub(crate) not_assessed: usize,
+    pub(crate) hours: f64,
     /// GOOD, WARN, FAIL.
-    pub(super) verdicts: [usize; 3],
-    pub(super) alarms: usize,
-    pub(super) fails: usize,
+    pub(crate) verdicts: [usize; 3],
+    pub(crate) alarms: usize,
+    pub(crate) fails: usize,
     /// `None` without a flight.
-    pub(super) alarms_per_hour: Option<Figure>,
-    pub(super) fails_per_hour: Option<Figure>,
+    pub(crate) alarms_per_hour: Option<Figure>,
+    pub(crate) fails_per_hour: Option<Figure>,
     /// The share of the time in the air with an alarm on.
-    pub(super) share_on: Option<Figure>,
+    pub(crate) share_on: Option<Figure>,
 }
 
 /// What a flight adds.
@@ -106,7 +106,7 @@ fn column(level: Level) -> usize {
 
 impl SmallErrors {
     /// Of a profile over the flights whose error never passes `limit_deg`.
-    pub(super) fn of<'a>(
+    pub(crate) fn of<'a>(
         profile: usize,
         limit_deg: f64,
         records: impl Iterator<Item = &'a Record>,
@@ -176,22 +176,22 @@ impl SmallErrors {
 
 /// The upsets of flights, and how the alarms of a profile found them.
 #[derive(Default, Serialize)]
-pub(super) struct Upsets {
-    pub(super) before: usize,
+pub(crate) struct Upsets {
+    pub(crate) before: usize,
     /// Within 1 s after.
     #[serde(rename = "within_1_s")]
-    pub(super) after: usize,
-    pub(super) never: usize,
+    pub(crate) after: usize,
+    pub(crate) never: usize,
     /// Those of flights without a verdict.
-    pub(super) not_assessed: usize,
+    pub(crate) not_assessed: usize,
     /// The median of the leads, in seconds.
     #[serde(rename = "lead_s_median")]
-    pub(super) lead_s: Option<f64>,
+    pub(crate) lead_s: Option<f64>,
 }
 
 impl Upsets {
     /// Of a profile; `alarms` says which alarms count.
-    pub(super) fn of<'a>(
+    pub(crate) fn of<'a>(
         profile: usize,
         alarms: fn(&Said) -> &[Span],
         records: impl Iterator<Item = &'a Record>,
@@ -218,23 +218,23 @@ impl Upsets {
     }
 
     /// All that were assessed.
-    pub(super) fn assessed(&self) -> usize {
+    pub(crate) fn assessed(&self) -> usize {
         self.before + self.after + self.never
     }
 }
 
 /// How the flights of a vehicle were judged.
 #[derive(Default)]
-pub(super) struct Verdicts {
-    pub(super) flights: usize,
-    pub(super) hours: f64,
+pub(crate) struct Verdicts {
+    pub(crate) flights: usize,
+    pub(crate) hours: f64,
     /// For each profile: GOOD, WARN, FAIL, NA.
-    pub(super) counts: Vec<[usize; 4]>,
+    pub(crate) counts: Vec<[usize; 4]>,
 }
 
 impl Verdicts {
     /// Takes in a flight.
-    pub(super) fn add(&mut self, record: &Record) {
+    pub(crate) fn add(&mut self, record: &Record) {
         self.flights += 1;
         self.hours += record.air_s() / 3600.0;
         self.counts.resize(record.said.len(), [0; 4]);

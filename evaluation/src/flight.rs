@@ -7,13 +7,12 @@ use flagred::{
     evaluation::{BaselineObserver, ErrorRecord, Judged, Span, judge, upset_s},
     flight::Finding,
     flight::{Assessor, Verdict},
-    log,
+    log::{self, Incomplete},
     verdict::{Level, VerdictSettings},
 };
-use flightlog::Flight;
+use flightlog::{Flight, ReadError};
 
-use super::estimators::Estimators;
-use crate::{failure::Failure, flights::open_complete};
+use crate::estimators::Estimators;
 
 /// How far apart steps are, in seconds.
 const STEP_S: f64 = 0.5;
@@ -32,73 +31,137 @@ const LONGEST_GAP_S: f64 = 2.0;
 const ROUNDING_S: f64 = 1e-6;
 
 /// What became of a flight.
-pub(super) struct Record {
-    pub(super) file: String,
+pub struct Record {
+    pub(crate) file: String,
     /// `None` where the log names no vehicle.
-    pub(super) vehicle: Option<String>,
+    pub(crate) vehicle: Option<String>,
     /// What the flight was about, as its header says: `gusts`, `calm`, `manoeuvre`.
-    pub(super) kind: String,
-    pub(super) judged_s: f64,
-    pub(super) air: Vec<Span>,
+    pub(crate) kind: String,
+    pub(crate) judged_s: f64,
+    pub(crate) air: Vec<Span>,
     /// The largest attitude error over a second, and the largest tilt, in the air.
-    pub(super) largest_error_deg: Option<f64>,
-    pub(super) largest_tilt_deg: Option<f64>,
-    pub(super) upsets: Vec<Upset>,
-    pub(super) steps: Vec<Step>,
+    pub(crate) largest_error_deg: Option<f64>,
+    pub(crate) largest_tilt_deg: Option<f64>,
+    pub(crate) upsets: Vec<Upset>,
+    pub(crate) steps: Vec<Step>,
     /// For each profile.
-    pub(super) said: Vec<Said>,
+    pub(crate) said: Vec<Said>,
 }
 
 impl Record {
-    pub(super) fn vehicle_name(&self) -> &str {
+    pub(crate) fn vehicle_name(&self) -> &str {
         self.vehicle.as_deref().unwrap_or("unknown")
     }
 
-    pub(super) fn air_s(&self) -> f64 {
+    pub(crate) fn air_s(&self) -> f64 {
         self.air.iter().map(Span::length_s).sum()
     }
 }
 
 /// The first upset of a time in the air.
-pub(super) struct Upset {
-    pub(super) t_s: f64,
-    pub(super) air: Span,
+pub(crate) struct Upset {
+    pub(crate) t_s: f64,
+    pub(crate) air: Span,
 }
 
 /// A moment and what was said of it.
-pub(super) struct Step {
-    pub(super) is_critical: bool,
-    pub(super) is_quiet: bool,
-    pub(super) is_onset: bool,
+pub(crate) struct Step {
+    pub(crate) t_s: f64,
+    pub(crate) is_critical: bool,
+    pub(crate) is_quiet: bool,
+    pub(crate) is_onset: bool,
     /// For each estimator; NaN is unknown.
-    pub(super) scores: Vec<f64>,
+    pub(crate) scores: Vec<f64>,
 }
 
 /// What a profile said of a flight.
 #[derive(Default)]
-pub(super) struct Said {
+pub(crate) struct Said {
     /// `None` is NA.
-    pub(super) verdict: Option<Level>,
+    pub(crate) verdict: Option<Level>,
     /// WARN or FAIL, from raised until last reached; one that turns into the other is one.
-    pub(super) alarms: Vec<Span>,
-    pub(super) fails: Vec<Span>,
+    pub(crate) alarms: Vec<Span>,
+    pub(crate) fails: Vec<Span>,
     /// The times at which a level was on, against the episodes.
-    pub(super) judged: Judged,
+    pub(crate) judged: Judged,
 }
 
-/// Evaluates a flight.
-///
-/// # Errors
-///
-/// A file that cannot be read or is no flight log, and a flight that lacks motors, attitude or times in the air.
-pub(super) fn evaluate(
-    path: &Path,
+/// Why a flight cannot be evaluated.
+#[derive(Debug, thiserror::Error)]
+pub enum Unusable {
+    /// It cannot be read, or is no flight log.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// It lacks motors, attitude or times in the air.
+    #[error("`{name}` cannot be evaluated: {lacks}")]
+    Incomplete {
+        /// The flight, as the user knows it.
+        name: String,
+        /// What it lacks.
+        lacks: Incomplete,
+    },
+    /// The baselines cannot be computed of it.
+    #[error("`{name}` cannot be evaluated: {problem}")]
+    Baselines {
+        /// The flight, as the user knows it.
+        name: String,
+        /// Why not.
+        problem: String,
+    },
+}
+
+impl Unusable {
+    /// What to do about it, apart from the message.
+    pub fn help(&self) -> Option<&str> {
+        match self {
+            Unusable::Read(error) => error.help(),
+            Unusable::Incomplete { lacks, .. } => lacks.help(),
+            Unusable::Baselines { .. } => None,
+        }
+    }
+}
+
+impl Record {
+    /// Reads a log and evaluates the flight.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no flight log, and as [`Record::new`].
+    pub fn read(path: &Path, estimators: &Estimators, horizon_s: f64) -> Result<Record, Unusable> {
+        let flight = flightlog::open(path, &log::complete_options(&estimators.signals()))?;
+        Record::new(&path.display().to_string(), &flight, estimators, horizon_s)
+    }
+
+    /// Evaluates a flight; the risk should predict what comes within `horizon_s` seconds.
+    ///
+    /// # Errors
+    /// A flight that lacks motors, attitude or times in the air, or of which not all is kept.
+    pub fn new(
+        name: &str,
+        flight: &Flight,
+        estimators: &Estimators,
+        horizon_s: f64,
+    ) -> Result<Record, Unusable> {
+        log::complete(flight).map_err(|lacks| Unusable::Incomplete {
+            name: name.to_owned(),
+            lacks,
+        })?;
+        evaluate(name, flight, estimators, horizon_s)
+    }
+
+    /// The name of its file.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+}
+
+fn evaluate(
+    name: &str,
+    flight: &Flight,
     estimators: &Estimators,
     horizon_s: f64,
-) -> Result<Record, Failure> {
-    let flight = open_complete(path, &estimators.signals(), "cannot be evaluated")?;
-    let header = |key| log::header(&flight, key).map(str::to_owned);
-    let attitudes: Vec<(f64, Attitude)> = log::attitudes(&flight)
+) -> Result<Record, Unusable> {
+    let header = |key| log::header(flight, key).map(str::to_owned);
+    let attitudes: Vec<(f64, Attitude)> = log::attitudes(flight)
         .filter(|(t_s, _)| flight.is_in_air(*t_s) == Some(true))
         .collect();
     let errors = ErrorRecord::new(attitudes.iter().copied());
@@ -118,21 +181,24 @@ pub(super) fn evaluate(
             Some(Upset { t_s, air: *air })
         })
         .collect();
-    let mut steps = steps(&flight, &upsets, &errors, horizon_s);
-    let warned = follow(&flight, estimators, &mut steps)?;
+    let mut steps = steps(flight, &upsets, &errors, horizon_s);
+    let warned = follow(flight, estimators, &mut steps).map_err(|problem| Unusable::Baselines {
+        name: name.to_owned(),
+        problem,
+    })?;
     let lost_s = flight
         .in_air
         .iter()
         .filter_map(|air| air.spans.last())
         .find(|span| span.ends_with_log)
         .map(|span| span.end_s);
-    let judged = log::judged_spans(&flight, &VerdictSettings::default());
+    let judged = log::judged_spans(flight, &VerdictSettings::default());
     let said = warned.into_iter().map(|(mut said, warnings)| {
         said.judged = judge(&warnings, errors.episodes(), &judged, lost_s);
         said
     });
     Ok(Record {
-        file: path.display().to_string(),
+        file: name.to_owned(),
         vehicle: flight.vehicle.id.clone().or_else(|| header("vehicle")),
         kind: header("kind").unwrap_or_else(|| "unnamed".to_owned()),
         judged_s: judged.iter().map(Span::length_s).sum(),
@@ -142,7 +208,7 @@ pub(super) fn evaluate(
             .map(|(_, attitude)| attitude.tilt_deg())
             .reduce(f64::max),
         said: said.collect(),
-        steps: steps.into_iter().map(|(_, step)| step).collect(),
+        steps,
         upsets,
         air,
     })
@@ -152,12 +218,7 @@ pub(super) fn evaluate(
 ///
 /// They are in the judged time that the header of the log gives. Without one they are in the times in the air, from 2 s
 /// after take-off to 1 s before landing, each up to its upset.
-fn steps(
-    flight: &Flight,
-    upsets: &[Upset],
-    errors: &ErrorRecord,
-    horizon_s: f64,
-) -> Vec<(f64, Step)> {
+fn steps(flight: &Flight, upsets: &[Upset], errors: &ErrorRecord, horizon_s: f64) -> Vec<Step> {
     let settings = VerdictSettings {
         quiet_after_take_off_s: FIRST_STEP_S,
         ..VerdictSettings::default()
@@ -174,13 +235,13 @@ fn steps(
     times
         .filter(|t_s| !is_upset(*t_s))
         .filter_map(|t_s| {
-            let step = Step {
+            Some(Step {
+                t_s,
                 is_critical: errors.critical_within(t_s, horizon_s)?,
                 is_quiet: errors.is_quiet(t_s, QUIET_S),
                 is_onset: errors.is_quiet(t_s, ONSET_S),
                 scores: Vec::new(),
-            };
-            Some((t_s, step))
+            })
         })
         .collect()
 }
@@ -206,8 +267,8 @@ struct Running {
 fn follow(
     flight: &Flight,
     estimators: &Estimators,
-    steps: &mut [(f64, Step)],
-) -> Result<Vec<(Said, Vec<Span>)>, Failure> {
+    steps: &mut [Step],
+) -> Result<Vec<(Said, Vec<Span>)>, String> {
     let names = log::carried(flight, &estimators.signals());
     let mut running: Vec<Running> = estimators
         .profiles
@@ -219,13 +280,12 @@ fn follow(
             is_warning: false,
         })
         .collect();
-    let mut baselines = BaselineObserver::new(&estimators.baselines, log::craft(flight, &names))
-        .map_err(Failure::unreadable)?;
+    let mut baselines = BaselineObserver::new(&estimators.baselines, log::craft(flight, &names))?;
 
     let mut steps = steps.iter_mut().peekable();
     let mut last_s = None;
     log::for_each_sample(flight, &names, |sample| {
-        while let Some((_, step)) = steps.next_if(|(t_s, _)| *t_s < sample.t_s - ROUNDING_S) {
+        while let Some(step) = steps.next_if(|step| step.t_s < sample.t_s - ROUNDING_S) {
             step.scores = scores(&running, &baselines);
         }
         let held_s = last_s.map_or(0.0, |last_s| sample.t_s - last_s);
@@ -250,7 +310,7 @@ fn follow(
             );
         }
     });
-    for (_, step) in steps {
+    for step in steps {
         step.scores = scores(&running, &baselines);
     }
     let in_air_s = flight.in_air.as_ref().map(flightlog::Intervals::duration_s);

@@ -5,50 +5,55 @@ use std::collections::BTreeMap;
 use flagred::evaluation::{
     Areas, Band, Intervals, Prediction, Ranking, RocPoint, WithinGroups, reliability,
 };
-
-use crate::parallel;
+use rayon::prelude::*;
 
 /// The kind of flight that is reported apart: its attitude errors are real, but commanded.
-pub(super) const APART: &str = "manoeuvre";
+pub(crate) const APART: &str = "manoeuvre";
 
 /// How often whole flights are drawn for an interval, and from which seed.
-pub(super) const RESAMPLES: usize = 1000;
-pub(super) const SEED: u64 = 1;
+pub(crate) const RESAMPLES: usize = 1000;
+pub(crate) const SEED: u64 = 1;
 
 /// Steps along the curve that is drawn.
 const ROC_STEPS: u32 = 200;
 
 /// A moment or a flight that was predicted.
-pub(super) struct Case {
-    /// The number of its flight.
-    pub(super) group: u32,
-    pub(super) vehicle: String,
-    pub(super) kind: String,
-    pub(super) is_critical: bool,
-    /// No critical error in the 5 s before, and none in the 10 s before.
-    pub(super) is_quiet: bool,
-    pub(super) is_onset: bool,
+pub struct Case {
+    /// The index of its flight.
+    pub group: u32,
+    /// Its time on the flight's clock; `None` of a whole flight.
+    pub t_s: Option<f64>,
+    /// What flew.
+    pub vehicle: String,
+    /// What the flight was about.
+    pub kind: String,
+    /// Whether it became critical.
+    pub is_critical: bool,
+    /// No critical error in the 5 s before.
+    pub is_quiet: bool,
+    /// No critical error in the 10 s before.
+    pub is_onset: bool,
     /// For each estimator; NaN is unknown.
-    pub(super) scores: Vec<f64>,
+    pub scores: Vec<f64>,
 }
 
 /// What an estimator comes to.
-pub(super) struct Scores {
+pub(crate) struct Scores {
     /// The cases in which it said something.
-    pub(super) cases: usize,
+    pub(crate) cases: usize,
     /// Those in which it did not.
-    pub(super) unknown: usize,
-    pub(super) critical: usize,
+    pub(crate) unknown: usize,
+    pub(crate) critical: usize,
     /// `None` where all cases are critical, or none is.
-    pub(super) areas: Option<Areas>,
-    pub(super) intervals: Option<Intervals>,
+    pub(crate) areas: Option<Areas>,
+    pub(crate) intervals: Option<Intervals>,
     /// Within single flights; `None` where none has critical cases and others.
-    pub(super) within: Option<WithinGroups>,
+    pub(crate) within: Option<WithinGroups>,
 }
 
 impl Scores {
     /// Why there is no area; `cases` is what the cases are: `steps`.
-    pub(super) fn no_area(&self, cases: &str) -> Option<String> {
+    pub(crate) fn no_area(&self, cases: &str) -> Option<String> {
         let case = cases.trim_end_matches('s');
         match (self.areas, self.cases, self.critical) {
             (Some(_), ..) => None,
@@ -61,39 +66,35 @@ impl Scores {
 }
 
 /// An estimator under evaluation.
-pub(super) struct Evaluated {
-    pub(super) name: String,
-    pub(super) description: String,
+pub(crate) struct Evaluated {
+    pub(crate) name: String,
+    pub(crate) description: String,
     /// Over all kinds but the one apart.
-    pub(super) all: Scores,
+    pub(crate) all: Scores,
     /// Over the quiet steps of those, and over the onsets.
-    pub(super) quiet: Scores,
-    pub(super) onset: Scores,
-    pub(super) by_vehicle: Vec<(String, Scores)>,
-    pub(super) by_kind: Vec<(String, Scores)>,
+    pub(crate) quiet: Scores,
+    pub(crate) onset: Scores,
+    pub(crate) by_vehicle: Vec<(String, Scores)>,
+    pub(crate) by_kind: Vec<(String, Scores)>,
     /// Of risks in %; other scores have no scale.
-    pub(super) reliability: Option<[Band; 10]>,
-    pub(super) roc: Vec<RocPoint>,
+    pub(crate) reliability: Option<[Band; 10]>,
+    pub(crate) roc: Vec<RocPoint>,
 }
 
-/// Scores every estimator; the first `risks` of them give risks in %.
-pub(super) fn score<'a>(
+/// Scores every estimator; the first `risks` of them give risks in %. `done` is called after each.
+pub(crate) fn score<'a>(
     names: impl Iterator<Item = (&'a str, &'a str)>,
     risks: usize,
     cases: &[Case],
+    done: &(dyn Fn() + Sync),
 ) -> Vec<Evaluated> {
-    let names: Vec<(usize, (&str, &str))> = names.enumerate().collect();
-    let mut all = Vec::with_capacity(names.len());
-    parallel::in_order(
-        &names,
-        "estimators",
-        |(i, name)| evaluated(*i, *name, *i < risks, cases),
-        |_, evaluated| {
-            all.push(evaluated);
-            true
-        },
-    );
-    all
+    let names: Vec<(&str, &str)> = names.collect();
+    let all = names.into_par_iter().enumerate().map(|(i, name)| {
+        let evaluated = evaluated(i, name, i < risks, cases);
+        done();
+        evaluated
+    });
+    all.collect()
 }
 
 fn evaluated(
@@ -167,7 +168,7 @@ fn grouped<'a>(
     groups
 }
 
-pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
     let upper = *values.get(middle)?;

@@ -1,15 +1,38 @@
 //! Whole flights under evaluation: a table with a row for each.
 
-use std::path::Path;
-
 use flagred::{attitude::CRITICAL_ERROR_DEG, evaluation::Baseline, source::Source};
 
-use super::{estimators::Estimators, scores::Case};
 use crate::{
-    dataset::summary::{Recipe, recipe, refuse},
-    failure::Failure,
-    table::{BadCell, Table},
+    estimators::Estimators,
+    recipe::{Recipe, recipe},
+    scores::Case,
 };
+
+/// The column with the attitude error of a flight, which a table must have.
+pub const ERROR: &str = "att_rmse_deg";
+
+/// A table with a row for each flight.
+pub struct Rows<'a, E> {
+    /// The names of its columns.
+    pub columns: Vec<&'a str>,
+    /// How many rows it has.
+    pub len: usize,
+    /// The number in a row and column, or what is wrong with it.
+    pub number: &'a dyn Fn(usize, usize) -> Result<f64, E>,
+    /// The text in a row and column.
+    pub text: &'a dyn Fn(usize, usize) -> &'a str,
+}
+
+impl<E> Rows<'_, E> {
+    fn column(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| *column == name)
+    }
+
+    fn named_number(&self, row: usize, name: &str) -> Result<Option<f64>, E> {
+        let column = self.column(name);
+        column.map(|column| (self.number)(row, column)).transpose()
+    }
+}
 
 /// Where a table has the value of an input.
 enum Column {
@@ -21,23 +44,21 @@ enum Column {
 
 impl Column {
     /// Under one of the names, or from columns that a table of flights has.
-    fn of(table: &Table, names: &[&str], source: &Source) -> Option<Column> {
-        let mut own = names.iter().filter_map(|name| table.header.column(name));
+    fn of<E>(table: &Rows<'_, E>, names: &[&str], source: &Source) -> Option<Column> {
+        let mut own = names.iter().filter_map(|name| table.column(name));
         if let Some(column) = own.next() {
             return Some(Column::Own(column));
         }
         let recipe = recipe(source)?;
-        let has_all = recipe
-            .columns
-            .iter()
-            .all(|name| table.header.column(name).is_some());
+        let mut columns = recipe.columns.iter();
+        let has_all = columns.all(|name| table.column(name).is_some());
         has_all.then_some(Column::Of(recipe))
     }
 
-    fn value(&self, table: &Table, row: usize) -> Result<f64, BadCell> {
+    fn value<E>(&self, table: &Rows<'_, E>, row: usize) -> Result<f64, E> {
         match self {
-            Column::Own(column) => table.number(row, *column),
-            Column::Of(recipe) => recipe.value(table, row),
+            Column::Own(column) => (table.number)(row, *column),
+            Column::Of(recipe) => recipe.value(|name| table.named_number(row, name)),
         }
     }
 }
@@ -46,21 +67,16 @@ impl Column {
 /// to be said about it.
 ///
 /// A row is critical where its attitude error (`att_rmse_deg`) is 5 degrees or more, or it crashed.
-pub(super) fn cases(
-    path: &Path,
+///
+/// # Errors
+/// A cell that is not the number it should be.
+pub fn cases<E>(
+    table: &Rows<'_, E>,
     estimators: &Estimators,
-) -> Result<(Vec<Case>, Vec<String>), Failure> {
-    let table = Table::read(path, b',')?;
-    let error = table.header.require(
-        "att_rmse_deg",
-        "without an attitude error nobody knows what was critical",
-    )?;
-    let crashed = table.header.column("crashed");
-    let vehicle = table
-        .header
-        .column("vehicle")
-        .or_else(|| table.header.column("frame"));
-    let (kind, file) = (table.header.column("kind"), table.header.column("file"));
+) -> Result<(Vec<Case>, Vec<String>), E> {
+    let crashed = table.column("crashed");
+    let vehicle = table.column("vehicle").or_else(|| table.column("frame"));
+    let (kind, file) = (table.column("kind"), table.column("file"));
     let mut notes = Vec::new();
     let profiles: Vec<Option<Vec<Column>>> = estimators
         .profiles
@@ -68,7 +84,7 @@ pub(super) fn cases(
         .map(|named| {
             let inputs = named.estimator.profile().inputs.iter();
             let columns = inputs.map(|input| {
-                let column = Column::of(&table, &[&input.name], &input.source);
+                let column = Column::of(table, &[&input.name], &input.source);
                 if column.is_none() {
                     notes.push(format!(
                         "profile `{}` has no risk: the table has no column for its input `{}`",
@@ -98,31 +114,25 @@ pub(super) fn cases(
             let column = match baseline.per_motor {
                 // A row says nothing of single motors.
                 Some(_) => None,
-                None => Column::of(&table, names, &baseline.source),
+                None => Column::of(table, names, &baseline.source),
             };
             (baseline, column)
         })
         .collect();
 
     let mut groups: Vec<&str> = Vec::new();
-    let mut cases = Vec::with_capacity(table.len());
-    for row in 0..table.len() {
-        let read = |column: &Column| {
-            column
-                .value(&table, row)
-                .map_err(|bad| refuse(&table, &bad))
-        };
-        let text = |column: Option<usize>| column.map_or("", |column| table.text(row, column));
-        let error_deg = table
-            .number(row, error)
-            .map_err(|bad| refuse(&table, &bad))?;
+    let mut cases = Vec::with_capacity(table.len);
+    for row in 0..table.len {
+        let read = |column: &Column| column.value(table, row);
+        let text = |column: Option<usize>| column.map_or("", |column| (table.text)(row, column));
+        let error_deg = table.named_number(row, ERROR)?.unwrap_or(f64::NAN);
         let mut scores = Vec::new();
         for (named, columns) in estimators.profiles.iter().zip(&profiles) {
             let inputs = columns
                 .iter()
                 .flatten()
                 .map(read)
-                .collect::<Result<Vec<f64>, Failure>>()?;
+                .collect::<Result<Vec<f64>, E>>()?;
             let risk = columns.as_ref().and_then(|_| named.estimator.at(&inputs));
             scores.push(risk.map_or(f64::NAN, |estimate| estimate.risk_pct));
         }
@@ -141,6 +151,7 @@ pub(super) fn cases(
         };
         cases.push(Case {
             group: u32::try_from(group).unwrap_or(u32::MAX),
+            t_s: None,
             vehicle: text(vehicle).to_owned(),
             kind: text(kind).to_owned(),
             is_critical: error_deg >= CRITICAL_ERROR_DEG || text(crashed) == "1",

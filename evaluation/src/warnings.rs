@@ -3,7 +3,7 @@
 use flagred::evaluation::Judged;
 use serde::Serialize;
 
-use super::{
+use crate::{
     alarms::kinds,
     flight::Record,
     scores::{APART, median},
@@ -14,40 +14,40 @@ const SAME_GROUP_S: f64 = 5.0;
 
 /// The warnings of a profile over a number of flights.
 #[derive(Default, Serialize)]
-pub(super) struct Warnings {
-    pub(super) flights: usize,
-    pub(super) hours: f64,
-    pub(super) episodes: usize,
+pub(crate) struct Warnings {
+    pub(crate) flights: usize,
+    pub(crate) hours: f64,
+    pub(crate) episodes: usize,
     /// Episodes with a warning on that began before them.
-    pub(super) announced: usize,
+    pub(crate) announced: usize,
     /// The median of how long before, in seconds, over those that were announced.
     #[serde(rename = "lead_s_median")]
-    pub(super) lead_s: Option<f64>,
+    pub(crate) lead_s: Option<f64>,
     /// Groups of episodes, and those whose first one was announced: a warning that stays on announces all the others.
-    pub(super) groups: usize,
-    pub(super) groups_announced: usize,
+    pub(crate) groups: usize,
+    pub(crate) groups_announced: usize,
     #[serde(rename = "group_lead_s_median")]
-    pub(super) group_lead_s: Option<f64>,
+    pub(crate) group_lead_s: Option<f64>,
     /// Episodes that were not announced, but answered by a warning before they were over.
-    pub(super) answered: usize,
+    pub(crate) answered: usize,
     /// The median of how long that took from their start, in seconds.
     #[serde(rename = "answer_s_median")]
-    pub(super) answer_s: Option<f64>,
-    pub(super) warnings: usize,
-    pub(super) false_warnings: usize,
+    pub(crate) answer_s: Option<f64>,
+    pub(crate) warnings: usize,
+    pub(crate) false_warnings: usize,
     /// The share of the time that a warning was on.
     #[serde(rename = "share_of_time_on")]
-    pub(super) share_on: Option<f64>,
+    pub(crate) share_on: Option<f64>,
 }
 
 impl Warnings {
     /// The false warnings per flight hour.
-    pub(super) fn false_per_hour(&self) -> Option<f64> {
+    pub(crate) fn false_per_hour(&self) -> Option<f64> {
         (self.hours > 0.0).then(|| self.false_warnings as f64 / self.hours)
     }
 
     /// Of a profile over flights.
-    pub(super) fn of<'a>(profile: usize, records: impl Iterator<Item = &'a Record>) -> Warnings {
+    pub(crate) fn of<'a>(profile: usize, records: impl Iterator<Item = &'a Record>) -> Warnings {
         let mut sum = Warnings::default();
         let (mut leads, mut group_leads, mut answers, mut on_s) = (vec![], vec![], vec![], 0.0);
         for record in records {
@@ -92,7 +92,7 @@ impl Warnings {
     }
 
     /// Of a profile over all flights but the kind apart, and over each kind.
-    pub(super) fn by_kind(
+    pub(crate) fn by_kind(
         profile: usize,
         records: &[Record],
     ) -> (Warnings, Vec<(String, Warnings)>) {

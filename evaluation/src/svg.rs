@@ -3,10 +3,10 @@
 use flagred::evaluation::Band;
 use fuzzy::drawing::{Colour, Plot, Scale, Series, plots_svg};
 
-use super::{Evaluation, scores::Evaluated};
+use crate::{Evaluation, scores::Evaluated};
 
 /// Draws an evaluation.
-pub(super) fn draw(evaluation: &Evaluation) -> String {
+pub fn draw(evaluation: &Evaluation) -> String {
     let estimators = || evaluation.estimators.iter().enumerate();
     let roc = estimators().map(|(i, evaluated)| {
         let known = evaluated.all.areas.map(|_| evaluated.roc.iter());
@@ -68,7 +68,7 @@ mod tests {
     use flagred::evaluation::{Prediction, Ranking, reliability};
 
     use super::*;
-    use crate::evaluate::scores::Scores;
+    use crate::scores::Scores;
 
     #[test]
     fn a_picture_holds_every_estimator_by_name_and_area() {
@@ -103,11 +103,14 @@ mod tests {
             flights: 200,
             critical: ranking.critical(),
             left_out: Vec::new(),
+            all: Vec::new(),
             estimators: vec![evaluated("a<b", true), evaluated("spread", false)],
             warnings: Vec::new(),
             alarms: Vec::new(),
             records: Vec::new(),
         };
-        insta::assert_snapshot!(draw(&evaluation));
+        insta::with_settings!({snapshot_path => "../tests/snapshots"}, {
+            insta::assert_snapshot!(draw(&evaluation));
+        });
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use flagred::evaluation::{Answer, Band, Interval, Span, Warning};
 use serde::Serialize;
 
-use super::{
+use crate::{
     Evaluation, LeftOut,
     alarms::{Alarms, Figure, SmallErrors, Upsets},
     flight::{Record, Said},
@@ -16,9 +16,9 @@ use super::{
 /// The version of the document's layout; it grows when a name changes its meaning or goes.
 const SCHEMA: &str = "flagred.evaluate/1";
 
-/// The document of an evaluation.
+/// The document of an evaluation: what `flagred evaluate --json` prints.
 #[derive(Serialize)]
-pub(super) struct Document<'a> {
+pub struct Document<'a> {
     schema: &'static str,
     cases: &'static str,
     horizon_s: Option<f64>,
@@ -192,7 +192,8 @@ struct WarningDocument {
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn new(evaluation: &'a Evaluation) -> Document<'a> {
+    /// Of an evaluation.
+    pub fn new(evaluation: &'a Evaluation) -> Document<'a> {
         let first = evaluation.estimators.first();
         let estimators = evaluation.estimators.iter().enumerate();
         let records = evaluation.records.iter();

@@ -1,0 +1,48 @@
+"""Tables of any library: columns by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from numpy.typing import NDArray
+
+from ._errors import DataError
+
+
+def table_of(data: Any) -> Any:
+    """What gives columns by their names."""
+    if hasattr(data, "fetchnumpy"):
+        return data.fetchnumpy()
+    if hasattr(data, "collect"):
+        raise DataError("a lazy frame has no rows yet\n  help: collect it first: `frame.collect()`")
+    return data
+
+
+def column_names(data: Any) -> list[str]:
+    """The names of its columns."""
+    if hasattr(data, "schema") and hasattr(data.schema, "names") and not callable(data.schema.names):
+        return [str(name) for name in data.schema.names]
+    if isinstance(getattr(data, "columns", None), Iterable):
+        return [str(name) for name in data.columns]
+    if hasattr(data, "keys"):
+        return [str(name) for name in data.keys()]
+    raise DataError(f"`{type(data).__name__}` is no table\n  help: give a frame, or a dict of columns by their names")
+
+
+def column_of(data: Any, name: str) -> Any:
+    """The column of a name."""
+    there = column_names(data)
+    if name not in there:
+        listed = ", ".join(f"`{column}`" for column in there)
+        raise DataError(f"the data have no column `{name}`\n  help: there are {listed}")
+    return data[name]
+
+
+def same_length(columns: list[NDArray[Any]]) -> None:
+    """Refuses columns that make no table."""
+    if any(column.ndim != 1 for column in columns):
+        raise DataError("a column has no rows, or several columns have one name")
+    lengths = sorted({len(column) for column in columns})
+    if len(lengths) > 1:
+        raise DataError(f"the columns are not of one length: {', '.join(map(str, lengths))}")

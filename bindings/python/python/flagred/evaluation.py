@@ -1,0 +1,479 @@
+"""How good the risks of profiles are: :func:`evaluate`, and what it finds."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from functools import cached_property
+from typing import IO, TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from ._arrays import array
+from ._core import EvaluationData, Profile, Table
+from ._errors import DataError
+from ._flight import Flight, read_log
+from ._picture import framed
+from ._tables import column_names, column_of, same_length, table_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = [
+    "Alarms",
+    "AlarmsOfKind",
+    "Areas",
+    "Band",
+    "Episode",
+    "Estimator",
+    "EvaluatedFlight",
+    "Evaluation",
+    "LeftOutFile",
+    "OrdinaryFlights",
+    "Said",
+    "Span",
+    "Upsets",
+    "WarningTime",
+    "Warnings",
+    "evaluate",
+]
+
+_Interval = tuple[float, float]
+_Log = Flight | str | os.PathLike[str] | bytes | IO[bytes]
+
+
+class Areas(NamedTuple):
+    """How well an estimator ranks what became critical. Intervals hold 95 %, by resampling whole flights."""
+
+    auc: float | None
+    """The area under the ROC curve."""
+    auc_interval: _Interval | None
+    pr_auc: float | None
+    """The area under the precision-recall curve."""
+    pr_auc_interval: _Interval | None
+    no_auc: str | None
+    """Why there is no area, such as ``no critical step``."""
+    within_flight_auc: float | None
+    """The mean over the flights that have critical cases and others."""
+    within_flight_auc_interval: _Interval | None
+    within_flight_flights: int
+    """The number of those flights."""
+    cases: int
+    """The cases with a score."""
+    critical: int
+    """The critical ones of them."""
+    unknown: int
+    """The cases without a score."""
+
+
+class Band(NamedTuple):
+    """A tenth of the scale of a risk: how much of what had such a risk became critical."""
+
+    from_pct: float
+    to_pct: float
+    cases: int
+    critical: int
+    critical_share: float | None
+    risk_mean_pct: float | None
+
+
+class Warnings(NamedTuple):
+    """What the warnings of a profile are worth: levels of WARN and FAIL against episodes of critical error."""
+
+    flights: int
+    hours: float
+    """The judged time."""
+    episodes: int
+    announced: int
+    """Episodes with a warning on that began before them."""
+    lead_s_median: float | None
+    groups: int
+    """Groups of episodes that follow each other within 5 s."""
+    groups_announced: int
+    group_lead_s_median: float | None
+    answered: int
+    """Episodes that were not announced, but answered by a warning before they were over."""
+    answer_s_median: float | None
+    warnings: int
+    false_warnings: int
+    share_of_time_on: float | None
+    announced_share: float | None
+    groups_announced_share: float | None
+    false_per_hour: float | None
+
+
+class OrdinaryFlights(NamedTuple):
+    """The alarms of a profile in flights whose error stays small."""
+
+    flights: int
+    """The flights with a verdict."""
+    not_assessed: int
+    """The flights whose verdict is NA."""
+    hours: float
+    """The time in the air."""
+    verdicts: dict[str, int]
+    """How many flights were GOOD, WARN and FAIL."""
+    alarms: int
+    """Times of WARN or FAIL; one that turns into the other is one."""
+    alarms_per_hour: float | None
+    alarms_per_hour_interval: _Interval | None
+    fails: int
+    fails_per_hour: float | None
+    fails_per_hour_interval: _Interval | None
+    share_of_time_on: float | None
+    share_of_time_on_interval: _Interval | None
+
+
+class Upsets(NamedTuple):
+    """The upsets of flights, and how the alarms of a profile found them."""
+
+    assessed: int
+    before: int
+    """With an alarm on in the 10 s before."""
+    within_1_s: int
+    """With an alarm raised within 1 s after."""
+    never: int
+    not_assessed: int
+    """Those of flights without a verdict."""
+    lead_s_median: float | None
+
+
+class AlarmsOfKind(NamedTuple):
+    """The alarms of a profile in flights of a kind."""
+
+    ordinary_flights: OrdinaryFlights
+    upsets: Upsets
+
+
+class Alarms(NamedTuple):
+    """The alarms of a profile."""
+
+    ordinary_flights: OrdinaryFlights
+    """Flights whose error over a second stays within 5 degrees, whose tilt stays under 45 degrees, and without an upset."""
+    mild_flights: OrdinaryFlights
+    """The same up to 10 degrees."""
+    upsets: Upsets
+    upsets_by_fail: Upsets
+    """As found by FAIL alone."""
+    by_kind: dict[str, AlarmsOfKind]
+
+
+class Estimator(NamedTuple):
+    """A profile, or a predictor without rules, under evaluation."""
+
+    name: str
+    description: str
+    areas: Areas
+    """Over all cases."""
+    quiet: Areas | None
+    """Over steps without a critical error in the 5 s before; None of whole flights."""
+    onset: Areas | None
+    """Over steps without a critical error in the 10 s before; None of whole flights."""
+    by_vehicle: dict[str, Areas]
+    by_kind: dict[str, Areas]
+    reliability: list[Band] | None
+    """Of a risk in %; None for other scores."""
+    warnings: Warnings | None
+    """Of a profile on flights; None for others."""
+    warnings_by_kind: dict[str, Warnings]
+    alarms: Alarms | None
+    """Of a profile on flights; None for others."""
+
+
+class Span(NamedTuple):
+    """A time span on the log's clock, in seconds."""
+
+    from_s: float
+    to_s: float
+
+
+class Episode(NamedTuple):
+    """A time of critical error, and the warning that announced or answered it."""
+
+    from_s: float
+    to_s: float
+    warned_s: float | None
+    """When the warning began; None without one."""
+    lead_s: float | None
+    """How long before the episode; negative where it came after its start."""
+
+
+class WarningTime(NamedTuple):
+    """A time at WARN or FAIL."""
+
+    from_s: float
+    to_s: float
+    is_false: bool
+    """Whether no episode belongs to it."""
+
+
+class Said(NamedTuple):
+    """What a profile said of a flight."""
+
+    verdict: Literal["GOOD", "WARN", "FAIL", "NA"]
+    alarms: list[Span]
+    fails: list[Span]
+    episodes: list[Episode]
+    warnings: list[WarningTime]
+
+
+class EvaluatedFlight(NamedTuple):
+    """A flight, and what each profile said of it."""
+
+    file: str
+    vehicle: str | None
+    kind: str
+    """What the flight was about, as its header says."""
+    judged_s: float
+    in_air_s: float
+    largest_error_deg: float | None
+    """The largest attitude error over a second, in the air."""
+    upsets_s: list[float]
+    steps: int
+    critical: int
+    """The critical steps."""
+    profiles: dict[str, Said]
+
+
+class LeftOutFile(NamedTuple):
+    """A file that is not among the flights, and why."""
+
+    file: str
+    reason: str
+
+
+def _areas(data: dict[str, Any]) -> Areas:
+    return Areas(**{name: _interval(data[name]) for name in Areas._fields})
+
+
+def _interval(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _ordinary(data: dict[str, Any]) -> OrdinaryFlights:
+    return OrdinaryFlights(**{name: _interval(value) for name, value in data.items()})
+
+
+def _warnings(data: dict[str, Any]) -> Warnings:
+    return Warnings(**{name: data[name] for name in Warnings._fields})
+
+
+def _alarms(data: dict[str, Any]) -> Alarms:
+    return Alarms(
+        _ordinary(data["ordinary_flights"]),
+        _ordinary(data["mild_flights"]),
+        Upsets(**data["upsets"]),
+        Upsets(**data["upsets_by_fail"]),
+        {
+            of["kind"]: AlarmsOfKind(_ordinary(of["ordinary_flights"]), Upsets(**of["upsets"]))
+            for of in data["by_kind"]
+        },
+    )
+
+
+def _estimator(data: dict[str, Any]) -> Estimator:
+    warnings, alarms = data.get("warnings"), data.get("alarms")
+    return Estimator(
+        name=data["name"],
+        description=data["description"],
+        areas=_areas(data),
+        quiet=_areas(data["quiet"]) if "quiet" in data else None,
+        onset=_areas(data["onset"]) if "onset" in data else None,
+        by_vehicle={of["vehicle"]: _areas(of) for of in data["by_vehicle"]},
+        by_kind={of["kind"]: _areas(of) for of in data["by_kind"]},
+        reliability=None if data["reliability"] is None else [Band(**band) for band in data["reliability"]],
+        warnings=_warnings(warnings) if warnings else None,
+        warnings_by_kind={of["kind"]: _warnings(of) for of in warnings["by_kind"]} if warnings else {},
+        alarms=_alarms(alarms) if alarms else None,
+    )
+
+
+def _said(data: dict[str, Any]) -> Said:
+    return Said(
+        data["verdict"],
+        [Span(**span) for span in data["alarms"]],
+        [Span(**span) for span in data["fails"]],
+        [Episode(**episode) for episode in data["episodes"]],
+        [WarningTime(of["from_s"], of["to_s"], of["false"]) for of in data["warnings"]],
+    )
+
+
+class Evaluation(EvaluationData):
+    """What came of many flights; made by :func:`evaluate`. ``str()`` is what ``flagred evaluate`` prints."""
+
+    def __new__(cls, *args: Any, **kwargs: Any) -> Evaluation:
+        raise TypeError("an evaluation is made by `flagred.evaluate`")
+
+    @cached_property
+    def _data(self) -> dict[str, Any]:
+        return self.to_dict()
+
+    @property
+    def cases(self) -> Literal["steps", "flights"]:
+        """What was predicted: ``steps``, half a second apart, or whole ``flights``."""
+        cases: Literal["steps", "flights"] = self._data["cases"]
+        return cases
+
+    @property
+    def horizon_s(self) -> float | None:
+        """How far ahead a risk should tell; None of whole flights."""
+        horizon_s: float | None = self._data["horizon_s"]
+        return horizon_s
+
+    @cached_property
+    def estimators(self) -> dict[str, Estimator]:
+        """The profiles, then the predictors without rules, by their names."""
+        return {data["name"]: _estimator(data) for data in self._data["estimators"]}
+
+    @cached_property
+    def flights(self) -> list[EvaluatedFlight]:
+        """The flights, in their order; none for ``rows``."""
+        return [
+            EvaluatedFlight(
+                **{**data, "profiles": {name: _said(said) for name, said in data["profiles"].items()}}
+            )
+            for data in self._data["records"]
+        ]
+
+    @cached_property
+    def left_out(self) -> list[LeftOutFile]:
+        """The files that are not among the flights."""
+        return [LeftOutFile(**file) for file in self._data["left_out_files"]]
+
+    @property
+    def notes(self) -> list[str]:
+        """Which estimators the ``rows`` say nothing to, and why."""
+        return self._notes()
+
+    @cached_property
+    def scores(self) -> Table:
+        """What each estimator said of each case, in a column of its name: a risk in %, or the value of a predictor. Beside
+        them ``flight`` (its index), ``critical``, and of steps ``t_s``, ``quiet`` and ``onset``."""
+        return self._scores()
+
+    def roc(self, estimator: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The ROC curve of an estimator.
+
+        Parameters
+        ----------
+        estimator
+            Its name.
+
+        Returns
+        -------
+        tuple of numpy.ndarray
+            False and true positive rates; empty where there is no area.
+        """
+        names = list(self.estimators)
+        if estimator not in names:
+            there = ", ".join(f"`{name}`" for name in names)
+            raise DataError(f"there is no estimator `{estimator}`\n  help: there are {there}")
+        return self._roc(names.index(estimator))
+
+    def to_dict(self) -> dict[str, Any]:
+        """All of it, as ``flagred evaluate --json`` prints it."""
+        found: dict[str, Any] = json.loads(self.to_json())
+        return found
+
+    def _repr_html_(self) -> str:
+        return framed(self.html())
+
+    def __repr__(self) -> str:
+        first = next(iter(self.estimators.values()))
+        return f"Evaluation({len(self.estimators)} estimators on {first.areas.cases + first.areas.unknown} {self.cases})"
+
+
+def evaluate(
+    logs: _Log | Iterable[_Log] = (),
+    profiles: Profile | str | Iterable[Profile | str] = (),
+    *,
+    rows: Any = None,
+    horizon_s: float = 5.0,
+    skip_bad_logs: bool = False,
+    threads: int | None = None,
+) -> Evaluation:
+    """Evaluates the risks of profiles on many flights, beside predictors without rules. ``flagred evaluate`` does the same.
+
+    Parameters
+    ----------
+    logs
+        Flights, logs as :func:`flagred.read_log` takes them, and folders of logs. They must hold motors, attitude and times
+        in the air. Files in folders that are no such logs are left out; see :attr:`Evaluation.left_out`.
+    profiles
+        Profiles to compare with the shipped ones, or their files.
+    rows
+        In place of logs, a frame with a row for each flight, as ``flagred dataset`` writes it. It has a column
+        ``att_rmse_deg``.
+    horizon_s
+        How many seconds ahead a risk should tell.
+    skip_bad_logs
+        Leave out logs that cannot be used, and say why in ``left_out``, rather than raise an error.
+    threads
+        The number of threads; as many as there are cores for None.
+
+    Raises
+    ------
+    LogError
+        A log cannot be used, or there is no step in any.
+    OSError
+        A file cannot be read.
+    RuleSetError
+        A profile or its rule set has errors.
+    DataError
+        The rows lack a column or a number.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> def log(gust_s):
+    ...     text = "t_s,motor1,motor2,motor3,motor4,roll_des_deg,roll_deg,pitch_des_deg,pitch_deg,in_air\\n"
+    ...     for i in range(1500):
+    ...         since_s = i / 25 - gust_s
+    ...         motors = "1,0,1,0.1" if 0 <= since_s < 8 else "0.5,0.5,0.52,0.52"
+    ...         text += f"{i / 25},{motors},0,{20 if 3 <= since_s < 8 else 1},0,0,1\\n"
+    ...     return text.encode()
+    >>> evaluation = flagred.evaluate([log(gust_s=30), log(gust_s=100)])
+    >>> evaluation
+    Evaluation(11 estimators on 232 steps)
+    >>> of = evaluation.estimators["flagred"]
+    >>> round(of.areas.auc, 2), of.warnings.announced, round(of.warnings.lead_s_median, 1)
+    (0.92, 1, 2.8)
+    """
+    if rows is not None:
+        if not isinstance(logs, tuple) or logs:
+            raise DataError("logs and rows are given\n  help: evaluate one after the other")
+        rows = _rows(rows)
+    asked = [profiles] if isinstance(profiles, (Profile, str, os.PathLike)) else list(profiles)
+    loaded = [profile if isinstance(profile, Profile) else Profile(os.fspath(profile)) for profile in asked]
+    evaluation: Evaluation = EvaluationData.__new__(
+        Evaluation, _sources(logs), rows, loaded, horizon_s, skip_bad_logs, threads
+    )
+    return evaluation
+
+
+def _sources(logs: Any) -> list[Any]:
+    """Flights and paths; what is neither is read."""
+    one = isinstance(logs, (Flight, str, os.PathLike, bytes, bytearray, memoryview)) or hasattr(logs, "read")
+    found = [logs] if one else list(logs)
+    return [log if isinstance(log, (Flight, str, os.PathLike)) else read_log(log) for log in found]
+
+
+def _rows(data: Any) -> dict[str, Any]:
+    """The columns that the native half takes: numbers, or else texts."""
+    data = table_of(data)
+    names = column_names(data)
+    numbers: list[NDArray[np.float64] | None] = []
+    texts: list[list[str]] = []
+    for name in names:
+        column = column_of(data, name)
+        try:
+            found = array(column)
+        except DataError:
+            numbers.append(None)
+            texts.append(["" if value is None or value != value else str(value) for value in np.asarray(column).tolist()])
+        else:
+            numbers.append(found)
+            texts.append(["" if value != value else f"{value:g}" for value in np.atleast_1d(found).tolist()])
+    same_length([np.asarray(column) for column in texts])
+    return {"names": names, "numbers": numbers, "texts": texts}

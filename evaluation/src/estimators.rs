@@ -1,0 +1,68 @@
+//! Who is compared: the profiles, and the baselines that need no rules.
+
+use flagred::{estimator::Estimator, evaluation::Baseline};
+
+/// All that are compared: profiles first, then the baselines of [`flagred::evaluation::Baseline::all`].
+pub struct Estimators {
+    pub(crate) profiles: Vec<Named>,
+    pub(crate) baselines: [Baseline; 9],
+}
+
+/// A profile and what it goes by.
+pub(crate) struct Named {
+    pub(crate) name: String,
+    pub(crate) estimator: Estimator,
+}
+
+impl Default for Estimators {
+    /// The baselines alone.
+    fn default() -> Estimators {
+        Estimators {
+            profiles: Vec::new(),
+            baselines: Baseline::all(),
+        }
+    }
+}
+
+impl Estimators {
+    /// Whether a profile goes by this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.profiles.iter().any(|profile| profile.name == name)
+    }
+
+    /// Adds a profile, which goes by its own name, or by `otherwise` where another is called the same.
+    pub fn add(&mut self, otherwise: &str, estimator: Estimator) {
+        let own = &estimator.profile().name;
+        let name = match self.has(own) {
+            true => otherwise.to_owned(),
+            false => own.clone(),
+        };
+        self.profiles.push(Named { name, estimator });
+    }
+
+    /// The name of each with what it is.
+    pub fn names(&self) -> impl Iterator<Item = (&str, &str)> {
+        let profiles = self.profiles.iter().map(|profile| {
+            let description = profile.estimator.profile().description.as_deref();
+            (profile.name.as_str(), description.unwrap_or_default())
+        });
+        let baselines = self.baselines.iter();
+        profiles.chain(baselines.map(|baseline| (baseline.name, baseline.description)))
+    }
+
+    /// The signals beside the motors that any of them looks at.
+    pub fn signals(&self) -> Vec<&str> {
+        let profiles = self.profiles.iter();
+        let mut names: Vec<&str> = profiles
+            .flat_map(|profile| profile.estimator.profile().signals())
+            .chain(
+                self.baselines
+                    .iter()
+                    .flat_map(|b| b.source.signal.carried()),
+            )
+            .collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+}

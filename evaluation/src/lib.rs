@@ -1,0 +1,160 @@
+//! How good are the risks of profiles, beside predictors that need no rules?
+//!
+//! A [`Record`] is a flight with what each of the [`Estimators`] said at every step; an [`Evaluation`] is what many of them come
+//! to. It is told in [`words`], as a [`Document`] for programs, as a picture ([`svg`]) and as a [`page`].
+
+mod alarms;
+mod document;
+mod estimators;
+mod files;
+mod flight;
+pub mod page;
+pub mod recipe;
+mod rows;
+mod scores;
+pub mod svg;
+mod tables;
+mod warnings;
+pub mod words;
+
+use serde::Serialize;
+
+pub use document::Document;
+pub use estimators::Estimators;
+pub use files::{Candidate, files};
+pub use flight::{Record, Unusable};
+pub use rows::{ERROR, Rows, cases};
+pub use scores::Case;
+
+use alarms::Alarms;
+use scores::{APART, Evaluated};
+use warnings::Warnings;
+
+/// A file that is not among the flights, and why.
+#[derive(Debug, Clone, Serialize)]
+pub struct LeftOut {
+    file: String,
+    reason: String,
+}
+
+impl LeftOut {
+    /// A file of this name; the reason does not repeat it.
+    pub fn new(file: String, why: &Unusable) -> LeftOut {
+        let reason = why.to_string().replace(&format!("`{file}`"), "");
+        let reason = reason.trim_start_matches([' ', ',']).to_owned();
+        LeftOut { file, reason }
+    }
+}
+
+/// What came of it all.
+pub struct Evaluation {
+    /// What the cases are: `steps` or `flights`.
+    cases: &'static str,
+    horizon_s: Option<f64>,
+    flights: usize,
+    critical: usize,
+    left_out: Vec<LeftOut>,
+    estimators: Vec<Evaluated>,
+    /// Of each profile: over all flights, and by kind.
+    warnings: Vec<(Warnings, Vec<(String, Warnings)>)>,
+    alarms: Vec<Alarms>,
+    records: Vec<Record>,
+    all: Vec<Case>,
+}
+
+impl Evaluation {
+    /// Of flights that were evaluated with the same estimators and horizon; `None` where they have no step. `done` is called
+    /// after each estimator.
+    pub fn of_flights(
+        estimators: &Estimators,
+        horizon_s: f64,
+        mut records: Vec<Record>,
+        left_out: Vec<LeftOut>,
+        done: &(dyn Fn() + Sync),
+    ) -> Option<Evaluation> {
+        let cases: Vec<Case> = records
+            .iter_mut()
+            .zip(0..)
+            .flat_map(|(record, group)| {
+                let vehicle = record.vehicle_name().to_owned();
+                let kind = record.kind.clone();
+                record.steps.iter_mut().map(move |step| Case {
+                    group,
+                    t_s: Some(step.t_s),
+                    vehicle: vehicle.clone(),
+                    kind: kind.clone(),
+                    is_critical: step.is_critical,
+                    is_quiet: step.is_quiet,
+                    is_onset: step.is_onset,
+                    scores: std::mem::take(&mut step.scores),
+                })
+            })
+            .collect();
+        if cases.is_empty() {
+            return None;
+        }
+        let main = records.iter().filter(|record| record.kind != APART);
+        let profiles = 0..estimators.profiles.len();
+        Some(Evaluation {
+            cases: "steps",
+            horizon_s: Some(horizon_s),
+            flights: main.count(),
+            left_out,
+            warnings: profiles
+                .clone()
+                .map(|profile| Warnings::by_kind(profile, &records))
+                .collect(),
+            alarms: profiles
+                .map(|profile| Alarms::of(profile, &records))
+                .collect(),
+            records,
+            ..Evaluation::of_cases(estimators, cases, done)
+        })
+    }
+
+    /// Of cases that are flights. `done` is called after each estimator.
+    pub fn of_cases(
+        estimators: &Estimators,
+        cases: Vec<Case>,
+        done: &(dyn Fn() + Sync),
+    ) -> Evaluation {
+        let main = || cases.iter().filter(|case| case.kind != APART);
+        let (names, risks) = (estimators.names(), estimators.profiles.len());
+        Evaluation {
+            cases: "flights",
+            horizon_s: None,
+            flights: main().count(),
+            critical: main().filter(|case| case.is_critical).count(),
+            left_out: Vec::new(),
+            estimators: scores::score(names, risks, &cases, done),
+            warnings: Vec::new(),
+            alarms: Vec::new(),
+            records: Vec::new(),
+            all: cases,
+        }
+    }
+
+    /// The steps or flights that it rests on.
+    pub fn cases(&self) -> &[Case] {
+        &self.all
+    }
+
+    /// The flights that it rests on; none where the cases are flights.
+    pub fn records(&self) -> &[Record] {
+        &self.records
+    }
+
+    /// The points of an estimator's ROC curve: false and true positive rate.
+    pub fn roc(&self, estimator: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let evaluated = self.estimators.get(estimator);
+        // Without an area there is no curve.
+        let evaluated = evaluated.filter(|evaluated| evaluated.all.areas.is_some());
+        let points = evaluated.into_iter().flat_map(|evaluated| &evaluated.roc);
+        points.map(|point| (point.false_positive_rate, point.true_positive_rate))
+    }
+}
+
+/// The example of the README, run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

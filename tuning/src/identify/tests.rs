@@ -1,0 +1,178 @@
+use std::ops::ControlFlow;
+
+use fuzzy::Engine;
+
+use super::*;
+
+/// Rows of three columns at random, of which the third has nothing to do with the output.
+fn rows(count: usize, truth: fn(f64, f64) -> f64) -> (Vec<String>, Data) {
+    let mut random = fastrand::Rng::with_seed(11);
+    let mut data = Data {
+        inputs: vec![Vec::new(); 3],
+        ..Data::default()
+    };
+    for _ in 0..count {
+        let row = [10.0 * random.f64(), random.f64(), 5.0 * random.f64() - 2.5];
+        for (column, x) in data.inputs.iter_mut().zip(row) {
+            column.push(x);
+        }
+        let noise = 0.1 * (random.f64() - 0.5);
+        data.truths.push(truth(row[0], row[1]) + noise);
+    }
+    let names = ["flow", "valve", "colour"].map(str::to_owned);
+    (names.to_vec(), data)
+}
+
+fn wave(x: f64, y: f64) -> f64 {
+    (x / 2.0).sin() * 3.0 + 4.0 * y
+}
+
+#[test]
+fn inputs_that_matter_are_found_and_predict() {
+    let (names, data) = rows(2000, wave);
+    let found = identify(&names, "level", &data, &Identification::default()).unwrap();
+    let mut columns = found.columns.clone();
+    columns.sort_unstable();
+    assert_eq!(columns, [0, 1]);
+    let errors: Vec<f64> = found.steps.iter().map(|step| step.left_out).collect();
+    assert!(errors.is_sorted_by(|a, b| a > b), "{errors:?}");
+    let engine = Engine::new(&found.model).unwrap();
+    let columns: Vec<&[f64]> = found.columns.iter().map(|c| &data.inputs[*c][..]).collect();
+    let outcomes = engine.evaluate_batch(&columns).unwrap();
+    let squares = outcomes.iter().zip(&data.truths);
+    let squares = squares.map(|(outcome, truth)| (outcome.value().unwrap() - truth).powi(2));
+    let rmse = (squares.sum::<f64>() / data.len() as f64).sqrt();
+    assert!(
+        rmse < 1.1 * errors.last().unwrap() + 0.05,
+        "{rmse} {errors:?}"
+    );
+    assert!(rmse < 0.6, "{rmse}");
+}
+
+#[test]
+fn a_model_survives_being_written_and_read() {
+    let (names, data) = rows(500, wave);
+    for antecedents in [Antecedents::Partitions, Antecedents::Clusters] {
+        for consequents in [Consequents::Constants, Consequents::Lines] {
+            let settings = Identification {
+                antecedents,
+                consequents,
+                ..Identification::default()
+            };
+            let found = identify(&names, "level", &data, &settings).unwrap();
+            let text = fuzzy::yaml::to_string(&found.model);
+            assert_eq!(
+                fuzzy::yaml::parse(&text).unwrap().model,
+                found.model,
+                "{text}"
+            );
+            assert!(Engine::new(&found.model).is_ok());
+            assert!(found.model.rules.len() <= settings.most_rules);
+            assert_eq!(found, identify(&names, "level", &data, &settings).unwrap());
+        }
+    }
+}
+
+#[test]
+fn named_inputs_are_used_and_unknown_ones_refused() {
+    let (names, data) = rows(300, wave);
+    let mut settings = Identification {
+        inputs: vec!["colour".to_owned()],
+        ..Identification::default()
+    };
+    let found = identify(&names, "level", &data, &settings).unwrap();
+    assert_eq!(found.columns, [2]);
+    settings.inputs = vec!["color".to_owned()];
+    let refused = identify(&names, "level", &data, &settings).unwrap_err();
+    let name = "color".to_owned();
+    assert_eq!(refused, TuneError::Unknown { name });
+}
+
+#[test]
+fn noise_alone_makes_no_model() {
+    let (names, data) = rows(300, |_, _| 0.0);
+    let refused = identify(&names, "level", &data, &Identification::default());
+    assert_eq!(refused.unwrap_err(), TuneError::NoInputHelps);
+}
+
+#[test]
+fn combinations_without_rows_have_no_rule() {
+    let (names, mut data) = rows(2000, |x, y| x * y);
+    let rows: Vec<bool> = (0..data.len())
+        .map(|row| data.inputs[0][row] < 3.0 || data.inputs[1][row] < 0.2)
+        .collect();
+    data = data.filtered(|row| rows[row]);
+    let settings = Identification {
+        most_rules: 9,
+        least_support: 5,
+        ..Identification::default()
+    };
+    let found = identify(&names, "level", &data, &settings).unwrap();
+    assert!(
+        found.without_rows > 0,
+        "{}",
+        fuzzy::yaml::to_string(&found.model)
+    );
+    let cells: usize = found
+        .model
+        .inputs
+        .iter()
+        .map(|input| input.terms.len())
+        .product();
+    assert_eq!(found.model.rules.len() + found.without_rows, cells);
+}
+
+#[test]
+fn what_was_left_out_is_predicted_better_than_by_a_line_where_the_truth_bends() {
+    let (names, data) = rows(600, wave);
+    let mut parts = Vec::new();
+    let judged = judge(
+        &names,
+        "level",
+        &data,
+        &Identification::default(),
+        4,
+        &mut |part| {
+            parts.push(part);
+            ControlFlow::Continue(())
+        },
+    );
+    let judged = judged.unwrap().unwrap();
+    assert_eq!((judged.folds, parts), (4, vec![0, 1, 2, 3]));
+    assert!(judged.linear.value < judged.mean.value);
+    assert!(
+        judged.identified.value < 0.6 * judged.linear.value,
+        "{judged:?}"
+    );
+    assert!(judged.ratio.low > 0.0 && judged.ratio.high < 0.7);
+    let stopped = judge(
+        &names,
+        "level",
+        &data,
+        &Identification::default(),
+        4,
+        &mut |_| ControlFlow::Break(()),
+    );
+    assert_eq!(stopped.unwrap(), None);
+}
+
+/// The line of the comparison, by the formula for one input.
+#[test]
+fn a_straight_truth_is_no_better_predicted_than_by_a_line() {
+    let (names, data) = rows(400, |x, y| 2.0 * x - y + 1.0);
+    let judged = judge(
+        &names,
+        "level",
+        &data,
+        &Identification::default(),
+        5,
+        &mut |_| ControlFlow::Continue(()),
+    );
+    let judged = judged.unwrap().unwrap();
+    // Of uniform noise of a width of 0.1.
+    assert!(
+        (judged.linear.value - 0.1 / 12_f64.sqrt()).abs() < 0.002,
+        "{judged:?}"
+    );
+    assert!(judged.ratio.value > 1.0);
+}

@@ -1,0 +1,198 @@
+//! Whether a rule set says the same as the one it comes from.
+
+use std::ops::Range;
+
+use fuzzy::{
+    Engine, Model,
+    engine::{Outcome, State},
+    model::Variable,
+};
+
+use super::{Difference, SimplifyError};
+
+/// So many points are evaluated at once, and as many tell most candidates apart.
+const CHUNK: usize = 4096;
+
+/// The points at which candidates failed that are tried first.
+const MOST_HARD: usize = 64;
+
+/// Points, and what the original says there.
+pub(crate) struct Judge {
+    /// The names of the inputs, a column each.
+    names: Vec<String>,
+    columns: Vec<Vec<f64>>,
+    /// Row by row, an outcome for each output.
+    outcomes: Vec<Outcome>,
+    outputs: Vec<String>,
+    /// By how much each output may differ and still be equal.
+    equal: Vec<f64>,
+    /// By how much each output may differ.
+    tolerances: Vec<f64>,
+    /// Rows at which candidates failed.
+    hard: Vec<usize>,
+}
+
+impl Judge {
+    pub(crate) fn new(
+        model: &Model,
+        columns: Vec<Vec<f64>>,
+        tolerance: Option<f64>,
+    ) -> Result<Judge, SimplifyError> {
+        let outputs = || model.outputs.iter().map(|output| &output.variable);
+        let equal = |output: &Variable| super::EQUAL * (output.high - output.low);
+        let equal: Vec<f64> = outputs().map(equal).collect();
+        let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        Ok(Judge {
+            outcomes: Engine::new(model)?.evaluate_batch(&slices)?,
+            names: model
+                .inputs
+                .iter()
+                .map(|input| input.name.clone())
+                .collect(),
+            outputs: outputs().map(|output| output.name.clone()).collect(),
+            tolerances: equal
+                .iter()
+                .map(|equal| tolerance.map_or(*equal, |tolerance| tolerance.max(*equal)))
+                .collect(),
+            equal,
+            columns,
+            hard: Vec::new(),
+        })
+    }
+
+    /// The number of points.
+    pub(crate) fn len(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// Whether a model is equal at all points.
+    pub(crate) fn is_equal(&mut self, model: &Model) -> bool {
+        let equal = self.equal.clone();
+        self.compare(model, &equal, self.len()).is_some()
+    }
+
+    /// The largest difference on the first points, as a share of the tolerance; `None` where it is larger than that.
+    pub(crate) fn glance(&mut self, model: &Model) -> Option<f64> {
+        let tolerances = self.tolerances.clone();
+        let difference = self.compare(model, &tolerances, CHUNK)?;
+        Some(difference.map_or(0.0, |(share, _)| share))
+    }
+
+    /// The largest difference on all points, with its place, `None` inside where there is none at all; `None` where it is
+    /// larger than the tolerance, or a rule fires at a point of only one of the two.
+    pub(crate) fn examine(&mut self, model: &Model) -> Option<Option<Difference>> {
+        let tolerances = self.tolerances.clone();
+        let difference = self.compare(model, &tolerances, self.len())?;
+        Some(difference.map(|(_, difference)| difference))
+    }
+
+    fn compare(
+        &mut self,
+        model: &Model,
+        tolerances: &[f64],
+        most: usize,
+    ) -> Option<Option<(f64, Difference)>> {
+        let engine = Engine::new(model).ok()?;
+        let column = |input: &Variable| {
+            let index = self.names.iter().position(|name| *name == input.name)?;
+            self.columns.get(index)
+        };
+        let columns: Option<Vec<&Vec<f64>>> = model.inputs.iter().map(column).collect();
+        let columns = columns?;
+        let hard = self.rows_at(&engine, &columns, &self.hard)?;
+        let mut worst: Option<(f64, usize, usize, f64)> = None;
+        if self
+            .worst(self.hard.iter().copied(), &hard, tolerances, &mut worst)
+            .is_err()
+        {
+            return None;
+        }
+        let mut first = 0;
+        while first < most.min(self.len()) {
+            let rows = first..(first + CHUNK).min(self.len());
+            let outcomes = evaluate(&engine, &columns, rows.clone())?;
+            if let Err(row) = self.worst(rows, &outcomes, tolerances, &mut worst) {
+                self.hard.truncate(MOST_HARD - 1);
+                self.hard.insert(0, row);
+                return None;
+            }
+            first += CHUNK;
+        }
+        Some(worst.and_then(|(share, row, output, after)| {
+            let before = self.outcome(row, output)?.value()?;
+            Some((
+                share,
+                Difference {
+                    output: self.outputs.get(output)?.clone(),
+                    before,
+                    after,
+                    inputs: self
+                        .columns
+                        .iter()
+                        .filter_map(|column| column.get(row).copied())
+                        .collect(),
+                },
+            ))
+        }))
+    }
+
+    fn rows_at(
+        &self,
+        engine: &Engine,
+        columns: &[&Vec<f64>],
+        rows: &[usize],
+    ) -> Option<Vec<Outcome>> {
+        let of = |column: &&Vec<f64>| {
+            rows.iter()
+                .filter_map(|row| column.get(*row).copied())
+                .collect()
+        };
+        let columns: Vec<Vec<f64>> = columns.iter().map(of).collect();
+        evaluate(engine, &columns.iter().collect::<Vec<_>>(), 0..rows.len())
+    }
+
+    fn outcome(&self, row: usize, output: usize) -> Option<&Outcome> {
+        self.outcomes.get(row * self.outputs.len() + output)
+    }
+
+    /// Keeps the largest difference: its share of the tolerance, row, output, and value. The row is the error where the
+    /// outcomes there are not the same.
+    fn worst(
+        &self,
+        rows: impl Iterator<Item = usize>,
+        outcomes: &[Outcome],
+        tolerances: &[f64],
+        worst: &mut Option<(f64, usize, usize, f64)>,
+    ) -> Result<(), usize> {
+        for (row, now) in rows.zip(outcomes.chunks(self.outputs.len().max(1))) {
+            for (output, (now, tolerance)) in now.iter().zip(tolerances).enumerate() {
+                let Some(before) = self.outcome(row, output) else {
+                    return Err(row);
+                };
+                match (before.state, now.state) {
+                    (State::Defined(before), State::Defined(after)) => {
+                        let difference = (after - before).abs();
+                        if difference > *tolerance {
+                            return Err(row);
+                        }
+                        let share = difference / tolerance.max(f64::MIN_POSITIVE);
+                        if difference > 0.0 && worst.is_none_or(|(most, ..)| share > most) {
+                            *worst = Some((share, row, output, after));
+                        }
+                    }
+                    (before, now) if before == now => {}
+                    _ => return Err(row),
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn evaluate(engine: &Engine, columns: &[&Vec<f64>], rows: Range<usize>) -> Option<Vec<Outcome>> {
+    let slices: Option<Vec<&[f64]>> = columns
+        .iter()
+        .map(|column| column.get(rows.clone()))
+        .collect();
+    engine.evaluate_batch(&slices?).ok()
+}
