@@ -93,7 +93,7 @@ fn identify() {
     let folder = Folder::new();
     let row = |i: i32| format!("{},{},car {i},{}\n", i % 7, i % 5, i % 7 * (i % 5));
     let rows: String = (0..70).map(row).collect();
-    let data = folder.file("data.csv", &format!("width,length,name,area\n{rows}"));
+    let data = folder.file("data.csv", format!("width,length,name,area\n{rows}"));
     let out = folder.at("out.yaml");
     let arguments = [
         "identify", &data, "--target", "area", "--output", &out, "--json", "--force",
