@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 import multiprocessing
+import resource
 import shutil
 import subprocess
 import sys
@@ -61,6 +62,12 @@ def by_fleet(logs: Path, out: Path, workers: int) -> tuple[float, float]:
     done = subprocess.run([sys.executable, "-c", program, logs, out, str(workers)], capture_output=True, text=True, check=True)
     whole_s, work_s = json.loads(done.stdout)
     return whole_s, work_s
+
+
+def cpu_s() -> float:
+    """CPU time of all processes that were started and ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def check(logs: Path, out: Path, count: int) -> None:
@@ -135,15 +142,23 @@ def main() -> int:
     size = sum(Path(path).stat().st_size for path in paths)
     print(f"{len(paths)} logs, {size / 1e9:.1f} GB")
     spent = {}
+    few = given.folder / "few"
+    make_logs(few, 80)
     for workers in given.workers:
+        started_s = cpu_s()
+        by_fleet(few, out, workers)
+        few_s = cpu_s() - started_s
         alone_s = by_processes(paths, workers)
+        plain_s = cpu_s() - started_s - few_s
         whole_s, work_s = by_fleet(logs, out, workers)
+        fleet_s = cpu_s() - started_s - few_s - plain_s
         spent[workers] = work_s
         check(logs, out, len(paths))
-        overhead_ms = (work_s - alone_s) * workers / len(paths) * 1e3
+        # What the start costs, and a process of Python, is not of the logs: they are taken off by the run with few logs.
+        overhead_ms = ((fleet_s - few_s) / (len(paths) - 80) - plain_s / len(paths)) * 1e3
         print(
-            f"{workers} workers: {whole_s:.1f} s in all, {work_s:.1f} s without the start; plain processes {alone_s:.1f} s; "
-            f"overhead {overhead_ms:.2f} ms a log of CPU; {size / work_s / 1e6:.0f} MB/s",
+            f"{workers} workers: {whole_s:.1f} s in all, {work_s:.1f} s without the start; plain processes {alone_s:.1f} s; CPU {fleet_s:.1f} s "
+            f"and {plain_s:.1f} s, {overhead_ms:.2f} ms a log more; {size / work_s / 1e6:.0f} MB/s",
             flush=True,
         )
     if spent.keys() >= {1, 2}:

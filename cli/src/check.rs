@@ -13,6 +13,7 @@ use fuzzy::{
     diagnostic::{Diagnostic, Findings, Severity},
     drawing::visible,
     format::Document,
+    model::Step,
 };
 use serde::Serialize;
 
@@ -21,7 +22,7 @@ use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
     output::{Files, Stdout},
-    profile,
+    profile, provenance,
 };
 
 #[derive(clap::Args)]
@@ -72,6 +73,9 @@ struct Json<'a> {
     /// The name of the profile; absent where it cannot be read, and of a rule set.
     #[serde(skip_serializing_if = "Option::is_none")]
     profile: Option<String>,
+    /// The commands that made the rule set; absent where it says none.
+    #[serde(skip_serializing_if = "<[Step]>::is_empty")]
+    provenance: &'a [Step],
     findings: &'a [Diagnostic],
     report: Option<&'a check::Report>,
 }
@@ -113,6 +117,13 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         match format {
             Format::Text => {
                 write!(out, "{}", draw(&findings.0, &file, &text, true))?;
+                let steps = analysed
+                    .iter()
+                    .flat_map(|(document, _)| &document.model.provenance);
+                for step in steps {
+                    let made = visible(&provenance::words(step)).to_string();
+                    writeln!(out, "{}: made by {made}", visible(&file))?;
+                }
                 writeln!(out, "{}: {}", visible(&file), summary(&findings))?;
             }
             Format::Json => {
@@ -123,6 +134,9 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                         .as_ref()
                         .map(|(document, _)| document.model.name.as_str()),
                     profile,
+                    provenance: analysed
+                        .as_ref()
+                        .map_or(&[], |(document, _)| &document.model.provenance),
                     findings: &findings.0,
                     report: analysed.as_ref().map(|(_, report)| report),
                 };
@@ -161,6 +175,7 @@ fn examine(
     let (findings, report) = check::document(&document, text, &options).map_err(|finding| {
         Failure::usage(format!("--monotone: {}", finding.message)).help_if(finding.help)
     })?;
+    let findings = provenance::with_edited(findings, &document, text);
     Ok((findings, report.map(|report| (document, report))))
 }
 

@@ -30,6 +30,7 @@ mod output;
 mod parallel;
 mod plot;
 mod profile;
+mod provenance;
 mod rows;
 mod rule_set;
 mod schema;

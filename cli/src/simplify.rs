@@ -5,6 +5,7 @@ use std::{io::Write, path::PathBuf};
 use fuzzy::{
     Model,
     drawing::{short, visible},
+    model::Step,
 };
 use serde::Serialize;
 use tuning::{Difference, Simplified, SimplifyError, SimplifySettings, simplify};
@@ -12,7 +13,7 @@ use tuning::{Difference, Simplified, SimplifyError, SimplifySettings, simplify};
 use crate::{
     failure::{Exit, Failure},
     output::{Files, Replace, Stdout},
-    rows, rule_set,
+    provenance, rows, rule_set,
 };
 
 #[derive(clap::Args)]
@@ -74,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         refused,
         simplified,
     };
-    output.write(&outcome.rule_set(&text))?;
+    output.write(&outcome.rule_set(&text)?)?;
     let mut out = Stdout::beside(&[&output]);
     if rewrite.json {
         serde_json::to_writer_pretty(&mut out, &outcome.document())
@@ -132,20 +133,23 @@ impl Outcome<'_> {
         }
     }
 
-    /// The rule set under the comments that the model began with, and a line that says what it comes from.
-    fn rule_set(&self, model_text: &str) -> String {
-        let head = model_text.split_inclusive('\n');
-        let head: String = head.take_while(|line| line.starts_with('#')).collect();
-        let gap = if head.is_empty() { "" } else { "#\n" };
-        let after = &self.simplified.model;
-        format!(
-            "{head}{gap}# Simplified by `flagred simplify`: {} rules before, {} after; no output differs by more than {} at {}.\n{}",
-            self.model.rules.len(),
-            after.rules.len(),
-            self.allowed(),
-            self.points(),
-            fuzzy::yaml::to_string(after)
-        )
+    /// The rule set with the step that made it.
+    fn rule_set(&self, model_text: &str) -> Result<String, Failure> {
+        let after = self.simplified.model.clone();
+        let step = Step {
+            command: "flagred simplify".into(),
+            data: provenance::data(&self.arguments.data)?,
+            rows: (self.rows > 0).then_some(self.rows as u64),
+            seed: Some(self.arguments.seed),
+            rules: Some([self.model.rules.len() as u64, after.rules.len() as u64]),
+            note: Some(format!(
+                "no output differs by more than {} at {}",
+                self.allowed(),
+                self.points()
+            )),
+            ..Step::default()
+        };
+        Ok(provenance::rule_set(model_text, after, step))
     }
 
     fn words(&self, out: &mut dyn Write) -> std::io::Result<()> {

@@ -56,15 +56,33 @@ fn what_moved_is_told_and_written() {
     );
     let written = written.unwrap();
     assert!(
-        written.starts_with(
-            "# A fan for the attic.\n#\n# Tuned by `flagred tune` on 81 rows, seed 0: RMS error "
-        ),
+        written.starts_with("# A fan for the attic.\nfuzzy: 1\n"),
         "{written}"
     );
+    insta::assert_snapshot!(written.split_once("provenance:").unwrap().1);
     assert!(
         written.contains("partition: {cool: 20, hot: 30}"),
         "{written}"
     );
+}
+
+#[test]
+fn check_tells_what_made_a_rule_set_and_whether_it_was_edited_since() {
+    let (.., written) = tune(&[], &["--round", "2", "--no-validation"]);
+    let written = written.unwrap();
+    let described = written.replace("name: fan", "name: attic\ndescription: A fan");
+    let edited = written.replace("hot: 30", "hot: 29");
+    let files = [("described.yaml", &*described), ("edited.yaml", &*edited)];
+    let folder = folder(&files);
+    let check = |file: &str| flagred(folder.path(), &["check", file]).1;
+    let out = check("described.yaml");
+    let made =
+        "described.yaml: made by flagred tune: 81 rows of rows.csv, RMS error 1.31562 -> 0\n";
+    assert!(out.contains(made), "{out}");
+    assert!(!out.contains("edited-since"), "{out}");
+    let edited = "note[edited-since]: the rule set was edited after `flagred tune` made it";
+    let out = check("edited.yaml");
+    assert!(out.contains(edited), "{out}");
 }
 
 #[test]

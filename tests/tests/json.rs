@@ -86,6 +86,9 @@ fn learn() {
     assert_eq!(document["rows"]["used"], 4);
     assert!(document["gap_methods"]["methods"][0]["method"].is_string());
     assert!(document["cross_validation"]["rmse"].is_number());
+    let checked = json(&["check", "--json", &out]);
+    valid("check", &checked);
+    assert_eq!(checked["provenance"][0]["rows"], 4);
 }
 
 #[test]

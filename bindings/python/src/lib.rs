@@ -19,6 +19,7 @@ mod outcome;
 mod profile;
 mod rows;
 mod rule_set;
+mod simplify;
 mod source;
 mod table;
 mod threads;
@@ -38,6 +39,7 @@ mod _core {
         outcome::{Outcome, Outcomes},
         profile::Profile,
         rule_set::RuleSet,
+        simplify::_simplify,
         table::Table,
         tune::_tune,
     };

@@ -31,9 +31,11 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize(("document", "least"), [("docs/python.md", 40), ("README.md", 3)])
-def test_a_document_is_true(desk, document, least):
-    pytest.importorskip("sklearn", reason="scikit-learn is not installed: `pip install flagred[sklearn]`")
+@pytest.mark.parametrize(
+    ("document", "least", "needs"), [("docs/python.md", 40, "sklearn"), ("README.md", 3, "sklearn"), ("docs/fleet.md", 8, "distributed")]
+)
+def test_a_document_is_true(desk, document, least, needs):
+    pytest.importorskip(needs, reason=f"{needs} is not installed: `pip install flagred[sklearn,fleet]`")
     parts = blocks(document, "pycon")
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE, verbose=False)
     names: dict = {"__name__": "document"}

@@ -19,6 +19,8 @@ import pyarrow.parquet as pq
 from conftest import ROOT
 from flagred import fleet
 from flagred.fleet.__main__ import main
+from flagred.fleet.schema import MEANINGS
+from test_documents import blocks
 
 sys.path.insert(0, str(ROOT / "benches/fleet"))
 import synthetic
@@ -109,6 +111,41 @@ def test_an_alert(dataset, tmp_path, capsys):
     assert main(["report", str(dataset), "-o", str(page)]) == 0
     assert "rises" not in re.sub("<p class=soft>.*?</p>", "", page.read_text())
     assert main(["report", str(tmp_path), "-o", str(page)]) == 2
+
+
+def columns(kind: str, schema: pa.Schema) -> str:
+    """The columns of a table as docs/fleet.md has them."""
+    lines = [f"`{kind}`:\n", "| column | unit | meaning |", "|---|---|---|"]
+    for field in schema:
+        unit = (field.metadata or {}).get(b"unit", b"").decode()
+        lines.append(f"| `{field.name}` | {unit} | {MEANINGS[field.name]} |")
+    return "\n".join(lines) + "\n"
+
+
+def test_the_document_has_all_columns():
+    document = (ROOT / "docs/fleet.md").read_text(encoding="utf-8")
+    for kind, schema in (("flights", fleet.FLIGHTS), ("findings", fleet.FINDINGS), ("steps", fleet.STEPS)):
+        assert columns(kind, schema) in document, columns(kind, schema)
+
+
+def test_the_sql_of_the_document_runs(dataset, tmp_path, monkeypatch):
+    import duckdb
+
+    fleet.assess([str(ROOT / "examples/flights")], str(tmp_path / "dataset"), workers=1)
+    shutil.copytree(dataset, tmp_path / "dataset", dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    ((sql, _),) = blocks("docs/fleet.md", "sql")
+    connection = duckdb.connect()
+    answers = [connection.execute(statement) for statement in connection.extract_statements(sql)]
+    assert len(answers) == 7
+    questions = [statement for statement in connection.extract_statements(sql) if "SELECT" in statement.query]
+    found = [connection.execute(question).fetchall() for question in questions]
+    assert all(found) and found[0][0][0] == "v00003"
+
+
+def test_programs_for_other_engines_are_python():
+    for text, _ in blocks("docs/fleet.md", "python"):
+        compile(text, "docs/fleet.md", "exec")
 
 
 class Tags(HTMLParser):

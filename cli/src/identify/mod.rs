@@ -150,7 +150,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         identified,
         judged,
     };
-    output.write(&report::rule_set(arguments, &outcome))?;
+    output.write(&report::rule_set(arguments, &outcome)?)?;
     let mut out = Stdout::beside(&[&output]);
     if arguments.json {
         let document = report::Document::new(&outcome);

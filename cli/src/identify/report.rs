@@ -2,30 +2,42 @@
 
 use std::io::Write;
 
-use fuzzy::drawing::{short, visible};
+use fuzzy::{
+    drawing::{short, visible},
+    model::Step,
+};
 use serde::Serialize;
 use tuning::{Interval, identify::Judged};
 
 use super::{Arguments, Outcome};
+use crate::{failure::Failure, provenance};
 
 /// The reasons for rows without use, and the columns without numbers, that are shown.
 const SHOWN: usize = 12;
 
-/// The rule set under lines that say where it came from.
-pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome) -> String {
-    let mut text = format!(
-        "# Identified by `flagred identify` from {} rows and {} columns, seed {}.\n",
-        outcome.rows, outcome.columns, arguments.seed
-    );
-    if let Some(judged) = &outcome.judged {
-        text += &format!(
-            "# RMS error on rows left out, in {} parts: {}; of a line {}.\n",
+/// The rule set with the step that made it.
+pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome) -> Result<String, Failure> {
+    let judged = outcome.judged.as_ref().map_or_else(String::new, |judged| {
+        format!(
+            "; RMS error on rows left out, in {} parts: {}; of a line {}",
             judged.folds,
             short(judged.identified.value),
             short(judged.linear.value)
-        );
-    }
-    text + &fuzzy::yaml::to_string(&outcome.identified.model)
+        )
+    });
+    let step = Step {
+        command: "flagred identify".into(),
+        data: provenance::data(&arguments.data)?,
+        rows: Some(outcome.rows as u64),
+        seed: Some(arguments.seed),
+        note: Some(format!("from {} columns{judged}", outcome.columns)),
+        ..Step::default()
+    };
+    Ok(provenance::rule_set(
+        "",
+        outcome.identified.model.clone(),
+        step,
+    ))
 }
 
 pub(super) fn words(

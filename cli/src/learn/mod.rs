@@ -142,7 +142,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         learned,
         counterexamples,
     };
-    output.write(&report::rule_set(arguments, &outcome, &text))?;
+    output.write(&report::rule_set(arguments, &outcome, &text)?)?;
     let mut out = Stdout::beside(&[&output]);
     if arguments.rows.rewrite.json {
         let document = report::Document::new(arguments, &outcome);

@@ -6,18 +6,21 @@ use flagred::{
     gap::GapMethod,
     learning::{Errors, MethodErrors},
 };
-use fuzzy::{check::Counterexample, drawing::visible};
+use fuzzy::{check::Counterexample, drawing::visible, model::Step};
 use serde::Serialize;
 
 use super::{Arguments, Outcome};
-use crate::rows::word;
+use crate::{failure::Failure, provenance, rows::word};
 
 /// The antecedents without a rule that are named.
 const SHOWN: usize = 12;
 
-/// The rule set under the comments that the model began with, and a line that says where its rules came from. Degrees
-/// are kept to six digits: authors read them.
-pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome, model_text: &str) -> String {
+/// The rule set with the step that made it. Degrees are kept to six digits: authors read them.
+pub(super) fn rule_set(
+    arguments: &Arguments,
+    outcome: &Outcome,
+    model_text: &str,
+) -> Result<String, Failure> {
     let learned = &outcome.learned;
     let round = |degree: f64| (degree * 1e6).round() / 1e6;
     let mut model = learned.model.clone();
@@ -27,17 +30,19 @@ pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome, model_text: &st
             beaten.degree = round(beaten.degree);
         }
     }
-    let head = model_text.split_inclusive('\n');
-    let head: String = head.take_while(|line| line.starts_with('#')).collect();
-    let gap = if head.is_empty() { "" } else { "#\n" };
-    format!(
-        "{head}{gap}# Learned by `flagred learn` from {} rows, {} resolution: {} rules learned, {} of them without samples.\n{}",
-        learned.samples,
-        word(&arguments.resolve),
-        learned.model.rules.len() - outcome.kept,
-        learned.completed,
-        fuzzy::yaml::to_string(&model)
-    )
+    let step = Step {
+        command: "flagred learn".into(),
+        data: provenance::data(&arguments.rows.data)?,
+        rows: Some(learned.samples),
+        note: Some(format!(
+            "{} resolution; {} rules learned, {} of them without samples",
+            word(&arguments.resolve),
+            learned.model.rules.len() - outcome.kept,
+            learned.completed,
+        )),
+        ..Step::default()
+    };
+    Ok(provenance::rule_set(model_text, model, step))
 }
 
 pub(super) fn words(

@@ -14,7 +14,7 @@ use fuzzy::{
 use gen_lsp_types as lsp;
 use percent_encoding::percent_decode_str;
 
-use crate::profile;
+use crate::{profile, provenance};
 
 /// A text that an editor shows.
 pub(super) struct Document {
@@ -102,7 +102,7 @@ fn findings(text: &str) -> Findings {
         Err(findings) => return findings,
     };
     match check::document(&document, text, &check::Options::default()) {
-        Ok((findings, _)) => findings,
+        Ok((findings, _)) => provenance::with_edited(findings, &document, text),
         Err(finding) => Findings::locate(vec![*finding], text),
     }
 }

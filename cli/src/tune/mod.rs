@@ -14,7 +14,7 @@ use std::{
 };
 
 use clap::ValueEnum;
-use fuzzy::{Model, drawing::variables_svg};
+use fuzzy::{Model, drawing::moved_svg};
 use indicatif::{ProgressBar, ProgressStyle};
 use tuning::{Data, Loss, Progress, Settings, TuneError, Tuned, Validation, cross_validate, tune};
 
@@ -149,12 +149,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         validation,
         is_resumed: resumed.is_some(),
     };
-    output.write(&report::rule_set(arguments, &outcome, &text))?;
+    output.write(&report::rule_set(arguments, &outcome, &text)?)?;
     if let Some(svg) = &svg {
-        svg.write(&variables_svg(
-            &moved_variables(&original, &outcome.tuned.model),
-            &[],
-        ))?;
+        svg.write(&moved_svg(&original, &outcome.tuned.model))?;
     }
     let written: Vec<&Output> = [Some(&output), svg.as_ref()]
         .into_iter()
@@ -248,31 +245,6 @@ fn failure(name: &str, error: &TuneError) -> Failure {
         }
         _ => Failure::unreadable(message).help(help),
     }
-}
-
-/// The variables of a model that moved, each as it was and as it is.
-fn moved_variables(before: &Model, after: &Model) -> Model {
-    let mut drawn = before.clone();
-    let all = |model: &Model| {
-        let outputs = model.outputs.iter().map(|output| output.variable.clone());
-        model
-            .inputs
-            .iter()
-            .cloned()
-            .chain(outputs)
-            .collect::<Vec<_>>()
-    };
-    drawn.outputs.clear();
-    drawn.inputs.clear();
-    for (before, after) in all(before).into_iter().zip(all(after)) {
-        if before.terms != after.terms {
-            for (mut variable, when) in [(before, "before"), (after, "after")] {
-                variable.name = format!("{}, {when}", variable.name);
-                drawn.inputs.push(variable);
-            }
-        }
-    }
-    drawn
 }
 
 /// Follows a search: shows how far it is, keeps a checkpoint, ends it when the user asks.

@@ -2,12 +2,15 @@
 
 use std::io::Write;
 
-use fuzzy::drawing::{short, visible};
+use fuzzy::{
+    drawing::{short, visible},
+    model::{LossChange, Step},
+};
 use serde::Serialize;
 use tuning::{Interval, Moved};
 
 use super::{Arguments, LossName, Outcome};
-use crate::rows::word;
+use crate::{failure::Failure, provenance, rows::word};
 
 /// The reasons for rows without use that are shown.
 const SHOWN: usize = 12;
@@ -20,29 +23,47 @@ fn loss(arguments: &Arguments) -> &'static str {
     }
 }
 
-/// The rule set under the comments that the model began with, and lines that say where its numbers came from.
-pub(super) fn rule_set(arguments: &Arguments, outcome: &Outcome, model_text: &str) -> String {
-    let head = model_text.split_inclusive('\n');
-    let head: String = head.take_while(|line| line.starts_with('#')).collect();
-    let gap = if head.is_empty() { "" } else { "#\n" };
+/// The rule set with the step that made it.
+pub(super) fn rule_set(
+    arguments: &Arguments,
+    outcome: &Outcome,
+    model_text: &str,
+) -> Result<String, Failure> {
     let tuned = &outcome.tuned;
-    let mut text = format!(
-        "{head}{gap}# Tuned by `flagred tune` on {} rows, seed {}: {} {} before, {} after.\n",
-        outcome.rows,
-        arguments.seed,
-        loss(arguments),
-        short(tuned.before),
-        short(tuned.after),
-    );
-    if let Some(validation) = &outcome.validation {
-        text += &format!(
-            "# On rows left out, in {} parts: {} before, {} after.\n",
+    let left_out = outcome.validation.as_ref().map(|validation| {
+        format!(
+            "on rows left out, in {} parts: {} before, {} after",
             validation.folds,
             short(validation.before.value),
-            short(validation.after.value),
-        );
-    }
-    text + &fuzzy::yaml::to_string(&tuned.model)
+            short(validation.after.value)
+        )
+    });
+    let step = Step {
+        command: "flagred tune".into(),
+        data: provenance::data(&arguments.rows.data)?,
+        rows: Some(outcome.rows as u64),
+        seed: Some(arguments.seed),
+        loss: Some(LossChange {
+            name: loss(arguments).into(),
+            before: rounded(tuned.before),
+            after: rounded(tuned.after),
+        }),
+        moved: tuned.moved.iter().map(moved).collect(),
+        note: left_out,
+        ..Step::default()
+    };
+    Ok(provenance::rule_set(model_text, tuned.model.clone(), step))
+}
+
+/// Six digits: authors read them.
+fn rounded(loss: f64) -> f64 {
+    format!("{loss:.5e}").parse().unwrap_or(loss)
+}
+
+/// `heat.warm peak from 20 to 22.5`
+fn moved(moved: &Moved) -> String {
+    let [before, after] = [moved.before, moved.after].map(short);
+    format!("{} {} from {before} to {after}", moved.of, moved.name)
 }
 
 pub(super) fn words(

@@ -1,7 +1,7 @@
 //! The terms of a variable, and an evaluation with its reasons, as SVG.
 
 use super::{
-    colour::{Colour, distinct},
+    colour::{Colour, distinct, distinct_line},
     plot::{Plot, Series, draw},
     scale::Scale,
     sheet::{Anchor, Frame, LABEL_WIDTH, Sheet},
@@ -33,7 +33,7 @@ pub fn terms_svg(variable: &Variable, at: Option<f64>) -> String {
         width: 420.0,
         height: 230.0,
     };
-    terms(&mut sheet, &frame, variable, &[], at);
+    terms(&mut sheet, &frame, variable, None, &[], at);
     sheet.finish(&format!("the terms of {title}"))
 }
 
@@ -67,7 +67,14 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
         }
         let at = (70.0, frame(i).top - 8.0);
         sheet.text(at, Anchor::Start, "title", &title);
-        terms(&mut sheet, &frame(i), variable, &[], Some(input.value));
+        terms(
+            &mut sheet,
+            &frame(i),
+            variable,
+            None,
+            &[],
+            Some(input.value),
+        );
     }
     for (i, (output, written)) in explanation.outputs.iter().zip(&model.outputs).enumerate() {
         let frame = frame(explanation.inputs.len() + i);
@@ -101,6 +108,7 @@ pub fn explanation_svg(model: &Model, explanation: &Explanation) -> String {
                 &mut sheet,
                 &frame,
                 &written.variable,
+                None,
                 &implied,
                 output.value,
             );
@@ -227,10 +235,12 @@ pub(super) fn sticks(sheet: &mut Sheet, frame: &Frame, variable: &Variable, numb
 }
 
 /// The terms of a variable in a frame: their membership functions, the implied sets of rules, a value and the degrees there.
+/// Terms that were others `before` stand there dashed.
 pub(super) fn terms(
     sheet: &mut Sheet,
     frame: &Frame,
     variable: &Variable,
+    before: Option<&Variable>,
     implied: &[Area<'_>],
     at: Option<f64>,
 ) {
@@ -249,6 +259,14 @@ pub(super) fn terms(
         let paint = format_args!(r#"fill="{colour}" fill-opacity=".55""#);
         sheet.through("polygon", &outline, paint);
     }
+    let old = before.into_iter().flat_map(|before| {
+        let moved = |i: &usize| variable.terms.get(*i) != before.terms.get(*i);
+        let moved = (0..before.terms.len()).filter(moved);
+        moved.map(|i| Series {
+            dash: "5 3",
+            ..Series::new(i, "", membership(before, i))
+        })
+    });
     let series = variable.terms.iter().enumerate().map(|(i, term)| Series {
         dash: "none",
         ..Series::new(i, term.name.as_str(), membership(variable, i))
@@ -257,21 +275,15 @@ pub(super) fn terms(
         title: String::new(),
         x: (x, String::new()),
         y: (y, "degree".into()),
-        series: series.collect(),
+        series: old.chain(series).collect(),
     };
     draw(sheet, frame, &plot);
     marker(sheet, frame, x, at);
-    let keys = plot
-        .series
-        .iter()
-        .zip(&variable.terms)
-        .map(|(series, term)| {
-            let degree = at.map(|at| format!(" {}", number(term.membership(at), 3)));
-            (
-                series.colour,
-                format!("{}{}", term.name, degree.unwrap_or_default()),
-            )
-        });
+    let keys = variable.terms.iter().enumerate().map(|(i, term)| {
+        let degree = at.map(|at| format!(" {}", number(term.membership(at), 3)));
+        let degree = degree.unwrap_or_default();
+        (distinct_line(i), format!("{}{degree}", term.name))
+    });
     let keys: Vec<(Colour, String)> = keys.collect();
     sheet.keys(frame.right() + 14.0, frame.top, &keys);
 }

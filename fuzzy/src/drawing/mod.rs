@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | the terms of a variable | [`terms_svg`] | |
 //! | the terms of all variables | [`variables_svg`] | [`variables_text`] |
+//! | terms that moved, as they were and as they are | [`moved_svg`] | |
 //! | an evaluation with its reasons | [`explanation_svg`] | [`explanation_text`] |
 //! | a decision map, or a part of it ([`Slice`]) | [`map_svg`], [`surface_svg`] | [`map_text`], [`surface_text`], [`values_text`] |
 //! | the rule that dominates each part of a map | [`rules_svg`] | [`rules_text`] |
@@ -58,4 +59,4 @@ pub use slice::{Axis, Cell, Slice};
 pub use surface::surface_svg;
 pub use surface_text::surface_text;
 pub use text::{Escaped, bar, number, short, visible, visible_lines};
-pub use variables::{variables_svg, variables_text};
+pub use variables::{moved_svg, variables_svg, variables_text};

@@ -19,6 +19,23 @@ const BLOCK: f64 = 176.0;
 /// The SVG of the terms of every input and output of a model. `curves` are drawn below: the outputs over the one input of a
 /// model that has no other.
 pub fn variables_svg(model: &Model, curves: &[Slice]) -> String {
+    drawn(model, None, curves)
+}
+
+/// The SVG of the variables of a model whose terms were others before: terms as they are, and dashed as they were. The models
+/// have the same variables.
+pub fn moved_svg(before: &Model, after: &Model) -> String {
+    let mut moved = after.clone();
+    moved.inputs.retain(|input| !before.inputs.contains(input));
+    let has_moved = |output: &Output| {
+        let mut outputs = before.outputs.iter();
+        !outputs.any(|other| other.variable == output.variable)
+    };
+    moved.outputs.retain(has_moved);
+    drawn(&moved, Some(before), &[])
+}
+
+fn drawn(model: &Model, before: Option<&Model>, curves: &[Slice]) -> String {
     let blocks = model.inputs.len() + model.outputs.len() + 2 * curves.len();
     let mut sheet = Sheet::new(WIDTH, 60.0 + BLOCK * blocks as f64);
     sheet.heading(70.0, &model.name, "");
@@ -35,16 +52,29 @@ pub fn variables_svg(model: &Model, curves: &[Slice]) -> String {
     for (i, input) in model.inputs.iter().enumerate() {
         let frame = frame(i, FRAME);
         title(&mut sheet, &frame, &heading(input));
-        terms(&mut sheet, &frame, input, &[], None);
+        let before =
+            before.and_then(|before| before.inputs.iter().find(|old| old.name == input.name));
+        terms(&mut sheet, &frame, input, before, &[], None);
     }
     for (i, output) in model.outputs.iter().enumerate() {
         let frame = frame(model.inputs.len() + i, FRAME);
         title(&mut sheet, &frame, &heading(&output.variable));
+        let old = before.and_then(|before| {
+            let mut outputs = before.outputs.iter();
+            outputs.find(|old| old.variable.name == output.variable.name)
+        });
         if output.defuzzifier.takes_numbers() || output.is_discrete() {
-            let numbers: Vec<Number> = numbers(output);
-            sticks(&mut sheet, &frame, &output.variable, &numbers);
+            let mut sticks_of = numbers(output);
+            let old = old.map(numbers).unwrap_or_default().into_iter();
+            // Half as high: as they were.
+            let moved = old.filter(|old| !sticks_of.contains(old));
+            let moved = moved
+                .map(|(at, weight, colour, text)| (at, weight / 2.0, colour, text + " before"));
+            sticks_of.extend(moved.collect::<Vec<Number>>());
+            sticks(&mut sheet, &frame, &output.variable, &sticks_of);
         } else {
-            terms(&mut sheet, &frame, &output.variable, &[], None);
+            let before = old.map(|old| &old.variable);
+            terms(&mut sheet, &frame, &output.variable, before, &[], None);
         }
     }
     let first = model.inputs.len() + model.outputs.len();
@@ -219,5 +249,33 @@ rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
             svg.contains("heat [°C]") && svg.contains("slow = 2"),
             "{svg}"
         );
+    }
+
+    #[test]
+    fn what_moved_stands_beside_what_it_was() {
+        let model = |low: f64, slow: f64| -> Model {
+            format!(
+                "
+fuzzy: 1
+name: fan
+inputs:
+  heat: {{range: [0, 40], partition: {{low: {low}, high: 30}}}}
+  damp: {{range: [0, 40], partition: [dry, wet]}}
+outputs: {{speed: {{range: [0, 9], defuzzifier: weighted_average, terms: {{slow: {{constant: {slow}}}, fast: {{constant: 8}}}}}}}}
+rules: [IF heat IS low THEN speed IS slow, IF heat IS high THEN speed IS fast]
+"
+            )
+            .parse()
+            .unwrap()
+        };
+        let svg = moved_svg(&model(10.0, 2.0), &model(15.0, 3.0));
+        // Both terms of the partition have another flank now.
+        assert_eq!(svg.matches("stroke-dasharray=\"5 3\"").count(), 2);
+        assert!(svg.contains("heat") && !svg.contains("damp"), "{svg}");
+        assert!(
+            svg.contains("slow = 3") && svg.contains("slow = 2 before"),
+            "{svg}"
+        );
+        assert!(!svg.contains("fast = 8 before"), "{svg}");
     }
 }

@@ -13,6 +13,7 @@ use crate::{
 };
 
 mod blocks;
+mod provenance;
 mod rules;
 #[cfg(feature = "serde")]
 mod schema;
@@ -113,7 +114,7 @@ pub fn read_partly(tree: &Node) -> Option<Partial> {
 
 /// The model as far as it can be read. A part that cannot be read is a finding, and in the model only its name.
 fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Option<Model> {
-    const KEYS: [&str; 10] = [
+    const KEYS: [&str; 11] = [
         "fuzzy",
         "name",
         "description",
@@ -124,6 +125,7 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         "least_strength",
         "rules",
         "blocks",
+        "provenance",
     ];
     if !matches!(tree.value, Value::Mapping(_)) {
         let finding = tree.unexpected_document("the rule set");
@@ -191,7 +193,12 @@ fn model(tree: &Node, spans: &mut Spans, findings: &mut Vec<Diagnostic>) -> Opti
         least_strength: least_strength.unwrap_or(LEAST_STRENGTH),
         blocks: Vec::new(),
         rules: Vec::new(),
+        provenance: Vec::new(),
     };
+    if let Some(entry) = fields.entry("provenance") {
+        spans.provenance = entry.key_span.clone();
+        model.provenance = provenance::read(entry.value, findings);
+    }
     let rules_help = "write `rules:` and a list of rules: `- IF input IS term THEN output IS term`";
     let key = |key| {
         fields

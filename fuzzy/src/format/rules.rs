@@ -188,6 +188,6 @@ pub(super) fn write(rule: &Rule) -> Node {
     Node::mapping(entries)
 }
 
-fn whole(number: u64) -> Node {
+pub(super) fn whole(number: u64) -> Node {
     Node::scalar(number.to_string(), false)
 }

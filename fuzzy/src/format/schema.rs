@@ -8,7 +8,7 @@ use alloc::{format, string::String, vec::Vec};
 use super::{
     VERSION,
     blocks::{self, COMPARISONS, METHODS},
-    rules,
+    provenance, rules,
     variables::{INPUT_KEYS, OUTPUT_KEYS},
     words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS},
 };
@@ -67,6 +67,14 @@ pub fn schema() -> Node {
             named(
                 "Rules in blocks with operators and an activation method of their own, by names",
                 "block",
+            ),
+        ),
+        (
+            "provenance",
+            list(
+                "The commands that made the rule set, the last one last",
+                reference("step"),
+                None,
             ),
         ),
     ];
@@ -216,6 +224,7 @@ fn definitions() -> Node {
         ("term", term()),
         ("rule", rule()),
         ("block", block()),
+        ("step", step()),
     ])
 }
 
@@ -297,6 +306,50 @@ fn variable_key(key: &str) -> Node {
         // Every key that is read has its line above; a new one is at least allowed.
         _ => Node::mapping(Entries::new()),
     }
+}
+
+fn step() -> Node {
+    let file = |key: &&'static str| match *key {
+        "file" => (*key, text("Its name")),
+        _ => (*key, text("The SHA-256 of its bytes")),
+    };
+    let of_loss = |key: &&'static str| match *key {
+        "name" => (*key, text("What it is, as `RMS error`")),
+        key => (key, number("Its value")),
+    };
+    let property = |key: &'static str| match key {
+        "command" => text("What made it: a command, or in words"),
+        "data" => {
+            let file = object("A file", provenance::DATA_KEYS.iter().map(file), &["file"]);
+            list("The files with the data", Node::mapping(file), None)
+        }
+        "rows" => whole("How many rows were used", 0.0),
+        "seed" => whole("The seed of what was random", 0.0),
+        "loss" => {
+            let keys = provenance::LOSS_KEYS;
+            Node::mapping(object(
+                "The loss that was made small",
+                keys.iter().map(of_loss),
+                &keys,
+            ))
+        }
+        "rules" => numbers("The number of rules, before and after", 2),
+        "moved" => {
+            let one = Node::mapping([("type", Node::text("string"))]);
+            list("The numbers that moved, in words", one, None)
+        }
+        "note" => text("What else there is to say"),
+        "result" => text(
+            "A hash of the rule set that the command made; another one now says that it was edited since",
+        ),
+        _ => Node::mapping(Entries::new()),
+    };
+    let properties = provenance::KEYS.map(|key| (key, property(key)));
+    Node::mapping(object(
+        "A command that made the rule set of another one",
+        properties,
+        &["command"],
+    ))
 }
 
 /// A name may look like a number or like yes and no.

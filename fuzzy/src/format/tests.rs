@@ -348,3 +348,52 @@ fn a_rule_set_that_is_being_built_may_lack_outputs_and_rules() {
     assert_eq!(wrong.len(), 1, "{wrong:?}");
     assert!(crate::yaml::parse(begun).is_err());
 }
+
+#[test]
+fn provenance_is_read_and_written() {
+    let text = "\
+fuzzy: 1
+name: fan
+inputs:
+  heat: {range: [0, 9], partition: [low, high]}
+outputs:
+  speed: {range: [0, 9], partition: [slow, fast], defuzzifier: centroid, when_no_rule_fires: undefined}
+operators:
+  and: minimum
+  or: maximum
+  implication: minimum
+  aggregation: maximum
+rules:
+  - IF heat IS low THEN speed IS slow
+provenance:
+  - {command: by hand}
+  -
+    command: tune
+    data: [{file: rows.csv, sha256: ab12}, {file: \"-\"}]
+    rows: 61
+    seed: 7
+    loss: {name: RMS error, before: 3, after: 2.5}
+    rules: [28, 9]
+    moved: [heat.low peak from 0 to 1]
+    note: \"why, and how\"
+    result: \"0123\"
+";
+    let document = crate::yaml::parse(text).unwrap();
+    let steps = &document.model.provenance;
+    assert_eq!(steps[0].command, "by hand");
+    assert_eq!(steps[1].result.as_deref(), Some("0123"));
+    assert_eq!(&text[document.spans.provenance.clone()], "provenance");
+    assert_eq!(crate::yaml::to_string(&document.model), text);
+    let wrong = text
+        .replace("command: by hand", "comand: by hand")
+        .replace("[28, 9]", "[28]")
+        .replace("before: 3", "before: low");
+    insta::assert_snapshot!(crate::yaml::parse(&wrong).unwrap_err().to_string(), @r"
+    15:6: error[unknown-key]: step 1 of the provenance has no key `comand`
+      help: did you mean `command`?
+    21:37: error[wrong-type]: expected a number for `before` of the loss of step 2 of the provenance, found `low`
+      help: write a number such as `0.5`
+    22:12: error[wrong-type]: expected two numbers for `rules` of step 2 of the provenance, found a list
+      help: write how many there were before and after: `[28, 9]`
+    ");
+}

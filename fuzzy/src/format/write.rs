@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::{
-    VERSION, blocks, rules, shapes,
+    VERSION, blocks, provenance, rules, shapes,
     words::{self, AGGREGATIONS, DEFUZZIFIERS, word_of},
 };
 use crate::{
@@ -40,6 +40,7 @@ pub(super) fn model(model: &Model) -> Node {
     } else {
         entries.push(("blocks", blocks::write(model)));
     }
+    entries.extend(provenance::write(&model.provenance).map(|steps| ("provenance", steps)));
     Node::mapping(entries)
 }
 

@@ -305,6 +305,7 @@ fn stage(model: &Model, reads: Vec<usize>, outputs: Vec<usize>) -> Stage<'_> {
             activation: model.activation,
             least_strength: model.least_strength,
             blocks: model.blocks.clone(),
+            provenance: Vec::new(),
         }),
         reads,
         outputs,

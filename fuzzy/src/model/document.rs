@@ -64,6 +64,8 @@ pub struct Spans {
     pub least_strength: Range<usize>,
     /// The rule blocks.
     pub blocks: Vec<BlockSpans>,
+    /// The key `provenance`.
+    pub provenance: Range<usize>,
     /// Some rule could not be read, and is not in the model; a finding says why.
     pub(crate) rules_unread: bool,
 }

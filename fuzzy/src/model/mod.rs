@@ -9,6 +9,7 @@ mod builder;
 pub(crate) mod chain;
 pub(crate) mod document;
 mod partition;
+mod provenance;
 pub use crate::formula::Formula;
 pub(crate) use crate::shape::{Form, Parts};
 pub use crate::shape::{MembershipError, MembershipFunction, Role};
@@ -19,6 +20,7 @@ pub use blocks::Block;
 pub(crate) use blocks::concludes;
 pub use builder::ModelBuilder;
 pub(crate) use partition::{between_peaks, even_peaks};
+pub use provenance::{DataFile, LossChange, Step};
 
 /// A rule set: inputs, outputs, operators and rules.
 ///
@@ -54,6 +56,8 @@ pub struct Model {
     pub blocks: Vec<Block>,
     /// The rules; with blocks, in the order of the blocks.
     pub rules: Vec<Rule>,
+    /// The commands that made it, the last one last.
+    pub provenance: Vec<Step>,
 }
 
 /// A linguistic variable: a range of numbers and the terms that name its parts.

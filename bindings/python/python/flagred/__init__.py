@@ -50,6 +50,7 @@ from ._learning import Errors, Figure, Learned, Moved, Tuned, TuneInterrupted, T
 from ._model import Model, load, loads
 from ._monitor import Followed, Monitor
 from ._picture import Picture
+from ._simplify import Difference, Simplified, simplify
 from .evaluation import Evaluation, evaluate
 
 __all__ = [
@@ -58,6 +59,7 @@ __all__ = [
     "DataError",
     "DecisionMap",
     "Diagnostic",
+    "Difference",
     "Errors",
     "Evaluation",
     "Event",
@@ -93,6 +95,7 @@ __all__ = [
     "RuleSetError",
     "Share",
     "Signal",
+    "Simplified",
     "Summary",
     "Table",
     "TuneInterrupted",
@@ -107,5 +110,6 @@ __all__ = [
     "load",
     "loads",
     "read_log",
+    "simplify",
     "tune",
 ]

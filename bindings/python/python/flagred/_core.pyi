@@ -28,6 +28,7 @@ __all__ = [
     "Update",
     "_learn",
     "_page",
+    "_simplify",
     "_tune",
 ]
 
@@ -301,4 +302,7 @@ class MonitorData:
 
 def _page(title: str, body: str) -> str: ...
 def _learn(rule_set: RuleSet, rows: dict[str, Any], options: dict[str, Any]) -> dict[str, Any]: ...
+def _simplify(
+    rule_set: RuleSet, columns: list[NDArray[np.float64]], options: dict[str, Any]
+) -> dict[str, Any]: ...
 def _tune(rule_set: RuleSet, rows: dict[str, Any], options: dict[str, Any]) -> tuple[dict[str, Any], bool]: ...

@@ -272,8 +272,31 @@ pub(super) fn any_model() -> impl Strategy<Value = Model> {
                         }
                     },
                 );
+                let step = Step {
+                    command: format!("command {name}"),
+                    data: Vec::from([DataFile {
+                        file: format!("{name}.csv"),
+                        sha256: clamp.then(|| "0123".into()),
+                    }]),
+                    rows: clamp.then_some(3),
+                    seed: Some(7),
+                    loss: clamp.then(|| LossChange {
+                        name: format!("of {name}"),
+                        before: variable.high,
+                        after: least_strength,
+                    }),
+                    rules: clamp.then_some([28, 9]),
+                    moved: Vec::from([format!("{name} peak from 1 to 2")]),
+                    note: clamp.then(|| format!("{name}: a note")),
+                    result: Some("0123e4".into()),
+                };
                 Model {
                     rules: rules.collect(),
+                    provenance: if otherwise == 0 {
+                        Vec::from([step])
+                    } else {
+                        Vec::new()
+                    },
                     name,
                     description: None,
                     inputs,

@@ -31,7 +31,7 @@ RETRIES = 2
 """How often a shard is tried again whose files could not be written."""
 LONGEST_ALONE_S = 600.0
 """How long a cluster may be without workers."""
-LONGEST_RESTART_S = 15.0
+LONGEST_RESTART_S = 30.0
 """How long a worker here may take to start again. Dask starts none that ends while it starts."""
 POLL_S = 0.05
 
@@ -148,8 +148,10 @@ class _Attendance:
             self._complete_s = now_s
         if now_s - self._complete_s > LONGEST_RESTART_S:
             self._complete_s = now_s
-            # Dask lets those go first that are missing.
-            here.scale(workers)
+            # One that starts is left alone: its end would be blamed on the log that it reads by then.
+            for name, watcher in list(here.workers.items()):
+                if not watcher.is_alive():
+                    here.worker_spec.pop(name, None)
             here.scale(wanted)
         if now_s - self._seen_s > LONGEST_ALONE_S:
             raise FleetError(f"there was no worker for {LONGEST_ALONE_S:.0f} s", "run the same command again with workers")

@@ -1,0 +1,106 @@
+"""The same said with fewer rules."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from ._arrays import array
+from ._core import _simplify
+from ._errors import DataError
+from ._learning import _column, _columns, _same_length
+from ._model import Model, _read
+
+__all__ = ["Difference", "Simplified", "simplify"]
+
+
+class Difference(NamedTuple):
+    """By how much an output differs at a point."""
+
+    output: str
+    before: float
+    after: float
+    inputs: dict[str, float]
+
+
+class Simplified(NamedTuple):
+    """A rule set that says the same with fewer rules."""
+
+    model: Model
+    rules: list[list[int]]
+    """For each rule the rules that it stands for, by their indices in the original."""
+    dropped: list[int]
+    """The rules without effect, by their indices in the original."""
+    inputs: list[str]
+    """The inputs that no rule needs; the model has them no more."""
+    points: int
+    """The number of points at which both were compared."""
+    difference: Difference | None
+    """The largest difference there; None where there is none at all."""
+
+
+def simplify(
+    model: Model,
+    data: Any = None,
+    *,
+    tolerance: float | None = None,
+    rows_only: bool = False,
+    seed: int = 0,
+    columns: Mapping[str, str] | None = None,
+) -> Simplified:
+    """Says the same with fewer rules, shorter ones and fewer inputs. ``flagred simplify`` does the same.
+
+    Parameters
+    ----------
+    model
+        The rule set to begin with. It does not change.
+    data
+        A frame, or a mapping of columns, with a column for each input: rows at which the outputs are compared, too.
+    tolerance
+        By how much an output may differ, in its unit. None: by 1e-12 of its range.
+    rows_only
+        Compare the outputs at the rows alone. Elsewhere they may be anything.
+    seed
+        Of the points at random.
+    columns
+        The names of columns that are not those of their inputs.
+
+    Raises
+    ------
+    DataError
+        A column is missing, there are no rows for ``rows_only``, or the tolerance is below 0.
+    RuleSetError
+        The rule set cannot be used.
+
+    Examples
+    --------
+    >>> import flagred
+    >>> fan = (
+    ...     flagred.Model("fan")
+    ...     .input("heat", range=(0, 40), partition=["cool", "warm", "hot"])
+    ...     .output("speed", range=(0, 10), terms={"slow": {"singleton": 2}, "fast": {"singleton": 8}})
+    ...     .rule("IF heat IS cool THEN speed IS slow")
+    ...     .rule("IF heat IS warm THEN speed IS fast", "IF heat IS hot THEN speed IS fast")
+    ... )
+    >>> simplified = flagred.simplify(fan)
+    >>> [rule.text for rule in simplified.model.rules]
+    ['IF heat IS cool THEN speed IS slow', 'IF heat IS NOT cool THEN speed IS fast']
+    >>> simplified.rules
+    [[0], [1, 2]]
+    """
+    names = list(model._input_names())
+    renamed = dict(columns or {})
+    for name in renamed:
+        if name not in names:
+            raise DataError(f"`columns` names `{name}`, which is no input of the rule set")
+    rows = []
+    if data is not None:
+        data = _columns(data)
+        rows = [array(_column(data, renamed.get(name, name))) for name in names]
+        _same_length(rows)
+    found = _simplify(model, rows, {"tolerance": tolerance, "rows_only": rows_only, "seed": seed})
+    difference = found.pop("difference")
+    if difference is not None:
+        output, before, after, inputs = difference
+        difference = Difference(output, before, after, dict(zip(names, inputs)))
+    return Simplified(model=_read(found.pop("model"), "<model>"), difference=difference, **found)
