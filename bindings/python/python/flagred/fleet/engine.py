@@ -151,7 +151,8 @@ class _Attendance:
             # One that starts is left alone: its end would be blamed on the log that it reads by then.
             for name, watcher in list(here.workers.items()):
                 if not watcher.is_alive():
-                    here.worker_spec.pop(name, None)
+                    del here.workers[name]
+                    here.loop.add_callback(watcher.close)
             here.scale(wanted)
         if now_s - self._seen_s > LONGEST_ALONE_S:
             raise FleetError(f"there was no worker for {LONGEST_ALONE_S:.0f} s", "run the same command again with workers")
