@@ -39,8 +39,8 @@ POLL_S = 0.05
 @contextmanager
 def cluster(scheduler: str | None, workers: int | None) -> Iterator[Client]:
     """A client of a cluster that runs, or of one that is started here and ends with it."""
-    # A scheduler here counts how many workers a task has ended.
-    settings = {"distributed.scheduler.allowed-failures": TRIES - 1}
+    # Of a cluster here: how many workers a task may end, and that one that ended some time ago and starts again is not closed.
+    settings = {"distributed.scheduler.allowed-failures": TRIES - 1, "distributed.deploy.lost-worker-timeout": "1d"}
     with dask.config.set(settings):
         if scheduler is not None:
             try:
@@ -151,7 +151,8 @@ class _Attendance:
             # One that starts is left alone: its end would be blamed on the log that it reads by then.
             for name, watcher in list(here.workers.items()):
                 if not watcher.is_alive():
-                    here.worker_spec.pop(name, None)
+                    del here.workers[name]
+                    here.loop.add_callback(watcher.close)
             here.scale(wanted)
         if now_s - self._seen_s > LONGEST_ALONE_S:
             raise FleetError(f"there was no worker for {LONGEST_ALONE_S:.0f} s", "run the same command again with workers")
