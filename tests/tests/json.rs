@@ -130,6 +130,18 @@ fn tune() {
     let document = json(&[&arguments[..], &["--no-validation"]].concat());
     valid("tune", &document);
     assert_eq!(document["rows"]["used"], 4);
+    let rows =
+        "margin,spread,risk\n0.1,0.1,1\n0.1,0.1,0\n0.3,0.2,0\n0.3,0.1,1\n0.2,0.1,1\n0.2,0.2,0\n";
+    let data = folder.file("classes.csv", rows);
+    let arguments = [
+        "tune", PAPER, &data, "--output", &out, "--json", "--force", "--loss", "log",
+    ];
+    let document = json(&[&arguments[..], &["--learning-curve"]].concat());
+    valid("tune", &document);
+    assert_eq!(document["learning_curve"].as_array().unwrap().len(), 4);
+    let bins = document["validation"]["reliability"].as_array().unwrap();
+    let counted: u64 = bins.iter().map(|bin| bin["rows"].as_u64().unwrap()).sum();
+    assert_eq!(counted, 6);
 }
 
 #[test]

@@ -86,25 +86,15 @@ impl<'a> Objective<'a> {
         Ok(outcomes.iter().map(place).collect())
     }
 
-    /// The truths as predictions are: places in the range, or 0 and 1.
-    pub(crate) fn truths(&self) -> &[f64] {
-        &self.truths
-    }
-
-    /// The width of the output's range.
-    pub(crate) fn width(&self) -> f64 {
-        self.width
-    }
-
     /// The loss that is reported.
     pub(crate) fn measure(&self, point: &Point) -> f64 {
-        loss::measure(
-            self.settings.loss,
-            &point.predictions,
-            &self.truths,
-            self.data,
-            self.width,
-        )
+        self.measure_of(&point.predictions, self.data)
+    }
+
+    /// The loss of other predictions, with the weights of these rows.
+    pub(crate) fn measure_of(&self, predictions: &[f64], data: &Data) -> f64 {
+        let loss = self.settings.loss;
+        loss::measure(loss, predictions, &self.truths, data, self.width)
     }
 
     /// The first claim of [`Settings::monotone`] that a model does not hold.

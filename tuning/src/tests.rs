@@ -230,6 +230,55 @@ fn classes_are_told_apart_better_by_both_losses() {
     }
 }
 
+/// The last point of a curve is what cross-validation says, and noisy rows are told apart better the more there are.
+#[test]
+fn a_learning_curve_ends_with_the_validation_and_falls() {
+    let truth = tipper([2.0, 6.0, 8.0], [5.0, 12.0, 28.0]);
+    let start = tipper([1.0, 5.0, 9.0], [10.0, 15.0, 20.0]);
+    let mut data = rows_of(&truth, 100, 5);
+    let mut random = fastrand::Rng::with_seed(6);
+    for tip in &mut data.truths {
+        *tip += 8.0 * random.f64() - 4.0;
+    }
+    let settings = Settings::default();
+    let mut ok = |_: u32, _: &Progress<'_>| ControlFlow::Continue(());
+    let worth = cross_validate(&start, &data, &settings, 4, &mut ok).unwrap();
+    let curve = learning_curve(&start, &data, &settings, 4, &mut ok)
+        .unwrap()
+        .unwrap();
+    let shares: Vec<f64> = curve.iter().map(|point| point.share).collect();
+    assert_eq!(shares, [0.125, 0.25, 0.5, 1.0]);
+    let worth = worth.unwrap();
+    assert_eq!(curve[3].left_out, worth.after.value);
+    assert!(curve[0].left_out > 1.05 * curve[3].left_out, "{curve:?}");
+    assert!(worth.reliability.is_empty());
+    let mut stop = |_: u32, _: &Progress<'_>| ControlFlow::Break(());
+    assert_eq!(
+        learning_curve(&start, &data, &settings, 4, &mut stop),
+        Ok(None)
+    );
+}
+
+/// Consequents moved by log loss make probabilities of predictions that were far too high.
+#[test]
+fn consequents_moved_by_log_loss_are_calibrated_on_rows_left_out() {
+    let data = classes(800);
+    let model = tipper([2.0, 6.0, 8.0], [24.0, 27.0, 30.0]);
+    let settings = Settings {
+        loss: Loss::Log,
+        only: vec!["tip".to_owned()],
+        ..Settings::default()
+    };
+    let mut ok = |_: u32, _: &Progress<'_>| ControlFlow::Continue(());
+    let worth = cross_validate(&model, &data, &settings, 4, &mut ok);
+    let bins = worth.unwrap().unwrap().reliability;
+    assert_eq!(bins.iter().map(|bin| bin.rows).sum::<usize>(), data.len());
+    let apart = bins
+        .iter()
+        .map(|bin| bin.rows as f64 * (bin.predicted - bin.observed).abs());
+    assert!(apart.sum::<f64>() / (data.len() as f64) < 0.1, "{bins:?}");
+}
+
 #[test]
 fn wrong_rows_are_errors() {
     let begun = tipper([2.0, 5.0, 8.0], [5.0, 15.0, 25.0]);

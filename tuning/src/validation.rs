@@ -5,8 +5,12 @@ use std::ops::ControlFlow;
 use fuzzy::Model;
 
 use crate::{
-    Data, Interval, Progress, Settings, TuneError, folds::Folds, loss, objective::Objective,
-    parameters::Parameters, tune,
+    Data, Interval, Loss, Progress, Settings, TuneError,
+    folds::Folds,
+    objective::Objective,
+    parameters::Parameters,
+    reliability::{Bin, reliability},
+    tune,
 };
 
 /// What tuning is worth on rows that the tuned model does not know.
@@ -20,6 +24,8 @@ pub struct Validation {
     pub after: Interval,
     /// How much lower the second is than the first.
     pub gain: Interval,
+    /// With truths of 0 and 1: what was predicted of rows left out, beside what came, by tenths of the range.
+    pub reliability: Vec<Bin>,
 }
 
 /// Tunes without a part of the rows and predicts that part, for each part in turn. Rows of a group stay together.
@@ -40,43 +46,109 @@ pub fn cross_validate(
     let whole = Objective::new(model, &parameters, data, settings);
     let before = whole.point(model.clone())?.predictions;
     let folds = Folds::new(data, folds, settings.seed);
+    let Some(after) = left_out(model, data, settings, &folds, EIGHTHS, watch)? else {
+        return Ok(None);
+    };
+    let figures = |data: &Data| {
+        let [before, after] =
+            [&before, &after].map(|predictions| whole.measure_of(predictions, data));
+        [before, after, before - after]
+    };
     let count = folds.count;
-    let mut after = vec![f64::NAN; data.len()];
-    for fold in 0..count {
-        let [known, left_out] = folds.split(data, fold);
+    let [before, after_interval, gain] = folds.intervals(data, figures);
+    Ok(Some(Validation {
+        folds: count,
+        before,
+        after: after_interval,
+        gain,
+        reliability: match settings.loss {
+            Loss::Squared => Vec::new(),
+            _ => reliability(&after, data),
+        },
+    }))
+}
+
+/// The loss on rows left out of models that are tuned on few and on many of the others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurvePoint {
+    /// The share of the other rows, or of their groups, that a model is tuned on.
+    pub share: f64,
+    /// The loss on rows left out; see [`crate::Loss`].
+    pub left_out: f64,
+}
+
+/// Into how many parts the known rows are divided for a learning curve.
+const EIGHTHS: usize = 8;
+
+/// [`cross_validate`] with an eighth, a quarter and half of the known rows, and all of them. Where the curve still falls, more
+/// rows would help; where it is flat, they would not.
+///
+/// # Errors
+/// As [`tune`].
+pub fn learning_curve(
+    model: &Model,
+    data: &Data,
+    settings: &Settings,
+    folds: u32,
+    watch: &mut dyn FnMut(u32, &Progress<'_>) -> ControlFlow<()>,
+) -> Result<Option<Vec<CurvePoint>>, TuneError> {
+    data.check(model, settings.loss)?;
+    let parameters = Parameters::new(model, settings)?;
+    let whole = Objective::new(model, &parameters, data, settings);
+    let folds = Folds::new(data, folds, settings.seed);
+    let mut curve = Vec::new();
+    for eighths in [1, 2, 4, EIGHTHS] {
+        let Some(predictions) = left_out(model, data, settings, &folds, eighths, watch)? else {
+            return Ok(None);
+        };
+        curve.push(CurvePoint {
+            share: eighths as f64 / EIGHTHS as f64,
+            left_out: whole.measure_of(&predictions, data),
+        });
+    }
+    Ok(Some(curve))
+}
+
+/// Predictions of the rows of each part by a model that is tuned on so many eighths of the others; `None` where the watcher ended
+/// it.
+fn left_out(
+    model: &Model,
+    data: &Data,
+    settings: &Settings,
+    folds: &Folds,
+    eighths: usize,
+    watch: &mut dyn FnMut(u32, &Progress<'_>) -> ControlFlow<()>,
+) -> Result<Option<Vec<f64>>, TuneError> {
+    let parameters = Parameters::new(model, settings)?;
+    let mut predictions = vec![f64::NAN; data.len()];
+    for fold in 0..folds.count {
+        let [mut known, left_out] = folds.split(data, fold);
+        if eighths < EIGHTHS && !known.is_empty() {
+            let parts = Folds::new(&known, EIGHTHS as u32, settings.seed);
+            let most = (eighths * parts.count).div_ceil(EIGHTHS);
+            known = known.filtered(|row| parts.of(&known, row) < most);
+        }
         if known.is_empty() || left_out.is_empty() {
             continue;
         }
         let mut told = |progress: &Progress<'_>| watch(fold as u32, progress);
-        let tuned = tune(model, &known, settings, &mut told)?;
-        if tuned.is_stopped {
-            return Ok(None);
-        }
+        let tuned = match tune(model, &known, settings, &mut told) {
+            // A few rows may all have one truth: nothing is learned from them.
+            Err(TuneError::OneClass) if eighths < EIGHTHS => model.clone(),
+            tuned => {
+                let tuned = tuned?;
+                if tuned.is_stopped {
+                    return Ok(None);
+                }
+                tuned.model
+            }
+        };
         let judged = Objective::new(model, &parameters, &left_out, settings);
-        let mut predictions = judged.point(tuned.model)?.predictions.into_iter();
+        let values = judged.point(tuned)?.predictions;
         let rows = (0..data.len()).filter(|row| folds.of(data, *row) == fold);
-        for (row, prediction) in rows.zip(&mut predictions) {
-            after[row] = prediction;
+        for (row, value) in rows.zip(values) {
+            predictions[row] = value;
         }
     }
-    let measure = |predictions: &[f64], data: &Data| {
-        loss::measure(
-            settings.loss,
-            predictions,
-            whole.truths(),
-            data,
-            whole.width(),
-        )
-    };
-    let figures = |data: &Data| {
-        let [before, after] = [&before, &after].map(|predictions| measure(predictions, data));
-        [before, after, before - after]
-    };
-    let [before, after, gain] = folds.intervals(data, figures);
-    Ok(Some(Validation {
-        folds: count,
-        before,
-        after,
-        gain,
-    }))
+    Ok(Some(predictions))
 }

@@ -7,7 +7,7 @@ use fuzzy::{
     model::{LossChange, Step},
 };
 use serde::Serialize;
-use tuning::{Interval, Moved};
+use tuning::{Bin, Interval, Moved};
 
 use super::{Arguments, LossName, Outcome};
 use crate::{failure::Failure, provenance, rows::word};
@@ -124,6 +124,35 @@ pub(super) fn words(
             shown(&validation.gain),
             validation.folds
         )?;
+        for (i, bin) in validation.reliability.iter().enumerate() {
+            let (title, said) = match i {
+                0 => ("reliability", " of rows left out"),
+                _ => ("", ""),
+            };
+            let Bin {
+                rows,
+                predicted,
+                observed,
+            } = bin;
+            writeln!(
+                out,
+                "{title:<11} {predicted:.3} predicted, {observed:.3} came, {rows} rows{said}"
+            )?;
+        }
+    }
+    for (i, point) in outcome.curve.iter().flatten().enumerate() {
+        let title = if i == 0 { "curve" } else { "" };
+        let left_out = short(point.left_out);
+        let said = if i == 0 {
+            " left out, tuned on so many of the others"
+        } else {
+            ""
+        };
+        writeln!(
+            out,
+            "{title:<11} {:>5.1} %  {left_out}{said}",
+            100.0 * point.share
+        )?;
     }
     let width = tuned
         .moved
@@ -166,6 +195,8 @@ pub(super) struct Document<'a> {
     from_checkpoint: bool,
     /// `None` where validation was not wanted.
     validation: Option<OfValidation>,
+    /// `None` where it was not wanted.
+    learning_curve: Option<Vec<OfPoint>>,
     moved: Vec<OfNumber<'a>>,
 }
 
@@ -183,6 +214,20 @@ struct OfValidation {
     before: OfInterval,
     after: OfInterval,
     gain: OfInterval,
+    reliability: Vec<OfBin>,
+}
+
+#[derive(Serialize)]
+struct OfBin {
+    rows: usize,
+    predicted: f64,
+    observed: f64,
+}
+
+#[derive(Serialize)]
+struct OfPoint {
+    share: f64,
+    left_out: f64,
 }
 
 #[derive(Serialize)]
@@ -206,6 +251,11 @@ impl<'a> Document<'a> {
             value: interval.value,
             low: interval.low,
             high: interval.high,
+        };
+        let bin = |bin: &Bin| OfBin {
+            rows: bin.rows,
+            predicted: bin.predicted,
+            observed: bin.observed,
         };
         let tuned = &outcome.tuned;
         let moved = tuned.moved.iter().map(|moved| OfNumber {
@@ -232,6 +282,14 @@ impl<'a> Document<'a> {
                 before: interval(&validation.before),
                 after: interval(&validation.after),
                 gain: interval(&validation.gain),
+                reliability: validation.reliability.iter().map(bin).collect(),
+            }),
+            learning_curve: outcome.curve.as_ref().map(|curve| {
+                let points = curve.iter().map(|point| OfPoint {
+                    share: point.share,
+                    left_out: point.left_out,
+                });
+                points.collect()
             }),
             moved: moved.collect(),
         }
