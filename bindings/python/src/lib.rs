@@ -12,6 +12,7 @@ mod evaluate;
 mod evaluation;
 mod explanation;
 mod flight;
+mod identify;
 mod learn;
 mod map;
 mod monitor;
@@ -33,6 +34,7 @@ mod _core {
         evaluation::EvaluationData,
         explanation::{ExplainedInput, ExplainedOutput, Explanation, FiredRule, Share},
         flight::FlightData,
+        identify::_identify,
         learn::_learn,
         map::DecisionMap,
         monitor::{MonitorData, Update},

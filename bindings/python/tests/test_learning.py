@@ -194,3 +194,42 @@ def test_an_interrupt_that_is_not_caught_ends_a_program():
     search.send_signal(signal.SIGINT)
     _, told = search.communicate(timeout=60)
     assert search.returncode != 0 and "TuneInterrupted: tuning was interrupted" in told, told
+
+
+def cars(count: int = 300) -> dict:
+    random = np.random.default_rng(3)
+    weight, year = random.uniform(1500, 5000, count), random.integers(70, 83, count)
+    mpg = 60 - 0.012 * weight + 0.4 * (year - 70) + 3 * np.sin(weight / 500)
+    return {"weight": weight, "year": year, "name": np.array([f"car {i}" for i in range(count)]), "mpg": mpg}
+
+
+def test_identifying_finds_what_matters_in_any_frame():
+    found = [flagred.identify(frame, "mpg", validation=False) for frame in frames(cars())]
+    assert all(one.model == found[0].model for one in found)
+    assert set(found[0].model.inputs) == {"weight", "year"}
+    assert found[0].validation is None and found[0].steps[0].input == "weight"
+
+
+@pytest.mark.parametrize("antecedents", ["partitions", "clusters"])
+@pytest.mark.parametrize("consequents", ["constants", "lines"])
+def test_identifying_is_judged_beside_a_line(antecedents, consequents):
+    found = flagred.identify(cars(), "mpg", antecedents=antecedents, consequents=consequents)
+    worth = found.validation
+    assert worth.ratio.value == pytest.approx(worth.identified.value / worth.linear.value)
+    assert worth.linear.value < worth.mean.value and worth.folds == 5
+    assert found.model(*(cars()[name] for name in found.model.inputs)).shape == (300,)
+
+
+def test_identifying_refuses_what_it_cannot_use():
+    rows = cars()
+    rows["weight"] = rows["weight"].copy()
+    rows["weight"][7] = np.nan
+    with pytest.raises(flagred.DataError, match="column `weight`, row 7"):
+        flagred.identify(rows, "mpg")
+    assert len(flagred.identify(rows, "mpg", skip_bad_rows=True, validation=False).steps) > 0
+    with pytest.raises(flagred.DataError, match="no column `colour`"):
+        flagred.identify(rows, "mpg", inputs=["colour"])
+    with pytest.raises(flagred.DataError, match="`antecedents` is `grid`"):
+        flagred.identify(cars(), "mpg", antecedents="grid")
+    with pytest.raises(flagred.DataError, match="no input tells more"):
+        flagred.identify({"a": np.arange(50.0) % 2, "b": np.zeros(50)}, "b")

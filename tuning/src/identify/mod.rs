@@ -155,6 +155,10 @@ pub fn identify(
         .iter()
         .map(named)
         .collect::<Result<_, _>>()?;
+    let (low, high) = range(&data.truths);
+    if low == high {
+        return Err(TuneError::NoInputHelps);
+    }
     let folds = Folds::new(data, settings.folds, settings.seed);
     let search = Search {
         data,
@@ -209,7 +213,7 @@ impl Search<'_> {
             let is_asked_for =
                 structure.inputs().len() > best.inputs().len() && !self.wanted.is_empty();
             let least = least_of_all.max(self.settings.least_gain * error);
-            if !is_asked_for && left_out > error - least {
+            if !is_asked_for && left_out >= error - least {
                 break;
             }
             steps.push((input, terms, left_out));

@@ -91,8 +91,12 @@ fn named_inputs_are_used_and_unknown_ones_refused() {
 #[test]
 fn noise_alone_makes_no_model() {
     let (names, data) = rows(300, |_, _| 0.0);
-    let refused = identify(&names, "level", &data, &Identification::default());
-    assert_eq!(refused.unwrap_err(), TuneError::NoInputHelps);
+    let (_, mut constant) = rows(30, |_, _| 0.0);
+    constant.truths.fill(4.0);
+    for data in [data, constant] {
+        let refused = identify(&names, "level", &data, &Identification::default());
+        assert_eq!(refused.unwrap_err(), TuneError::NoInputHelps);
+    }
 }
 
 #[test]

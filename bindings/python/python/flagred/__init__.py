@@ -46,6 +46,7 @@ from ._data import (
 )
 from ._errors import DataError, Diagnostic, FlagredError, LogError, RuleSetError
 from ._flight import Assessment, Flight, Signal, assess, read_log
+from ._identify import Identified, IdentifyValidation, Step, identify
 from ._learning import Errors, Figure, Learned, Moved, Tuned, TuneInterrupted, TuneValidation, learn, tune
 from ._model import Model, load, loads
 from ._monitor import Followed, Monitor
@@ -74,6 +75,8 @@ __all__ = [
     "Followed",
     "Gap",
     "Geometry",
+    "Identified",
+    "IdentifyValidation",
     "Interval",
     "Intervals",
     "Learned",
@@ -96,6 +99,7 @@ __all__ = [
     "Share",
     "Signal",
     "Simplified",
+    "Step",
     "Summary",
     "Table",
     "TuneInterrupted",
@@ -106,6 +110,7 @@ __all__ = [
     "__version__",
     "assess",
     "evaluate",
+    "identify",
     "learn",
     "load",
     "loads",

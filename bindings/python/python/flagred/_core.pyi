@@ -26,6 +26,7 @@ __all__ = [
     "Share",
     "Table",
     "Update",
+    "_identify",
     "_learn",
     "_page",
     "_simplify",
@@ -301,6 +302,14 @@ class MonitorData:
     def _finish(self) -> tuple[str, Table] | None: ...
 
 def _page(title: str, body: str) -> str: ...
+def _identify(
+    names: list[str],
+    output: str,
+    columns: list[NDArray[np.float64]],
+    truths: NDArray[np.float64],
+    groups: NDArray[np.uint32] | None,
+    options: dict[str, Any],
+) -> dict[str, Any]: ...
 def _learn(rule_set: RuleSet, rows: dict[str, Any], options: dict[str, Any]) -> dict[str, Any]: ...
 def _simplify(
     rule_set: RuleSet, columns: list[NDArray[np.float64]], options: dict[str, Any]

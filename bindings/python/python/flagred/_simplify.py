@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 from ._arrays import array
 from ._core import _simplify
 from ._errors import DataError
-from ._learning import _column, _columns, _same_length
 from ._model import Model, _read
+from ._tables import column_of, same_length, table_of
 
 __all__ = ["Difference", "Simplified", "simplify"]
 
@@ -95,9 +95,9 @@ def simplify(
             raise DataError(f"`columns` names `{name}`, which is no input of the rule set")
     rows = []
     if data is not None:
-        data = _columns(data)
-        rows = [array(_column(data, renamed.get(name, name))) for name in names]
-        _same_length(rows)
+        data = table_of(data)
+        rows = [array(column_of(data, renamed.get(name, name))) for name in names]
+        same_length(rows)
     found = _simplify(model, rows, {"tolerance": tolerance, "rows_only": rows_only, "seed": seed})
     difference = found.pop("difference")
     if difference is not None:

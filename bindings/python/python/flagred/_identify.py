@@ -1,0 +1,171 @@
+"""A rule set from rows alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._arrays import array
+from ._core import _identify
+from ._errors import DataError
+from ._learning import Figure
+from ._model import Model, _read
+from ._tables import column_names, column_of, same_length, table_of
+
+__all__ = ["IdentifyValidation", "Identified", "Step", "identify"]
+
+
+class Step(NamedTuple):
+    """A step of the search."""
+
+    input: str
+    """The input that is new, or has another term."""
+    terms: int
+    """How many terms it has now; of clusters, how many there are."""
+    left_out: float
+    """The root mean square error on rows left out, in the unit of the output."""
+
+
+class IdentifyValidation(NamedTuple):
+    """Root mean square errors on rows that were left out of the whole search."""
+
+    folds: int
+    without_value: int
+    """Rows for which no rule fires; the mean of the other rows stands for them."""
+    identified: Figure
+    linear: Figure
+    """Of a line over all columns."""
+    mean: Figure
+    ratio: Figure
+    """The first divided by that of the line."""
+
+
+class Identified(NamedTuple):
+    """A rule set that was found in data."""
+
+    model: Model
+    steps: list[Step]
+    without_rows: int
+    """The combinations of terms that too few rows speak of; they have no rule."""
+    validation: IdentifyValidation | None
+
+
+def identify(
+    data: Any,
+    target: str,
+    *,
+    inputs: Iterable[str] = (),
+    ignore: Iterable[str] = (),
+    antecedents: Literal["partitions", "clusters"] = "partitions",
+    consequents: Literal["constants", "lines"] = "constants",
+    most_inputs: int = 4,
+    most_terms: int = 5,
+    most_rules: int = 25,
+    least_gain: float = 0.02,
+    min_support: int = 1,
+    group_by: str | None = None,
+    folds: int = 5,
+    seed: int = 0,
+    validation: bool = True,
+    skip_bad_rows: bool = False,
+) -> Identified:
+    """Finds inputs, terms and rules for a column of a table. ``flagred identify`` does the same: see docs/identify.md.
+
+    Parameters
+    ----------
+    data
+        A frame, or a mapping of columns.
+    target
+        The column with the output.
+    inputs
+        The columns to use; without them those that help are found.
+    ignore
+        Columns to leave out. Those that hold no numbers are left out anyhow.
+    antecedents
+        A rule for each combination of the terms of ``partitions``, or for each of the ``clusters`` of rows.
+    consequents
+        What a rule concludes: ``constants``, or ``lines`` over the inputs.
+    most_inputs, most_terms, most_rules
+        The most inputs, terms of an input (2 to 5) and rules.
+    least_gain
+        By what share a step must make the error on rows left out smaller.
+    min_support
+        The fewest rows that make a rule.
+    group_by
+        Leave out all rows with one value of this column together.
+    folds
+        Into how many parts the rows or groups are divided.
+    seed
+        Of these parts.
+    validation
+        Whether the whole search is cross-validated.
+    skip_bad_rows
+        Leave out rows with a value that is not known.
+
+    Raises
+    ------
+    DataError
+        A column is missing, a value is not known, or no input helps.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import flagred
+    >>> width, length = np.meshgrid(np.arange(10.0), np.arange(10.0))
+    >>> rows = {"width": width.ravel(), "length": length.ravel(), "area": (width * length).ravel()}
+    >>> found = flagred.identify(rows, "area")
+    >>> sorted(found.model.inputs)
+    ['length', 'width']
+    >>> found.validation.identified.value < 0.1 * found.validation.linear.value
+    True
+    """
+    data = table_of(data)
+    wanted, without = list(inputs), {target, group_by, *ignore}
+    names = wanted or [name for name in column_names(data) if name not in without]
+    columns = {name: array(column_of(data, name)) if wanted else _numbers(column_of(data, name)) for name in names}
+    known = {name: column for name, column in columns.items() if column is not None}
+    truths = array(column_of(data, target))
+    groups = None
+    if group_by is not None:
+        groups = np.unique(np.asarray(column_of(data, group_by)).astype(str), return_inverse=True)[1].astype(np.uint32)
+    same_length([*known.values(), truths, *([] if groups is None else [groups])])
+    if skip_bad_rows:
+        good = np.isfinite([truths, *known.values()]).all(axis=0)
+        known, truths = {name: column[good] for name, column in known.items()}, truths[good]
+        groups = None if groups is None else groups[good]
+    for name, column in {**known, target: truths}.items():
+        if not np.isfinite(column).all():
+            row = int(np.argmin(np.isfinite(column)))
+            help_text = "leave such rows out with `skip_bad_rows=True`, or the column with `ignore`"
+            raise DataError(f"column `{name}`, row {row}: the value is not known\n  help: {help_text}")
+    options = {
+        "antecedents": antecedents,
+        "consequents": consequents,
+        "inputs": wanted,
+        "most_inputs": most_inputs,
+        "most_terms": most_terms,
+        "most_rules": most_rules,
+        "least_gain": least_gain,
+        "min_support": min_support,
+        "folds": folds,
+        "seed": seed,
+        "validation": validation,
+    }
+    found = _identify(list(known), target, list(known.values()), truths, groups, options)
+    worth = found["validation"]
+    if worth is not None:
+        figures = {name: Figure(*worth[name]) for name in ("identified", "linear", "mean", "ratio")}
+        worth = IdentifyValidation(worth["folds"], worth["without_value"], **figures)
+    steps = [Step(*step) for step in found["steps"]]
+    return Identified(_read(found["model"], "<model>"), steps, found["without_rows"], worth)
+
+
+def _numbers(column: Any) -> NDArray[np.float64] | None:
+    """The column as numbers; None where it holds other things."""
+    try:
+        return array(column)
+    except DataError:
+        return None

@@ -1,0 +1,133 @@
+//! A rule set from rows alone: `flagred.identify`.
+
+use std::ops::ControlFlow;
+
+use fuzzy::yaml;
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use tuning::{
+    Data,
+    identify::{Antecedents, Consequents, Identification, identify, judge},
+};
+
+use crate::{
+    rows::{Failed, choice},
+    threads::interruptible,
+};
+
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct IdentifyOptions {
+    antecedents: String,
+    consequents: String,
+    inputs: Vec<String>,
+    most_inputs: usize,
+    most_terms: usize,
+    most_rules: usize,
+    least_gain: f64,
+    min_support: usize,
+    folds: u32,
+    seed: u64,
+    validation: bool,
+}
+
+impl IdentifyOptions {
+    fn settings(&self) -> PyResult<Identification> {
+        let antecedents = [
+            ("partitions", Antecedents::Partitions),
+            ("clusters", Antecedents::Clusters),
+        ];
+        let consequents = [
+            ("constants", Consequents::Constants),
+            ("lines", Consequents::Lines),
+        ];
+        Ok(Identification {
+            antecedents: choice("antecedents", &self.antecedents, &antecedents)?,
+            consequents: choice("consequents", &self.consequents, &consequents)?,
+            inputs: self.inputs.clone(),
+            most_inputs: self.most_inputs,
+            most_terms: self.most_terms,
+            most_rules: self.most_rules,
+            least_gain: self.least_gain,
+            least_support: self.min_support,
+            folds: self.folds,
+            seed: self.seed,
+        })
+    }
+}
+
+/// A figure and its interval.
+type Figure = (f64, f64, f64);
+
+/// What `flagred.Identified` is made of.
+#[derive(IntoPyObject)]
+pub(crate) struct Identified {
+    model: String,
+    /// The inputs that were taken, how many terms they got, and the error on rows left out.
+    steps: Vec<(String, usize, f64)>,
+    without_rows: usize,
+    validation: Option<Worth>,
+}
+
+#[derive(IntoPyObject)]
+pub(crate) struct Worth {
+    folds: usize,
+    without_value: usize,
+    identified: Figure,
+    linear: Figure,
+    mean: Figure,
+    ratio: Figure,
+}
+
+/// A rule set for the truths, found in columns with these names.
+#[pyfunction]
+pub(crate) fn _identify(
+    py: Python<'_>,
+    names: Vec<String>,
+    output: String,
+    columns: Vec<PyReadonlyArray1<'_, f64>>,
+    truths: PyReadonlyArray1<'_, f64>,
+    groups: Option<PyReadonlyArray1<'_, u32>>,
+    options: IdentifyOptions,
+) -> PyResult<Identified> {
+    let settings = options.settings()?;
+    let data = Data {
+        inputs: columns
+            .iter()
+            .map(|column| column.as_array().to_vec())
+            .collect(),
+        truths: truths.as_array().to_vec(),
+        groups: groups.map_or_else(Vec::new, |groups| groups.as_array().to_vec()),
+        ..Data::default()
+    };
+    let (folds, validation) = (options.folds, options.validation);
+    let found = interruptible(py, move || {
+        let found = identify(&names, &output, &data, &settings)?;
+        let judged = match validation {
+            true => judge(&names, &output, &data, &settings, folds, &mut |_| {
+                ControlFlow::Continue(())
+            })?,
+            false => None,
+        };
+        Ok((found, judged))
+    })?;
+    let (found, judged) =
+        found.map_err(|error: tuning::TuneError| Failed::from(error).raise(py))?;
+    let figure = |interval: tuning::Interval| (interval.value, interval.low, interval.high);
+    let steps = found.steps.into_iter();
+    Ok(Identified {
+        model: yaml::to_string(&found.model),
+        steps: steps
+            .map(|step| (step.input, step.terms, step.left_out))
+            .collect(),
+        without_rows: found.without_rows,
+        validation: judged.map(|judged| Worth {
+            folds: judged.folds,
+            without_value: judged.without_value,
+            identified: figure(judged.identified),
+            linear: figure(judged.linear),
+            mean: figure(judged.mean),
+            ratio: figure(judged.ratio),
+        }),
+    })
+}
