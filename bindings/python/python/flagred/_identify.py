@@ -119,7 +119,7 @@ def identify(
     >>> found = flagred.identify(rows, "area")
     >>> sorted(found.model.inputs)
     ['length', 'width']
-    >>> found.validation.identified.value < 0.1 * found.validation.linear.value
+    >>> found.validation.ratio.value < 0.5
     True
     """
     data = table_of(data)
