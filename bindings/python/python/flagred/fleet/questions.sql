@@ -48,7 +48,7 @@ GROUP BY vehicle, week HAVING count(*) >= 3 ORDER BY vehicle, week;
 
 -- name: motors
 -- Which motor was at its limit, and at which, in findings that warn.
-SELECT motor, side, count(*) AS findings, count(DISTINCT flight_id) AS flights, count(DISTINCT vehicle) AS vehicles,
+SELECT motor, side, count(*) AS findings, count(DISTINCT flight_id) AS flights, nullif(count(DISTINCT vehicle), 0) AS vehicles,
   quantile_cont(margin_mean, 0.5) AS margin_median, sum(to_s - from_s) / 60 AS minutes
 FROM findings WHERE motor IS NOT NULL AND severity IN ('WARN', 'FAIL') GROUP BY motor, side ORDER BY findings DESC, motor, side;
 
@@ -61,7 +61,7 @@ FROM findings WHERE rule IS NOT NULL AND severity IN ('WARN', 'FAIL') GROUP BY r
 
 -- name: firmware
 -- By firmware: the highest risk of a flight, and the share of flights that warned.
-SELECT firmware, count(*) AS flights, count(DISTINCT vehicle) AS vehicles, quantile_cont(risk_max_pct, 0.5) AS risk_max_median_pct,
+SELECT firmware, count(*) AS flights, nullif(count(DISTINCT vehicle), 0) AS vehicles, quantile_cont(risk_max_pct, 0.5) AS risk_max_median_pct,
   quantile_cont(risk_max_pct, 0.95) AS risk_max_p95_pct, 100.0 * count(*) FILTER (WHERE verdict IN ('WARN', 'FAIL')) / count(*) AS warned_pct,
   wilson_low(count(*) FILTER (WHERE verdict IN ('WARN', 'FAIL')), count(*)) AS low_pct,
   wilson_high(count(*) FILTER (WHERE verdict IN ('WARN', 'FAIL')), count(*)) AS high_pct, min(start_utc) AS first_utc
