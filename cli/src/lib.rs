@@ -22,6 +22,7 @@ mod identify;
 mod import;
 mod inspect;
 mod learn;
+mod left_out;
 mod lsp;
 mod man;
 mod map;

@@ -11,6 +11,7 @@ use fuzzy::{
 
 use crate::{
     failure::Failure,
+    output::{Files, Output, Replace},
     table::{Format, Table},
 };
 
@@ -69,6 +70,19 @@ pub(crate) struct FromRows {
 }
 
 impl FromRows {
+    /// What is read and what is written.
+    pub(crate) fn files(&self) -> Result<(Files, Output), Failure> {
+        let Rewrite {
+            model,
+            output,
+            force,
+            ..
+        } = &self.rewrite;
+        let mut files = Files::reading(self.data.iter().chain([model]))?;
+        let output = files.output(output, Replace::forced(*force))?;
+        Ok((files, output))
+    }
+
     /// What `--rising` and `--falling` claim.
     pub(crate) fn claims(&self) -> Vec<Monotone> {
         let claim = |input: &String, direction| Monotone {
@@ -103,12 +117,21 @@ pub(crate) fn read(arguments: &FromRows, model: &Model) -> Result<Data, Failure>
     let outputs = model.outputs.iter().map(|output| &output.variable);
     let names: Vec<&str> = inputs.chain(outputs).map(|v| v.name.as_str()).collect();
     let optional = [&arguments.weight, &arguments.group_by].map(Option::as_deref);
-    columns(&arguments.data, &arguments.rewrite.format, &names, optional)
+    let format = &arguments.rewrite.format;
+    columns(tables(&arguments.data, format), format, &names, optional)
+}
+
+/// The tables, each read when it is asked for.
+pub(crate) fn tables<'a>(
+    paths: &'a [PathBuf],
+    format: &'a Format,
+) -> impl Iterator<Item = Result<Table, Failure>> + 'a {
+    paths.iter().map(|path| Table::read(path, format.delimiter))
 }
 
 /// Reads the values of variables from all tables, and the columns with the weights and the groups of the rows.
 pub(crate) fn columns(
-    tables: &[PathBuf],
+    tables: impl Iterator<Item = Result<Table, Failure>>,
     format: &Format,
     names: &[&str],
     [weight, group]: [Option<&str>; 2],
@@ -118,8 +141,8 @@ pub(crate) fn columns(
         refused: Vec::new(),
     };
     let mut groups: BTreeMap<String, u32> = BTreeMap::new();
-    for path in tables {
-        let table = Table::read(path, format.delimiter)?;
+    for table in tables {
+        let table = table?;
         let columns = format.columns(names, &table.header)?;
         let optional = |name: Option<&str>| {
             name.map(|name| table.header.require(name, "or leave that option out"))

@@ -95,7 +95,12 @@ fn rows(arguments: &Arguments, model: &Model) -> Result<(Vec<Vec<f64>>, Vec<Stri
     }
     let names: Vec<&str> = model.inputs.iter().map(|input| &*input.name).collect();
     let format = &arguments.rewrite.format;
-    let rows::Data { rows, refused } = rows::columns(&arguments.data, format, &names, [None; 2])?;
+    let rows::Data { rows, refused } = rows::columns(
+        rows::tables(&arguments.data, format),
+        format,
+        &names,
+        [None; 2],
+    )?;
     if !refused.is_empty() && !format.skip_bad_rows {
         return Err(rows::refuse(&refused, "compared"));
     }

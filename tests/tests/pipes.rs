@@ -268,3 +268,28 @@ fn wait_for(mut happened: impl FnMut() -> bool) {
         thread::sleep(Duration::from_millis(10));
     }
 }
+
+/// The columns are looked at and the rows are read from one reading of the table.
+#[test]
+fn identify_reads_standard_input_once() {
+    let row = |i: i32| format!("{},{},{}\n", i % 7, i % 5, i % 7 * (i % 5));
+    let rows: String = (0..70).map(row).collect();
+    let mut child = flagred()
+        .args(["identify", "-", "--target", "area", "--output", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut table = child.stdin.take().unwrap();
+    table
+        .write_all(format!("width,length,area\n{rows}").as_bytes())
+        .unwrap();
+    drop(table);
+    let output = child.wait_with_output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{told}");
+    assert!(told.contains("70 used, 0 refused"), "{told}");
+    let written = String::from_utf8(output.stdout).unwrap();
+    assert!(fuzzy::yaml::parse(&written).is_ok(), "{written}");
+}

@@ -243,18 +243,18 @@ fn a_learning_curve_ends_with_the_validation_and_falls() {
     let settings = Settings::default();
     let mut ok = |_: u32, _: &Progress<'_>| ControlFlow::Continue(());
     let worth = cross_validate(&start, &data, &settings, 4, &mut ok).unwrap();
-    let curve = learning_curve(&start, &data, &settings, 4, &mut ok)
+    let worth = worth.unwrap();
+    let curve = learning_curve(&start, &data, &settings, 4, &worth, &mut ok)
         .unwrap()
         .unwrap();
     let shares: Vec<f64> = curve.iter().map(|point| point.share).collect();
     assert_eq!(shares, [0.125, 0.25, 0.5, 1.0]);
-    let worth = worth.unwrap();
     assert_eq!(curve[3].left_out, worth.after.value);
     assert!(curve[0].left_out > 1.05 * curve[3].left_out, "{curve:?}");
     assert!(worth.reliability.is_empty());
     let mut stop = |_: u32, _: &Progress<'_>| ControlFlow::Break(());
     assert_eq!(
-        learning_curve(&start, &data, &settings, 4, &mut stop),
+        learning_curve(&start, &data, &settings, 4, &worth, &mut stop),
         Ok(None)
     );
 }

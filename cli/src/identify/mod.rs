@@ -121,8 +121,13 @@ struct Outcome {
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading(&arguments.data)?;
     let output = files.output(&arguments.output, Replace::forced(arguments.force))?;
-    let (names, without_numbers) = columns(arguments)?;
-    let (data, refused) = data(arguments, &names)?;
+    // A table is read once: it may be standard input.
+    let mut tables = rows::tables(&arguments.data, &arguments.format).peekable();
+    let (names, without_numbers) = match tables.peek() {
+        Some(Ok(first)) => columns(arguments, first)?,
+        _ => (arguments.input.clone(), Vec::new()),
+    };
+    let (data, refused) = data(arguments, tables, &names)?;
     let settings = settings(arguments);
     let failed = |error: TuneError| failure(arguments, &names, &error);
     let identified = identify(&names, &arguments.target, &data, &settings).map_err(failed)?;
@@ -184,15 +189,11 @@ fn settings(arguments: &Arguments) -> Identification {
     }
 }
 
-/// The columns that may be inputs, and those that hold no number: of the first table.
-fn columns(arguments: &Arguments) -> Result<(Vec<String>, Vec<String>), Failure> {
+/// The columns of a table that may be inputs, and those that hold no number.
+fn columns(arguments: &Arguments, table: &Table) -> Result<(Vec<String>, Vec<String>), Failure> {
     if !arguments.input.is_empty() {
         return Ok((arguments.input.clone(), Vec::new()));
     }
-    let Some(first) = arguments.data.first() else {
-        return Ok((Vec::new(), Vec::new()));
-    };
-    let table = Table::read(first, arguments.format.delimiter)?;
     for ignored in &arguments.ignore {
         table.header.require(ignored, "or leave that option out")?;
     }
@@ -222,14 +223,18 @@ fn columns(arguments: &Arguments) -> Result<(Vec<String>, Vec<String>), Failure>
 }
 
 /// The rows as columns, and why others cannot be used.
-fn data(arguments: &Arguments, names: &[String]) -> Result<(Data, Vec<String>), Failure> {
+fn data(
+    arguments: &Arguments,
+    tables: impl Iterator<Item = Result<Table, Failure>>,
+    names: &[String],
+) -> Result<(Data, Vec<String>), Failure> {
     let all: Vec<&str> = names
         .iter()
         .chain([&arguments.target])
         .map(String::as_str)
         .collect();
     let read = rows::columns(
-        &arguments.data,
+        tables,
         &arguments.format,
         &all,
         [&arguments.weight, &arguments.group_by].map(Option::as_deref),

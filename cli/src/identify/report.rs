@@ -7,12 +7,16 @@ use fuzzy::{
     model::Step,
 };
 use serde::Serialize;
-use tuning::{Interval, identify::Judged};
+use tuning::identify::Judged;
 
 use super::{Arguments, Outcome};
-use crate::{failure::Failure, provenance};
+use crate::{
+    failure::Failure,
+    left_out::{self, OfInterval, divided, figure},
+    provenance,
+};
 
-/// The reasons for rows without use, and the columns without numbers, that are shown.
+/// The columns without numbers that are shown.
 const SHOWN: usize = 12;
 
 /// The rule set with the step that made it.
@@ -45,15 +49,7 @@ pub(super) fn words(
     arguments: &Arguments,
     outcome: &Outcome,
 ) -> std::io::Result<()> {
-    writeln!(
-        out,
-        "rows        {} used, {} refused",
-        outcome.rows,
-        outcome.refused.len()
-    )?;
-    for refused in outcome.refused.iter().take(SHOWN) {
-        writeln!(out, "            {}", visible(refused))?;
-    }
+    left_out::rows(out, outcome.rows, &outcome.refused)?;
     writeln!(out, "columns     {} looked at", outcome.columns)?;
     for name in outcome.without_numbers.iter().take(SHOWN) {
         writeln!(out, "            `{}` holds no number", visible(name))?;
@@ -100,30 +96,23 @@ pub(super) fn words(
 
 /// What the whole search is worth.
 fn worth(out: &mut dyn Write, arguments: &Arguments, judged: &Judged) -> std::io::Result<()> {
-    let shown = |interval: &Interval| {
-        let Interval { value, low, high } = interval;
-        format!("{} [{}, {}]", short(*value), short(*low), short(*high))
-    };
-    let parts = match &arguments.group_by {
-        Some(column) => format!("groups of `{}`", visible(column)),
-        None => "rows".to_owned(),
-    };
+    let parts = divided(arguments.group_by.as_ref());
     writeln!(
         out,
         "left out    {} RMS error of the whole search ({} parts of {parts}, 95 % intervals)",
-        shown(&judged.identified),
+        figure(&judged.identified),
         judged.folds
     )?;
     let ratio = match judged.ratio {
-        ratio if ratio.value < 100.0 => format!("{} of it", shown(&ratio)),
+        ratio if ratio.value < 100.0 => format!("{} of it", figure(&ratio)),
         _ => "over 100 times as large".to_owned(),
     };
     writeln!(
         out,
         "            {} of a line over all columns; the first is {ratio}",
-        shown(&judged.linear)
+        figure(&judged.linear)
     )?;
-    writeln!(out, "            {} of the mean", shown(&judged.mean))?;
+    writeln!(out, "            {} of the mean", figure(&judged.mean))?;
     if judged.without_value > 0 {
         writeln!(
             out,
@@ -178,20 +167,8 @@ struct Validation {
     ratio: OfInterval,
 }
 
-#[derive(Serialize)]
-struct OfInterval {
-    value: f64,
-    low: f64,
-    high: f64,
-}
-
 impl<'a> Document<'a> {
     pub(super) fn new(outcome: &'a Outcome) -> Document<'a> {
-        let interval = |interval: &Interval| OfInterval {
-            value: interval.value,
-            low: interval.low,
-            high: interval.high,
-        };
         let identified = &outcome.identified;
         let steps = identified.steps.iter().map(|step| OfStep {
             input: &step.input,
@@ -217,10 +194,10 @@ impl<'a> Document<'a> {
             validation: outcome.judged.as_ref().map(|judged| Validation {
                 parts: judged.folds,
                 rows_without_value: judged.without_value,
-                identified: interval(&judged.identified),
-                linear: interval(&judged.linear),
-                mean: interval(&judged.mean),
-                ratio: interval(&judged.ratio),
+                identified: (&judged.identified).into(),
+                linear: (&judged.linear).into(),
+                mean: (&judged.mean).into(),
+                ratio: (&judged.ratio).into(),
             }),
         }
     }

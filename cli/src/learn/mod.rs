@@ -19,7 +19,7 @@ use fuzzy::{
 
 use crate::{
     failure::{Exit, Failure},
-    output::{Files, Replace, Stdout},
+    output::Stdout,
     rows, rule_set,
 };
 
@@ -78,17 +78,7 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading(
-        arguments
-            .rows
-            .data
-            .iter()
-            .chain([&arguments.rows.rewrite.model]),
-    )?;
-    let output = files.output(
-        &arguments.rows.rewrite.output,
-        Replace::forced(arguments.rows.rewrite.force),
-    )?;
+    let (_, output) = arguments.rows.files()?;
     let name = arguments.rows.rewrite.model.display().to_string();
     let (document, text) = rule_set::read(&arguments.rows.rewrite.model)?;
     let mut model = document.model;

@@ -23,7 +23,7 @@ use tuning::{
 
 use crate::{
     failure::{Exit, Failure},
-    output::{self, Files, Output, Replace, Stdout},
+    output::{self, Output, Stdout},
     rows, rule_set,
 };
 
@@ -109,17 +109,7 @@ struct Outcome {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut files = Files::reading(
-        arguments
-            .rows
-            .data
-            .iter()
-            .chain([&arguments.rows.rewrite.model]),
-    )?;
-    let output = files.output(
-        &arguments.rows.rewrite.output,
-        Replace::forced(arguments.rows.rewrite.force),
-    )?;
+    let (mut files, output) = arguments.rows.files()?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let checkpoint = files.optional(arguments.checkpoint.as_ref())?;
     let name = arguments.rows.rewrite.model.display().to_string();
@@ -151,10 +141,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
     };
     let curve = match &validation {
-        Some(_) if arguments.learning_curve => {
+        Some(worth) if arguments.learning_curve => {
             let mut told = |_: u32, _: &Progress<'_>| watch.more("learning curve");
-            learning_curve(&original, &data, &settings, arguments.folds, &mut told)
-                .map_err(failed)?
+            let folds = arguments.folds;
+            learning_curve(&original, &data, &settings, folds, worth, &mut told).map_err(failed)?
         }
         _ => None,
     };

@@ -7,13 +7,15 @@ use fuzzy::{
     model::{LossChange, Step},
 };
 use serde::Serialize;
-use tuning::{Bin, Interval, Moved};
+use tuning::{Bin, Moved};
 
 use super::{Arguments, LossName, Outcome};
-use crate::{failure::Failure, provenance, rows::word};
-
-/// The reasons for rows without use that are shown.
-const SHOWN: usize = 12;
+use crate::{
+    failure::Failure,
+    left_out::{self, OfInterval, divided, figure},
+    provenance,
+    rows::word,
+};
 
 fn loss(arguments: &Arguments) -> &'static str {
     match arguments.loss {
@@ -72,15 +74,7 @@ pub(super) fn words(
     outcome: &Outcome,
 ) -> std::io::Result<()> {
     let tuned = &outcome.tuned;
-    writeln!(
-        out,
-        "rows        {} used, {} refused",
-        outcome.rows,
-        outcome.refused.len()
-    )?;
-    for refused in outcome.refused.iter().take(SHOWN) {
-        writeln!(out, "            {}", visible(refused))?;
-    }
+    left_out::rows(out, outcome.rows, &outcome.refused)?;
     if tuned.without_value > 0 {
         writeln!(
             out,
@@ -104,24 +98,13 @@ pub(super) fn words(
         short(tuned.after)
     )?;
     if let Some(validation) = &outcome.validation {
-        let shown = |interval: &Interval| {
-            format!(
-                "{} [{}, {}]",
-                short(interval.value),
-                short(interval.low),
-                short(interval.high)
-            )
-        };
-        let parts = match &arguments.rows.group_by {
-            Some(column) => format!("groups of `{}`", visible(column)),
-            None => "rows".to_owned(),
-        };
+        let parts = divided(arguments.rows.group_by.as_ref());
         writeln!(
             out,
             "left out    {} before, {} after; gain {} ({} parts of {parts}, 95 % intervals)",
-            shown(&validation.before),
-            shown(&validation.after),
-            shown(&validation.gain),
+            figure(&validation.before),
+            figure(&validation.after),
+            figure(&validation.gain),
             validation.folds
         )?;
         for (i, bin) in validation.reliability.iter().enumerate() {
@@ -231,13 +214,6 @@ struct OfPoint {
 }
 
 #[derive(Serialize)]
-struct OfInterval {
-    value: f64,
-    low: f64,
-    high: f64,
-}
-
-#[derive(Serialize)]
 struct OfNumber<'a> {
     of: &'a str,
     name: &'a str,
@@ -247,11 +223,6 @@ struct OfNumber<'a> {
 
 impl<'a> Document<'a> {
     pub(super) fn new(arguments: &Arguments, outcome: &'a Outcome) -> Document<'a> {
-        let interval = |interval: &Interval| OfInterval {
-            value: interval.value,
-            low: interval.low,
-            high: interval.high,
-        };
         let bin = |bin: &Bin| OfBin {
             rows: bin.rows,
             predicted: bin.predicted,
@@ -279,9 +250,9 @@ impl<'a> Document<'a> {
             from_checkpoint: outcome.is_resumed,
             validation: outcome.validation.as_ref().map(|validation| OfValidation {
                 parts: validation.folds,
-                before: interval(&validation.before),
-                after: interval(&validation.after),
-                gain: interval(&validation.gain),
+                before: (&validation.before).into(),
+                after: (&validation.after).into(),
+                gain: (&validation.gain).into(),
                 reliability: validation.reliability.iter().map(bin).collect(),
             }),
             learning_curve: outcome.curve.as_ref().map(|curve| {
