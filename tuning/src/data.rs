@@ -107,3 +107,9 @@ impl Data {
         Ok(())
     }
 }
+
+/// The least and the largest value.
+pub(crate) fn range(column: &[f64]) -> (f64, f64) {
+    let of = |(low, high): (f64, f64), x: &f64| (low.min(*x), high.max(*x));
+    column.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of)
+}

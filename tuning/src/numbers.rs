@@ -138,15 +138,18 @@ pub(crate) fn round(value: f64, digits: u32) -> Vec<f64> {
         return vec![value];
     }
     let exponent = value.abs().log10().floor() as i32 - (digits.max(1) as i32 - 1);
-    // Through text, so that 0.3 is 0.3 and not 3 times a tenth.
-    let written = |steps: f64| format!("{steps:.0}e{exponent}").parse::<f64>();
     let steps = value / 10_f64.powi(exponent);
     let mut rounded: Vec<f64> = [steps.floor(), steps.ceil()]
         .into_iter()
-        .filter_map(|steps| written(steps).ok())
+        .filter_map(|steps| decimal(steps, exponent))
         .collect();
     rounded.dedup();
     rounded
+}
+
+/// So many steps of a power of ten. Through text, so that 0.3 is 0.3 and not 3 times a tenth.
+pub(crate) fn decimal(steps: f64, exponent: i32) -> Option<f64> {
+    format!("{steps:.0}e{exponent}").parse().ok()
 }
 
 #[cfg(test)]

@@ -109,7 +109,7 @@ pub(super) fn words(
         )?;
         for (i, bin) in validation.reliability.iter().enumerate() {
             let (title, said) = match i {
-                0 => ("reliability", " of rows left out"),
+                0 => ("reliability", " left out"),
                 _ => ("", ""),
             };
             let Bin {
@@ -119,7 +119,7 @@ pub(super) fn words(
             } = bin;
             writeln!(
                 out,
-                "{title:<11} {predicted:.3} predicted, {observed:.3} came, {rows} rows{said}"
+                "{title:<11} {predicted:.3} predicted, {observed:.3} observed, {rows} rows{said}"
             )?;
         }
     }
@@ -127,7 +127,7 @@ pub(super) fn words(
         let title = if i == 0 { "curve" } else { "" };
         let left_out = short(point.left_out);
         let said = if i == 0 {
-            " left out, tuned on so many of the others"
+            " on rows left out, tuned on this share of the others"
         } else {
             ""
         };

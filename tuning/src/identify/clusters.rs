@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 
-use crate::Data;
+use crate::data::{Data, range};
 
 /// The rows of which a potential is computed; of more, so many at random.
 const MOST_ROWS: usize = 600;
@@ -71,12 +71,6 @@ impl Clusters {
             parts.map(|((input, deviation), mean)| ((x(*input) - mean) / deviation).powi(2));
         (-0.5 * squares.sum::<f64>()).exp()
     }
-}
-
-/// The least and the largest value.
-pub(super) fn range(column: &[f64]) -> (f64, f64) {
-    let of = |(low, high): (f64, f64), x: &f64| (low.min(*x), high.max(*x));
-    column.iter().fold((f64::INFINITY, f64::NEG_INFINITY), of)
 }
 
 /// The points that are centers, the one with the highest potential first.

@@ -2,9 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::{Data, consequents::solve, folds::Folds};
+use crate::{
+    consequents::solve,
+    data::{Data, range},
+    folds::Folds,
+};
 
-use super::{Consequents, clusters::range, structure::Structure};
+use super::{Consequents, structure::Structure};
 
 /// Pulls consequents that few rows speak of to the mean; relative to the largest curvature.
 pub(super) const RIDGE: f64 = 1e-3;

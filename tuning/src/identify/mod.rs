@@ -9,9 +9,13 @@ mod validation;
 
 use fuzzy::Model;
 
-use crate::{Data, Loss, TuneError, folds::Folds};
+use crate::{
+    Loss, TuneError,
+    data::{Data, range},
+    folds::Folds,
+};
 
-use clusters::{Clusters, range};
+use clusters::Clusters;
 use fit::{Fit, RIDGE};
 use structure::{Axis, Structure};
 
@@ -160,8 +164,14 @@ pub fn identify(
         return Err(TuneError::NoInputHelps);
     }
     let folds = Folds::new(data, settings.folds, settings.seed);
+    let sorted = data.inputs.iter().map(|column| {
+        let mut values = column.clone();
+        values.sort_by(f64::total_cmp);
+        values
+    });
     let search = Search {
         data,
+        sorted: sorted.collect(),
         settings,
         folds,
         wanted: &wanted,
@@ -182,6 +192,8 @@ pub fn identify(
 
 struct Search<'a> {
     data: &'a Data,
+    /// The values of each input, from the least.
+    sorted: Vec<Vec<f64>>,
     settings: &'a Identification,
     folds: Folds,
     /// The inputs to use, where they were given.
@@ -297,8 +309,7 @@ impl Search<'_> {
 
     /// Peaks at quantiles from 5 to 95 %; `None` where they are not far enough apart.
     fn axis(&self, input: usize, terms: usize) -> Option<Axis> {
-        let mut values = self.data.inputs[input].clone();
-        values.sort_by(f64::total_cmp);
+        let values = &self.sorted[input];
         let (low, high) = (values.first()?, values.last()?);
         let last = values.len() - 1;
         let quantile = |i: usize| {

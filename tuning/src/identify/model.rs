@@ -6,11 +6,13 @@ use fuzzy::{
     rule::{Condition, Rule},
 };
 
-use crate::Data;
+use crate::{
+    data::{Data, range},
+    numbers::decimal,
+};
 
 use super::{
     Identification, Identified,
-    clusters::range,
     fit::{Fit, RIDGE},
     structure::{Axis, Structure},
 };
@@ -29,9 +31,7 @@ pub const MOST_TERMS: usize = NAMES.len() + 1;
 /// Rounds to a power of ten, at most a twentieth of the range.
 pub(super) fn round(value: f64, range: f64, how: fn(f64) -> f64) -> f64 {
     let exponent = (range / 20.0).log10().floor() as i32;
-    // Through text, so that 0.3 is 0.3 and not 3 times a tenth.
-    let text = format!("{:.0}e{exponent}", how(value / 10_f64.powi(exponent)));
-    text.parse().unwrap_or(value)
+    decimal(how(value / 10_f64.powi(exponent)), exponent).unwrap_or(value)
 }
 
 /// A variable around the values of a column.

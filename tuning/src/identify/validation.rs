@@ -4,7 +4,11 @@ use std::ops::ControlFlow;
 
 use fuzzy::Engine;
 
-use crate::{Data, Interval, TuneError, folds::Folds};
+use crate::{
+    Interval, TuneError,
+    data::{Data, range},
+    folds::Folds,
+};
 
 use super::{
     Consequents, Identification,
@@ -108,7 +112,7 @@ pub fn judge(
 /// Predictions of rows by the line through others: one rule that always fires.
 fn line(known: &Data, rows: &Data) -> Vec<f64> {
     let varies = |input: &usize| {
-        let (low, high) = super::range(&known.inputs[*input]);
+        let (low, high) = range(&known.inputs[*input]);
         low < high
     };
     let inputs = (0..known.inputs.len()).filter(varies);

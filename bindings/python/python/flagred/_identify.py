@@ -13,7 +13,7 @@ from ._core import _identify
 from ._errors import DataError
 from ._learning import Figure
 from ._model import Model, _read
-from ._tables import column_names, column_of, same_length, table_of
+from ._tables import column_names, column_of, groups_of, same_length, table_of
 
 __all__ = ["IdentifyValidation", "Identified", "Step", "identify"]
 
@@ -128,9 +128,7 @@ def identify(
     columns = {name: array(column_of(data, name)) if wanted else _numbers(column_of(data, name)) for name in names}
     known = {name: column for name, column in columns.items() if column is not None}
     truths = array(column_of(data, target))
-    groups = None
-    if group_by is not None:
-        groups = np.unique(np.asarray(column_of(data, group_by)).astype(str), return_inverse=True)[1].astype(np.uint32)
+    groups = None if group_by is None else groups_of(data, group_by)
     same_length([*known.values(), truths, *([] if groups is None else [groups])])
     if skip_bad_rows:
         good = np.isfinite([truths, *known.values()]).all(axis=0)

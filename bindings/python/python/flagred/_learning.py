@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Literal, NamedTuple
 
-import numpy as np
-
 from ._arrays import array
 from ._core import _learn, _tune
 from ._errors import DataError
 from ._model import Model, _read
-from ._tables import column_of, same_length, table_of
+from ._tables import column_of, groups_of, same_length, table_of
 
 __all__ = ["Errors", "Figure", "Learned", "Moved", "TuneInterrupted", "TuneValidation", "Tuned", "learn", "tune"]
 
@@ -324,8 +322,6 @@ def _rows(
     data = table_of(data)
     found = [array(column_of(data, renamed.get(name, name))) for name in names]
     weights = None if weight is None else array(column_of(data, weight))
-    groups = None
-    if group_by is not None:
-        groups = np.unique(np.asarray(column_of(data, group_by)).astype(str), return_inverse=True)[1].astype(np.uint32)
+    groups = None if group_by is None else groups_of(data, group_by)
     same_length([*found, *([] if weights is None else [weights]), *([] if groups is None else [groups])])
     return {"columns": found, "weights": weights, "groups": groups, "skip_bad_rows": skip_bad_rows}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import DataError
@@ -37,6 +38,11 @@ def column_of(data: Any, name: str) -> Any:
         listed = ", ".join(f"`{column}`" for column in there)
         raise DataError(f"the data have no column `{name}`\n  help: there are {listed}")
     return data[name]
+
+
+def groups_of(data: Any, name: str) -> NDArray[np.uint32]:
+    """A number for each value of a column."""
+    return np.unique(np.asarray(column_of(data, name)).astype(str), return_inverse=True)[1].astype(np.uint32)
 
 
 def same_length(columns: list[NDArray[Any]]) -> None:
