@@ -3,7 +3,9 @@
 //! It is made from the tables that read the format, so it lists the membership functions and operators that exist. What a
 //! schema cannot express (parameters in order, names in rules) [`validate`](crate::validate()) checks.
 
-use alloc::{format, string::String, vec::Vec};
+mod nodes;
+
+use alloc::{format, vec::Vec};
 
 use super::{
     VERSION,
@@ -12,6 +14,11 @@ use super::{
     variables::{INPUT_KEYS, OUTPUT_KEYS},
     words::{AGGREGATIONS, CONJUNCTIONS, DEFUZZIFIERS, DISJUNCTIONS},
 };
+use nodes::{
+    Entries, about, any_of, degree, entry, list, named, number, numbers, object, one_of, reference,
+    text, whole, words,
+};
+
 use crate::{
     model::{Form, LEAST_STRENGTH, MembershipFunction, Role},
     tree::Node,
@@ -93,116 +100,6 @@ pub fn schema() -> Node {
     schema.push(one_of(["rules", "blocks"]));
     schema.push(entry("$defs", definitions()));
     Node::mapping(schema)
-}
-
-type Entries = Vec<(String, Node)>;
-
-fn entry(key: &str, value: Node) -> (String, Node) {
-    (key.into(), value)
-}
-
-fn about<const N: usize>(description: &str, entries: [(&str, Node); N]) -> Node {
-    let description = [("description", Node::text(description))];
-    Node::mapping(description.into_iter().chain(entries))
-}
-
-fn text(description: &str) -> Node {
-    about(description, [("type", Node::text("string"))])
-}
-
-fn number(description: &str) -> Node {
-    about(description, [("type", Node::text("number"))])
-}
-
-fn degree(description: &str) -> Node {
-    let entries = [
-        ("type", Node::text("number")),
-        ("minimum", Node::number(0.0)),
-        ("maximum", Node::number(1.0)),
-    ];
-    about(description, entries)
-}
-
-fn whole(description: &str, least: f64) -> Node {
-    about(
-        description,
-        [
-            ("type", Node::text("integer")),
-            ("minimum", Node::number(least)),
-        ],
-    )
-}
-
-fn words<T>(description: &str, words: &[(&str, T)]) -> Node {
-    let words = words.iter().map(|(word, _)| Node::text(*word));
-    about(description, [("enum", Node::list(words.collect()))])
-}
-
-fn list(description: &str, items: Node, least: Option<usize>) -> Node {
-    let mut entries = Vec::from([
-        ("description", Node::text(description)),
-        ("type", Node::text("array")),
-        ("items", items),
-    ]);
-    entries.extend(least.map(|least| ("minItems", Node::number(least as f64))));
-    Node::mapping(entries)
-}
-
-/// A list of so many numbers.
-fn numbers(description: &str, count: usize) -> Node {
-    let count = || Node::number(count as f64);
-    about(
-        description,
-        [
-            ("type", Node::text("array")),
-            ("items", Node::mapping([("type", Node::text("number"))])),
-            ("minItems", count()),
-            ("maxItems", count()),
-        ],
-    )
-}
-
-/// A mapping of known keys and no others.
-fn object<'a>(
-    description: &str,
-    properties: impl IntoIterator<Item = (&'a str, Node)>,
-    required: &[&str],
-) -> Entries {
-    let required = required.iter().map(|key| Node::text(*key)).collect();
-    Vec::from([
-        entry("description", Node::text(description)),
-        entry("type", Node::text("object")),
-        entry("properties", Node::mapping(properties)),
-        entry("required", Node::list(required)),
-        entry("additionalProperties", no()),
-    ])
-}
-
-fn no() -> Node {
-    Node::scalar("false".into(), false)
-}
-
-fn reference(name: &str) -> Node {
-    Node::mapping([("$ref", Node::text(format!("#/$defs/{name}")))])
-}
-
-fn any_of(description: &str, options: Vec<Node>) -> Node {
-    about(description, [("anyOf", Node::list(options))])
-}
-
-/// A mapping of names the author chooses.
-fn named(description: &str, of: &str) -> Node {
-    let entries = [
-        ("type", Node::text("object")),
-        ("additionalProperties", reference(of)),
-    ];
-    about(description, entries)
-}
-
-/// That exactly one of two keys is there.
-fn one_of(keys: [&str; 2]) -> (String, Node) {
-    let one = |key: &str| Node::mapping([("required", Node::list([Node::text(key)].into()))]);
-    entry("oneOf", Node::list(keys.map(one).into()))
 }
 
 fn definitions() -> Node {
