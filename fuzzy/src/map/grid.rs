@@ -199,7 +199,7 @@ impl Grid {
             }
             let cells = self.cells.checked_mul(axis.points);
             self.cells = cells
-                .filter(|cells| *cells <= MOST_CELLS)
+                .filter(|cells| u32::try_from(*cells).is_ok())
                 .ok_or(GridError::TooManyCells { most: MOST_CELLS })?;
         }
         Ok(self)

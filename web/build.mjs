@@ -1,0 +1,105 @@
+// Builds the page: target/web/page for a server, and target/web/studio.html, which is one file.
+
+import { createHash } from 'node:crypto';
+import { copyFile, mkdir, readFile, readdir, rm, writeFile } from 'node:fs/promises';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+import { build } from 'esbuild';
+
+const here = fileURLToPath(new URL('.', import.meta.url));
+const out = fileURLToPath(new URL('../target/web/', import.meta.url));
+const page = `${out}page/`;
+const wasm = fileURLToPath(new URL('../bindings/web/js/wasm/flagred_bg.wasm', import.meta.url));
+
+const common = {
+  absWorkingDir: here,
+  bundle: true,
+  minify: true,
+  format: 'esm',
+  target: 'es2022',
+  legalComments: 'none',
+  logLevel: 'warning',
+  alias: { flagred: fileURLToPath(new URL('../target/web/package/index.js', import.meta.url)) },
+};
+
+/** What the page may load. Pictures are made by the page itself. */
+const policy = (scripts, styles, workers) =>
+  [
+    "default-src 'none'",
+    `script-src ${scripts} 'wasm-unsafe-eval'`,
+    `style-src ${styles}`,
+    "img-src 'self' data: blob:",
+    `worker-src ${workers}`,
+    "connect-src 'self'",
+    "manifest-src 'self'",
+    "base-uri 'none'",
+    "form-action 'none'",
+  ].join(';');
+
+const hash = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+
+async function served(template) {
+  await rm(page, { recursive: true, force: true });
+  await mkdir(page, { recursive: true });
+  await build({
+    ...common,
+    entryPoints: ['src/main.ts', 'src/worker.ts'],
+    outdir: page,
+    splitting: true,
+    chunkNames: 'part-[hash]',
+  });
+  await copyFile(wasm, `${page}flagred.wasm`);
+  for (const file of ['icon.svg', 'manifest.webmanifest']) await copyFile(here + file, page + file);
+  await writeFile(`${page}index.html`, template.replace('{policy}', policy("'self'", "'self'", "'self'")));
+  const files = await readdir(page);
+  const contents = await Promise.all(files.map((file) => readFile(page + file)));
+  const version = createHash('sha256');
+  for (const content of contents) version.update(content);
+  await build({
+    ...common,
+    entryPoints: ['src/offline.ts'],
+    outdir: page,
+    define: { FILES: JSON.stringify(['./', ...files]), BUILD: JSON.stringify(version.digest('hex').slice(0, 16)) },
+  });
+}
+
+/** All in one file. Scripts and styles are named in the policy by their hashes; the worker and the module are data. */
+async function oneFile(template) {
+  const parts = await build({
+    ...common,
+    entryPoints: ['src/main.ts', 'src/worker.ts'],
+    outdir: page,
+    write: false,
+  });
+  const part = (name) => parts.outputFiles.find((file) => file.path.endsWith(name)).text;
+  // Neither may end the element that it stands in.
+  const script = part('main.js').replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
+  const style = part('main.css').trim();
+  const data = (id, bytes) => `<script type="application/octet-stream" id="${id}">${bytes.toString('base64')}</script>`;
+  const icon = (await readFile(`${here}icon.svg`)).toString('base64');
+  const whole = template
+    .replace('{policy}', () => policy(hash(script), hash(style), 'blob:'))
+    .replace('<link rel="icon" href="icon.svg"', `<link rel="icon" href="data:image/svg+xml;base64,${icon}"`)
+    .replace('<link rel="manifest" href="manifest.webmanifest">\n', '')
+    .replace('<link rel="stylesheet" href="main.css">', () => `<style>${style}</style>`)
+    .replace(
+      '<script type="module" src="main.js"></script>',
+      () =>
+        data('worker.js', Buffer.from(part('worker.js'))) +
+        data('flagred.wasm', gzipSync(wasmBytes, { level: 9 })) +
+        `<script type="module">${script}</script>`,
+    );
+  await writeFile(`${out}studio.html`, whole);
+}
+
+const wasmBytes = await readFile(wasm);
+const template = await readFile(`${here}index.html`, 'utf8');
+await served(template);
+await oneFile(template);
+let first = 0;
+for (const file of await readdir(page)) {
+  const packed = gzipSync(await readFile(page + file), { level: 9 }).length;
+  first += packed;
+  console.log(`${String(packed).padStart(9)} bytes gzipped  ${file}`);
+}
+console.log(`${String(first).padStart(9)} bytes gzipped  in all`);

@@ -1,0 +1,31 @@
+/** What a room gets from the page around it. */
+
+import type { Engine } from './engine';
+
+/** The file on disk that the page edits, where `flagred studio FILE` serves it. */
+export interface BackingFile {
+  name: string;
+  readOnly: boolean;
+  /** Its text now. */
+  read(): Promise<string>;
+  /** Writes it, if it is still what was read last. */
+  write(text: string): Promise<void>;
+}
+
+export interface App {
+  /** The room's own worker. */
+  engine: Engine;
+  /** What the address says of the room. */
+  parameters(): URLSearchParams;
+  /** Says it in the address. */
+  navigate(parameters: URLSearchParams): void;
+  /** Tells the user something, aloud too. */
+  say(words: string): void;
+  file: BackingFile | undefined;
+}
+
+/** A room that was opened stays; it is hidden while another is shown. */
+export interface Room {
+  /** The address changed, or the room is shown again. */
+  shown?(parameters: URLSearchParams): void;
+}

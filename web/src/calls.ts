@@ -1,0 +1,23 @@
+/** What a worker is asked and answers. */
+
+import type * as flight from './flight/calls';
+import type * as rules from './rules/calls';
+
+/** All functions that can be called; each runs in a worker, and gets first a function that tells how far it is. */
+export type Calls = typeof flight & typeof rules;
+export type Name = keyof Calls;
+export type Tell = (progress: number) => void;
+export type Arguments<K extends Name> = Parameters<Calls[K]> extends [Tell, ...infer A] ? A : never;
+export type Answer<K extends Name> = Awaited<ReturnType<Calls[K]>>;
+
+export interface Request {
+  id: number;
+  call: string;
+  args: unknown[];
+}
+
+export type Reply =
+  | { id: number; progress: number }
+  | { id: number; answer: unknown }
+  | { id: number; refused: string }
+  | { id: number; trapped: string };

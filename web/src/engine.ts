@@ -1,0 +1,100 @@
+/** A worker as an object with promises. */
+
+import type { Answer, Arguments, Name, Reply } from './calls';
+
+/** A defect of flagred ended the worker; a new one is there, without what the old one held. */
+export class Trapped extends Error {
+  override name = 'Trapped';
+}
+
+/** The call was given up. */
+export class Cancelled extends Error {
+  override name = 'Cancelled';
+}
+
+export interface Engine {
+  /** Runs a call in the worker; calls are answered in turn. */
+  call<K extends Name>(call: K, ...args: Arguments<K>): Promise<Answer<K>>;
+  /** As `call`, and hears how far it is, from 0 to 1. */
+  follow<K extends Name>(progress: (share: number) => void, call: K, ...args: Arguments<K>): Promise<Answer<K>>;
+  /** Gives up whatever runs, and begins with an empty worker. */
+  restart(): void;
+  /** Called when a new worker took the place of one that held something. */
+  onRestart?: () => void;
+}
+
+interface Waiting {
+  resolve(answer: unknown): void;
+  reject(error: Error): void;
+  progress?: (share: number) => void;
+}
+
+/** An engine of its own: `create` makes the worker, `module` is the compiled WebAssembly. */
+export function engine(create: () => Worker, module: Promise<WebAssembly.Module>): Engine {
+  const waiting = new Map<number, Waiting>();
+  let next = 0;
+  let worker = begin();
+
+  function begin(): Worker {
+    const made = create();
+    made.onmessage = ({ data }: MessageEvent<Reply>) => answer(data);
+    made.onerror = (event) => replace(new Trapped(event.message || 'the worker did not start'));
+    return made;
+  }
+
+  const sent = module.then((compiled) => ({ compiled }));
+  let given: Worker | undefined;
+
+  async function send(id: number, call: string, args: unknown[]): Promise<void> {
+    const { compiled } = await sent;
+    // It may have been given up meanwhile.
+    if (!waiting.has(id)) return;
+    if (given !== worker) {
+      given = worker;
+      worker.postMessage(compiled);
+    }
+    worker.postMessage({ id, call, args });
+  }
+
+  function answer(reply: Reply): void {
+    const asked = waiting.get(reply.id);
+    if (!asked) return;
+    if ('progress' in reply) {
+      asked.progress?.(reply.progress);
+      return;
+    }
+    waiting.delete(reply.id);
+    if ('answer' in reply) asked.resolve(reply.answer);
+    else if ('refused' in reply) asked.reject(new Error(reply.refused));
+    else {
+      asked.reject(new Trapped(reply.trapped));
+      replace(new Trapped(reply.trapped));
+    }
+  }
+
+  function replace(why: Error): void {
+    worker.terminate();
+    worker = begin();
+    for (const asked of waiting.values()) asked.reject(why);
+    waiting.clear();
+    made.onRestart?.();
+  }
+
+  function follow(progress: ((share: number) => void) | undefined, call: string, args: unknown[]): Promise<unknown> {
+    return new Promise((resolve, reject) => {
+      const id = next++;
+      waiting.set(id, progress ? { resolve, reject, progress } : { resolve, reject });
+      send(id, call, args).catch((error: Error) => {
+        waiting.delete(id);
+        reject(error);
+      });
+    });
+  }
+
+  const made: Engine = {
+    call: (call, ...args) => follow(undefined, call, args) as Promise<never>,
+    follow: (progress, call, ...args) => follow(progress, call, args) as Promise<never>,
+    restart: () => replace(new Cancelled('cancelled')),
+  };
+  return made;
+}

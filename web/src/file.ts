@@ -1,0 +1,29 @@
+/** The file that `flagred studio FILE` lends to the page. */
+
+import type { BackingFile } from './app';
+import { isOneFile } from './parts';
+
+const ADDRESS = 'api/file';
+
+/** The file, where the page is served with one. */
+export async function backingFile(): Promise<BackingFile | undefined> {
+  if (!isOneFile || !location.protocol.startsWith('http')) return undefined;
+  const first = await fetch(ADDRESS, { cache: 'no-store' });
+  if (!first.ok) return undefined;
+  let tag = first.headers.get('ETag') ?? '';
+  return {
+    name: decodeURIComponent(first.headers.get('X-File-Name') ?? 'the file'),
+    readOnly: first.headers.get('X-Read-Only') === 'true',
+    async read() {
+      const answer = await fetch(ADDRESS, { cache: 'no-store' });
+      if (!answer.ok) throw new Error(await answer.text());
+      tag = answer.headers.get('ETag') ?? '';
+      return answer.text();
+    },
+    async write(text) {
+      const answer = await fetch(ADDRESS, { method: 'PUT', body: text, headers: { 'If-Match': tag } });
+      if (!answer.ok) throw new Error(await answer.text());
+      tag = answer.headers.get('ETag') ?? '';
+    },
+  };
+}

@@ -1,0 +1,92 @@
+/** The page: two rooms behind one address. `#/flight?...` and `#/rules?...` are what can be linked to. */
+
+import './page.css';
+import './flight/flight.css';
+import './rules/rules.css';
+import type { App, BackingFile, Room } from './app';
+import { h } from './dom';
+import { engine } from './engine';
+import { backingFile } from './file';
+import { isOneFile, module, worker } from './parts';
+
+const rooms = {
+  flight: () => import('./flight/room'),
+  rules: () => import('./rules/room'),
+};
+type Name = keyof typeof rooms;
+
+const main = document.querySelector('main')!;
+const said = document.getElementById('said')!;
+const compiled = module();
+const opened = new Map<Name, { root: HTMLElement; room: Promise<Room> }>();
+/** What each room last said in the address, so that it is there again when one comes back. */
+const addresses = new Map<Name, string>();
+
+function say(words: string): void {
+  said.textContent = words;
+}
+
+function place(): { name: Name; parameters: URLSearchParams } | undefined {
+  const [, name, query] = /^#\/(\w+)(?:\?(.*))?$/s.exec(location.hash) ?? [];
+  return name && name in rooms ? { name: name as Name, parameters: new URLSearchParams(query) } : undefined;
+}
+
+function address(name: Name, parameters: URLSearchParams): string {
+  const query = parameters.toString();
+  return `#/${name}${query ? `?${query}` : ''}`;
+}
+
+async function open(name: Name, root: HTMLElement, file: BackingFile | undefined): Promise<Room> {
+  const app: App = {
+    engine: engine(worker, compiled),
+    parameters: () => place()?.parameters ?? new URLSearchParams(),
+    navigate(parameters) {
+      addresses.set(name, address(name, parameters));
+      if (place()?.name === name) history.replaceState(null, '', address(name, parameters));
+      link();
+    },
+    say,
+    file: name === 'rules' ? file : undefined,
+  };
+  return (await rooms[name]()).open(root, app);
+}
+
+/** The links to the rooms lead to where one was in them. */
+function link(): void {
+  const shown = place()?.name;
+  for (const anchor of document.querySelectorAll('nav a')) {
+    const name = anchor.textContent!.toLowerCase() as Name;
+    anchor.setAttribute('href', addresses.get(name) ?? `#/${name}`);
+    if (name === shown) anchor.setAttribute('aria-current', 'page');
+    else anchor.removeAttribute('aria-current');
+  }
+}
+
+async function show(file: BackingFile | undefined): Promise<void> {
+  const there = place() ?? { name: file ? ('rules' as const) : ('flight' as const), parameters: new URLSearchParams() };
+  if (!place()) history.replaceState(null, '', address(there.name, there.parameters));
+  addresses.set(there.name, address(there.name, there.parameters));
+  link();
+  document.title = there.name === 'flight' ? 'Flight - flagred' : 'Rules - flagred';
+  const isNew = !opened.has(there.name);
+  if (isNew) {
+    const root = h('div', { class: `room ${there.name}` });
+    main.append(root);
+    opened.set(there.name, { root, room: open(there.name, root, file) });
+  }
+  for (const [name, { root }] of opened) root.hidden = name !== there.name;
+  const room = await opened.get(there.name)!.room;
+  if (!isNew) room.shown?.(there.parameters);
+}
+
+/** Whatever goes wrong is told; a silent page is worse than a broken one. */
+function broken(error: unknown): void {
+  say(`The page has a defect: ${error instanceof Error ? error.message : String(error)}`);
+}
+
+addEventListener('unhandledrejection', (event) => broken(event.reason));
+addEventListener('error', (event) => broken(event.message));
+const file = await backingFile();
+addEventListener('hashchange', () => void show(file));
+await show(file);
+if (!isOneFile && 'serviceWorker' in navigator && isSecureContext) void navigator.serviceWorker.register('offline.js');

@@ -1,0 +1,26 @@
+/** Where the worker and the module come from: files beside the page, or the page itself where it is one file. */
+
+const embedded = (id: string) => document.getElementById(id)?.textContent ?? undefined;
+
+/** Whether the page is one file that needs nothing beside it. */
+export const isOneFile = embedded('worker.js') !== undefined;
+
+/** Makes a worker. */
+export function worker(): Worker {
+  const script = embedded('worker.js');
+  if (script === undefined) return new Worker('worker.js', { type: 'module' });
+  const url = URL.createObjectURL(new Blob([bytes(script)], { type: 'text/javascript' }));
+  return new Worker(url);
+}
+
+/** The compiled module. */
+export async function module(): Promise<WebAssembly.Module> {
+  const packed = embedded('flagred.wasm');
+  if (packed === undefined) return WebAssembly.compileStreaming(fetch('flagred.wasm'));
+  const unpacked = new Blob([bytes(packed)]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return WebAssembly.compile(await new Response(unpacked).arrayBuffer());
+}
+
+function bytes(base64: string): Uint8Array<ArrayBuffer> {
+  return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+}

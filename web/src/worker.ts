@@ -1,0 +1,39 @@
+/** Runs flagred beside the page, which stays free to move. The first message is the compiled module. */
+
+import { Panic, start } from 'flagred';
+import type { Reply, Request, Tell } from './calls';
+import * as flight from './flight/calls';
+import * as rules from './rules/calls';
+
+declare const self: DedicatedWorkerGlobalScope;
+
+const calls = new Map(
+  Object.entries({ ...flight, ...rules }).map(([name, call]) => [name, call as (tell: Tell, ...args: unknown[]) => unknown]),
+);
+let started: Promise<void> | undefined;
+
+self.onmessage = async ({ data }: MessageEvent<WebAssembly.Module | Request>) => {
+  if (data instanceof WebAssembly.Module) {
+    started = start(data);
+    return;
+  }
+  const { id, call, args } = data;
+  const reply = (message: Reply, transfer: Transferable[] = []) => self.postMessage(message, transfer);
+  try {
+    await started;
+    const run = calls.get(call);
+    if (!run) throw new Error(`\`${call}\` is no call`);
+    const answer = await run((progress) => reply({ id, progress }), ...args);
+    reply({ id, answer }, columns(answer));
+  } catch (error) {
+    const words = error instanceof Error ? error.message : String(error);
+    reply(error instanceof Panic || error instanceof WebAssembly.RuntimeError ? { id, trapped: words } : { id, refused: words });
+  }
+};
+
+/** The arrays of an answer, which are handed over instead of copied. */
+function columns(answer: unknown): Transferable[] {
+  const values = typeof answer === 'object' && answer !== null ? [answer, ...Object.values(answer)] : [];
+  const buffers = values.flatMap((value) => (ArrayBuffer.isView(value) ? [value.buffer as ArrayBuffer] : []));
+  return [...new Set(buffers)];
+}
