@@ -28,6 +28,11 @@ pub(crate) fn html_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the report is HTML", &["html", "htm"])
 }
 
+/// A file for a page. A log that stands here by mistake is not replaced.
+pub(crate) fn page_path(text: &str) -> Result<PathBuf, String> {
+    path_of(text, "the page is HTML", &["html", "htm"])
+}
+
 /// A file for a flight CSV. A log that stands here by mistake is not replaced.
 pub(crate) fn csv_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the table is CSV", &["csv", "txt"])

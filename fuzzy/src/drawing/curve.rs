@@ -8,7 +8,7 @@ use super::text::{block, number};
 const SPANS: usize = 500;
 
 /// A stretch that is shorter is drawn with finer times, in seconds.
-const FEW_S: f64 = 5.0;
+const FEW_S: f64 = 2.0;
 
 /// The time that a picture shows, in seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -261,7 +261,7 @@ mod tests {
     fn times_are_finer_in_a_short_stretch() {
         let points = || [(10.0, 1.0), (10.0025, 2.0)].into_iter();
         assert_eq!(path(points(), STRETCH, 2.0, 1), "M0 1h0L0 2");
-        let end_s = 12.0;
+        let end_s = 11.5;
         let short = Stretch { end_s, ..STRETCH };
         assert_eq!(path(points(), short, 2.0, 1), "M0 1h0L0.0025 2");
     }

@@ -18,7 +18,9 @@ const percent = (value: number | null | undefined) => (value === null || value =
 export function momentPanel(): MomentPanel {
   const head = h('summary', {}, 'At the cursor');
   const body = h('div', { class: 'moment-body' });
-  const element = h('details', { class: 'moment card', 'aria-label': 'At the cursor', open: true }, head, body);
+  // On a phone it lies over the report: there it opens when it is touched.
+  const open = matchMedia('(min-width: 64rem)').matches;
+  const element = h('details', { class: 'moment card', open }, head, body);
   return {
     element,
     show(moment, events) {
@@ -72,7 +74,7 @@ function rules({ rules: fired, step }: Moment): Child {
       h(
         'li',
         { class: rule === step?.dominant_rule ? 'dominant' : null },
-        h('span', { class: 'strength' }, said(strength)),
+        h('span', { class: 'strength' }, strength < 0.005 ? '< 0.01' : strength.toFixed(2)),
         h('span', { class: 'rule' }, h('b', {}, `${rule} `), text),
         h('span', { class: 'track', 'aria-hidden': 'true' }, meter),
       ),

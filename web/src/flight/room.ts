@@ -52,19 +52,20 @@ export function open(root: HTMLElement, app: App): Room {
   const profiles = h('select', { 'aria-label': 'Profile' });
   const profileFile = h('input', { type: 'file', accept: '.yaml,.yml', 'aria-label': 'Profile from a file', hidden: true });
   const compareButton = h('button', { type: 'button', 'aria-pressed': 'false' }, 'Compare');
-  const downloads = h('div', { class: 'downloads', role: 'group', 'aria-label': 'Download' }, h('span', { class: 'soft' }, 'Download'));
+  const downloads = h('div', { class: 'menu-body' });
+  const downloadMenu = h('details', { class: 'menu' }, h('summary', { class: 'button' }, 'Download'), downloads);
   const tools = h(
     'div',
     { class: 'tools' },
     h('label', {}, h('span', { class: 'soft' }, 'Profile '), profiles),
     profileFile,
     compareButton,
-    downloads,
+    downloadMenu,
   );
-  const aside = h('div', { class: 'aside' }, moments.element, thresholds.element);
+  const aside = h('div', { class: 'aside' }, thresholds.element, moments.element);
   const view_ = h('div', { class: 'flight-view', hidden: true }, tools, bar.element, h('div', { class: 'columns' }, place, aside));
   const drop = dropZone();
-  add(root, heading, status, drop, list.element, message, view_);
+  add(root, heading, status, h('div', { class: 'top' }, list.element, drop), message, view_);
 
   for (const [kind, words] of [
     ['html', 'Report (HTML)'],
@@ -73,7 +74,10 @@ export function open(root: HTMLElement, app: App): Room {
     ['flight', 'Flight CSV'],
   ] as const) {
     const button = h('button', { type: 'button', 'data-kind': kind }, words);
-    button.addEventListener('click', () => quiet(save(kind)));
+    button.addEventListener('click', () => {
+      downloadMenu.open = false;
+      quiet(save(kind));
+    });
     downloads.append(button);
   }
   compareButton.addEventListener('click', () => quiet(compare(!isComparing)));
@@ -114,7 +118,7 @@ export function open(root: HTMLElement, app: App): Room {
       'div',
       { class: 'drop' },
       h('p', { class: 'invitation' }, 'Drop flight logs here'),
-      h('p', { class: 'buttons' }, h('label', { class: 'button main' }, 'Choose logs', input), tryOne),
+      h('p', { class: 'buttons' }, h('label', { class: 'button main' }, h('span', { class: 'first' }, 'Choose logs'), h('span', { class: 'more' }, '+ Add logs'), input), tryOne),
       h('p', { class: 'soft' }, `${FORMATS}.`),
       h('p', { class: 'soft' }, 'They are read in this browser. Nothing is sent anywhere.'),
     );

@@ -30,7 +30,7 @@ export function timeBar(actions: Actions): TimeBar {
     actions.point(Math.min(1, Math.max(0, (slider.valueAsNumber + step) / STEPS)));
   });
   const span = h('span', { class: 'span soft' });
-  const overview = h('span', { class: 'shown' });
+  const overview = h('span', { class: 'shown', 'aria-hidden': 'true' });
   const button = (words: string, label: string, act: () => void) => {
     const made = h('button', { type: 'button', 'aria-label': label, title: label }, words);
     made.addEventListener('click', act);
@@ -49,7 +49,7 @@ export function timeBar(actions: Actions): TimeBar {
   const element = h(
     'div',
     { class: 'timebar', role: 'group', 'aria-label': 'Time' },
-    h('div', { class: 'slider' }, slider, h('span', { class: 'overview', 'aria-hidden': 'true' }, overview)),
+    h('div', { class: 'slider' }, slider, h('span', { class: 'overview' }, overview)),
     h('div', { class: 'zoom' }, span, earlier, farther, all, closer, later),
   );
   return {
@@ -62,6 +62,7 @@ export function timeBar(actions: Actions): TimeBar {
       overview.style.width = `${(100 * (shown.end_s - shown.start_s)) / length_s}%`;
       span.textContent = `${shown.start_s.toFixed(1)} to ${shown.end_s.toFixed(1)} s`;
       farther.disabled = all.disabled = isAll;
+      overview.hidden = isAll;
       earlier.disabled = shown.start_s <= whole.start_s;
       later.disabled = shown.end_s >= whole.end_s;
     },
