@@ -18,6 +18,7 @@ const common = {
   format: 'esm',
   target: 'es2022',
   legalComments: 'none',
+  loader: { '.gz': 'binary' },
   logLevel: 'warning',
   alias: { flagred: fileURLToPath(new URL('../target/web/package/index.js', import.meta.url)) },
 };

@@ -36,7 +36,6 @@ mod rows;
 mod rule_set;
 mod schema;
 mod simplify;
-mod steps;
 mod studio;
 mod table;
 mod tune;

@@ -3,7 +3,6 @@
 //! A command names what it reads and writes before it begins ([`Files`]), makes the contents, and writes them: files first,
 //! since standard output may block or close ([`write_all`]).
 
-mod csv;
 mod file;
 mod stdout;
 
@@ -12,10 +11,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
+pub(crate) use report::table::{cell, number_or_cell};
+
 pub(crate) use self::{
-    csv::{cell, number_or_cell},
     file::{Files, Output, Replace, new_file, write_all},
-    stdout::{Stdout, Visible},
+    stdout::Stdout,
 };
 
 /// A file for an SVG picture: another extension would lie about what is in it.
