@@ -13,17 +13,14 @@ use flightlog::{Flight, ReadError};
 use report::{
     document,
     page::{self, Subject},
-    words,
+    steps, words,
 };
 
 use crate::{
     failure::{Exit, Failure},
     output::{self, Files, Output, Stdout},
-    parallel, profile, steps,
+    parallel, profile,
 };
-
-/// How long a step of the shown risk is where nothing else is asked for, in seconds.
-const STEP_S: f64 = 0.1;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -60,7 +57,7 @@ pub(crate) struct Arguments {
     fail_on: FailOn,
 
     /// Seconds between the steps shown; every motor sample is assessed
-    #[arg(long, value_name = "SECONDS", default_value_t = STEP_S, value_parser = step)]
+    #[arg(long, value_name = "SECONDS", default_value_t = steps::STEP_S, value_parser = step)]
     step: f64,
 }
 
@@ -96,7 +93,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let html = files.optional(arguments.html.as_ref())?;
     let svg = files.optional(arguments.svg.as_ref())?;
     let reports = html.is_some() || svg.is_some();
-    let options = options(estimator, reports);
+    let options = report::options(estimator, reports);
     let mut subjects = Vec::new();
     let documents: Vec<&Output> = html.iter().chain(&svg).collect();
     let mut out = Stdout::beside(&documents);
@@ -172,12 +169,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         ([], _) => Ok(()),
         ([subject], false) => write_reports(html.as_ref(), svg.as_ref(), subject, &loaded),
         (subjects, _) => html.as_ref().map_or(Ok(()), |html| {
-            html.write(&page::comparison(subjects, &loaded))
+            let subjects: Vec<&Subject> = subjects.iter().collect();
+            html.write(&page::comparison(&subjects, &loaded))
         }),
     };
     out.write_all(&waiting)?;
     if arguments.json {
-        write_json(&mut out, &json, several)?;
+        document::write(&mut out, &json, several)?;
     }
     out.finish()?;
     reported?;
@@ -204,37 +202,6 @@ fn write_reports(
         )));
     }
     Ok(())
-}
-
-/// Only what is looked at is decoded.
-fn options(estimator: &flagred::estimator::Estimator, reports: bool) -> flightlog::Options {
-    let drawn = reports.then_some(report::SIGNALS);
-    let mut signals: Vec<String> = estimator
-        .profile()
-        .signals()
-        .into_iter()
-        .chain(drawn.into_iter().flatten())
-        .map(str::to_owned)
-        .collect();
-    signals.sort_unstable();
-    flightlog::Options {
-        signals: Some(signals),
-    }
-}
-
-/// Writes a document, or an array of them where there are several flights.
-fn write_json(out: &mut impl Write, documents: &[String], several: bool) -> Result<(), Failure> {
-    if !several || documents.is_empty() {
-        for document in documents {
-            writeln!(out, "{document}")?;
-        }
-        return Ok(());
-    }
-    for (i, document) in documents.iter().enumerate() {
-        let before = if i == 0 { "[" } else { "," };
-        write!(out, "{before}\n  {}", document.replace('\n', "\n  "))?;
-    }
-    Ok(writeln!(out, "\n]")?)
 }
 
 /// An unknown risk is an exit code of its own, so that nobody takes it for GOOD.

@@ -6,7 +6,7 @@ use flightlog::Options;
 
 use crate::{
     failure::{Exit, Failure},
-    output::{self, Files, Replace, Visible},
+    output::{self, Files, Replace},
 };
 
 #[derive(clap::Args)]
@@ -25,19 +25,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.log])?;
     let output = files.output(&arguments.output, Replace::Yes)?;
     let flight = flightlog::open(&arguments.log, &Options::default())?;
-    output.write_with(|out| flight.write_csv(Visible(out)))?;
-    if let Some(reason) = &flight.report.reason {
-        output::say(&format!(
-            "warning: `{}` is damaged: {reason}; the undamaged part is converted",
-            arguments.log.display()
-        ));
-    }
-    if !flight.report.left_out.is_empty() {
-        output::say(&format!(
-            "warning: not all of `{}` is converted: {} are left out",
-            arguments.log.display(),
-            flight.report.left_out
-        ));
+    output.write_with(|out| report::table::write_flight(out, &flight))?;
+    for warning in report::words::conversion(&arguments.log.display().to_string(), &flight) {
+        output::say(&format!("warning: {warning}"));
     }
     Ok(Exit::Clean)
 }

@@ -105,6 +105,16 @@ impl Failure {
     }
 }
 
+/// In plain words, for a reader who is not at the terminal.
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)?;
+        let help = self.help.iter().map(|help| format!("help: {help}"));
+        let mut lines = self.details.iter().cloned().chain(help);
+        lines.try_for_each(|line| write!(f, "\n  {line}"))
+    }
+}
+
 /// A file where the command should stand, as in `flagred flight.bin`.
 pub(crate) fn command_forgotten(error: &clap::Error) -> Option<Failure> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {

@@ -13,15 +13,13 @@ use fuzzy::{Findings, Model, check};
 use report::{
     document,
     page::{self, Subject},
-    words,
+    steps, words,
 };
 
 use crate::{
     diagnostics::draw,
     export, inspect,
-    output::Visible,
     profile::Loaded,
-    steps,
     watch::{
         jsonl,
         lines::Words,
@@ -92,8 +90,7 @@ pub fn documents(name: &str, flight: Flight, profile: &Profile) -> std::io::Resu
         serde_json::to_string(&inspect::json::Document::new(name, &flight))?,
         serde_json::to_string(&document::document(name, &flight, estimator, &assessed))?,
     ];
-    let written = steps::write_csv(&mut all.csv, Some(name), true, estimator, &assessed);
-    written.map_err(|_| std::io::ErrorKind::Other)?;
+    steps::write_csv(&mut all.csv, Some(name), true, estimator, &assessed)?;
     let subject = Subject {
         name: name.to_owned(),
         flight: Arc::new(flight),
@@ -101,8 +98,7 @@ pub fn documents(name: &str, flight: Flight, profile: &Profile) -> std::io::Resu
     };
     all.pages.push(page::report(&subject, loaded));
     all.pages.extend(page::svg(&subject, loaded));
-    let subjects = [subject];
-    all.pages.push(page::comparison(&subjects, loaded));
+    all.pages.push(page::comparison(&[&subject], loaded));
     Ok(all)
 }
 
@@ -113,7 +109,7 @@ pub fn documents(name: &str, flight: Flight, profile: &Profile) -> std::io::Resu
 /// None: memory takes what is written.
 pub fn converted(flight: &Flight) -> std::io::Result<Vec<u8>> {
     let mut csv = Vec::new();
-    flight.write_csv(Visible(&mut csv))?;
+    report::table::write_flight(&mut csv, flight)?;
     Ok(csv)
 }
 

@@ -9,6 +9,7 @@ Examples:
   flagred new my-rules                           a commented rule set to start from
   flagred check my-rules.yaml                    its errors, gaps and conflicts
   flagred explain my-rules.yaml temperature=24 humidity=70   how a result comes about
+  flagred studio my-rules.yaml                   edit it in the browser, with its map beside it
   flagred plot my-rules.yaml                     the terms of its variables
   flagred map my-rules.yaml                      the output over the inputs
   flagred learn my-rules.yaml rows.csv --output learned.yaml   rules from a table
@@ -101,6 +102,13 @@ Examples:
 pub(crate) const LSP: &str = "\
 Examples:
   flagred lsp                                    started by the editor: see docs/editors.md";
+
+pub(crate) const STUDIO: &str = "\
+Examples:
+  flagred studio                                 the page, in the browser
+  flagred studio my-rules.yaml                   edits the file
+  flagred studio my-rules.yaml --read-only       follows the file while another editor writes it
+  flagred studio --html studio.html              the page as one file, to open offline";
 
 pub(crate) const INSPECT: &str = "\
 Examples:

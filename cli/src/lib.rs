@@ -36,7 +36,7 @@ mod rows;
 mod rule_set;
 mod schema;
 mod simplify;
-mod steps;
+mod studio;
 mod table;
 mod tune;
 mod watch;
@@ -89,6 +89,9 @@ enum Command {
     /// Serve an editor: findings, completion, renaming and more for rule sets and profiles (language server protocol)
     #[command(after_help = help::LSP)]
     Lsp(lsp::Arguments),
+    /// Open the page in the browser: look into flights, edit a rule set and see its map change
+    #[command(after_help = help::STUDIO)]
+    Studio(studio::Arguments),
     /// Draw the output of a rule set over its inputs
     #[command(after_help = help::MAP)]
     Map(map::Arguments),
@@ -143,6 +146,7 @@ impl Command {
             Command::Eval(arguments) => eval::run(&arguments),
             Command::Fmt(arguments) => fmt::run(&arguments),
             Command::Lsp(arguments) => lsp::run(&arguments),
+            Command::Studio(arguments) => studio::run(&arguments),
             Command::Map(arguments) => map::run(&arguments),
             Command::Plot(arguments) => plot::run(&arguments),
             Command::Dataset(arguments) => dataset::run(&arguments),

@@ -112,6 +112,16 @@ pub fn from_text<E>(
     compile(name, &profile, text, folder, read)
 }
 
+/// As [`from_text`], with the text of the rule set too, which stands in for the one that the profile names.
+///
+/// # Errors
+/// As [`load`]; nothing is read.
+pub fn with_rules<E>(name: &str, text: String, rules: String) -> Result<Loaded, LoadError<E>> {
+    let profile = parse(name, &text)?;
+    let model = compiled(&profile, profile.rules.clone(), &rules)?;
+    finish(name, &profile, (text, None), (model, rules))
+}
+
 fn compile<E>(
     name: &str,
     profile: &Profile,
@@ -119,7 +129,16 @@ fn compile<E>(
     folder: Option<&Path>,
     read: impl Fn(&Path) -> Result<String, E>,
 ) -> Result<Loaded, LoadError<E>> {
-    let (model, rules_text) = model(profile, folder, read)?;
+    let rules = model(profile, folder, read)?;
+    finish(name, profile, (profile_text, folder), rules)
+}
+
+fn finish<E>(
+    name: &str,
+    profile: &Profile,
+    (profile_text, folder): (String, Option<&Path>),
+    (model, rules_text): (Model, String),
+) -> Result<Loaded, LoadError<E>> {
     let (findings, estimator) = examine(&profile_text, &model);
     let Some(estimator) = estimator else {
         return Err(LoadError::Findings {
@@ -155,8 +174,13 @@ pub fn model<E>(
     read: impl Fn(&Path) -> Result<String, E>,
 ) -> Result<(Model, String), LoadError<E>> {
     let (file, text) = rules(profile, folder, read)?;
-    let document = match fuzzy::yaml::parse(&text) {
-        Err(_) if !is_meant_as_rules(&text) => {
+    Ok((compiled(profile, file, &text)?, text))
+}
+
+/// A rule set that compiles; `file` is what its findings name.
+fn compiled<E>(profile: &Profile, file: String, text: &str) -> Result<Model, LoadError<E>> {
+    let document = match fuzzy::yaml::parse(text) {
+        Err(_) if !is_meant_as_rules(text) => {
             return Err(LoadError::unusable(format!(
                 "profile `{}` names `{file}`, which is not a rule set",
                 profile.name
@@ -169,17 +193,14 @@ pub fn model<E>(
         let invalid = validate(&document.model, &document.spans);
         match invalid.is_empty() {
             true => Engine::new(&document.model).map(|_| document.model),
-            false => Err(Findings::locate(invalid, &text)),
+            false => Err(Findings::locate(invalid, text)),
         }
     });
-    match compiled {
-        Ok(model) => Ok((model, text)),
-        Err(findings) => Err(LoadError::Findings {
-            file,
-            text,
-            findings,
-        }),
-    }
+    compiled.map_err(|findings| LoadError::Findings {
+        file,
+        text: text.to_owned(),
+        findings,
+    })
 }
 
 /// Reads a profile without its rule set: also its text, and of a file the folder it is in.

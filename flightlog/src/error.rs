@@ -78,7 +78,15 @@ impl ReadError {
         }
     }
 
-    pub(crate) fn with_path(mut self, name: &str) -> Self {
+    /// The same error about a log of this name, where it was read from bytes that have none.
+    ///
+    /// # Example
+    /// ```
+    /// let error = flightlog::read(&b""[..], &flightlog::Options::default()).unwrap_err();
+    /// assert_eq!(error.with_path("flight.bin").to_string(), "`flight.bin` is empty");
+    /// ```
+    #[must_use]
+    pub fn with_path(mut self, name: &str) -> Self {
         match &mut self {
             Self::Io { path, .. }
             | Self::Empty { path }

@@ -6,7 +6,7 @@ use flagred::{
     flight::{Assessment, Step},
     verdict::{Level, Threshold},
 };
-use flightlog::{Flight, Signal};
+use flightlog::{Flight, Options, Signal};
 use fuzzy::{
     Model,
     drawing::{Line, Mark, Panel, Phase, Scale, Size, Stretch, Timeline, number, path},
@@ -22,6 +22,22 @@ pub const SIGNALS: [&str; 6] = [
     "battery_remaining_pct",
 ];
 
+/// What is read of a log to assess it, and where it is drawn to draw it: only what is looked at is decoded.
+pub fn options(estimator: &Estimator, drawn: bool) -> Options {
+    let drawn = drawn.then_some(SIGNALS);
+    let mut signals: Vec<String> = estimator
+        .profile()
+        .signals()
+        .into_iter()
+        .chain(drawn.into_iter().flatten())
+        .map(str::to_owned)
+        .collect();
+    signals.sort_unstable();
+    Options {
+        signals: Some(signals),
+    }
+}
+
 /// The scale of a percentage.
 const PERCENT: (Scale, &str) = (Scale::new(0.0, 100.0), "%");
 
@@ -29,7 +45,7 @@ const PERCENT: (Scale, &str) = (Scale::new(0.0, 100.0), "%");
 const MOST_EVENTS: usize = 200;
 
 /// The stretch that is drawn: from the first take-off to the last landing, or the whole log where there is none.
-fn stretch(flight: &Flight) -> Stretch {
+pub(crate) fn stretch(flight: &Flight) -> Stretch {
     let air = flight.in_air.iter().flat_map(|air| &air.spans);
     let hull = air
         .map(|span| (span.start_s, span.end_s))
@@ -41,31 +57,49 @@ fn stretch(flight: &Flight) -> Stretch {
     }
 }
 
-/// The flight modes, findings and events of a flight, for all its curves.
-pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
-    let stretch = stretch(flight);
+/// The shortest stretch that is drawn, in seconds.
+const SHORTEST_S: f64 = 0.1;
+
+/// The part of a stretch that lies within another, which is no shorter than the shortest that is drawn.
+pub(crate) fn within(part: Stretch, whole: Stretch) -> Stretch {
+    let latest_s = (whole.end_s - SHORTEST_S).max(whole.start_s);
+    // What is no number gives way to the ends of the whole.
+    let start_s = part.start_s.max(whole.start_s).min(latest_s);
+    let end_s = part.end_s.min(whole.end_s).max(start_s + SHORTEST_S);
+    Stretch { start_s, end_s }
+}
+
+/// The flight modes, findings and events of a flight over a stretch of time, for all its curves.
+pub(crate) fn timeline(flight: &Flight, assessed: &Assessment, shown: Stretch) -> Timeline {
+    let whole = stretch(flight);
+    let stretch = Stretch {
+        start_s: shown.start_s.max(whole.start_s),
+        end_s: shown.end_s.min(whole.end_s),
+    };
     let ends = flight.modes.iter().skip(1).map(|next| next.t_s());
     let ends = ends.chain([f64::INFINITY]);
     let mut kinds: Vec<&str> = Vec::new();
     let mut phases: Vec<Phase> = Vec::new();
     let mut more = 0;
     for (mode, end_s) in flight.modes.iter().zip(ends) {
-        let span = Stretch {
-            start_s: mode.t_s().max(stretch.start_s),
-            end_s: end_s.min(stretch.end_s),
+        let span = |within: Stretch| Stretch {
+            start_s: mode.t_s().max(within.start_s),
+            end_s: end_s.min(within.end_s),
         };
-        if span.end_s > span.start_s && phases.len() == MOST_EVENTS {
+        let is_some = |span: Stretch| span.end_s > span.start_s;
+        // Whatever part of the flight is shown, a mode has the same shade.
+        if is_some(span(whole)) && !kinds.contains(&mode.what.as_str()) {
+            kinds.push(&mode.what);
+        }
+        let span = span(stretch);
+        if is_some(span) && phases.len() == MOST_EVENTS {
             more += 1;
-        } else if span.end_s > span.start_s {
-            let known = kinds.iter().position(|known| *known == mode.what);
-            let kind = known.unwrap_or_else(|| {
-                kinds.push(&mode.what);
-                kinds.len() - 1
-            });
+        } else if is_some(span) {
+            let kind = kinds.iter().position(|known| *known == mode.what);
             phases.push(Phase {
                 stretch: span,
                 name: mode.what.clone(),
-                kind,
+                kind: kind.unwrap_or_default(),
             });
         }
     }
@@ -100,7 +134,7 @@ pub(crate) fn timeline(flight: &Flight, assessed: &Assessment) -> Timeline {
         }
     }
     Timeline {
-        stretch,
+        stretch: shown,
         phases,
         alerts: findings.collect(),
         events,

@@ -1,5 +1,7 @@
 //! A flight's assessment for programs: one JSON document.
 
+use std::io::{self, Write};
+
 use flagred::{
     estimator::Estimator,
     flight::{Assessment, Finding, Steps, Summary, Verdict},
@@ -26,7 +28,8 @@ pub struct Document<'a> {
     findings: Vec<FindingDocument<'a>>,
     findings_left_out: u64,
     summary: &'a Summary,
-    steps: Steps<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    steps: Option<Steps<'a>>,
     widened_step_s: Option<f64>,
 }
 
@@ -87,6 +90,19 @@ pub fn numbered(finding: &Finding, motors: &[Motor]) -> Finding {
     finding
 }
 
+/// The document of one flight without its steps, which may be many.
+pub fn brief<'a>(
+    name: &'a str,
+    flight: &'a Flight,
+    estimator: &'a Estimator,
+    assessed: &'a Assessment,
+) -> Document<'a> {
+    Document {
+        steps: None,
+        ..document(name, flight, estimator, assessed)
+    }
+}
+
 /// The document of one flight.
 pub fn document<'a>(
     name: &'a str,
@@ -128,7 +144,25 @@ pub fn document<'a>(
             .collect(),
         findings_left_out: assessed.findings_left_out,
         summary: &assessed.summary,
-        steps: assessed.steps_by_name(),
+        steps: Some(assessed.steps_by_name()),
         widened_step_s: assessed.widened_step_s,
     }
+}
+
+/// Writes documents in JSON: one, or an array of them where there are `several` flights.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub fn write(out: &mut impl Write, documents: &[String], several: bool) -> io::Result<()> {
+    if !several || documents.is_empty() {
+        for document in documents {
+            writeln!(out, "{document}")?;
+        }
+        return Ok(());
+    }
+    for (i, document) in documents.iter().enumerate() {
+        let before = if i == 0 { "[" } else { "," };
+        write!(out, "{before}\n  {}", document.replace('\n', "\n  "))?;
+    }
+    writeln!(out, "\n]")
 }

@@ -211,6 +211,18 @@ pub fn damage(report: &flightlog::Report) -> String {
     format!("damaged log, read in part: {}{reason}", parts.join(", "))
 }
 
+/// What is lost where a log is written as flight CSV.
+pub fn conversion(name: &str, flight: &Flight) -> Vec<String> {
+    let report = &flight.report;
+    let damage = report.reason.as_ref();
+    let damage = damage
+        .map(|reason| format!("`{name}` is damaged: {reason}; the undamaged part is converted"));
+    let left_out = &report.left_out;
+    let left_out = (!left_out.is_empty())
+        .then(|| format!("not all of `{name}` is converted: {left_out} are left out"));
+    damage.into_iter().chain(left_out).collect()
+}
+
 fn summary(summary: &Summary, verbose: bool) -> String {
     let at = |peak: Option<Peak>| {
         peak.map_or("unknown".to_owned(), |peak| {

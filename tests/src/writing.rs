@@ -47,6 +47,8 @@ pub fn commands(folder: &Folder) -> Vec<Writing> {
     let rows = folder.file("rows.csv", rows);
     let table = "att_rmse_deg,margin,spread\n1,0.3,0.05\n9,0.02,0.2\n2,0.2,0.1\n7,0.05,0.15\n";
     let table = folder.file("table.csv", table);
+    let policy = "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'\"";
+    let page = folder.file("page.html", format!("<meta {policy}>{}", " ".repeat(5000)));
     fs::create_dir_all(folder.path().join("out")).unwrap();
     let out = |name: &str| folder.at(&format!("out/{name}"));
     let writing = |arguments: &[&str], files: &[&str]| Writing {
@@ -58,6 +60,7 @@ pub fn commands(folder: &Folder) -> Vec<Writing> {
     let (explained, curves) = (&out("explained.svg"), &out("curves.svg"));
     let (learned, new) = (&out("learned.yaml"), &out("new.yaml"));
     let (rust, c, pages) = (&out("profile.rs"), &out("profile.h"), &out("pages"));
+    let studio = &out("studio.html");
     let values = ["margin=0.1", "spread=0.1"];
     vec![
         writing(
@@ -78,6 +81,7 @@ pub fn commands(folder: &Folder) -> Vec<Writing> {
         writing(&["new", "mine", "-o", new, "--force"], &[new]),
         writing(&["export", "--rust", "-o", rust], &[rust]),
         writing(&["export", "--c", "-o", c], &[c]),
+        writing(&["studio", "--page", &page, "--html", studio], &[studio]),
         writing(
             &["man", "--all", pages],
             &[&out("pages/flagred.1"), &out("pages/flagred-new.1")],

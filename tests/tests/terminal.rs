@@ -78,6 +78,7 @@ fn nothing_from_outside_acts_on_a_terminal() {
         (vec!["new", HOSTILE], true),
         (vec![HOSTILE], true),
         (vec!["watch", HOSTILE], true),
+        (vec!["studio", missing], true),
         (vec!["assess", log, "--html", "-"], true),
         (vec!["assess", log, "--svg", "-"], true),
         (vec!["map", rules, "--svg", "-"], true),

@@ -89,4 +89,5 @@ addEventListener('error', (event) => broken(event.message));
 const file = await backingFile();
 addEventListener('hashchange', () => void show(file));
 await show(file);
+performance.mark('interactive');
 if (!isOneFile && 'serviceWorker' in navigator && isSecureContext) void navigator.serviceWorker.register('offline.js');

@@ -3,7 +3,11 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
+import { gzipSync } from 'node:zlib';
 import { browser, serve, studio, tab } from './page.mjs';
+
+/** What the first load of the page may take, gzipped. */
+const MOST_BYTES = 1_000_000;
 
 let chromium, server;
 before(async () => {
@@ -30,3 +34,29 @@ for (const [from, address] of [
     await context.close();
   });
 }
+
+for (const room of ['flight', 'rules']) {
+  test(`the first load of the ${room} room is small`, async () => {
+    const context = await chromium.newContext({ serviceWorkers: 'block' });
+    const page = await context.newPage();
+    const sizes = [];
+    page.on('response', (response) => sizes.push(response.body().then((body) => gzipSync(body, { level: 9 }).length)));
+    await page.goto(`${server.address}#/${room}`, { waitUntil: 'networkidle' });
+    const bytes = (await Promise.all(sizes)).reduce((sum, size) => sum + size, 0);
+    assert.ok(sizes.length > 4 && bytes < MOST_BYTES, `${bytes} bytes gzipped in ${sizes.length} files`);
+    await context.close();
+  });
+}
+
+test('a policy without inline code holds for the page', async () => {
+  const { page, context } = await tab(chromium, server.address);
+  const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute('content');
+  assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
+  const ran = await page.evaluate(async () => {
+    document.body.insertAdjacentHTML('beforeend', '<img src="x:" onerror="window.ran = true"><p style="color: red">x</p>');
+    await new Promise((resolve) => setTimeout(resolve, 100));
+    return [window.ran, document.body.lastElementChild.style.color];
+  });
+  assert.deepEqual(ran, [undefined, '']);
+  await context.close();
+});

@@ -3,7 +3,6 @@
 //! A command names what it reads and writes before it begins ([`Files`]), makes the contents, and writes them: files first,
 //! since standard output may block or close ([`write_all`]).
 
-mod csv;
 mod file;
 mod stdout;
 
@@ -12,10 +11,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
+pub(crate) use report::table::{cell, number_or_cell};
+
 pub(crate) use self::{
-    csv::{cell, number_or_cell},
     file::{Files, Output, Replace, new_file, write_all},
-    stdout::{Stdout, Visible},
+    stdout::Stdout,
 };
 
 /// A file for an SVG picture: another extension would lie about what is in it.
@@ -26,6 +26,11 @@ pub(crate) fn svg_path(text: &str) -> Result<PathBuf, String> {
 /// A file for a report. A log that stands here by mistake is not replaced.
 pub(crate) fn html_path(text: &str) -> Result<PathBuf, String> {
     path_of(text, "the report is HTML", &["html", "htm"])
+}
+
+/// A file for a page. A log that stands here by mistake is not replaced.
+pub(crate) fn page_path(text: &str) -> Result<PathBuf, String> {
+    path_of(text, "the page is HTML", &["html", "htm"])
 }
 
 /// A file for a flight CSV. A log that stands here by mistake is not replaced.

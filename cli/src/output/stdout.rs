@@ -3,7 +3,6 @@
 use std::io::{self, BufWriter, StderrLock, StdoutLock, Write};
 
 use anstream::{AutoStream, ColorChoice};
-use fuzzy::drawing::visible_lines;
 
 use crate::failure::Failure;
 
@@ -101,25 +100,5 @@ impl Write for Pipe {
             Stream::Err(err) => err.flush(),
         };
         self.tell(flushed, ())
-    }
-}
-
-/// Makes the hidden characters of all that goes through visible; ends of lines stay.
-pub(crate) struct Visible<W>(pub(crate) W);
-
-impl<W: Write> Write for Visible<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let is_plain = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n');
-        if bytes.iter().all(is_plain) {
-            return self.0.write(bytes);
-        }
-        // Formatted text comes in pieces of whole characters, where no buffer stands before this.
-        let text = String::from_utf8_lossy(bytes);
-        self.0.write_all(visible_lines(&text).as_bytes())?;
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
     }
 }

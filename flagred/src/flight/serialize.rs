@@ -1,6 +1,6 @@
 //! An assessment as serde data, with the names that docs/json.md describes.
 
-use alloc::string::ToString;
+use alloc::string::{String, ToString};
 
 use serde::{Serialize, Serializer, ser::SerializeMap, ser::SerializeStruct};
 
@@ -50,6 +50,13 @@ impl Assessment {
     }
 }
 
+impl Step {
+    /// The step as serde data, with the inputs by their names: those of [`Assessment::inputs`].
+    pub fn by_name<'a>(&'a self, names: &'a [String]) -> impl Serialize + 'a {
+        Named { names, step: self }
+    }
+}
+
 /// The steps of a flight as serde data; from [`Assessment::steps_by_name`].
 #[derive(Debug, Clone, Copy)]
 pub struct Steps<'a>(&'a Assessment);
@@ -62,7 +69,7 @@ impl Serialize for Steps<'_> {
 }
 
 struct Named<'a> {
-    names: &'a [alloc::string::String],
+    names: &'a [String],
     step: &'a Step,
 }
 

@@ -11,6 +11,7 @@ use crate::{
 };
 
 mod read;
+mod rewrite;
 
 pub use crate::sample::Sampling;
 

@@ -7,6 +7,9 @@ use super::text::{block, number};
 /// The spans of time of a thinned curve; each keeps its first, smallest, largest and last value.
 const SPANS: usize = 500;
 
+/// A stretch that is shorter is drawn with finer times, in seconds.
+const FEW_S: f64 = 2.0;
+
 /// The time that a picture shows, in seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
@@ -70,7 +73,8 @@ pub fn path(
     let mut pen = Pen {
         data: String::new(),
         down: false,
-        decimals,
+        // Few seconds are drawn to a tenth of a millisecond: a hundredth of a second would be seen as a stair.
+        decimals: [if stretch.length_s() < FEW_S { 4 } else { 2 }, decimals],
     };
     let span_s = stretch.length_s() / SPANS as f64;
     let mut span = Span::default();
@@ -127,15 +131,17 @@ impl Span {
 struct Pen {
     data: String,
     down: bool,
-    decimals: usize,
+    /// Of the seconds and of the value.
+    decimals: [usize; 2],
 }
 
 impl Pen {
     fn to(&mut self, x: f64, y: f64) {
         self.data.push(if self.down { 'L' } else { 'M' });
-        self.data += &number(x, 2);
+        let [across, up] = self.decimals;
+        self.data += &number(x, across);
         self.data.push(' ');
-        self.data += &number(y, self.decimals);
+        self.data += &number(y, up);
         if !self.down {
             // A point on its own shows as a dot.
             self.data += "h0";
@@ -249,6 +255,15 @@ mod tests {
         let data = path(points, STRETCH, 2.0, 1);
         assert!(data.contains("L41.23 99"), "the peak is gone");
         assert!(data.len() < 30_000, "{} bytes", data.len());
+    }
+
+    #[test]
+    fn times_are_finer_in_a_short_stretch() {
+        let points = || [(10.0, 1.0), (10.0025, 2.0)].into_iter();
+        assert_eq!(path(points(), STRETCH, 2.0, 1), "M0 1h0L0 2");
+        let end_s = 11.5;
+        let short = Stretch { end_s, ..STRETCH };
+        assert_eq!(path(points(), short, 2.0, 1), "M0 1h0L0.0025 2");
     }
 
     #[test]

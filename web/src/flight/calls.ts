@@ -1,11 +1,182 @@
-/** What the flight room asks of its worker. */
+/**
+ * What the flight room asks of its worker. Each call names the log and the profile: what it takes is kept from call to call, and
+ * made again where it is gone, as after a restart.
+ */
 
-import { verdictOf } from 'flagred';
+import {
+  Assessment,
+  Comparison,
+  Flight,
+  PARTS,
+  Profile,
+  reportStyle,
+  type Brief,
+  type Moment,
+  type Part,
+  type Stretch,
+  type VerdictChanges,
+  type VerdictSettings,
+} from 'flagred';
 import type { Tell } from '../calls';
 
+/** A log that the user chose. */
+export interface Log {
+  id: number;
+  file: File;
+}
+
+/** A shipped profile's name, or a text and the name of its file. */
+export interface ProfileSource {
+  name: string;
+  text?: string;
+}
+
+export interface ProfileFacts extends ProfileSource {
+  text: string;
+  /** Its own name. */
+  title: string;
+  warnings: string;
+  verdict: VerdictSettings;
+}
+
+export type Download = 'html' | 'csv' | 'json';
+
+const flights = new Map<number, Flight>();
+const profiles = new Map<string, Profile>();
+/** The latest assessment of each log, and the key of its profile. */
+const assessments = new Map<number, { key: string; assessment: Assessment }>();
+
+/** Profiles that are kept compiled. */
+const MOST_PROFILES = 8;
+
+const keyOf = (source: ProfileSource) => source.text ?? source.name;
+
+function profileOf(source: ProfileSource): Profile {
+  const key = keyOf(source);
+  const known = profiles.get(key);
+  if (known) return known;
+  const made = source.text === undefined ? Profile.named(source.name) : Profile.fromText(source.name, source.text);
+  for (const [oldest, profile] of profiles) {
+    if (profiles.size < MOST_PROFILES) break;
+    profile.free();
+    profiles.delete(oldest);
+  }
+  profiles.set(key, made);
+  return made;
+}
+
+function flightOf(tell: Tell, { id, file }: Log, profile: Profile): Flight {
+  const known = flights.get(id);
+  if (known?.serves(profile)) return known;
+  forgetLog(tell, id);
+  let told = 0;
+  const flight = Flight.fromFile(file, profile.signals, (share) => {
+    if (share - told < 0.01) return;
+    told = share;
+    tell(share);
+  });
+  flights.set(id, flight);
+  return flight;
+}
+
+function assessmentOf(tell: Tell, log: Log, source: ProfileSource): Assessment {
+  const key = keyOf(source);
+  const known = assessments.get(log.id);
+  if (known?.key === key) return known.assessment;
+  const profile = profileOf(source);
+  const flight = flightOf(tell, log, profile);
+  // Before the new one is made, so that memory holds one of them.
+  assessments.get(log.id)?.assessment.free();
+  assessments.delete(log.id);
+  const assessment = flight.assess(profile);
+  assessments.set(log.id, { key, assessment });
+  return assessment;
+}
+
+/** The shipped profiles, and the look of the report. */
+export function beginFlights(_tell: Tell): { shipped: string[]; style: string } {
+  return { shipped: Profile.shipped(), style: reportStyle() };
+}
+
+/** What a profile says, or why it cannot be used. */
+export function profileFacts(_tell: Tell, source: ProfileSource, changes: VerdictChanges = {}): ProfileFacts {
+  const base = profileOf(source);
+  const changed = base.withVerdict(changes);
+  const { name: title, text, warnings, verdict } = changed;
+  changed.free();
+  return { name: source.name, text, title, warnings, verdict };
+}
+
 /** The verdict of a log. */
-export async function verdict(tell: Tell, file: File, profile: string): Promise<string> {
-  const log = new Uint8Array(await file.arrayBuffer());
-  tell(0.5);
-  return verdictOf(log, profile);
+export function assessLog(tell: Tell, log: Log, source: ProfileSource): { brief: Brief; stretch: Stretch } {
+  const assessment = assessmentOf(tell, log, source);
+  return { brief: assessment.brief(), stretch: assessment.stretch };
+}
+
+/** Parts of the report of a log as HTML, for a stretch of time or all of it. */
+export function reportParts(
+  tell: Tell,
+  log: Log,
+  source: ProfileSource,
+  parts: readonly Part[] = PARTS,
+  stretch?: Stretch,
+): [Part, string][] {
+  const assessment = assessmentOf(tell, log, source);
+  return parts.map((part) => [part, assessment.part(part, stretch)]);
+}
+
+/** What was known at a time of a flight, and why. */
+export function momentOf(tell: Tell, log: Log, source: ProfileSource, t_s: number): Moment {
+  return assessmentOf(tell, log, source).moment(t_s);
+}
+
+/** The comparison of several logs as HTML. */
+export function compareLogs(
+  tell: Tell,
+  logs: Log[],
+  source: ProfileSource,
+  stretch?: Stretch,
+): { html: string; length_s: number } {
+  return compared(tell, logs, source, (all) => ({ html: all.part(stretch), length_s: all.length_s }));
+}
+
+function compared<T>(tell: Tell, logs: Log[], source: ProfileSource, use: (all: Comparison) => T): T {
+  const all = new Comparison(logs.map((log) => assessmentOf(tell, log, source)));
+  try {
+    return use(all);
+  } finally {
+    all.free();
+  }
+}
+
+const TYPES = { html: 'text/html', csv: 'text/csv', json: 'application/json' };
+
+/** What the command line writes of a log, or of several, to the byte. */
+export function downloadLogs(tell: Tell, logs: Log[], source: ProfileSource, kind: Download): Blob {
+  const [only] = logs;
+  const whole =
+    logs.length === 1 && only
+      ? assessmentOf(tell, only, source)[kind]()
+      : compared(tell, logs, source, (all) => all[kind]());
+  return new Blob([whole], { type: TYPES[kind] });
+}
+
+/** A log as flight CSV with all its signals, and what is lost in it. */
+export function convertLog(tell: Tell, { file }: Log): { csv: Blob; warnings: string[] } {
+  const flight = Flight.fromFile(file, undefined, tell);
+  try {
+    const pieces: Uint8Array<ArrayBuffer>[] = [];
+    flight.writeCsv((piece) => pieces.push(piece));
+    return { csv: new Blob(pieces, { type: TYPES.csv }), warnings: flight.warnings };
+  } finally {
+    flight.free();
+  }
+}
+
+/** Gives back the memory of a log. */
+export function forgetLog(_tell: Tell, id: number): void {
+  assessments.get(id)?.assessment.free();
+  assessments.delete(id);
+  flights.get(id)?.free();
+  flights.delete(id);
 }

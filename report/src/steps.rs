@@ -1,13 +1,16 @@
 //! The steps of a flight as CSV.
 
-use std::io::Write;
+use std::io::{self, Write};
 
 use flagred::{
     estimator::Estimator,
     flight::{Assessment, Step},
 };
 
-use crate::{failure::Failure, output::cell};
+use crate::table::cell;
+
+/// How far the steps that are shown are apart where nothing else is asked for, in seconds.
+pub const STEP_S: f64 = 0.1;
 
 /// A step as columns and fields: margin and spread always, then what the rules said, then the rules' other inputs. What is
 /// unknown is an empty field.
@@ -38,28 +41,38 @@ fn row<'a>(estimator: &'a Estimator, step: &Step) -> Vec<(&'a str, String)> {
     row
 }
 
-/// Writes the steps of one flight as CSV; `log` becomes the first column where there are several flights.
-pub(crate) fn write_csv(
+/// Writes the steps of one flight as CSV, with a line of names on top where `head` asks for it; `log` becomes the first
+/// column where there are several flights.
+///
+/// # Errors
+/// When `out` cannot be written.
+pub fn write_csv(
     out: &mut impl Write,
     log: Option<&str>,
     head: bool,
     estimator: &Estimator,
     assessed: &Assessment,
-) -> Result<(), Failure> {
+) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     if head {
-        let columns = row(estimator, &Step::default());
-        let names = columns.iter().map(|(name, _)| cell(name));
-        let names = log.map(|_| "log".into()).into_iter().chain(names);
-        table.write_record(names.map(|name| name.into_owned()))?;
+        let columns = row(estimator, &Step::default()).into_iter();
+        let names = columns.map(|(name, _)| cell(name).into_owned());
+        let record = log.map(|_| "log".to_owned()).into_iter().chain(names);
+        table.write_record(record).map_err(io_error)?;
     }
     for step in &assessed.steps {
         let fields = row(estimator, step).into_iter().map(|(_, field)| field);
-        table.write_record(
-            log.map(|log| cell(log).into_owned())
-                .into_iter()
-                .chain(fields),
-        )?;
+        let record = log.map(|log| cell(log).into_owned());
+        table
+            .write_record(record.into_iter().chain(fields))
+            .map_err(io_error)?;
     }
-    Ok(table.flush()?)
+    table.flush()
+}
+
+fn io_error(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        kind => io::Error::other(format!("{kind:?}")),
+    }
 }

@@ -1,0 +1,86 @@
+//! Several flights side by side.
+
+use std::rc::Rc;
+
+use fuzzy::drawing::Stretch;
+use report::page::{self, Subject};
+use wasm_bindgen::{JsError, prelude::wasm_bindgen};
+
+use super::assessment::{Assessment, documents, table};
+use crate::failure::failure;
+
+/// Assessments of several flights with one profile.
+#[wasm_bindgen]
+#[derive(Default)]
+pub struct Comparison(Vec<Assessment>);
+
+#[wasm_bindgen]
+impl Comparison {
+    /// A comparison without flights.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> Comparison {
+        Comparison::default()
+    }
+
+    /// Adds a flight; it is assessed with the profile of the first one.
+    pub fn add(&mut self, assessment: &Assessment) -> Result<(), JsError> {
+        let added = Assessment {
+            subject: Rc::clone(&assessment.subject),
+            loaded: Rc::clone(&assessment.loaded),
+        };
+        if let Some(first) = self.0.first()
+            && (&first.loaded.profile_text, &first.loaded.rules_text)
+                != (&added.loaded.profile_text, &added.loaded.rules_text)
+        {
+            let message = "flights are compared that were assessed with one profile";
+            return Err(failure(message, None));
+        }
+        self.0.push(added);
+        Ok(())
+    }
+
+    /// What `flagred assess --json` prints of these logs.
+    pub fn json(&self) -> Result<String, JsError> {
+        documents(&self.all())
+    }
+
+    /// What `flagred assess --csv` prints of these logs.
+    pub fn csv(&self) -> Result<Vec<u8>, JsError> {
+        table(&self.all())
+    }
+
+    /// What `flagred assess --html` writes of these logs; empty without flights.
+    pub fn html(&self) -> String {
+        let page = |first: &Assessment| page::comparison(&self.subjects(), &first.loaded);
+        self.0.first().map(page).unwrap_or_default()
+    }
+
+    /// The body of that page, of a stretch of time since each flight began or of all of it.
+    pub fn part(&self, start_s: Option<f64>, end_s: Option<f64>) -> String {
+        let stretch = start_s.zip(end_s);
+        let stretch = stretch.map(|(start_s, end_s)| Stretch { start_s, end_s });
+        let part = |first: &Assessment| {
+            page::comparison_fragment(&self.subjects(), &first.loaded, stretch)
+        };
+        self.0.first().map(part).unwrap_or_default()
+    }
+
+    /// How long the longest of the flights is, in seconds.
+    pub fn length_s(&self) -> f64 {
+        let lengths = self.0.iter().map(|one| match one.stretch()[..] {
+            [start_s, end_s] => end_s - start_s,
+            _ => 0.0,
+        });
+        lengths.fold(0.0, f64::max)
+    }
+}
+
+impl Comparison {
+    fn all(&self) -> Vec<&Assessment> {
+        self.0.iter().collect()
+    }
+
+    fn subjects(&self) -> Vec<&Subject> {
+        self.0.iter().map(|one| &*one.subject).collect()
+    }
+}

@@ -1,0 +1,177 @@
+//! Profiles: shipped ones and texts, with other thresholds where these are tried.
+
+use std::{path::Path, rc::Rc};
+
+use flagred::{
+    loaded::{self, LoadError, Loaded},
+    shipped::{self, PROFILES},
+    verdict::{LevelSettings, VerdictSettings},
+};
+use report::diagnostics::{Style, draw};
+use serde_json::Value;
+use wasm_bindgen::{JsError, prelude::wasm_bindgen};
+
+use crate::failure::failure;
+
+/// A profile with its rule set, compiled.
+#[wasm_bindgen]
+pub struct Profile {
+    /// What it is called in findings.
+    name: String,
+    pub(super) loaded: Rc<Loaded>,
+    /// The rule set that stands in for the one that the profile names.
+    rules: Option<String>,
+}
+
+#[wasm_bindgen]
+impl Profile {
+    /// A shipped profile of this name, or one from a text, whose findings then call it so. A rule set that is given stands in
+    /// for the one that the profile names.
+    #[wasm_bindgen(constructor)]
+    pub fn new(
+        name: String,
+        text: Option<String>,
+        rules: Option<String>,
+    ) -> Result<Profile, JsError> {
+        let text = match text {
+            Some(text) => text,
+            None => shipped_text(&name)?,
+        };
+        let loaded = match &rules {
+            Some(rules) => loaded::with_rules(&name, text, rules.clone()),
+            None => loaded::from_text(&name, text, None, no_file),
+        };
+        Ok(Profile {
+            loaded: Rc::new(loaded.map_err(refusal)?),
+            name,
+            rules,
+        })
+    }
+
+    /// The names of the shipped profiles; the first is the default.
+    pub fn shipped() -> Vec<String> {
+        PROFILES.iter().map(|known| known.name.to_owned()).collect()
+    }
+
+    /// Its own name.
+    #[wasm_bindgen(getter)]
+    pub fn name(&self) -> String {
+        self.loaded.estimator.profile().name.clone()
+    }
+
+    /// Its text.
+    #[wasm_bindgen(getter)]
+    pub fn text(&self) -> String {
+        self.loaded.profile_text.clone()
+    }
+
+    /// What does not keep it from being used, drawn in its text; empty where there is nothing.
+    #[wasm_bindgen(getter)]
+    pub fn warnings(&self) -> String {
+        drawn(&self.loaded.warnings, &self.name, &self.loaded.profile_text)
+    }
+
+    /// The signals that are to be read of a log to assess it and to draw the report.
+    #[wasm_bindgen(getter)]
+    pub fn signals(&self) -> Vec<String> {
+        let options = report::options(&self.loaded.estimator, true);
+        options.signals.unwrap_or_default()
+    }
+
+    /// When it warns and fails, as JSON: `profile.verdict` of an assessment's document.
+    #[wasm_bindgen(getter)]
+    pub fn verdict(&self) -> Result<String, JsError> {
+        let verdict = &self.loaded.estimator.profile().verdict;
+        serde_json::to_string(verdict).map_err(|error| failure(error, None))
+    }
+
+    /// The same profile with other thresholds and times, as JSON in the layout of `verdict`; what is not in it stays.
+    #[wasm_bindgen(js_name = withVerdict)]
+    pub fn with_verdict(&self, changes: &str) -> Result<Profile, JsError> {
+        let changes: Value = serde_json::from_str(changes).map_err(|error| failure(error, None))?;
+        let mut wanted = self.loaded.estimator.profile().verdict;
+        change(&mut wanted, &changes);
+        let text = &self.loaded.profile_text;
+        let text = flagred::profile::Profile::rewritten(text, &wanted);
+        let text = text.map_err(|findings| {
+            let first = findings.0.first();
+            let message = first.map_or_else(String::new, |finding| finding.message.clone());
+            failure(message, first.and_then(|finding| finding.help.as_deref()))
+        })?;
+        Profile::new(self.name.clone(), Some(text), self.rules.clone())
+    }
+}
+
+fn shipped_text(name: &str) -> Result<String, JsError> {
+    let found = PROFILES.iter().find(|known| known.name == name);
+    found.map(|known| known.text.to_owned()).ok_or_else(|| {
+        let names = shipped::profile_names().join(" and ");
+        let help = format!("shipped profiles are {names}");
+        failure(format!("`{name}` is no shipped profile"), Some(&help))
+    })
+}
+
+/// There are no files beside a text.
+fn no_file(path: &Path) -> Result<String, String> {
+    Err(format!("`{}` cannot be read here", path.display()))
+}
+
+fn refusal<E: std::fmt::Display>(error: LoadError<E>) -> JsError {
+    match error {
+        LoadError::Read(error) => failure(error, None),
+        LoadError::Findings {
+            file,
+            text,
+            findings,
+        } => JsError::new(&drawn(&findings, &file, &text)),
+        LoadError::Unusable { message, help } => failure(message, help.as_deref()),
+    }
+}
+
+/// Findings in their text.
+fn drawn(findings: &fuzzy::Findings, file: &str, text: &str) -> String {
+    let style = Style {
+        colored: false,
+        advice: |_| None,
+        all: "the problems list has all of them",
+    };
+    draw(&findings.0, file, text, style).trim_end().to_owned()
+}
+
+/// Takes the numbers that are in `changes`.
+fn change(verdict: &mut VerdictSettings, changes: &Value) {
+    let number = |pointer: &str, to: &mut f64| {
+        if let Some(value) = changes.pointer(pointer).and_then(Value::as_f64) {
+            *to = value;
+        }
+    };
+    number("/clear_after_s", &mut verdict.clear_after_s);
+    number(
+        "/quiet_after_take_off_s",
+        &mut verdict.quiet_after_take_off_s,
+    );
+    number(
+        "/quiet_before_landing_s",
+        &mut verdict.quiet_before_landing_s,
+    );
+    for (name, level) in [("warn", &mut verdict.warn), ("fail", &mut verdict.fail)] {
+        let LevelSettings {
+            raise,
+            after_s,
+            until,
+        } = level;
+        number(&format!("/{name}/after_s"), after_s);
+        for (part, threshold) in [("raise", raise), ("until", until)] {
+            for (key, limit) in [
+                ("risk_pct", &mut threshold.risk_pct),
+                ("elevated_risk_pct", &mut threshold.elevated_risk_pct),
+            ] {
+                match changes.pointer(&format!("/{name}/{part}/{key}")) {
+                    Some(Value::Null) => *limit = None,
+                    Some(value) => *limit = value.as_f64().or(*limit),
+                    None => {}
+                }
+            }
+        }
+    }
+}

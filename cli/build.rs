@@ -1,0 +1,26 @@
+//! Puts the page of `flagred studio` into the program, gzipped; nothing where there is none.
+
+use std::{env, fs, io::Write, path::PathBuf};
+
+use flate2::{Compression, write::GzEncoder};
+
+/// Names another page than that of `web/build`.
+const VARIABLE: &str = "FLAGRED_STUDIO_PAGE";
+
+fn main() -> std::io::Result<()> {
+    println!("cargo::rerun-if-changed=build.rs");
+    // The folder, since a page that is not there yet cannot be watched.
+    println!("cargo::rerun-if-changed=page");
+    println!("cargo::rerun-if-env-changed={VARIABLE}");
+    let page = match env::var_os(VARIABLE).map(PathBuf::from) {
+        Some(named) => {
+            println!("cargo::rerun-if-changed={}", named.display());
+            fs::read(named)?
+        }
+        None => fs::read("page/studio.html").unwrap_or_default(),
+    };
+    let mut packed = GzEncoder::new(Vec::new(), Compression::best());
+    packed.write_all(&page)?;
+    let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
+    fs::write(out.join("studio.html.gz"), packed.finish()?)
+}

@@ -1,0 +1,264 @@
+//! HTTP as far as a page on the same machine needs it: one request a connection, and nothing of any length or duration.
+
+use std::{
+    borrow::Cow,
+    io::{self, Read, Write},
+    net::{Shutdown, TcpStream},
+    time::{Duration, Instant},
+};
+
+/// The largest head of a request; browsers send about one kilobyte.
+const HEAD: usize = 16_384;
+const HEADERS: usize = 64;
+/// How long a request may take, and its answer.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// How much of a body that is refused is read all the same, so that whoever sends it comes to read the answer.
+const DRAINED: u64 = 64_000_000;
+
+/// A request whose body was not read yet.
+pub(super) struct Request<S> {
+    pub(super) method: String,
+    /// Without a query.
+    pub(super) path: String,
+    headers: Vec<(String, String)>,
+    /// What of the body came along with the head.
+    begun: Vec<u8>,
+    stream: S,
+}
+
+/// An answer that is no success: its status and what is said.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Refusal(pub(super) Status, pub(super) String);
+
+impl Refusal {
+    pub(super) fn new(status: Status, words: &str) -> Refusal {
+        Refusal(status, words.to_owned())
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Status(u16, &'static str);
+
+impl Status {
+    pub(super) const OK: Status = Status(200, "OK");
+    pub(super) const NO_CONTENT: Status = Status(204, "No Content");
+    pub(super) const SEE_OTHER: Status = Status(303, "See Other");
+    pub(super) const NOT_MODIFIED: Status = Status(304, "Not Modified");
+    pub(super) const BAD_REQUEST: Status = Status(400, "Bad Request");
+    pub(super) const FORBIDDEN: Status = Status(403, "Forbidden");
+    pub(super) const NOT_FOUND: Status = Status(404, "Not Found");
+    pub(super) const METHOD_NOT_ALLOWED: Status = Status(405, "Method Not Allowed");
+    pub(super) const LENGTH_REQUIRED: Status = Status(411, "Length Required");
+    pub(super) const PRECONDITION_FAILED: Status = Status(412, "Precondition Failed");
+    pub(super) const CONTENT_TOO_LARGE: Status = Status(413, "Content Too Large");
+    pub(super) const PRECONDITION_REQUIRED: Status = Status(428, "Precondition Required");
+    pub(super) const HEAD_TOO_LARGE: Status = Status(431, "Request Header Fields Too Large");
+    pub(super) const INTERNAL_ERROR: Status = Status(500, "Internal Server Error");
+}
+
+/// What is sent back.
+pub(super) struct Response<'a> {
+    pub(super) status: Status,
+    pub(super) headers: Vec<(&'static str, String)>,
+    pub(super) body: Cow<'a, str>,
+}
+
+impl<S: Read> Request<S> {
+    /// Reads the head. `None` where nothing came, as of the connections that browsers keep ready.
+    pub(super) fn read(mut stream: S) -> Result<Option<Request<S>>, Refusal> {
+        let mut bytes = Vec::new();
+        let start = Instant::now();
+        loop {
+            let mut headers = [httparse::EMPTY_HEADER; HEADERS];
+            let mut parsed = httparse::Request::new(&mut headers);
+            let status = parsed.parse(&bytes).map_err(|error| match error {
+                httparse::Error::TooManyHeaders => Status::HEAD_TOO_LARGE.says("too many headers"),
+                error => Status::BAD_REQUEST.says(&format!("no request: {error}")),
+            })?;
+            if let httparse::Status::Complete(length) = status {
+                let headers = parsed.headers.iter().map(|header| {
+                    let value = String::from_utf8_lossy(header.value).into_owned();
+                    (header.name.to_ascii_lowercase(), value)
+                });
+                let path = parsed.path.unwrap_or_default();
+                return Ok(Some(Request {
+                    method: parsed.method.unwrap_or_default().to_owned(),
+                    path: path.split('?').next().unwrap_or_default().to_owned(),
+                    headers: headers.collect(),
+                    begun: bytes.split_off(length),
+                    stream,
+                }));
+            }
+            if bytes.len() >= HEAD {
+                return Err(Status::HEAD_TOO_LARGE.says("the head of the request is too large"));
+            }
+            let mut buffer = [0; 4096];
+            match stream.read(&mut buffer) {
+                Ok(count) if count > 0 && start.elapsed() < PATIENCE => {
+                    bytes.extend_from_slice(buffer.get(..count).unwrap_or_default());
+                }
+                _ if bytes.is_empty() => return Ok(None),
+                _ => return Err(Status::BAD_REQUEST.says("the request ends too early")),
+            }
+        }
+    }
+
+    /// The value of a header; that of several with one name is a list.
+    pub(super) fn header(&self, name: &str) -> Option<String> {
+        let named = self.headers.iter().filter(|(other, _)| other == name);
+        let values: Vec<&str> = named.map(|(_, value)| value.as_str()).collect();
+        (!values.is_empty()).then(|| values.join(", "))
+    }
+
+    /// Reads the body, a text of not more than so many bytes.
+    pub(super) fn body(&mut self, limit: usize) -> Result<String, Refusal> {
+        let length = self
+            .header("content-length")
+            .and_then(|length| length.parse::<usize>().ok())
+            .ok_or_else(|| Status::LENGTH_REQUIRED.says("the length of the text is missing"))?;
+        if length > limit {
+            let limit = limit / 1_000_000;
+            return Err(
+                Status::CONTENT_TOO_LARGE.says(&format!("the text is larger than {limit} MB"))
+            );
+        }
+        let mut bytes = std::mem::take(&mut self.begun);
+        let start = Instant::now();
+        while bytes.len() < length {
+            let mut buffer = [0; 16_384];
+            match self.stream.read(&mut buffer) {
+                Ok(count) if count > 0 && start.elapsed() < PATIENCE => {
+                    bytes.extend_from_slice(buffer.get(..count).unwrap_or_default());
+                }
+                _ => return Err(Status::BAD_REQUEST.says("the text ends too early")),
+            }
+        }
+        bytes.truncate(length);
+        String::from_utf8(bytes).map_err(|_| Status::BAD_REQUEST.says("the text is not UTF-8"))
+    }
+}
+
+impl Status {
+    pub(super) fn says(self, words: &str) -> Refusal {
+        Refusal::new(self, words)
+    }
+}
+
+impl From<Refusal> for Response<'_> {
+    fn from(Refusal(status, words): Refusal) -> Self {
+        Response {
+            status,
+            headers: vec![("Content-Type", "text/plain; charset=utf-8".to_owned())],
+            body: words.into(),
+        }
+    }
+}
+
+impl Response<'_> {
+    fn bytes(&self, with_body: bool) -> Vec<u8> {
+        let Status(code, reason) = self.status;
+        let mut text = format!("HTTP/1.1 {code} {reason}\r\nConnection: close\r\n");
+        for (name, value) in &self.headers {
+            text += &format!("{name}: {value}\r\n");
+        }
+        // These two have no body, and so no length.
+        if !matches!(self.status, Status::NO_CONTENT | Status::NOT_MODIFIED) {
+            text += &format!("Content-Length: {}\r\n", self.body.len());
+        }
+        text += "\r\n";
+        let mut bytes = text.into_bytes();
+        if with_body {
+            bytes.extend_from_slice(self.body.as_bytes());
+        }
+        bytes
+    }
+}
+
+/// Answers the request of a connection, and ends it. `respond` is given the request; HEAD is answered as GET.
+pub(super) fn serve<'a>(
+    stream: &TcpStream,
+    respond: impl FnOnce(&mut Request<&TcpStream>) -> Response<'a>,
+) -> io::Result<()> {
+    stream.set_read_timeout(Some(PATIENCE))?;
+    stream.set_write_timeout(Some(PATIENCE))?;
+    let (response, with_body) = match Request::read(stream) {
+        Ok(None) => return Ok(()),
+        Ok(Some(mut request)) => (respond(&mut request), request.method != "HEAD"),
+        Err(refusal) => (refusal.into(), true),
+    };
+    let mut stream = stream;
+    stream.write_all(&response.bytes(with_body))?;
+    stream.shutdown(Shutdown::Write)?;
+    // Closed while something is left to read, the connection would be reset, and the answer lost.
+    stream.set_read_timeout(Some(Duration::from_secs(1)))?;
+    io::copy(&mut stream.take(DRAINED), &mut io::sink())?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Option<Request<&[u8]>>, Refusal> {
+        Request::read(text.as_bytes())
+    }
+
+    #[test]
+    fn a_request_is_read_with_its_body() {
+        let text = "PUT /a/b?c HTTP/1.1\r\nHOST: x\r\nContent-Length: 3\r\n\r\nabcd";
+        let mut request = read(text).unwrap().unwrap();
+        assert_eq!((&*request.method, &*request.path), ("PUT", "/a/b"));
+        assert_eq!(request.header("host").as_deref(), Some("x"));
+        assert_eq!(request.header("origin"), None);
+        assert_eq!(request.body(3).unwrap(), "abc");
+    }
+
+    /// Two lines of one name are one list, which is no host, no origin and no length.
+    #[test]
+    fn a_header_that_stands_twice_is_no_single_value() {
+        let text = "PUT / HTTP/1.1\r\nContent-Length: 1\r\nContent-Length: 1\r\n\r\na";
+        let mut request = read(text).unwrap().unwrap();
+        assert_eq!(request.header("content-length").as_deref(), Some("1, 1"));
+        assert_eq!(request.body(9).unwrap_err().0, Status::LENGTH_REQUIRED);
+    }
+
+    #[test]
+    fn what_is_too_large_or_too_short_is_refused() {
+        let status = |text: &str| read(text).map(|_| ()).unwrap_err().0;
+        assert!(read("").unwrap().is_none());
+        assert_eq!(status("GET / HT"), Status::BAD_REQUEST);
+        assert_eq!(status("\u{1}\r\n\r\n"), Status::BAD_REQUEST);
+        let long = format!("GET /{} HTTP/1.1\r\n\r\n", "a".repeat(HEAD * 2));
+        assert_eq!(status(&long), Status::HEAD_TOO_LARGE);
+        let many = format!("GET / HTTP/1.1\r\n{}\r\n", "a: b\r\n".repeat(HEADERS + 1));
+        assert_eq!(status(&many), Status::HEAD_TOO_LARGE);
+        for (length, status) in [
+            ("99999999999999999999999", Status::LENGTH_REQUIRED),
+            ("18446744073709551615", Status::CONTENT_TOO_LARGE),
+            ("-1", Status::LENGTH_REQUIRED),
+            ("5", Status::BAD_REQUEST),
+        ] {
+            let text = format!("PUT / HTTP/1.1\r\nContent-Length: {length}\r\n\r\nab");
+            let refused = read(&text).unwrap().unwrap().body(9).unwrap_err();
+            assert_eq!(refused.0, status, "{length}");
+        }
+    }
+
+    #[test]
+    fn whatever_comes_is_answered() {
+        let seed =
+            "PUT /token/api/file HTTP/1.1\r\nHost: 127.0.0.1:1\r\nContent-Length: 4\r\n\r\nabcd";
+        let mut random = fastrand::Rng::with_seed(24);
+        for _ in 0..20_000 {
+            let mut bytes = seed.as_bytes().to_vec();
+            for _ in 0..random.usize(1..6) {
+                let at = random.usize(..bytes.len());
+                bytes[at] = random.u8(..);
+            }
+            bytes.truncate(random.usize(..=bytes.len()));
+            if let Ok(Some(mut request)) = Request::read(bytes.as_slice()) {
+                assert!(request.body(100).map_or(0, |text| text.len()) <= 100);
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! `flagred studio`: the page in the browser, served on this machine or written as one file.
+
+mod file;
+mod http;
+mod page;
+mod server;
+
+use std::{
+    io::{self, Write},
+    net::{Ipv4Addr, TcpListener},
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+        mpsc,
+    },
+    thread,
+    time::Duration,
+};
+
+use fuzzy::drawing::visible;
+
+use crate::{
+    failure::{Exit, Failure},
+    output::{self, Files, Replace, Stdout},
+};
+use file::EditedFile;
+use server::Server;
+
+/// How many connections are open at a time; a browser opens about six.
+const CONNECTIONS: usize = 64;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The rule set or profile that the page edits; without one it starts with an example
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+
+    /// Show the file and what becomes of it, and never write it
+    #[arg(long, requires = "file")]
+    read_only: bool,
+
+    /// The port on this machine [default: one that is free]
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    port: u16,
+
+    /// Open no browser: the address is printed
+    #[arg(long)]
+    no_browser: bool,
+
+    /// Write the page to this file instead of serving it: one HTML file that opens offline
+    #[arg(long, value_name = "FILE", value_parser = output::page_path, conflicts_with_all = ["file", "port", "no_browser"])]
+    html: Option<PathBuf>,
+
+    /// The page to take instead of the one in the program
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
+}
+
+/// Serves until it is interrupted.
+pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let file = arguments
+        .file
+        .as_ref()
+        .map(|path| EditedFile::open(path, arguments.read_only))
+        .transpose()?;
+    let page = page::find(arguments.page.as_deref())?;
+    if let Some(html) = &arguments.html {
+        let mut files = Files::reading(&arguments.page)?;
+        files.output(html, Replace::Yes)?.write(&page.html)?;
+        return Ok(Exit::Clean);
+    }
+    let (interrupt, interrupted) = mpsc::channel();
+    ctrlc::set_handler(move || {
+        // It is received already where a second one comes.
+        let _ = interrupt.send(());
+    })
+    .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
+    let (listener, address) = TcpListener::bind((Ipv4Addr::LOCALHOST, arguments.port))
+        .and_then(|listener| listener.local_addr().map(|address| (listener, address)))
+        .map_err(|error| cannot_serve(arguments.port, &error))?;
+    let said = file.as_ref().map(|file| match file.is_read_only {
+        true => format!("shows `{}`, read only", file.name()),
+        false => format!("edits `{}`", file.name()),
+    });
+    let server = Arc::new(Server::new(address, page, file)?);
+    let mut out = Stdout::text();
+    writeln!(out, "{}", server.address())?;
+    if let Some(said) = said {
+        writeln!(out, "{}", visible(&said))?;
+    }
+    writeln!(out, "Ctrl-C ends it")?;
+    out.finish()?;
+    let serving = Arc::clone(&server);
+    thread::spawn(move || accept(&listener, &serving));
+    if !arguments.no_browser
+        && let Err(error) = open::that_detached(server.address_once())
+    {
+        output::say(&format!("no browser could be opened: {error}"));
+    }
+    // An error means that nobody can interrupt any more.
+    let _ = interrupted.recv();
+    server.finish();
+    Ok(Exit::Clean)
+}
+
+/// Answers each connection in a thread of its own: browsers keep some open that they do not use yet.
+fn accept(listener: &TcpListener, server: &Arc<Server>) {
+    let open = Arc::new(AtomicUsize::new(0));
+    for connection in listener.incoming() {
+        let Ok(stream) = connection else {
+            // Such as too many open files, which passes.
+            thread::sleep(Duration::from_millis(100));
+            continue;
+        };
+        if open.fetch_add(1, Ordering::Relaxed) >= CONNECTIONS {
+            open.fetch_sub(1, Ordering::Relaxed);
+            continue;
+        }
+        let (server, open) = (Arc::clone(server), Arc::clone(&open));
+        thread::spawn(move || {
+            // A connection that fails has nobody to tell.
+            let _ = http::serve(&stream, |request| server.respond(request));
+            open.fetch_sub(1, Ordering::Relaxed);
+        });
+    }
+}
+
+fn cannot_serve(port: u16, error: &io::Error) -> Failure {
+    match error.kind() {
+        io::ErrorKind::AddrInUse => Failure::usage(format!("port {port} is in use"))
+            .help("name another with `--port`, or leave it out and a free one is taken"),
+        _ => Failure::usage(format!("port {port} cannot be served: {error}")),
+    }
+}

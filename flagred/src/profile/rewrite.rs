@@ -1,0 +1,216 @@
+//! A profile with other thresholds, as text: what else its author wrote stays, comments too.
+
+use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
+use core::ops::Range;
+
+use fuzzy::{
+    diagnostic::{Diagnostic, Findings},
+    tree::{Node, Value},
+    yaml,
+};
+
+use super::Profile;
+use crate::verdict::{LevelSettings, Threshold, VerdictSettings};
+
+impl Profile {
+    /// The text of a profile with other levels and times of its verdict. Notices and the limit of idling stay.
+    ///
+    /// # Errors
+    /// The findings of the text or of the one that would come out; or that it is written in a way that cannot be changed in
+    /// place.
+    ///
+    /// # Example
+    /// ```
+    /// use flagred::profile::Profile;
+    ///
+    /// let text = "flagred: 1\nname: x\nrules: flagred\ninputs: {load: {mean: motor_command}}\nverdict:\n  clear_after_s: 8 # calm\n";
+    /// let mut verdict = text.parse::<Profile>()?.verdict;
+    /// verdict.clear_after_s = 5.0;
+    /// assert!(Profile::rewritten(text, &verdict)?.ends_with("clear_after_s: 5 # calm\n"));
+    /// # Ok::<(), fuzzy::diagnostic::Findings>(())
+    /// ```
+    pub fn rewritten(text: &str, wanted: &VerdictSettings) -> Result<String, Findings> {
+        let now = text.parse::<Profile>()?.verdict;
+        let pairs = written(&now).into_iter().zip(written(wanted));
+        let changes = pairs.filter(|(now, wanted)| now != wanted);
+        let changes: Vec<(&str, String)> = changes.map(|(_, wanted)| wanted).collect();
+        let changed = edited(text, &yaml::read(text)?, &changes);
+        match changed
+            .map(|text| Ok((text.parse::<Profile>()?, text)))
+            .transpose()?
+        {
+            Some((profile, text)) if profile.verdict == *wanted => Ok(text),
+            _ => {
+                let message = "the thresholds are written in a way that cannot be changed here";
+                let error = Diagnostic::error("verdict", 0..0, message);
+                let help = "change them in the text of the profile, below `verdict`";
+                Err(Findings::locate(Vec::from([error.help(help)]), text))
+            }
+        }
+    }
+}
+
+/// The keys of a verdict that can be changed, with their values.
+fn written(settings: &VerdictSettings) -> [(&'static str, String); 5] {
+    let take_off_s = settings.quiet_after_take_off_s;
+    let landing_s = settings.quiet_before_landing_s;
+    [
+        ("warn", level(&settings.warn)),
+        ("fail", level(&settings.fail)),
+        ("clear_after_s", number(settings.clear_after_s)),
+        ("quiet_after_take_off_s", number(take_off_s)),
+        ("quiet_before_landing_s", number(landing_s)),
+    ]
+}
+
+/// The text with other values of keys of the verdict.
+fn edited(text: &str, tree: &Node, changes: &[(&str, String)]) -> Option<String> {
+    let mut edits = match get(tree, "verdict") {
+        Some(verdict) => {
+            let edits = changes
+                .iter()
+                .map(|(key, value)| set(text, verdict, key, value));
+            edits.collect::<Option<Vec<_>>>()?
+        }
+        None if changes.is_empty() => Vec::new(),
+        None => {
+            let pairs: Vec<String> = changes.iter().map(|(k, v)| format!("{k}: {v}")).collect();
+            Vec::from([set(
+                text,
+                tree,
+                "verdict",
+                &format!("{{{}}}", pairs.join(", ")),
+            )?])
+        }
+    };
+    // From the end, so that the places before stay where they are.
+    edits.sort_by_key(|(span, _)| core::cmp::Reverse(span.start));
+    let mut changed = text.to_owned();
+    for (span, with) in edits {
+        changed.get(span.clone())?;
+        changed.replace_range(span, &with);
+    }
+    Some(changed)
+}
+
+fn get<'a>(mapping: &'a Node, key: &str) -> Option<&'a Node> {
+    let Value::Mapping(pairs) = &mapping.value else {
+        return None;
+    };
+    let is_key = |node: &Node| matches!(&node.value, Value::Scalar(name) if name.text == key);
+    let pair = pairs.iter().find(|(name, _)| is_key(name));
+    pair.map(|(_, value)| value)
+}
+
+/// The edit that gives a key of a mapping a value; a key that is not there becomes the first.
+fn set(text: &str, mapping: &Node, key: &str, value: &str) -> Option<(Range<usize>, String)> {
+    if let Some(node) = get(mapping, key) {
+        let old = text.get(node.span.clone())?;
+        // A block ends with the line break before what follows it.
+        let end = node.span.start + old.trim_end().len();
+        return Some((node.span.start..end, value.to_owned()));
+    }
+    let Value::Mapping(pairs) = &mapping.value else {
+        return None;
+    };
+    if text.get(mapping.span.start..)?.starts_with('{') {
+        let at = mapping.span.start + 1;
+        let comma = if pairs.is_empty() { "" } else { ", " };
+        return Some((at..at, format!("{key}: {value}{comma}")));
+    }
+    let at = pairs.first()?.0.span.start;
+    let line = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
+    let indentation = text.get(line..at)?;
+    Some((at..at, format!("{key}: {value}\n{indentation}")))
+}
+
+fn number(value: f64) -> String {
+    format!("{value}")
+}
+
+/// A level in one line.
+fn level(settings: &LevelSettings) -> String {
+    let LevelSettings {
+        raise,
+        after_s,
+        until,
+    } = settings;
+    let mut pairs = threshold(raise);
+    pairs.push(format!("after_s: {}", number(*after_s)));
+    pairs.push(format!("until: {{{}}}", threshold(until).join(", ")));
+    format!("{{{}}}", pairs.join(", "))
+}
+
+fn threshold(threshold: &Threshold) -> Vec<String> {
+    let limits = [
+        ("risk", threshold.risk_pct),
+        ("elevated_risk", threshold.elevated_risk_pct),
+    ];
+    let known = limits.into_iter();
+    let known = known.filter_map(|(key, limit)| Some(format!("{key}: {}", number(limit?))));
+    known.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shipped::PROFILES;
+
+    fn verdict(text: &str) -> VerdictSettings {
+        text.parse::<Profile>().unwrap().verdict
+    }
+
+    /// A profile whose verdict is written as given.
+    fn profile(verdict: &str) -> String {
+        format!(
+            "flagred: 1\nname: x\nrules: flagred\ninputs: {{load: {{mean: motor_command}}}}\n{verdict}"
+        )
+    }
+
+    #[test]
+    fn what_is_wanted_is_what_is_read_and_the_rest_stays() {
+        let mut texts: Vec<String> = PROFILES.iter().map(|p| p.text.into()).collect();
+        for written in [
+            "",
+            "verdict: {}\n",
+            "verdict: {warn: {risk: 50}}\n",
+            "verdict:\n  # why\n  warn:\n    risk: 50   # half\n    until:\n      risk: 10\n  idle_below: 0.2\n",
+            "verdict:\n    fail: {risk: 90}\nwindow_s: 3\n",
+        ] {
+            texts.push(profile(written));
+        }
+        texts.push(
+            "{flagred: 1, name: x, rules: flagred, inputs: {load: {mean: motor_command}}}".into(),
+        );
+        for text in texts {
+            let mut wanted = verdict(&text);
+            assert_eq!(
+                Profile::rewritten(&text, &wanted).unwrap(),
+                text,
+                "nothing to change"
+            );
+            wanted.warn.raise.risk_pct = Some(71.5);
+            wanted.fail.after_s = 1.25;
+            wanted.quiet_before_landing_s = 0.0;
+            let changed = Profile::rewritten(&text, &wanted).unwrap();
+            assert_eq!(verdict(&changed), wanted, "{changed}");
+            for comment in text.lines().filter_map(|line| line.split_once("# ")) {
+                let is_inside = text.contains("# half") && comment.1 == "half";
+                assert_eq!(changed.contains(comment.1), !is_inside, "{changed}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_no_profile_may_have_is_refused() {
+        let text = PROFILES[0].text;
+        let mut wanted = verdict(text);
+        wanted.warn.raise.risk_pct = Some(10.0);
+        assert_eq!(
+            Profile::rewritten(text, &wanted),
+            None,
+            "held above what raises it"
+        );
+        assert_eq!(Profile::rewritten("name: x", &verdict(text)), None);
+    }
+}

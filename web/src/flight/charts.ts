@@ -1,0 +1,140 @@
+/** The charts of a report: what their curves say at a time. The curves themselves are the data. */
+
+export interface Chart {
+  box: HTMLElement;
+  area: HTMLElement;
+  plot: SVGSVGElement;
+  /** The time at its left edge, and the length of the stretch that was drawn. */
+  start_s: number;
+  length_s: number;
+  /** The index of the rules' input that it shows. */
+  input: number | undefined;
+  unit: string;
+  cursor: SVGPathElement;
+  /** What follows the cursor's place in its path. */
+  tail: string;
+  outputs: HTMLElement[];
+  lines: SVGPathElement[];
+  /** The points of the lines, read when they are first asked for. */
+  curves: Curve[] | undefined;
+  events: { x_s: number; text: string }[];
+}
+
+/** Seconds since the start, and values; NaN where the line is broken. */
+interface Curve {
+  x_s: number[];
+  values: number[];
+}
+
+export interface DecisionMap {
+  box: HTMLElement;
+  here: SVGPathElement;
+  size: number;
+  x: Axis;
+  y: Axis;
+}
+
+interface Axis {
+  input: number;
+  low: number;
+  high: number;
+}
+
+/** The charts within an element. */
+export function chartsIn(root: ParentNode): Chart[] {
+  const charts: Chart[] = [];
+  for (const box of root.querySelectorAll<HTMLElement>('.panel')) {
+    const area = box.querySelector<HTMLElement>('.area');
+    const plot = area?.querySelector('svg');
+    const cursor = plot?.querySelector<SVGPathElement>('.cursor');
+    if (!area || !plot || !cursor) continue;
+    const events = [...plot.querySelectorAll('.event')].map((mark) => ({
+      x_s: Number(/^M([-\d.]+)/.exec(mark.getAttribute('d') ?? '')?.[1]),
+      text: mark.textContent ?? '',
+    }));
+    charts.push({
+      box,
+      area,
+      plot,
+      start_s: Number(box.dataset['start']),
+      length_s: Number(box.dataset['length']),
+      input: box.dataset['input'] === undefined ? undefined : Number(box.dataset['input']),
+      unit: box.dataset['unit'] ?? '',
+      cursor,
+      tail: (cursor.getAttribute('d') ?? '').replace(/^M\S+/, ''),
+      outputs: [...box.querySelectorAll('output')],
+      lines: [...plot.querySelectorAll<SVGPathElement>('.line')],
+      curves: undefined,
+      events,
+    });
+  }
+  return charts;
+}
+
+/** The decision map within an element. */
+export function mapIn(root: ParentNode): DecisionMap | undefined {
+  const box = root.querySelector<HTMLElement>('.map');
+  const here = box?.querySelector<SVGPathElement>('.here');
+  const [left, right, low, high] = (box?.dataset['box'] ?? '').split(' ').map(Number);
+  if (!box || !here || left === undefined || right === undefined || low === undefined || high === undefined) return undefined;
+  return {
+    box,
+    here,
+    size: box.querySelector('svg')?.viewBox.baseVal.width ?? 0,
+    x: { input: Number(box.dataset['x']), low: left, high: right },
+    y: { input: Number(box.dataset['y']), low, high },
+  };
+}
+
+/** Reads the curves of a chart; it takes a millisecond or two. */
+export function curvesOf(chart: Chart): Curve[] {
+  chart.curves ??= chart.lines.map((line) => {
+    const curve: Curve = { x_s: [], values: [] };
+    for (const [, pen, x, y] of (line.getAttribute('d') ?? '').matchAll(/([ML])([-\d.]+) ([-\d.]+)/g)) {
+      const last_s = curve.x_s.at(-1);
+      if (pen === 'M' && last_s !== undefined) {
+        curve.x_s.push(last_s);
+        curve.values.push(NaN);
+      }
+      curve.x_s.push(Number(x));
+      curve.values.push(Number(y));
+    }
+    return curve;
+  });
+  return chart.curves;
+}
+
+/** The latest value at or before a place; NaN where it is unknown. */
+export function held({ x_s, values }: Curve, x: number): number {
+  let low = 0;
+  let high = x_s.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (x_s[middle]! <= x) low = middle + 1;
+    else high = middle;
+  }
+  return values[low - 1] ?? NaN;
+}
+
+/** A value as the report says it. */
+export function said(value: number, unit = ''): string {
+  if (!Number.isFinite(value)) return 'unknown';
+  return String(Number(value.toPrecision(3))) + (unit ? ` ${unit}` : '');
+}
+
+/** Puts the cursor of a chart at a place, and shows the values there. */
+export function point(chart: Chart, x_s: number): void {
+  chart.cursor.setAttribute('d', `M${x_s}${chart.tail}`);
+  curvesOf(chart).forEach((curve, i) => {
+    const output = chart.outputs[i];
+    if (output) output.textContent = said(held(curve, x_s), chart.unit);
+  });
+}
+
+/** Puts the point of the map where the inputs are. */
+export function locate(map: DecisionMap, inputs: ReadonlyMap<number, number>): void {
+  const along = ({ input, low, high }: Axis) => (((inputs.get(input) ?? NaN) - low) / (high - low)) * map.size;
+  const [across, up] = [along(map.x), along(map.y)];
+  const isKnown = Number.isFinite(across) && Number.isFinite(up);
+  map.here.setAttribute('d', isKnown ? `M${across} ${up}h0` : 'M-9-9h0');
+}

@@ -1,0 +1,97 @@
+/** What pointers do on a chart: point at a time, select a stretch, zoom with two fingers or the wheel. */
+
+export interface Gestures {
+  /** Points at a place of the chart, from 0 at its left edge to 1. */
+  point(share: number): void;
+  /** Zooms to what lies between two places. They may lie outside: then it zooms out. */
+  zoom(from: number, to: number): void;
+  /** A stretch is being selected, or no longer. */
+  select(area: HTMLElement, ends: [number, number] | undefined): void;
+}
+
+/** A pointer that moved less has not selected anything, in pixels. */
+const LEAST_PX = 8;
+
+/** Listens to the pointers on all charts below a root. `areaOf` gives the chart's area that an event is about. */
+export function gestures(root: HTMLElement | ShadowRoot, areaOf: (event: Event) => HTMLElement | undefined, on: Gestures): void {
+  /** The pointers that are down on one area. */
+  let area: HTMLElement | undefined;
+  const down = new Map<number, { from: number; now: number }>();
+
+  const shareOf = (event: MouseEvent, of: HTMLElement) => {
+    const box = of.getBoundingClientRect();
+    return Math.min(1, Math.max(0, (event.clientX - box.left) / box.width));
+  };
+
+  const listen = <E extends Event>(name: string, take: (event: E) => void, options?: AddEventListenerOptions) =>
+    root.addEventListener(name, take as EventListener, options);
+
+  listen<PointerEvent>('pointerdown', (event) => {
+    const touched = areaOf(event);
+    if (!touched || event.button !== 0) return;
+    if (area !== touched) down.clear();
+    area = touched;
+    const share = shareOf(event, touched);
+    down.set(event.pointerId, { from: share, now: share });
+    touched.setPointerCapture(event.pointerId);
+    on.point(share);
+  });
+
+  listen<PointerEvent>('pointermove', (event) => {
+    const held = down.get(event.pointerId);
+    const over = held ? area : areaOf(event);
+    if (!over) return;
+    const share = shareOf(event, over);
+    if (held) held.now = share;
+    if (down.size < 2) on.point(share);
+    if (held && event.pointerType === 'mouse') on.select(over, [held.from, held.now]);
+  });
+
+  const end = (event: PointerEvent, isGivenUp: boolean) => {
+    const held = down.get(event.pointerId);
+    if (!held || !area) return;
+    const fingers = [...down.values()];
+    down.delete(event.pointerId);
+    on.select(area, undefined);
+    if (isGivenUp) return;
+    const width = area.getBoundingClientRect().width;
+    const [one, other] = fingers;
+    if (one && other) {
+      down.clear();
+      pinch(one, other);
+    } else if (event.pointerType === 'mouse' && Math.abs(held.now - held.from) * width >= LEAST_PX) {
+      on.zoom(Math.min(held.from, held.now), Math.max(held.from, held.now));
+    }
+  };
+  listen<PointerEvent>('pointerup', (event) => end(event, false));
+  listen<PointerEvent>('pointercancel', (event) => end(event, true));
+
+  /** What was between the fingers is between them after, too. */
+  function pinch(one: { from: number; now: number }, other: { from: number; now: number }): void {
+    const [apart, before] = [other.now - one.now, other.from - one.from];
+    if (Math.abs(apart) < 0.02 || Math.abs(before) < 0.02) return;
+    const scale = before / apart;
+    const at = (share: number) => one.from + (share - one.now) * scale;
+    if (scale > 0) on.zoom(at(0), at(1));
+  }
+
+  listen<WheelEvent>(
+    'wheel',
+    (event) => {
+      const over = areaOf(event);
+      if (!over) return;
+      const isZoom = event.ctrlKey || event.metaKey;
+      const along = event.shiftKey && !event.deltaX ? event.deltaY : event.deltaX;
+      if (isZoom) {
+        const share = shareOf(event, over);
+        const scale = Math.exp(Math.min(1, Math.max(-1, event.deltaY / 200)));
+        on.zoom(share - share * scale, share + (1 - share) * scale);
+      } else if (Math.abs(along) > Math.abs(event.shiftKey ? 0 : event.deltaY)) {
+        const move = along / over.getBoundingClientRect().width;
+        on.zoom(move, 1 + move);
+      } else return;
+      event.preventDefault();
+    },
+    { passive: false },
+  );
+}

@@ -1,0 +1,178 @@
+/** The report of a flight, or the comparison of several, drawn part by part, with a cursor and a zoom that its charts share. */
+
+import type { Part } from 'flagred';
+import { fragment, h } from '../dom';
+import { chartsIn, curvesOf, locate, mapIn, held, point, type Chart, type DecisionMap } from './charts';
+import { gestures } from './gestures';
+
+/** What happens on the charts. */
+export interface Listener {
+  /** The cursor was moved; 0 is the left edge of the charts, 1 the right one. */
+  onPoint(share: number): void;
+  /** A stretch between two places of the charts is asked for; they may lie outside. */
+  onZoom(from: number, to: number): void;
+  /** A flight of a comparison is asked for, by its place in it. */
+  onFlight(place: number): void;
+}
+
+export interface Report {
+  element: HTMLElement;
+  /** Draws parts, those that are not named stay. Gives up where another drawing begins; then it gives `false`. */
+  draw(parts: readonly (readonly [Part | 'comparison', string])[], isAll: boolean): Promise<boolean>;
+  /** Takes everything away. */
+  clear(): void;
+  /** Shows the charts with another stretch of time until they are drawn anew: the places of its ends. */
+  preview(from: number, to: number): void;
+  /** Puts the cursor of all charts at a place. */
+  point(share: number): void;
+  /** The messages of the log near a place. */
+  near(share: number): string[];
+}
+
+/** What the style sheet of the report does not know: it is a page there. */
+const STYLE = `
+:host{display:block;min-width:0}
+section{content-visibility:auto;contain-intrinsic-size:auto 20rem}
+section[data-part=head],section[data-part=risk]{content-visibility:visible}
+section[data-part=head] h1{margin-top:0}
+.area{cursor:crosshair;touch-action:pan-y;user-select:none;-webkit-user-select:none}
+.selection{position:absolute;top:0;bottom:0;background:var(--accent);opacity:.18;pointer-events:none}
+.preview .times,.preview .phase{visibility:hidden}
+.nothing{color:var(--soft);font-size:.9rem}
+`;
+
+const nextTask = () => new Promise<void>((resolve) => setTimeout(resolve));
+
+/** A report with the style sheet of the command line's. */
+export function report(style: string, listener: Listener): Report {
+  const element = h('div', { class: 'report' });
+  // Its style sheet is that of a whole page: it ends at this border.
+  const root = element.attachShadow({ mode: 'open' });
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync(style.replaceAll(':root', ':host') + STYLE);
+  root.adoptedStyleSheets = [sheet];
+  const body = h('div', {});
+  root.append(body);
+
+  const sections = new Map<string, { element: HTMLElement; charts: Chart[] }>();
+  let map: DecisionMap | undefined;
+  let share = 0.5;
+  let drawing = 0;
+  const selection = h('div', { class: 'selection' });
+
+  const charts = function* (): Iterable<Chart> {
+    for (const section of sections.values()) yield* section.charts;
+  };
+
+  function section(name: string): { element: HTMLElement; charts: Chart[] } {
+    let known = sections.get(name);
+    if (!known) {
+      known = { element: h('section', { 'data-part': name }), charts: [] };
+      sections.set(name, known);
+      body.append(known.element);
+    }
+    return known;
+  }
+
+  /** Reads the curves bit by bit, and shows what they say at the cursor. */
+  async function read(of: Iterable<Chart>, mine: number): Promise<boolean> {
+    for (const chart of of) {
+      curvesOf(chart);
+      point(chart, share * chart.length_s);
+      await nextTask();
+      if (mine !== drawing) return false;
+    }
+    return true;
+  }
+
+  function locateAll(): void {
+    if (!map) return;
+    const inputs = new Map<number, number>();
+    for (const chart of charts()) {
+      const [curve] = chart.input === undefined ? [] : curvesOf(chart);
+      if (curve && chart.input !== undefined) inputs.set(chart.input, held(curve, share * chart.length_s));
+    }
+    locate(map, inputs);
+  }
+
+  const areaOf = (event: Event) =>
+    event
+      .composedPath()
+      .find((target): target is HTMLElement => target instanceof HTMLElement && target.matches('.panel .area'));
+
+  gestures(root, areaOf, {
+    point: listener.onPoint,
+    zoom: listener.onZoom,
+    select(area, ends) {
+      if (!ends) return selection.remove();
+      selection.style.left = `${100 * Math.min(...ends)}%`;
+      selection.style.width = `${100 * Math.abs(ends[1] - ends[0])}%`;
+      area.append(selection);
+    },
+  });
+  root.addEventListener('click', (event) => {
+    const link = (event.target as Element).closest('a[href^="#flight"]');
+    if (!link) return;
+    event.preventDefault();
+    listener.onFlight(Number(link.getAttribute('href')?.slice('#flight'.length)));
+  });
+  root.addEventListener('pointerover', (event) => {
+    const value = (event.target as Element).getAttribute('data-v');
+    const output = value && map?.box.querySelector('output');
+    if (output) output.textContent = `here ${value}`;
+  });
+
+  return {
+    element,
+    async draw(parts, isAll) {
+      const mine = ++drawing;
+      if (isAll) {
+        const kept = new Set<string>(parts.map(([name]) => name));
+        for (const [name, { element }] of sections) {
+          if (kept.has(name)) continue;
+          element.remove();
+          sections.delete(name);
+        }
+      }
+      for (const [name, html] of parts) {
+        const made = section(name);
+        const drawn = fragment(html);
+        if (!html && !isAll) drawn.append(h('p', { class: 'nothing' }, 'Nothing is known in this stretch of time.'));
+        made.charts = chartsIn(drawn);
+        if (name === 'map') map = mapIn(drawn);
+        made.element.replaceChildren(drawn);
+        await nextTask();
+        if (mine !== drawing) return false;
+      }
+      body.classList.remove('preview');
+      if (!(await read(charts(), mine))) return false;
+      locateAll();
+      return true;
+    },
+    clear() {
+      drawing++;
+      map = undefined;
+      sections.clear();
+      body.replaceChildren();
+    },
+    preview(from, to) {
+      body.classList.add('preview');
+      for (const { plot, length_s } of charts()) {
+        const { y, height } = plot.viewBox.baseVal;
+        plot.setAttribute('viewBox', `${from * length_s} ${y} ${Math.max(to - from, 1e-9) * length_s} ${height}`);
+      }
+    },
+    point(to) {
+      share = to;
+      for (const chart of charts()) if (chart.curves) point(chart, share * chart.length_s);
+      locateAll();
+    },
+    near(at) {
+      const [main] = charts();
+      if (!main) return [];
+      const x_s = at * main.length_s;
+      const near = main.events.filter((event) => Math.abs(event.x_s - x_s) < main.length_s * 0.01);
+      return near.slice(0, 3).map((event) => event.text);
+    },
+  };
+}

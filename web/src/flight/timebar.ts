@@ -1,0 +1,73 @@
+/** The bar over the charts: the cursor's time, and which stretch of the flight is shown. */
+
+import type { Stretch } from 'flagred';
+import { h } from '../dom';
+
+export interface TimeBar {
+  element: HTMLElement;
+  /** The stretch that is shown of the whole, and where the cursor is in it. */
+  show(shown: Stretch, whole: Stretch, share: number): void;
+  /** What the cursor's time is called. */
+  say(words: string): void;
+}
+
+interface Actions {
+  point(share: number): void;
+  /** As on the charts: between two places of what is shown. */
+  zoom(from: number, to: number): void;
+  reset(): void;
+}
+
+const STEPS = 1000;
+
+export function timeBar(actions: Actions): TimeBar {
+  const slider = h('input', { type: 'range', min: 0, max: STEPS, step: 1, 'aria-label': 'Time' });
+  slider.addEventListener('input', () => actions.point(slider.valueAsNumber / STEPS));
+  slider.addEventListener('keydown', (event) => {
+    const step = { ArrowLeft: -10, ArrowRight: 10, ArrowDown: -10, ArrowUp: 10 }[event.key];
+    if (!step || !event.shiftKey) return;
+    event.preventDefault();
+    actions.point(Math.min(1, Math.max(0, (slider.valueAsNumber + step) / STEPS)));
+  });
+  const span = h('span', { class: 'span soft' });
+  const overview = h('span', { class: 'shown', 'aria-hidden': 'true' });
+  const button = (words: string, label: string, act: () => void) => {
+    const made = h('button', { type: 'button', 'aria-label': label, title: label }, words);
+    made.addEventListener('click', act);
+    return made;
+  };
+  /** Around the cursor, which stays where it is. */
+  const about = (scale: number) => {
+    const share = slider.valueAsNumber / STEPS;
+    actions.zoom(share - share * scale, share + (1 - share) * scale);
+  };
+  const closer = button('+', 'Zoom in', () => about(0.5));
+  const farther = button('−', 'Zoom out', () => about(2));
+  const earlier = button('‹', 'Earlier', () => actions.zoom(-0.5, 0.5));
+  const later = button('›', 'Later', () => actions.zoom(0.5, 1.5));
+  const all = button('All', 'Show the whole flight', actions.reset);
+  const element = h(
+    'div',
+    { class: 'timebar', role: 'group', 'aria-label': 'Time' },
+    h('div', { class: 'slider' }, slider, h('span', { class: 'overview' }, overview)),
+    h('div', { class: 'zoom' }, span, earlier, farther, all, closer, later),
+  );
+  return {
+    element,
+    show(shown, whole, share) {
+      slider.value = String(Math.round(share * STEPS));
+      const length_s = Math.max(whole.end_s - whole.start_s, 1e-3);
+      const isAll = shown.end_s - shown.start_s > length_s * 0.999;
+      overview.style.left = `${(100 * (shown.start_s - whole.start_s)) / length_s}%`;
+      overview.style.width = `${(100 * (shown.end_s - shown.start_s)) / length_s}%`;
+      span.textContent = `${shown.start_s.toFixed(1)} to ${shown.end_s.toFixed(1)} s`;
+      farther.disabled = all.disabled = isAll;
+      overview.hidden = isAll;
+      earlier.disabled = shown.start_s <= whole.start_s;
+      later.disabled = shown.end_s >= whole.end_s;
+    },
+    say(words) {
+      slider.setAttribute('aria-valuetext', words);
+    },
+  };
+}
