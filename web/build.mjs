@@ -1,4 +1,4 @@
-// Builds the page: target/web/page for a server, and target/web/studio.html, which is one file.
+// Builds the page: target/web/page for a server, and cli/page/studio.html, one file, which `flagred studio` holds.
 
 import { createHash } from 'node:crypto';
 import { copyFile, mkdir, readFile, readdir, rm, writeFile } from 'node:fs/promises';
@@ -7,8 +7,8 @@ import { gzipSync } from 'node:zlib';
 import { build } from 'esbuild';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
-const out = fileURLToPath(new URL('../target/web/', import.meta.url));
-const page = `${out}page/`;
+const page = fileURLToPath(new URL('../target/web/page/', import.meta.url));
+const studio = fileURLToPath(new URL('../cli/page/studio.html', import.meta.url));
 const wasm = fileURLToPath(new URL('../bindings/web/js/wasm/flagred_bg.wasm', import.meta.url));
 
 const common = {
@@ -90,7 +90,7 @@ async function oneFile(template) {
         data('flagred.wasm', gzipSync(wasmBytes, { level: 9 })) +
         `<script type="module">${script}</script>`,
     );
-  await writeFile(`${out}studio.html`, whole);
+  await writeFile(studio, whole);
 }
 
 const wasmBytes = await readFile(wasm);

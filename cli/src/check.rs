@@ -7,22 +7,20 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use authoring::{Examined, answers::Checked, is_profile, provenance};
 use flagred::profile::Profile;
 use fuzzy::{
     check,
-    diagnostic::{Diagnostic, Findings, Severity},
+    diagnostic::{Findings, Severity},
     drawing::visible,
-    format::Document,
-    model::Step,
 };
-use serde::Serialize;
 
 use self::format::{Format, Sarif, write_github};
 use crate::{
     diagnostics::{draw, read_text},
     failure::{Exit, Failure},
     output::{Files, Stdout},
-    profile, provenance,
+    profile,
 };
 
 #[derive(clap::Args)]
@@ -63,23 +61,6 @@ fn degree(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The document of `--format json`.
-#[derive(Serialize)]
-struct Json<'a> {
-    schema: &'static str,
-    file: &'a str,
-    /// The name of the rule set; absent where it has errors, and of a profile.
-    model: Option<&'a str>,
-    /// The name of the profile; absent where it cannot be read, and of a rule set.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    profile: Option<String>,
-    /// The commands that made the rule set; absent where it says none.
-    #[serde(skip_serializing_if = "<[Step]>::is_empty")]
-    provenance: &'a [Step],
-    findings: &'a [Diagnostic],
-    report: Option<&'a check::Report>,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let worst_allowed = match arguments.deny {
         None => Severity::Warning,
@@ -101,14 +82,14 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
     for path in &arguments.models {
         let text = read_text(path)?;
         let file = path.display().to_string();
-        let mut profile = None;
-        let (findings, analysed) = if profile::is_profile(&text) {
+        let (profile, examined) = if is_profile(&text) {
             let (name, findings) = examine_profile(path, &text)?;
-            profile = name;
-            (findings, None)
+            let analysed = None;
+            (Some(name), Examined { findings, analysed })
         } else {
-            examine(&text, arguments)?
+            (None, examine(&text, arguments)?)
         };
+        let findings = &examined.findings;
         // Only what people read has colours.
         let mut out = match format {
             Format::Text => Stdout::text(),
@@ -117,28 +98,20 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         match format {
             Format::Text => {
                 write!(out, "{}", draw(&findings.0, &file, &text, true))?;
-                let steps = analysed
+                let steps = examined
+                    .analysed
                     .iter()
                     .flat_map(|(document, _)| &document.model.provenance);
                 for step in steps {
                     let made = visible(&provenance::words(step)).to_string();
                     writeln!(out, "{}: made by {made}", visible(&file))?;
                 }
-                writeln!(out, "{}: {}", visible(&file), summary(&findings))?;
+                writeln!(out, "{}: {}", visible(&file), summary(findings))?;
             }
             Format::Json => {
-                let json = Json {
-                    schema: "flagred.check/1",
-                    file: &file,
-                    model: analysed
-                        .as_ref()
-                        .map(|(document, _)| document.model.name.as_str()),
-                    profile,
-                    provenance: analysed
-                        .as_ref()
-                        .map_or(&[], |(document, _)| &document.model.provenance),
-                    findings: &findings.0,
-                    report: analysed.as_ref().map(|(_, report)| report),
+                let json = match &profile {
+                    Some(name) => Checked::profile(&file, name.as_deref(), &findings.0),
+                    None => Checked::rules(&file, &examined),
                 };
                 serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
                 writeln!(out)?;
@@ -161,22 +134,13 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
 }
 
 /// All findings, and the analysis where the rule set can be analysed.
-fn examine(
-    text: &str,
-    arguments: &Arguments,
-) -> Result<(Findings, Option<(Document, check::Report)>), Failure> {
-    let document = match interchange::document(text) {
-        Ok(document) => document,
-        Err(findings) => return Ok((findings, None)),
-    };
+fn examine(text: &str, arguments: &Arguments) -> Result<Examined, Failure> {
     let mut options = check::Options::default();
     options.coverage = arguments.coverage;
     options.monotone.clone_from(&arguments.monotone);
-    let (findings, report) = check::document(&document, text, &options).map_err(|finding| {
+    authoring::examine(text, &options).map_err(|finding| {
         Failure::usage(format!("--monotone: {}", finding.message)).help_if(finding.help)
-    })?;
-    let findings = provenance::with_edited(findings, &document, text);
-    Ok((findings, report.map(|report| (document, report))))
+    })
 }
 
 /// The name of a profile, and all findings about it and the rule set that it names. A rule set with errors is refused:

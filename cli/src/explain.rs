@@ -2,13 +2,12 @@
 
 use std::{io::Write as _, path::PathBuf};
 
+use authoring::answers::Explained;
 use fuzzy::{
     Model,
     diagnostic::suggest,
     drawing::{explanation_svg, explanation_text},
-    engine::Explanation,
 };
-use serde::Serialize;
 
 use crate::{
     failure::{Exit, Failure},
@@ -40,15 +39,6 @@ fn assignment(text: &str) -> Result<(String, f64), String> {
     }
 }
 
-/// The document of `--json`.
-#[derive(Serialize)]
-struct Json<'a> {
-    schema: &'static str,
-    model: &'a str,
-    #[serde(flatten)]
-    explanation: &'a Explanation,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut files = Files::reading([&arguments.model])?;
     let svg = files.optional(arguments.svg.as_ref())?;
@@ -61,11 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let mut out = Stdout::text();
     if arguments.json {
-        let json = Json {
-            schema: "flagred.explain/1",
-            model: &model.name,
-            explanation: &explanation,
-        };
+        let json = Explained::new(&model.name, &explanation);
         serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
         writeln!(out)?;
     } else {

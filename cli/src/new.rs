@@ -2,6 +2,7 @@
 
 use std::{io::Write, path::PathBuf};
 
+use authoring::starter;
 use fuzzy::drawing::visible;
 
 use crate::{
@@ -25,23 +26,17 @@ pub(crate) struct Arguments {
     force: bool,
 }
 
-/// A name that is a file name everywhere and needs no quotes in YAML.
 fn name(text: &str) -> Result<String, String> {
-    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
-    if text.starts_with(|c: char| c.is_ascii_alphabetic()) && text.chars().all(plain) {
-        Ok(text.into())
-    } else {
-        Err("a name is a letter followed by letters, digits, `-` and `_`".into())
+    match starter::is_name(text) {
+        true => Ok(text.into()),
+        false => Err("a name is a letter followed by letters, digits, `-` and `_`".into()),
     }
 }
 
-const STARTER: &str = include_str!("new.yaml");
-const PROFILE: &str = include_str!("new-profile.yaml");
-
 pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let text = match arguments.profile {
-        true => PROFILE.replace("my-profile", &arguments.name),
-        false => STARTER.replace("my-rules", &arguments.name),
+        true => starter::profile(&arguments.name),
+        false => starter::rules(&arguments.name),
     };
     let path = match &arguments.output {
         Some(path) => path.clone(),

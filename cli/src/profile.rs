@@ -7,7 +7,7 @@ use flagred::{
     profile::Profile,
     shipped,
 };
-use fuzzy::{Model, tree::Value};
+use fuzzy::Model;
 
 use crate::{
     diagnostics::{read_text, refuse, show},
@@ -82,14 +82,4 @@ fn failure(error: LoadError<Failure>) -> Failure {
         } => refuse(&findings, &file, &text),
         LoadError::Unusable { message, help } => Failure::unreadable(message).help_if(help),
     }
-}
-
-/// Whether a text is meant to be a profile: whether it has the key `flagred`, also where it is no YAML yet.
-pub(crate) fn is_profile(text: &str) -> bool {
-    let tree = fuzzy::yaml::read(text).map(|tree| tree.value);
-    let Ok(Value::Mapping(pairs)) = tree else {
-        return text.lines().any(|line| line.starts_with("flagred:"));
-    };
-    let mut keys = pairs.iter().map(|(key, _)| &key.value);
-    keys.any(|key| matches!(key, Value::Scalar(key) if key.text == "flagred"))
 }

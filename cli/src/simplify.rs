@@ -154,7 +154,7 @@ impl Outcome<'_> {
             )),
             ..Step::default()
         };
-        Ok(provenance::rule_set(model_text, after, step))
+        Ok(authoring::provenance::rule_set(model_text, after, step))
     }
 
     fn words(&self, out: &mut dyn Write) -> std::io::Result<()> {

@@ -186,7 +186,7 @@ fn explain_draws_terms_rules_and_the_aggregated_set() {
 #[test]
 fn explain_draws_the_number_of_each_rule_of_a_sugeno_output() {
     let point = ["temperature=24", "humidity=55"];
-    let model = "../cli/src/new.yaml";
+    let model = "../authoring/src/starter.yaml";
     let (_, text) = flagred(&[&["explain", model][..], &point].concat(), "");
     assert!(text.contains("0.40000   25 %         100  4: IF"), "{text}");
     let (_, svg) = flagred(

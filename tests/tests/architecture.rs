@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-const PACKAGES: [&str; 8] = [
+const PACKAGES: [&str; 9] = [
     "fuzzy",
     "flagred",
     "flightlog",
@@ -14,6 +14,7 @@ const PACKAGES: [&str; 8] = [
     "report",
     "tuning",
     "evaluation",
+    "authoring",
     "cli",
 ];
 
@@ -70,8 +71,13 @@ fn every_package_stands_on_those_below_it_alone() {
         ("report", &["flagred", "flightlog", "fuzzy", "interchange"]),
         ("evaluation", &["flagred", "flightlog", "fuzzy", "report"]),
         (
+            "authoring",
+            &["flagred", "flightlog", "fuzzy", "interchange"],
+        ),
+        (
             "cli",
             &[
+                "authoring",
                 "evaluation",
                 "flagred",
                 "flightlog",
@@ -91,6 +97,7 @@ fn every_package_stands_on_those_below_it_alone() {
         let mut ours: Vec<&str> = names
             .filter(|name| {
                 [
+                    "authoring",
                     "evaluation",
                     "fuzzy",
                     "flightlog",
@@ -266,6 +273,7 @@ fn the_map_of_the_house_has_every_module_and_names_nothing_that_is_gone() {
         "interchange",
         "report",
         "evaluation",
+        "authoring",
         "cli",
         "tests",
     ]

@@ -9,7 +9,8 @@ const ADDRESS = 'api/file';
 export async function backingFile(): Promise<BackingFile | undefined> {
   if (!isOneFile || !location.protocol.startsWith('http')) return undefined;
   const first = await fetch(ADDRESS, { cache: 'no-store' });
-  if (!first.ok) return undefined;
+  // 204 where there is none.
+  if (first.status !== 200) return undefined;
   let tag = first.headers.get('ETag') ?? '';
   return {
     name: decodeURIComponent(first.headers.get('X-File-Name') ?? 'the file'),

@@ -8,7 +8,7 @@ import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
 export const repository = fileURLToPath(new URL('../../', import.meta.url));
-export const studio = join(repository, 'target/web/studio.html');
+export const studio = join(repository, 'cli/page/studio.html');
 const page = join(repository, 'target/web/page');
 const types = {
   '.html': 'text/html',

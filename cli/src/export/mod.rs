@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         profile::load(&arguments.file)?
     } else {
         let text = profile::file_text(path)?;
-        if is_meant_as_rules(&text) && !profile::is_profile(&text) {
+        if is_meant_as_rules(&text) && !authoring::is_profile(&text) {
             return rules::export(arguments, &text);
         }
         profile::from_text(path, text)?

@@ -42,7 +42,7 @@ pub(super) fn rule_set(
         )),
         ..Step::default()
     };
-    Ok(provenance::rule_set(model_text, model, step))
+    Ok(authoring::provenance::rule_set(model_text, model, step))
 }
 
 pub(super) fn words(

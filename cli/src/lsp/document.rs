@@ -1,120 +1,63 @@
-//! An open text: what it means, its findings, and the places in it as an editor counts them.
+//! An open text as the protocol has it: its findings, and places as an editor counts them.
 
 use std::{
     ops::Range,
     path::{Path, PathBuf},
 };
 
-use flagred::profile::Profile;
-use fuzzy::{
-    check,
-    diagnostic::{Diagnostic, Findings, Severity},
-    format::Partial,
-};
+use authoring::Document;
+use fuzzy::diagnostic::{Diagnostic, Severity};
 use gen_lsp_types as lsp;
 use percent_encoding::percent_decode_str;
 
-use crate::{profile, provenance};
+use crate::profile;
 
-/// A text that an editor shows.
-pub(super) struct Document {
-    pub(super) text: String,
-    /// The rule set as far as it can be read; of a profile, the one that it names.
-    pub(super) rules: Option<Partial>,
-    pub(super) is_profile: bool,
-    findings: Findings,
+/// Reads a text. A profile's rule set is looked for beside it.
+pub(super) fn open(uri: &lsp::Uri, text: String) -> Document {
+    let path = path(uri);
+    let folder = path.as_deref().and_then(Path::parent);
+    Document::new(text, |parsed| {
+        profile::rules(parsed, folder).ok().map(|(_, text)| text)
+    })
 }
 
-impl Document {
-    pub(super) fn new(uri: &lsp::Uri, text: String) -> Document {
-        if profile::is_profile(&text) {
-            let (rules, findings) = match text.parse::<Profile>() {
-                Ok(parsed) => {
-                    let path = path(uri);
-                    let folder = path.as_deref().and_then(Path::parent);
-                    let rules = profile::rules(&parsed, folder).ok().map(|(_, text)| text);
-                    let model = rules.as_deref().map(fuzzy::yaml::parse);
-                    let findings = match model {
-                        Some(Ok(document)) => profile::examine(&text, &document.model).0,
-                        _ => unusable_rules(&text, &parsed.rules),
-                    };
-                    (rules, findings)
-                }
-                Err(findings) => (None, findings),
-            };
-            return Document {
-                text,
-                rules: rules.as_deref().and_then(partial),
-                is_profile: true,
-                findings,
-            };
+/// The findings of a text.
+pub(super) fn diagnostics(
+    document: &Document,
+    uri: &lsp::Uri,
+    encoding: Encoding,
+) -> Vec<lsp::Diagnostic> {
+    let text = document.text();
+    let shown = |finding: &Diagnostic| {
+        let mut message = finding.message.clone();
+        if let Some(help) = &finding.help {
+            message = format!("{message}\nhelp: {help}");
         }
-        Document {
-            rules: partial(&text),
-            is_profile: false,
-            findings: findings(&text),
-            text,
+        let related = finding.related.iter().map(|related| {
+            let range = encoding.range(text, &related.span);
+            lsp::DiagnosticRelatedInformation {
+                location: lsp::Location {
+                    uri: uri.clone(),
+                    range,
+                },
+                message: related.message.clone(),
+            }
+        });
+        lsp::Diagnostic {
+            range: encoding.range(text, &finding.span),
+            severity: Some(match finding.severity {
+                Severity::Error => lsp::DiagnosticSeverity::Error,
+                Severity::Warning => lsp::DiagnosticSeverity::Warning,
+                Severity::Note => lsp::DiagnosticSeverity::Information,
+            }),
+            code: Some(finding.code.to_owned().into()),
+            source: Some("flagred".into()),
+            message: message.into(),
+            related_information: Some(related.collect()),
+            ..lsp::Diagnostic::default()
         }
-    }
-
-    pub(super) fn diagnostics(&self, uri: &lsp::Uri, encoding: Encoding) -> Vec<lsp::Diagnostic> {
-        let shown = |finding: &Diagnostic| {
-            let mut message = finding.message.clone();
-            if let Some(help) = &finding.help {
-                message = format!("{message}\nhelp: {help}");
-            }
-            let related = finding.related.iter().map(|related| {
-                let range = encoding.range(&self.text, &related.span);
-                lsp::DiagnosticRelatedInformation {
-                    location: lsp::Location {
-                        uri: uri.clone(),
-                        range,
-                    },
-                    message: related.message.clone(),
-                }
-            });
-            lsp::Diagnostic {
-                range: encoding.range(&self.text, &finding.span),
-                severity: Some(match finding.severity {
-                    Severity::Error => lsp::DiagnosticSeverity::Error,
-                    Severity::Warning => lsp::DiagnosticSeverity::Warning,
-                    Severity::Note => lsp::DiagnosticSeverity::Information,
-                }),
-                code: Some(finding.code.to_owned().into()),
-                source: Some("flagred".into()),
-                message: message.into(),
-                related_information: Some(related.collect()),
-                ..lsp::Diagnostic::default()
-            }
-        };
-        self.findings.0.iter().map(shown).collect()
-    }
-}
-
-fn partial(text: &str) -> Option<Partial> {
-    fuzzy::format::read_partly(&fuzzy::yaml::read(text).ok()?)
-}
-
-/// What `flagred check` finds in a rule set.
-fn findings(text: &str) -> Findings {
-    let document = match interchange::document(text) {
-        Ok(document) => document,
-        Err(findings) => return findings,
     };
-    match check::document(&document, text, &check::Options::default()) {
-        Ok((findings, _)) => provenance::with_edited(findings, &document, text),
-        Err(finding) => Findings::locate(vec![*finding], text),
-    }
-}
-
-/// The finding of a profile whose rule set cannot be used.
-fn unusable_rules(text: &str, rules: &str) -> Findings {
-    let place = text.find("rules:").unwrap_or(0);
-    let message = format!("the rule set `{rules}` cannot be used");
-    let finding = Diagnostic::error("rule-set", place..place + 5, message).help(
-        "`flagred check` shows why; a rule set is a shipped one, or a file beside the profile",
-    );
-    Findings::locate(vec![finding], text)
+    document.findings().0.iter().map(shown).collect()
 }
 
 fn path(uri: &lsp::Uri) -> Option<PathBuf> {

@@ -1,20 +1,20 @@
 //! `flagred lsp`: a language server for rule sets and profiles, over standard input and output.
 
-mod complete;
 mod document;
-mod names;
 
 use std::collections::HashMap;
 
+use authoring::{
+    Document,
+    completion::{self, Completion, Kind},
+    layout, names,
+};
 use gen_lsp_types as lsp;
 use lsp_server::{Connection, ErrorCode, ExtractError, Message, Notification, Request, Response};
 use serde::{Serialize, de::DeserializeOwned};
 
-use crate::{
-    failure::{Exit, Failure},
-    fmt,
-};
-use document::{Document, Encoding};
+use crate::failure::{Exit, Failure};
+use document::Encoding;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -129,8 +129,8 @@ impl Server {
     }
 
     fn read(&mut self, uri: lsp::Uri, text: String) -> Vec<Message> {
-        let document = Document::new(&uri, text);
-        let found = document.diagnostics(&uri, self.encoding);
+        let document = document::open(&uri, text);
+        let found = document::diagnostics(&document, &uri, self.encoding);
         self.open.insert(uri.clone(), document);
         vec![diagnostics(uri, found)]
     }
@@ -140,18 +140,19 @@ impl Server {
         let encoding = self.encoding;
         let at = |there: &lsp::TextDocumentPositionParams| {
             let document = self.open.get(&there.text_document.uri)?;
-            Some((document, encoding.offset(&document.text, there.position)))
+            Some((document, encoding.offset(document.text(), there.position)))
         };
         let done = match request.method.as_str() {
             "textDocument/completion" => reply(request, |asked: lsp::CompletionParams| {
                 let (document, offset) = at(&asked.text_document_position_params)?;
-                Some(complete::items(document, offset))
+                let found = completion::at(document, offset).into_iter();
+                Some(found.map(item).collect::<Vec<_>>())
             }),
             "textDocument/hover" => reply(request, |asked: lsp::HoverParams| {
                 let (document, offset) = at(&asked.text_document_position_params)?;
-                let (span, text) = names::describe(document, offset)?;
-                let markdown = lsp::MarkupContent::new(lsp::MarkupKind::Markdown, text);
-                let range = encoding.range(&document.text, &span);
+                let meant = names::describe(document, offset)?;
+                let markdown = lsp::MarkupContent::new(lsp::MarkupKind::Markdown, meant.markdown);
+                let range = encoding.range(document.text(), &meant.span);
                 Some(lsp::Hover {
                     contents: markdown.into(),
                     range: Some(range),
@@ -161,7 +162,7 @@ impl Server {
                 let there = &asked.text_document_position_params;
                 let (document, offset) = at(there)?;
                 let span = names::definition(document, offset)?;
-                let range = encoding.range(&document.text, &span);
+                let range = encoding.range(document.text(), &span);
                 Some(lsp::Location {
                     uri: there.text_document.uri.clone(),
                     range,
@@ -186,7 +187,7 @@ impl Server {
                     Err(why) => return Response::new_err(id, ErrorCode::RequestFailed as i32, why),
                     Ok(spans) => {
                         let edit = |span| lsp::TextEdit {
-                            range: encoding.range(&document.text, span),
+                            range: encoding.range(document.text(), span),
                             new_text: asked.new_name.clone(),
                         };
                         let edits = spans.iter().map(edit).collect();
@@ -201,8 +202,8 @@ impl Server {
             }
             "textDocument/formatting" => reply(request, |asked: lsp::DocumentFormattingParams| {
                 let document = self.open.get(&asked.text_document.uri)?;
-                let formatted = fmt::formatted(&document.text).ok()?;
-                let range = encoding.range(&document.text, &(0..document.text.len()));
+                let formatted = layout::formatted(document.text()).ok()?;
+                let range = encoding.range(document.text(), &(0..document.text().len()));
                 Some(vec![lsp::TextEdit {
                     range,
                     new_text: formatted,
@@ -217,6 +218,23 @@ impl Server {
             Ok(value) => Response::new_ok(id, value),
             Err(error) => Response::new_err(id, ErrorCode::InvalidParams as i32, error.to_string()),
         }
+    }
+}
+
+fn item(found: Completion) -> lsp::CompletionItem {
+    let kind = match found.kind {
+        Kind::Keyword => lsp::CompletionItemKind::Keyword,
+        Kind::Variable => lsp::CompletionItemKind::Variable,
+        Kind::Choice => lsp::CompletionItemKind::EnumMember,
+        Kind::Key => lsp::CompletionItemKind::Property,
+        Kind::Signal => lsp::CompletionItemKind::Value,
+    };
+    lsp::CompletionItem {
+        insert_text: (found.text != found.label).then_some(found.text),
+        label: found.label,
+        kind: Some(kind),
+        detail: found.detail,
+        ..lsp::CompletionItem::default()
     }
 }
 

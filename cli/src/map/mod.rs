@@ -1,11 +1,11 @@
 //! `flagred map`: the output of a rule set over its inputs, as a picture or a table.
 
 mod slice;
-mod view;
 
 use std::{io::Write, path::PathBuf};
 
 use anstyle::{RgbColor, Style};
+use authoring::slice::POINTS;
 use clap::ValueEnum;
 use flagred::{
     estimator::Estimator,
@@ -27,9 +27,6 @@ use crate::{
     profile::{self, Loaded},
     rule_set,
 };
-
-/// The default number of points along each axis.
-const POINTS: usize = 51;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -232,7 +229,7 @@ pub(crate) fn painted(cell: char, colour: Option<Colour>) -> String {
 fn evaluate(arguments: &Arguments) -> Result<Evaluated, Failure> {
     let file = arguments.model.display().to_string();
     let text = read_text(&arguments.model)?;
-    let (model, engine, estimator) = if profile::is_profile(&text) {
+    let (model, engine, estimator) = if authoring::is_profile(&text) {
         let Loaded { estimator, .. } = profile::from_text(&arguments.model, text)?;
         let engine = estimator.engine().clone();
         (engine.model().clone(), engine, Some(estimator))

@@ -1,11 +1,9 @@
 //! The part of a map that a picture shows: two inputs are the axes, the others are held.
 
-use fuzzy::{
-    drawing::{Axis, Cell, Scale, Slice, short},
-    engine::{EvaluateError, Outcome},
-};
+use authoring::slice::{self, Mapped, POINTS};
+use fuzzy::drawing::{Axis, Scale, Slice, short};
 
-use super::{Arguments, AxisChoice, Evaluated, POINTS, view};
+use super::{Arguments, AxisChoice, Evaluated};
 use crate::failure::Failure;
 
 /// The slice that the arguments ask for, and notes about what they leave open.
@@ -64,13 +62,22 @@ pub(super) fn cut(
     let variable = |input: usize| model.inputs.get(input);
     let axis = |input: usize, choice: &Option<AxisChoice>| {
         let part = choice.as_ref().and_then(|choice| choice.part);
-        let part = |v| part.map_or_else(|| view::shown(v), |(low, high)| Scale::new(low, high));
+        let part = |v| part.map_or_else(|| slice::shown(v), |(low, high)| Scale::new(low, high));
         variable(input).map(|v| Axis::new(v, part(v), points))
     };
     let x_axis =
         axis(x, &arguments.x).ok_or_else(|| Failure::usage("the rule set has no inputs"))?;
     let y_axis = y.and_then(|y| axis(y, &arguments.y));
-    let mut point = view::held(evaluated, &fixed, (x, y));
+    let mapped = Mapped {
+        model,
+        engine: &evaluated.engine,
+        output: evaluated.output,
+        filling: evaluated
+            .filling
+            .as_ref()
+            .map(|(filling, method)| (filling, *method)),
+    };
+    let point = slice::held(&mapped, &fixed, (x, y));
     let held = model.inputs.iter().zip(&point).enumerate();
     let held: Vec<(String, f64)> = held
         .filter(|(input, _)| *input != x && Some(*input) != y)
@@ -107,56 +114,8 @@ pub(super) fn cut(
     });
     let notes: Vec<String> = held_at.chain(parts).collect();
 
-    let mut cells = Vec::with_capacity(points * points);
-    let mut scratch = evaluated.engine.scratch();
-    let mut outcomes = vec![Outcome::default(); evaluated.engine.output_names().len()];
-    for x_value in &x_axis.points {
-        let rows = y_axis.as_ref().map_or(1, |y| y.points.len());
-        for row in 0..rows {
-            if let Some(value) = point.get_mut(x) {
-                *value = *x_value;
-            }
-            if let (Some(y), Some(axis)) = (y, &y_axis)
-                && let (Some(value), Some(y_value)) = (point.get_mut(y), axis.points.get(row))
-            {
-                *value = *y_value;
-            }
-            let engine = &evaluated.engine;
-            match engine.evaluate_with(&mut scratch, &point, &mut outcomes) {
-                Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
-                Err(error) => return Err(Failure::unreadable(error.to_string())),
-            }
-            let outcome = outcomes.get(evaluated.output).copied().unwrap_or_default();
-            cells.push(cell(evaluated, &outcome, &point));
-        }
-    }
-    let output = model.outputs.get(evaluated.output).map(|o| &o.variable);
-    let slice = Slice {
-        model: model.name.clone(),
-        output: output.map(|o| o.name.clone()).unwrap_or_default(),
-        unit: output.and_then(|o| o.unit.clone()),
-        range: output.map_or(Scale::new(0.0, 1.0), |o| Scale::new(o.low, o.high)),
-        x: x_axis,
-        y: y_axis,
-        held,
-        filling: evaluated
-            .filling
-            .as_ref()
-            .map(|(_, method)| method.replace('_', " ")),
-        cells,
-    };
+    let y_axis = y.zip(y_axis);
+    let slice = slice::cut(&mapped, (x, x_axis), y_axis, point)
+        .map_err(|error| Failure::unreadable(error.to_string()))?;
     Ok((slice, notes))
-}
-
-fn cell(evaluated: &Evaluated, outcome: &Outcome, point: &[f64]) -> Cell {
-    let filling = evaluated.filling.as_ref();
-    let reading = filling
-        .filter(|(filling, _)| filling.is_gap(outcome.coverage))
-        .and_then(|(filling, _)| filling.read(point));
-    Cell {
-        value: reading.map(|r| r.value).or_else(|| outcome.value()),
-        coverage: outcome.coverage,
-        rule: outcome.dominant,
-        filled_from: reading.map(|reading| reading.distance),
-    }
 }

@@ -32,7 +32,7 @@ pub(super) fn find(file: Option<&Path>) -> Result<Page, Failure> {
             })?;
             page(html).ok_or_else(|| {
                 Failure::unreadable(format!("`{shown}` is not the page of the studio"))
-                    .help("`web/build` writes it to target/web/studio.html")
+                    .help("`web/build` writes it to cli/page/studio.html")
             })
         }
         None => built_in(PACKED),

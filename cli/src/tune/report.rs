@@ -54,7 +54,11 @@ pub(super) fn rule_set(
         note: left_out,
         ..Step::default()
     };
-    Ok(provenance::rule_set(model_text, tuned.model.clone(), step))
+    Ok(authoring::provenance::rule_set(
+        model_text,
+        tuned.model.clone(),
+        step,
+    ))
 }
 
 /// Six digits: authors read them.

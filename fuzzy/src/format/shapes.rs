@@ -83,6 +83,7 @@ fn by_form(
     let mut values = Vec::new();
     let mut read = |parameter: &str, node: &Node, findings: &mut Vec<Diagnostic>| {
         spans.parameters.push(node.span.clone());
+        spans.numbers.push(node.span.clone());
         values.extend(node.finite(&format!("`{parameter}` of the {name}"), findings));
     };
     match &node.value {
@@ -162,6 +163,9 @@ fn points(
         spans.parameters.push(item.span.clone());
         match &item.value {
             Value::List(pair) if pair.len() == 2 => {
+                spans
+                    .numbers
+                    .extend(pair.iter().map(|number| number.span.clone()));
                 let mut numbers = pair.iter().map(|n| n.finite("a point", findings));
                 if let (Some(Some(x)), Some(Some(degree))) = (numbers.next(), numbers.next()) {
                     points.push((x, degree));

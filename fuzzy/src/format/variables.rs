@@ -239,6 +239,7 @@ fn partition(
     spans: &mut VariableSpans,
     findings: &mut Vec<Diagnostic>,
 ) {
+    spans.partition = node.span.clone();
     let mut names: Vec<(&str, &Node)> = Vec::new();
     let mut seen: BTreeMap<&str, &Node> = BTreeMap::new();
     let mut peaks: Option<Vec<f64>> = None;
@@ -280,6 +281,9 @@ fn partition(
                 peaks = Some(found);
             }
             spans.terms = term_spans(entries.iter().map(|entry| &entry.key_span));
+            for (term, entry) in spans.terms.iter_mut().zip(&entries) {
+                term.numbers.push(entry.value.span.clone());
+            }
         }
         Value::Scalar(_) => {
             let finding = node.unexpected(&format!("terms for the partition of {what}"));

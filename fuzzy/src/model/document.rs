@@ -88,6 +88,8 @@ pub struct VariableSpans {
     pub name: Range<usize>,
     /// The ends of its range.
     pub range: Range<usize>,
+    /// The value of `partition`: a list of names, or a mapping of names to peaks. Empty where terms are spelt out.
+    pub partition: Range<usize>,
     /// Its terms.
     pub terms: Vec<TermSpans>,
     /// Of an output, the number of samples.
@@ -107,6 +109,9 @@ pub struct TermSpans {
     pub name: Range<usize>,
     /// The parameters of its membership function: empty in a partition.
     pub parameters: Vec<Range<usize>>,
+    /// The numbers of its membership function, one by one: x and degree of each point of a piecewise one, the peak in a partition
+    /// that says it. Empty of a formula, of a linear function and in an even partition.
+    pub numbers: Vec<Range<usize>>,
     /// Its height.
     pub height: Range<usize>,
     /// The membership function could not be read; a finding says why.

@@ -1,20 +1,47 @@
 //! What can be written at a place: names, hedges and connectives in a rule, keys and words elsewhere.
 
 use fuzzy::model::Variable;
-use gen_lsp_types as lsp;
 use serde_json::Value;
 
-use super::document::Document;
+use crate::document::Document;
 
-/// The completions at an offset.
-pub(super) fn items(document: &Document, offset: usize) -> Vec<lsp::CompletionItem> {
-    let before = document.text.get(..offset).unwrap_or("");
-    if !document.is_profile
+/// What can be written at a place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Completion {
+    /// What is shown.
+    pub label: String,
+    /// What is written.
+    pub text: String,
+    /// What it is.
+    pub kind: Kind,
+    /// More about it: a range, a membership function, a unit.
+    pub detail: Option<String>,
+}
+
+/// What a completion is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A word of the rule language.
+    Keyword,
+    /// An input or output.
+    Variable,
+    /// A term, or one of the words that a key takes.
+    Choice,
+    /// A key.
+    Key,
+    /// A signal of a log.
+    Signal,
+}
+
+/// The completions at an offset in bytes.
+pub fn at(document: &Document, offset: usize) -> Vec<Completion> {
+    let before = document.text().get(..offset).unwrap_or("");
+    if !document.is_profile()
         && let Some(rule) = rule(before)
     {
         return in_rule(document, rule);
     }
-    let schema = match document.is_profile {
+    let schema = match document.is_profile() {
         true => serde_json::from_str(flagred::profile::SCHEMA),
         false => serde_json::to_value(fuzzy::format::schema()),
     };
@@ -24,12 +51,12 @@ pub(super) fn items(document: &Document, offset: usize) -> Vec<lsp::CompletionIt
     )
 }
 
-fn item(label: &str, kind: lsp::CompletionItemKind, detail: Option<String>) -> lsp::CompletionItem {
-    lsp::CompletionItem {
+fn item(label: &str, kind: Kind, detail: Option<String>) -> Completion {
+    Completion {
         label: label.into(),
-        kind: Some(kind),
+        text: label.into(),
+        kind,
         detail,
-        ..lsp::CompletionItem::default()
     }
 }
 
@@ -55,8 +82,7 @@ fn rule(before: &str) -> Option<&str> {
 }
 
 /// What the rule language takes next.
-fn in_rule(document: &Document, rule: &str) -> Vec<lsp::CompletionItem> {
-    use lsp::CompletionItemKind as Kind;
+fn in_rule(document: &Document, rule: &str) -> Vec<Completion> {
     let spaced = rule.replace(['(', ')'], " ");
     let mut words: Vec<&str> = spaced.split_whitespace().collect();
     // The word at the cursor is being written.
@@ -67,7 +93,7 @@ fn in_rule(document: &Document, rule: &str) -> Vec<lsp::CompletionItem> {
     let hedges = fuzzy::rule::Hedge::ALL.map(fuzzy::rule::Hedge::word);
     let is_hedge = |word: &str| hedges.iter().any(|hedge| is(word, hedge));
     let concludes = words.iter().any(|word| is(word, "THEN"));
-    let Some(rules) = &document.rules else {
+    let Some(rules) = document.rules() else {
         return Vec::new();
     };
     let inputs = rules.model.inputs.iter();
@@ -76,7 +102,7 @@ fn in_rule(document: &Document, rule: &str) -> Vec<lsp::CompletionItem> {
         true => outputs.collect(),
         false => inputs.chain(outputs).collect(),
     };
-    let keywords = |words: &[&str]| -> Vec<lsp::CompletionItem> {
+    let keywords = |words: &[&str]| -> Vec<Completion> {
         words
             .iter()
             .map(|word| item(word, Kind::Keyword, None))
@@ -97,7 +123,7 @@ fn in_rule(document: &Document, rule: &str) -> Vec<lsp::CompletionItem> {
             let mut found: Vec<_> = terms
                 .map(|term| {
                     let shape = fuzzy::format::shape_text(&term.membership_function);
-                    item(&term.name, Kind::EnumMember, Some(shape))
+                    item(&term.name, Kind::Choice, Some(shape))
                 })
                 .collect();
             let hedges = fuzzy::rule::Hedge::ALL.into_iter();
@@ -129,8 +155,7 @@ fn in_rule(document: &Document, rule: &str) -> Vec<lsp::CompletionItem> {
 }
 
 /// The keys that a mapping takes at the cursor, or the words that a key takes.
-fn in_schema(document: &Document, before: &str, root: &Value) -> Vec<lsp::CompletionItem> {
-    use lsp::CompletionItemKind as Kind;
+fn in_schema(document: &Document, before: &str, root: &Value) -> Vec<Completion> {
     let (path, key) = path(before);
     let mut parts = vec![root];
     for name in &path {
@@ -145,12 +170,9 @@ fn in_schema(document: &Document, before: &str, root: &Value) -> Vec<lsp::Comple
             let properties = part.get("properties").and_then(Value::as_object);
             for (name, about) in properties.into_iter().flatten() {
                 let about = about.get("description").and_then(Value::as_str);
-                let mut one = item(name, Kind::Property, about.map(str::to_owned));
-                one.insert_text = Some(format!("{name}: "));
-                if found
-                    .iter()
-                    .all(|known: &lsp::CompletionItem| known.label != *name)
-                {
+                let mut one = item(name, Kind::Key, about.map(str::to_owned));
+                one.text = format!("{name}: ");
+                if found.iter().all(|known: &Completion| known.label != *name) {
                     found.push(one);
                 }
             }
@@ -162,25 +184,25 @@ fn in_schema(document: &Document, before: &str, root: &Value) -> Vec<lsp::Comple
         if part
             .get("$ref")
             .is_some_and(|name| name == "#/$defs/signal")
-            && document.is_profile
+            && document.is_profile()
         {
             found.extend(signals());
         }
         for part in resolved(root, part) {
             let words = part.get("enum").and_then(Value::as_array);
             let words = words.into_iter().flatten().filter_map(Value::as_str);
-            found.extend(words.map(|word| item(word, Kind::EnumMember, None)));
+            found.extend(words.map(|word| item(word, Kind::Choice, None)));
         }
     }
     found
 }
 
-fn signals() -> Vec<lsp::CompletionItem> {
+fn signals() -> Vec<Completion> {
     let of_motors = flagred::source::Signal::names().map(|name| (name, None));
     let of_logs = flightlog::known_signals().into_iter();
     let of_logs = of_logs.map(|signal| (signal.name, Some(signal.unit.to_owned())));
     let all = of_motors.chain(of_logs);
-    all.map(|(name, unit)| item(name, lsp::CompletionItemKind::Value, unit))
+    all.map(|(name, unit)| item(name, Kind::Signal, unit))
         .collect()
 }
 

@@ -8,7 +8,7 @@ use fuzzy::{
     rule::{self, Name},
 };
 
-use super::document::Document;
+use crate::document::Document;
 
 /// What a name in the text means.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -75,10 +75,7 @@ fn all(rules: &Partial) -> Vec<(Range<usize>, Meaning)> {
 }
 
 fn at(document: &Document, offset: usize) -> Option<(&Partial, Range<usize>, Meaning)> {
-    if document.is_profile {
-        return None;
-    }
-    let rules = document.rules.as_ref()?;
+    let rules = document.rules()?;
     let names = all(rules).into_iter();
     let (span, meaning) = names
         .filter(|(span, _)| !span.is_empty())
@@ -86,18 +83,27 @@ fn at(document: &Document, offset: usize) -> Option<(&Partial, Range<usize>, Mea
     Some((rules, span, meaning))
 }
 
-/// What the name at a place means, in Markdown.
-pub(super) fn describe(document: &Document, offset: usize) -> Option<(Range<usize>, String)> {
+/// What a name means.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Description {
+    /// The bytes of the name.
+    pub span: Range<usize>,
+    /// What it means, in Markdown.
+    pub markdown: String,
+}
+
+/// What the name at an offset in bytes means.
+pub fn describe(document: &Document, offset: usize) -> Option<Description> {
     let (rules, span, meaning) = at(document, offset)?;
     let variables = variables(rules);
-    let text = match meaning {
+    let markdown = match meaning {
         Meaning::Variable(v) => variable(variables.get(v)?.variable),
         Meaning::Term(v, t) => {
             let of = variables.get(v)?.variable;
             term(of.terms.get(t)?, of)
         }
     };
-    Some((span, text))
+    Some(Description { span, markdown })
 }
 
 fn unit(variable: &Variable) -> String {
@@ -126,7 +132,7 @@ fn term(term: &Term, of: &Variable) -> String {
 }
 
 /// Where the name at a place is defined.
-pub(super) fn definition(document: &Document, offset: usize) -> Option<Range<usize>> {
+pub fn definition(document: &Document, offset: usize) -> Option<Range<usize>> {
     let (rules, _, meaning) = at(document, offset)?;
     let variables = variables(rules);
     match meaning {
@@ -135,12 +141,11 @@ pub(super) fn definition(document: &Document, offset: usize) -> Option<Range<usi
     }
 }
 
-/// All places of the name at a place, for a new one; or why it cannot be renamed.
-pub(super) fn rename(
-    document: &Document,
-    offset: usize,
-    new: &str,
-) -> Result<Vec<Range<usize>>, String> {
+/// All places of the name at a place, for a new one.
+///
+/// # Errors
+/// Why it cannot be renamed.
+pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<Range<usize>>, String> {
     let (rules, _, meaning) =
         at(document, offset).ok_or("there is no variable and no term here")?;
     if rules.rules_unread {

@@ -1,0 +1,76 @@
+//! What is told of a rule set, as documents for programs.
+
+use fuzzy::{check, diagnostic::Diagnostic, engine, model::Step};
+use serde::Serialize;
+
+use crate::Examined;
+
+/// The findings about a rule set or a profile: `flagred check --json`.
+#[derive(Debug, Serialize)]
+pub struct Checked<'a> {
+    schema: &'static str,
+    file: &'a str,
+    /// The name of the rule set; absent where it has errors, and of a profile.
+    model: Option<&'a str>,
+    /// The name of the profile; absent where it cannot be read, and of a rule set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    profile: Option<&'a str>,
+    /// The commands that made the rule set; absent where it says none.
+    #[serde(skip_serializing_if = "<[Step]>::is_empty")]
+    provenance: &'a [Step],
+    findings: &'a [Diagnostic],
+    report: Option<&'a check::Report>,
+}
+
+impl<'a> Checked<'a> {
+    /// Of a rule set.
+    pub fn rules(file: &'a str, examined: &'a Examined) -> Checked<'a> {
+        let model = examined
+            .analysed
+            .as_ref()
+            .map(|(document, _)| &document.model);
+        Checked {
+            model: model.map(|model| model.name.as_str()),
+            provenance: model.map_or(&[], |model| &model.provenance),
+            report: examined.analysed.as_ref().map(|(_, report)| report),
+            ..Checked::profile(file, None, &examined.findings.0)
+        }
+    }
+
+    /// Of a profile of this name.
+    pub fn profile(
+        file: &'a str,
+        name: Option<&'a str>,
+        findings: &'a [Diagnostic],
+    ) -> Checked<'a> {
+        Checked {
+            schema: "flagred.check/1",
+            file,
+            model: None,
+            profile: name,
+            provenance: &[],
+            findings,
+            report: None,
+        }
+    }
+}
+
+/// How the outputs come about at a point: `flagred explain --json`.
+#[derive(Debug, Serialize)]
+pub struct Explained<'a> {
+    schema: &'static str,
+    model: &'a str,
+    #[serde(flatten)]
+    explanation: &'a engine::Explanation,
+}
+
+impl<'a> Explained<'a> {
+    /// Of the rule set of this name.
+    pub fn new(model: &'a str, explanation: &'a engine::Explanation) -> Explained<'a> {
+        Explained {
+            schema: "flagred.explain/1",
+            model,
+            explanation,
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! The part of a decision map that a picture shows: one or two inputs are the axes, the others are held.
+
+use flagred::gap::Filling;
+use fuzzy::{
+    Engine, Model,
+    drawing::{Axis, Cell, Scale, Slice},
+    engine::{EvaluateError, Outcome},
+    model::Variable,
+};
+
+/// The number of points along an axis, where nothing else is asked for.
+pub const POINTS: usize = 51;
+
+/// A rule set, compiled, with the output to show and what fills its gaps.
+#[derive(Debug)]
+pub struct Mapped<'a> {
+    /// The rule set.
+    pub model: &'a Model,
+    /// It, compiled.
+    pub engine: &'a Engine,
+    /// The index of the output.
+    pub output: usize,
+    /// What fills gaps, and the name of the method.
+    pub filling: Option<(&'a Filling, &'static str)>,
+}
+
+/// Combinations of held values that are tried.
+const MOST_TRIED: usize = 1000;
+
+/// An input is held off its middle only where the output then varies more by this share of its range.
+const NOTICEABLE: f64 = 0.01;
+
+/// One output over the axes; `point` holds the other inputs.
+///
+/// # Errors
+/// The point is no point of the rule set's inputs.
+pub fn cut(
+    mapped: &Mapped<'_>,
+    (x, x_axis): (usize, Axis),
+    y: Option<(usize, Axis)>,
+    mut point: Vec<f64>,
+) -> Result<Slice, EvaluateError> {
+    let model = mapped.model;
+    let is_axis = |input: usize| input == x || y.as_ref().is_some_and(|(y, _)| *y == input);
+    let held = model.inputs.iter().zip(&point).enumerate();
+    let held: Vec<(String, f64)> = held
+        .filter(|(input, _)| !is_axis(*input))
+        .map(|(_, (input, value))| (input.name.clone(), *value))
+        .collect();
+    let rows = y.as_ref().map_or(1, |(_, axis)| axis.points.len());
+    let mut cells = Vec::with_capacity(x_axis.points.len() * rows);
+    let mut scratch = mapped.engine.scratch();
+    let mut outcomes = vec![Outcome::default(); mapped.engine.output_names().len()];
+    for x_value in &x_axis.points {
+        for row in 0..rows {
+            if let Some(value) = point.get_mut(x) {
+                *value = *x_value;
+            }
+            if let Some((y, axis)) = &y
+                && let (Some(value), Some(y_value)) = (point.get_mut(*y), axis.points.get(row))
+            {
+                *value = *y_value;
+            }
+            match mapped
+                .engine
+                .evaluate_with(&mut scratch, &point, &mut outcomes)
+            {
+                Ok(()) | Err(EvaluateError::NoRuleFired { .. }) => {}
+                Err(error) => return Err(error),
+            }
+            let outcome = outcomes.get(mapped.output).copied().unwrap_or_default();
+            cells.push(cell(mapped, &outcome, &point));
+        }
+    }
+    let output = model.outputs.get(mapped.output).map(|o| &o.variable);
+    Ok(Slice {
+        model: model.name.clone(),
+        output: output.map(|o| o.name.clone()).unwrap_or_default(),
+        unit: output.and_then(|o| o.unit.clone()),
+        range: output.map_or(Scale::new(0.0, 1.0), |o| Scale::new(o.low, o.high)),
+        x: x_axis,
+        y: y.map(|(_, axis)| axis),
+        held,
+        filling: mapped.filling.map(|(_, method)| method.replace('_', " ")),
+        cells,
+    })
+}
+
+fn cell(mapped: &Mapped<'_>, outcome: &Outcome, point: &[f64]) -> Cell {
+    let reading = mapped
+        .filling
+        .filter(|(filling, _)| filling.is_gap(outcome.coverage))
+        .and_then(|(filling, _)| filling.read(point));
+    Cell {
+        value: reading.map(|r| r.value).or_else(|| outcome.value()),
+        coverage: outcome.coverage,
+        rule: outcome.dominant,
+        filled_from: reading.map(|reading| reading.distance),
+    }
+}
+
+/// The part of an input's range that is shown: the whole range, or twice the part where the terms change if that is less
+/// than a quarter of the range.
+pub fn shown(variable: &Variable) -> Scale {
+    let (low, high) = (variable.low, variable.high);
+    let (first, last) = flagred::gap::changing(variable);
+    let width = last - first;
+    if width <= 0.0 || width >= (high - low) / 4.0 {
+        return Scale::new(low, high);
+    }
+    let (low, high) = match (first > low, last < high) {
+        (true, false) => (first - width, high),
+        (false, true) => (low, last + width),
+        _ => (
+            (first - width / 2.0).max(low),
+            (last + width / 2.0).min(high),
+        ),
+    };
+    Scale::new(low, high)
+}
+
+/// A value for each input: the fixed one, the middle of its range, or the peak of a term where the output varies more
+/// over the two axes.
+pub fn held(
+    mapped: &Mapped<'_>,
+    fixed: &[Option<f64>],
+    (x, y): (usize, Option<usize>),
+) -> Vec<f64> {
+    let inputs = &mapped.model.inputs;
+    let middle = |input: &Variable| (input.low + input.high) / 2.0;
+    let mut candidates: Vec<Vec<f64>> = inputs
+        .iter()
+        .zip(fixed)
+        .enumerate()
+        .map(|(index, (input, fixed))| {
+            let middle = middle(input);
+            match fixed {
+                Some(value) => vec![*value],
+                None if index == x || Some(index) == y => vec![middle],
+                None => {
+                    let mut peaks = flagred::gap::peaks(input);
+                    peaks.sort_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
+                    [vec![middle], peaks].concat()
+                }
+            }
+        })
+        .collect();
+    let first: Vec<f64> = candidates
+        .iter()
+        .filter_map(|c| c.first().copied())
+        .collect();
+    while candidates.iter().map(Vec::len).product::<usize>() > MOST_TRIED {
+        let longest = candidates.iter_mut().max_by_key(|c| c.len());
+        longest.into_iter().for_each(|c| c.truncate(c.len() / 2));
+    }
+    let axes = [Some(x), y].into_iter().flatten();
+    let axes: Vec<(usize, Vec<f64>)> = axes
+        .filter_map(|input| Some((input, flagred::gap::peaks(inputs.get(input)?))))
+        .collect();
+    let (mut best, mut most) = (first.clone(), variation(mapped, &first, &axes));
+    for point in combinations(&candidates) {
+        let variation = variation(mapped, &point, &axes);
+        if variation > most + NOTICEABLE {
+            (best, most) = (point, variation);
+        }
+    }
+    best
+}
+
+/// Every choice of one value from each list; the last list varies fastest.
+fn combinations(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    lists.iter().fold(vec![Vec::new()], |all, list| {
+        let with = |so_far: Vec<f64>| {
+            let longer = list
+                .iter()
+                .map(move |value| [so_far.as_slice(), &[*value]].concat());
+            longer.collect::<Vec<_>>()
+        };
+        all.into_iter().flat_map(with).collect()
+    })
+}
+
+/// From the lowest to the highest value of the output over the peaks of the axes, as a share of its range.
+fn variation(mapped: &Mapped<'_>, point: &[f64], axes: &[(usize, Vec<f64>)]) -> f64 {
+    let lists: Vec<Vec<f64>> = axes.iter().map(|(_, peaks)| peaks.clone()).collect();
+    let mut scratch = mapped.engine.scratch();
+    let mut outcomes = vec![Outcome::default(); mapped.engine.output_names().len()];
+    let mut point = point.to_vec();
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for values in combinations(&lists) {
+        for ((input, _), axis_value) in axes.iter().zip(values) {
+            if let Some(value) = point.get_mut(*input) {
+                *value = axis_value;
+            }
+        }
+        let engine = &mapped.engine;
+        let told = engine.evaluate_with(&mut scratch, &point, &mut outcomes);
+        let value = outcomes.get(mapped.output).and_then(Outcome::value);
+        if let (Ok(()), Some(value)) = (told, value) {
+            (least, most) = (least.min(value), most.max(value));
+        }
+    }
+    let output = mapped.model.outputs.get(mapped.output);
+    let range = output.map_or(1.0, |o| o.variable.high - o.variable.low);
+    ((most - least) / range).max(0.0)
+}
