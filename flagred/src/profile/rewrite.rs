@@ -206,11 +206,20 @@ mod tests {
         let text = PROFILES[0].text;
         let mut wanted = verdict(text);
         wanted.warn.raise.risk_pct = Some(10.0);
-        assert_eq!(
-            Profile::rewritten(text, &wanted),
-            None,
-            "held above what raises it"
+        let refused = Profile::rewritten(text, &wanted).unwrap_err().to_string();
+        assert!(
+            refused.contains("held until 45, which is above 10"),
+            "{refused}"
         );
-        assert_eq!(Profile::rewritten("name: x", &verdict(text)), None);
+        assert!(Profile::rewritten("name: x", &verdict(text)).is_err());
+        // Two keys have one value: it cannot be changed for one of them.
+        let shared = profile("verdict:\n  fail: &level {risk: 80}\n  warn: *level\n");
+        let mut wanted = verdict(&shared);
+        wanted.warn.raise.risk_pct = Some(70.0);
+        wanted.warn.until.risk_pct = Some(70.0);
+        match Profile::rewritten(&shared, &wanted) {
+            Ok(changed) => assert_eq!(verdict(&changed), wanted),
+            Err(refused) => assert!(refused.to_string().contains("cannot be changed here")),
+        }
     }
 }
