@@ -1,6 +1,6 @@
 // Compiled by package.test.mjs: what users write, with the types that they are given.
 
-import { Flight, Panic, Profile, RuleSet, RuleText, start, type Finding, type Moment, type Value } from 'flagred';
+import { Flight, Panic, Profile, RuleSet, RuleText, start, type Diagnostic, type Moment, type Value } from 'flagred';
 
 export async function tip(text: string): Promise<number | null> {
   await start();
@@ -15,7 +15,7 @@ export async function tip(text: string): Promise<number | null> {
 
 export function wrong(text: string): string[] {
   const open = new RuleText(text);
-  const findings: Finding[] = open.findings();
+  const findings: Diagnostic[] = open.findings();
   open.free();
   return findings.map(({ line, severity, message, help }) => `${line}: ${severity}: ${message}${help ? ` (${help})` : ''}`);
 }

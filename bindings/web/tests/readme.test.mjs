@@ -9,14 +9,15 @@ import { install, repository, run } from './installed.mjs';
 const readme = await readFile(join(repository, 'bindings/web/README.md'), 'utf8');
 const blocks = [...readme.matchAll(/^```js\n(.*?)^```$/gms)].map(([, code]) => code);
 
+const { folder, files } = await install();
+
 /** What a block says that it prints. */
 function said(code) {
   const printed = code.split('\n').map((line) => /^\/\/ (.*)$|console\.log\(.*\); \/\/ (.*)$/.exec(line));
   return printed.filter((found) => found).map(([, own, behind]) => own ?? behind);
 }
 
-test('every block of the README runs as printed', async (t) => {
-  const { folder } = await install(t);
+test('every block of the README runs as printed', async () => {
   await cp(join(repository, 'examples/flights/steady.BIN'), join(folder, 'steady.BIN'));
   assert.equal(blocks.length, 3);
   for (const [i, code] of blocks.entries()) {
@@ -26,7 +27,6 @@ test('every block of the README runs as printed', async (t) => {
   }
 });
 
-test('every name that it tells is there', async (t) => {
-  const { files } = await install(t);
+test('every name that it tells is there', () => {
   for (const [file] of readme.matchAll(/\b(wasm\/)?\w+\.(js|wasm)\b/g)) assert.ok(files.includes(file), file);
 });
