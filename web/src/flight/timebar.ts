@@ -50,7 +50,7 @@ export function timeBar(actions: Actions): TimeBar {
     'div',
     { class: 'timebar', role: 'group', 'aria-label': 'Time' },
     h('div', { class: 'slider' }, slider, h('span', { class: 'overview' }, overview)),
-    h('div', { class: 'zoom' }, span, earlier, farther, all, closer, later),
+    h('div', { class: 'zoom' }, h('span', { class: 'hint soft' }, 'Drag over a chart to zoom.'), span, earlier, farther, all, closer, later),
   );
   return {
     element,
