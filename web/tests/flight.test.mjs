@@ -122,7 +122,7 @@ test('a stretch that is selected is drawn anew, with what thinning left out', as
   assert.ok(Math.abs(Number(start) - (48.8 + 129.1 / 2)) < 0.5, `it starts at ${start} s`);
   await page.waitForTimeout(400);
   assert.match(page.url(), /from=113\.\d\d&to=119\.\d\d/);
-  await page.getByRole('button', { name: 'Show the whole flight' }).click();
+  await page.getByRole('button', { name: 'All of the flight' }).click();
   await room.settled();
   assert.equal((await points())[1], whole);
   assert.ok(await page.getByRole('button', { name: 'Zoom out' }).isDisabled());

@@ -154,6 +154,8 @@ export function report(style: string, listener: Listener): Report {
         }
         if (isAll) made.isEmpty = !html;
         else if (!html && !made.isEmpty) drawn.append(h('p', { class: 'nothing' }, 'Nothing is known in this stretch of time.'));
+        // What may scroll can be scrolled by keys.
+        for (const wide of drawn.querySelectorAll<HTMLElement>('pre, .scroll')) wide.tabIndex = 0;
         made.charts = chartsIn(drawn);
         if (name === 'map') map = mapIn(drawn);
         made.element.replaceChildren(drawn);
