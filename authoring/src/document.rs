@@ -1,5 +1,7 @@
 //! An open text: what it means, and what is wrong with it.
 
+use std::cell::OnceCell;
+
 use flagred::{loaded, profile::Profile};
 use fuzzy::{
     Model, check,
@@ -16,8 +18,16 @@ pub struct Document {
     text: String,
     /// The rule set as far as it can be read; of a profile, the one that it names.
     rules: Option<Partial>,
-    is_profile: bool,
-    findings: Findings,
+    profile: Option<OpenProfile>,
+    /// Found when somebody asks: it is most of the work.
+    findings: OnceCell<Findings>,
+}
+
+/// A text that is meant to be a profile.
+#[derive(Debug)]
+struct OpenProfile {
+    read: Result<Profile, Findings>,
+    rules_text: Option<String>,
 }
 
 impl Document {
@@ -27,35 +37,20 @@ impl Document {
         rules_of: impl FnOnce(&Profile) -> Option<String>,
     ) -> Document {
         let text = text.into();
-        if !is_profile(&text) {
-            return Document {
-                rules: partial(&text),
-                is_profile: false,
-                // Of claims, and none are made.
-                findings: examine(&text, &check::Options::default()).map_or_else(
-                    |finding| Findings::locate(vec![*finding], &text),
-                    |e| e.findings,
-                ),
-                text,
-            };
-        }
-        let (rules, findings) = match text.parse::<Profile>() {
-            Ok(profile) => {
-                let rules = rules_of(&profile);
-                let model = rules.as_deref().map(fuzzy::yaml::parse);
-                let findings = match model {
-                    Some(Ok(document)) => loaded::examine(&text, &document.model).0,
-                    _ => unusable_rules(&text, &profile.rules),
-                };
-                (rules, findings)
-            }
-            Err(findings) => (None, findings),
+        let profile = is_profile(&text).then(|| {
+            let read = text.parse::<Profile>();
+            let rules_text = read.as_ref().ok().and_then(rules_of);
+            OpenProfile { read, rules_text }
+        });
+        let rules = match &profile {
+            Some(profile) => profile.rules_text.as_deref().and_then(partial),
+            None => partial(&text),
         };
         Document {
-            rules: rules.as_deref().and_then(partial),
-            is_profile: true,
-            findings,
             text,
+            rules,
+            profile,
+            findings: OnceCell::new(),
         }
     }
 
@@ -66,12 +61,24 @@ impl Document {
 
     /// What `flagred check` finds.
     pub fn findings(&self) -> &Findings {
-        &self.findings
+        self.findings.get_or_init(|| match &self.profile {
+            Some(profile) => profile.findings(&self.text),
+            // Only claims are refused, and none are made.
+            None => examine(&self.text, &check::Options::default()).map_or_else(
+                |finding| Findings::locate(vec![*finding], &self.text),
+                |examined| examined.findings,
+            ),
+        })
     }
 
     /// Whether it is a profile.
     pub fn is_profile(&self) -> bool {
-        self.is_profile
+        self.profile.is_some()
+    }
+
+    /// The profile, where it can be read.
+    pub fn profile(&self) -> Option<&Profile> {
+        self.profile.as_ref()?.read.as_ref().ok()
     }
 
     /// The rule set as far as it can be read; of a profile, the one that it names.
@@ -81,7 +88,20 @@ impl Document {
 
     /// The rule set as far as it can be read, with its places; none of a profile.
     pub(crate) fn rules(&self) -> Option<&Partial> {
-        self.rules.as_ref().filter(|_| !self.is_profile)
+        self.rules.as_ref().filter(|_| self.profile.is_none())
+    }
+}
+
+impl OpenProfile {
+    fn findings(&self, text: &str) -> Findings {
+        let profile = match &self.read {
+            Ok(profile) => profile,
+            Err(findings) => return findings.clone(),
+        };
+        match self.rules_text.as_deref().map(fuzzy::yaml::parse) {
+            Some(Ok(document)) => loaded::examine(text, &document.model).0,
+            _ => unusable_rules(text, &profile.rules),
+        }
     }
 }
 

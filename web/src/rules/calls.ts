@@ -1,9 +1,128 @@
-/** What the rules room asks of its worker. */
+/** What the rules room asks of its worker. Every call carries the text it is about; what was made of the last texts is kept. */
 
-import { findingsOf } from 'flagred';
+import {
+  RuleSet,
+  RuleText,
+  colours,
+  exportRules,
+  importRules,
+  startingPoints,
+  type About,
+  type Cells,
+  type Completion,
+  type DrawnVariable,
+  type Edit,
+  type Exchanged,
+  type Explanation,
+  type Finding,
+  type Format,
+  type Hover,
+  type Start,
+  type View,
+} from 'flagred';
 import type { Tell } from '../calls';
 
-/** The findings of a rule set. */
-export function findings(_tell: Tell, text: string): unknown {
-  return JSON.parse(findingsOf(text));
+interface Known {
+  text: string;
+  open: RuleText;
+  set: RuleSet | undefined;
+  /** Why it cannot be used. */
+  refusal: string;
 }
+
+/** The text before a drag, the one while it lasts, and one that is being typed. */
+const MOST = 3;
+const known: Known[] = [];
+
+function of(text: string): Known {
+  const at = known.findIndex((one) => one.text === text);
+  const [found] = at < 0 ? [] : known.splice(at, 1);
+  const one = found ?? read(text);
+  known.push(one);
+  while (known.length > MOST) forget(known.shift()!);
+  return one;
+}
+
+function read(text: string): Known {
+  const open = new RuleText(text);
+  try {
+    return { text, open, set: new RuleSet(text), refusal: '' };
+  } catch (error) {
+    if (!(error instanceof Error) || error.name === 'Panic') throw error;
+    return { text, open, set: undefined, refusal: error.message };
+  }
+}
+
+function forget({ open, set }: Known): void {
+  open.free();
+  set?.free();
+}
+
+function compiled(text: string): RuleSet {
+  const { set, refusal } = of(text);
+  if (!set) throw new Error(refusal);
+  return set;
+}
+
+/** What a text means, as far as it can be read. */
+export interface Opened {
+  text: string;
+  isProfile: boolean;
+  variables: DrawnVariable[];
+  /** Nothing where the rule set cannot be used. */
+  about: About | undefined;
+}
+
+export function rulesOpen(_tell: Tell, text: string): Opened {
+  const { open, set } = of(text);
+  return { text, isProfile: open.isProfile, variables: open.variables(), about: set?.about() };
+}
+
+export const rulesFindings = (_tell: Tell, text: string): Finding[] => of(text).open.findings();
+export const rulesCompletions = (_tell: Tell, text: string, at: number): Completion[] => of(text).open.completions(at);
+export const rulesHover = (_tell: Tell, text: string, at: number): Hover | null => of(text).open.hover(at);
+export const rulesDefinition = (_tell: Tell, text: string, at: number): number | undefined => of(text).open.definition(at);
+export const rulesRename = (_tell: Tell, text: string, at: number, name: string): Edit[] => of(text).open.rename(at, name);
+export const rulesFormat = (_tell: Tell, text: string): string => of(text).open.formatted();
+
+export const rulesMap = (_tell: Tell, text: string, view: View): Cells => compiled(text).map(view);
+export const rulesExplain = (_tell: Tell, text: string, point: number[]): Explanation => compiled(text).explain(point);
+export const rulesHeld = (_tell: Tell, text: string, output: number, axes: number[], fixed: (number | null)[]): number[] =>
+  compiled(text).held(output, axes, fixed);
+
+export type Picture = 'map' | 'surface' | 'rules' | 'terms' | 'explanation';
+
+/** A picture as the command line draws it. */
+export function rulesPicture(_tell: Tell, text: string, kind: Picture, view: View): string {
+  const set = compiled(text);
+  if (kind === 'terms') return set.termsSvg();
+  return kind === 'explanation' ? set.explanationSvg(view.held) : set.mapSvg(kind, view);
+}
+
+/** Where a point of a term is. */
+export interface Place {
+  variable: number;
+  term: number;
+  handle: number;
+}
+
+/** The text after a point of a term has moved, counted from `text`, and what it means. */
+export function rulesDrag(_tell: Tell, text: string, { variable, term, handle }: Place, x: number, degree: number): Opened {
+  const edits = of(text).open.drag(variable, term, handle, x, degree);
+  return rulesOpen(_tell, edited(text, edits));
+}
+
+function edited(text: string, edits: Edit[]): string {
+  let [changed, at] = ['', 0];
+  for (const { from, to, insert } of [...edits].sort((a, b) => a.from - b.from || a.to - b.to)) {
+    changed += text.slice(at, from) + insert;
+    at = to;
+  }
+  return changed + text.slice(at);
+}
+
+export const rulesStarts = (_tell: Tell): Start[] => startingPoints();
+export const rulesColours = (_tell: Tell): { scale: Uint8Array; distinct: Uint8Array } => colours();
+export const rulesImport = (_tell: Tell, text: string, lossy: boolean): Exchanged => importRules(text, lossy);
+export const rulesExport = (_tell: Tell, text: string, format: Format, lossy: boolean): Exchanged =>
+  exportRules(text, format, lossy);

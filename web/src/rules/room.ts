@@ -1,15 +1,499 @@
-/** The rules room. */
+/** The rules room: an editor, what is wrong with the text, the decision map, why a value is what it is, the terms as shapes. */
 
+import type { About, Finding, Format, Start, View } from 'flagred';
 import type { App, Room } from '../app';
-import { h } from '../dom';
+import { add, fill, h } from '../dom';
+import { Trapped } from '../engine';
+import { backing, type Backing } from './backing';
+import type { Opened, Picture, Place } from './calls';
+import { editor, type Editor } from './editor';
+import { drawn, opened as openedFile, saved } from './exchange';
+import { explain } from './explanation';
+import { inputs } from './inputs';
+import { latest } from './latest';
+import { decisionMap, type Kind } from './map';
+import { problems } from './problems';
+import { LONGEST, pack, unpack } from './share';
+import { keep, kept } from './store';
+import { terms } from './terms';
+
+/** Points along an axis of the map: while something moves, and at rest; of the curve of one input. */
+const MOVING = 51;
+const RESTING = 121;
+const CURVE = 401;
+/** How long nothing moves at rest. */
+const REST_MS = 120;
+const ADDRESS_MS = 300;
+const FORMATS = ['FIS', 'FLL', 'FCL', 'FML'] as const;
+const KINDS: [Kind, string][] = [['map', 'Map'], ['surface', 'Surface'], ['rules', 'Strongest rule']];
 
 /** Opens the room. */
-export function open(root: HTMLElement, app: App): Room {
-  const text = h('textarea', { 'aria-label': 'Rule set' });
-  const answer = h('pre', {});
-  text.addEventListener('input', async () => {
-    answer.textContent = JSON.stringify(await app.engine.call('findings', text.value), null, 1);
+export async function open(root: HTMLElement, app: App): Promise<Room> {
+  const { engine } = app;
+  const [colours, starts] = await Promise.all([engine.call('rulesColours'), engine.call('rulesStarts')]);
+
+  /** What the editor's text means; of the map, what the last text without errors means. */
+  let opened: Opened | undefined;
+  let good: { text: string; about: About } | undefined;
+  const choice = { output: '', x: '', y: '', kind: 'map' as Kind, isWhole: false };
+  /** The value of each input that was ever set or held, by name. */
+  const values = new Map<string, number>();
+  /** The text from which a point is dragged. */
+  let base: string | undefined;
+  let start: string | undefined;
+  /** A text that flagred breaks at is not tried again. */
+  let poison: string | undefined;
+
+  // What is wrong with flagred itself is told, and does not end the page.
+  async function guarded(text: string, run: () => Promise<void>): Promise<void> {
+    if (text === poison) return;
+    try {
+      await run();
+    } catch (error) {
+      if (error instanceof Trapped) poison = text;
+      app.say(error instanceof Trapped ? `flagred has a defect, and goes on: ${error.message}` : (error as Error).message);
+    }
+  }
+  engine.onRestart = () => edit.text() !== poison && changed(edit.text());
+
+  // The parts of the room.
+  const map = decisionMap(colours, (x, y) => {
+    const axes = view()?.axes ?? [];
+    for (const [i, value] of [x, y].entries()) if (axes[i] && value !== undefined) move(axes[i].input, value);
   });
-  root.append(h('h1', {}, 'Rules'), text, answer);
-  return {};
+  const sliders = inputs((input, value) => move(input, value));
+  const shapes = terms(colours, {
+    begin: () => (base = edit.text()),
+    move: (place, x, degree) => base !== undefined && drag(base, place, x, degree),
+    end: () => void drag.settled().then(concluded),
+  });
+  const found = problems((from, to) => edit.select(from, to));
+  const why = h('div', { class: 'why' });
+  const stale = h('p', { class: 'stale', hidden: true }, 'The text has errors: this is of the last text without.');
+  const legend = h('ul', { class: 'legend rules', hidden: true });
+  const selects = {
+    output: h('select', { 'aria-label': 'Output', onchange: chosen }),
+    x: h('select', { 'aria-label': 'Input across', onchange: chosen }),
+    y: h('select', { 'aria-label': 'Input up', onchange: chosen }),
+    kind: h('select', { 'aria-label': 'Show', onchange: chosen }, ...KINDS.map(([value, words]) => h('option', { value }, words))),
+  };
+  const whole = h('input', { type: 'checkbox', onchange: chosen });
+  const labelled = (words: string, select: HTMLElement) => h('label', {}, h('span', { class: 'soft' }, words), select);
+
+  // What can be done with the text.
+  const startFrom = h('select', { 'aria-label': 'Start from an example', onchange: startChosen });
+  add(
+    startFrom,
+    h('option', { value: '' }, 'Start from ...'),
+    ...starts.map(({ name, about }, i) => h('option', { value: i }, `${name}: ${about}`)),
+  );
+  const file = h('input', { type: 'file', hidden: true, accept: '.yaml,.yml,.json,.fis,.fll,.fcl,.fml,.xml', 'aria-label': 'Rule set' });
+  file.addEventListener('change', () => {
+    const [first] = file.files ?? [];
+    file.value = '';
+    if (first) void take(first);
+  });
+  const save = h('select', { 'aria-label': 'Download', onchange: saveChosen });
+  add(
+    save,
+    h('option', { value: '' }, 'Download ...'),
+    h('option', { value: 'YAML' }, 'Rule set in YAML'),
+    ...FORMATS.map((format) => h('option', { value: format }, `Rule set in ${format}`)),
+    ...[['map', 'Map'], ['surface', 'Surface'], ['rules', 'Strongest rules'], ['terms', 'Terms'], ['explanation', 'Explanation']].map(([value, words]) =>
+      h('option', { value }, `${words} as SVG`),
+    ),
+  );
+  const button = (words: string, title: string, run: () => void) => h('button', { type: 'button', title, onclick: run }, words);
+  const undo = button('Undo', 'Undo (Ctrl+Z)', () => edit.undo());
+  const redo = button('Redo', 'Redo (Ctrl+Y)', () => edit.redo());
+  const bar = h(
+    'div',
+    { class: 'bar-of-tools', role: 'toolbar', 'aria-label': 'Rule set' },
+    startFrom,
+    button('Open', 'Open a rule set in YAML, FIS, FLL, FCL or FML', () => file.click()),
+    file,
+    save,
+    button('Copy link', 'Copy a link that holds this rule set', () => void share()),
+    undo,
+    redo,
+    button('Format', 'One layout (Shift+Alt+F)', format),
+  );
+  const paper = h('div', { class: 'editor' });
+  fill(
+    root,
+    h('h1', {}, 'Rules'),
+    bar,
+    h(
+      'div',
+      { class: 'columns' },
+      h('div', { class: 'writing' }, paper, found.element),
+      h(
+        'div',
+        { class: 'seeing' },
+        h(
+          'section',
+          { class: 'map', 'aria-label': 'Decision map' },
+          h('div', { class: 'choices' }, labelled('output', selects.output), labelled('across', selects.x), labelled('up', selects.y), labelled('show', selects.kind), h('label', { class: 'check' }, whole, ' whole ranges')),
+          stale,
+          map.element,
+          legend,
+          sliders.element,
+        ),
+        h('section', { class: 'explanation', 'aria-label': 'Explanation' }, h('h2', {}, 'Why'), why),
+      ),
+    ),
+    h('section', { class: 'shapes', 'aria-label': 'Terms' }, h('h2', {}, 'Terms ', h('span', { class: 'soft' }, 'drag a point, or move it with the arrow keys')), shapes.element),
+  );
+
+  // What happens as the text changes.
+  const refresh = latest((text: string) => guarded(text, async () => show(await engine.call('rulesOpen', text))));
+  const examine = latest((text: string) =>
+    guarded(text, async () => {
+      const findings = await engine.call('rulesFindings', text);
+      if (text === edit.text()) shown(findings);
+    }),
+  );
+  const drag = latest((text: string, place: Place, x: number, degree: number) =>
+    guarded(text, async () => {
+      try {
+        const next = await engine.call('rulesDrag', text, place, x, degree);
+        if (base !== text) return;
+        edit.follow(next.text);
+        await show(next);
+      } catch (error) {
+        if (error instanceof Trapped) throw error;
+        app.say((error as Error).message);
+      }
+    }),
+  );
+  const drawMap = latest((points: number) => guarded(good?.text ?? '', () => mapped(points)));
+  const reason = latest(() =>
+    guarded(good?.text ?? '', async () => {
+      const now = good;
+      if (now) explain(why, now.about, await engine.call('rulesExplain', now.text, point(now.about)));
+    }),
+  );
+  let rest: ReturnType<typeof setTimeout> | undefined;
+
+  function changed(text: string): void {
+    [undo.disabled, redo.disabled] = [!edit.can().undo, !edit.can().redo];
+    if (base !== undefined) return;
+    store(text);
+    refresh(text);
+    examine(text);
+  }
+
+  function store(text: string): void {
+    disk?.changed(text);
+    if (text !== starts.find(({ name }) => name === start)?.text) start = undefined;
+    if (!disk && !keep(text)) app.say('This browser keeps nothing: download the rule set, or copy its link, before you leave.');
+    address();
+  }
+
+  function shown(findings: Finding[]): void {
+    edit.show(findings);
+    found.show(findings);
+  }
+
+  async function show(next: Opened): Promise<void> {
+    opened = next;
+    shapes.show(next.variables, choice.isWhole);
+    stale.hidden = next.about !== undefined || !good;
+    map.element.classList.toggle('old', !stale.hidden);
+    if (!next.about) return;
+    good = { text: next.text, about: next.about };
+    await hold(good.about);
+    options(good.about);
+    await follow();
+  }
+
+  /** A value for each input that has none yet. */
+  async function hold(about: About): Promise<void> {
+    const names = about.inputs.map(({ name }) => name);
+    if (!about.outputs.some(({ name }) => name === choice.output)) choice.output = about.outputs[about.output]!.name;
+    if (!names.includes(choice.x)) choice.x = names.find((name) => name !== choice.y)!;
+    if (!names.includes(choice.y) || choice.y === choice.x) choice.y = names.find((name) => name !== choice.x) ?? '';
+    for (const { name, low, high } of about.inputs) {
+      const value = values.get(name);
+      if (value !== undefined && (value < low || value > high)) values.delete(name);
+    }
+    if (names.every((name) => values.has(name))) return;
+    const { output, axes } = chosenView(about);
+    const fixed = about.inputs.map(({ name }) => values.get(name) ?? null);
+    const held = await engine.call('rulesHeld', good!.text, output, axes.map(({ input }) => input), fixed);
+    about.inputs.forEach(({ name, shown: [low, high] }, i) => {
+      const isAxis = axes.some(({ input }) => input === i);
+      if (!values.has(name)) values.set(name, isAxis ? (low + high) / 2 : held[i]!);
+    });
+  }
+
+  const point = (about: About) => about.inputs.map(({ name, low }) => values.get(name) ?? low);
+
+  function chosenView(about: About): View {
+    const axes = [choice.x, choice.y].map((name) => about.inputs.findIndex((input) => input.name === name));
+    return {
+      output: about.outputs.findIndex(({ name }) => name === choice.output),
+      axes: axes.filter((input) => input >= 0).map((input) => {
+        const { low, high, shown } = about.inputs[input]!;
+        return choice.isWhole ? { input, low, high } : { input, low: shown[0], high: shown[1] };
+      }),
+      points: RESTING,
+      held: point(about),
+    };
+  }
+  const view = () => good && chosenView(good.about);
+
+  /** The map, the sliders and the reasons for what is good and chosen now. */
+  async function follow(): Promise<void> {
+    const about = good!.about;
+    const { axes, held } = chosenView(about);
+    sliders.show(about.inputs, axes.map(({ input }) => input), held, choice.isWhole);
+    shapes.mark(held);
+    reason();
+    drawMap(axes.length < 2 ? CURVE : MOVING);
+    clearTimeout(rest);
+    if (axes.length === 2) rest = setTimeout(() => drawMap(RESTING), REST_MS);
+    // A drag waits for its map, or moves would pile up.
+    await drawMap.settled();
+  }
+
+  async function mapped(points: number): Promise<void> {
+    const now = good;
+    if (!now) return;
+    const view = { ...chosenView(now.about), points };
+    const cells = await engine.call('rulesMap', now.text, view);
+    const { inputs, outputs } = now.about;
+    const [x, y] = view.axes.map(({ input }) => inputs[input]!);
+    if (!x) return;
+    map.draw({ kind: choice.kind, view, cells, x, y, output: outputs[view.output]!, point: point(now.about) });
+    named(now.about, cells.rules);
+  }
+
+  /** Which colour is which rule. */
+  function named(about: About, rules: Float64Array): void {
+    legend.hidden = choice.kind !== 'rules' || !choice.y;
+    if (legend.hidden) return;
+    const there = [...new Set(rules)].filter((rule) => !Number.isNaN(rule)).sort((a, b) => a - b);
+    fill(
+      legend,
+      ...there.map((rule) => {
+        const swatch = h('span', { class: 'swatch', 'aria-hidden': 'true' });
+        const at = 3 * (rule % (colours.distinct.length / 3));
+        swatch.style.backgroundColor = `rgb(${colours.distinct[at]} ${colours.distinct[at + 1]} ${colours.distinct[at + 2]})`;
+        return h('li', {}, swatch, `${rule + 1}: ${about.rules[rule]}`);
+      }),
+    );
+  }
+
+  function move(input: number, value: number): void {
+    const name = good?.about.inputs[input]?.name;
+    if (!name) return;
+    values.set(name, value);
+    void follow();
+    address();
+  }
+
+  function concluded(): void {
+    if (base === undefined) return;
+    const before = base;
+    base = undefined;
+    const after = edit.text();
+    edit.conclude(before);
+    if (after !== before) changed(after);
+  }
+
+  // What is chosen.
+  function options(about: About): void {
+    const put = (select: HTMLSelectElement, names: string[], value: string) => {
+      const now = JSON.stringify(names);
+      if (select.dataset['names'] !== now) {
+        select.dataset['names'] = now;
+        fill(select, ...names.map((name) => h('option', { value: name }, name)));
+      }
+      select.value = value;
+    };
+    const names = about.inputs.map(({ name }) => name);
+    put(selects.output, about.outputs.map(({ name }) => name), choice.output);
+    put(selects.x, names, choice.x);
+    put(selects.y, names.length > 1 ? names : [], choice.y);
+    selects.y.parentElement!.hidden = selects.kind.parentElement!.hidden = names.length < 2;
+    selects.output.parentElement!.hidden = about.outputs.length < 2;
+    selects.kind.value = choice.kind;
+    whole.checked = choice.isWhole;
+  }
+
+  function chosen(): void {
+    const [before, x, y] = [choice.x, selects.x.value, selects.y.value];
+    Object.assign(choice, { output: selects.output.value, x, y: x === y ? (x === choice.y ? before : choice.y) : y });
+    if (x === y && x !== before) choice.y = before;
+    else if (x === y) choice.x = choice.y === x ? before : choice.x;
+    choice.kind = selects.kind.value as Kind;
+    choice.isWhole = whole.checked;
+    if (opened) shapes.show(opened.variables, choice.isWhole);
+    if (good) {
+      options(good.about);
+      void follow();
+    }
+    address();
+  }
+
+  // What is done with the text.
+  function put(text: string, from?: string): void {
+    start = from;
+    values.clear();
+    edit.replace(text);
+    if (from) store(text);
+  }
+
+  function startChosen(): void {
+    const one: Start | undefined = startFrom.value === '' ? undefined : starts[Number(startFrom.value)];
+    startFrom.value = '';
+    if (!one) return;
+    put(one.text, one.name);
+    app.say(`${one.name} is open. Undo brings back what you had.`);
+  }
+
+  async function take(file: File): Promise<void> {
+    try {
+      const text = await openedFile(app, file);
+      if (text !== undefined) put(text);
+    } catch (error) {
+      app.say(error instanceof TypeError ? `\`${file.name}\` is not a text` : (error as Error).message);
+    }
+  }
+
+  function saveChosen(): void {
+    const value = save.value;
+    save.value = '';
+    const now = view();
+    const name = (good?.about.name ?? 'rules').replace(/[^\w-]+/g, '-') || 'rules';
+    const isFormat = value === 'YAML' || FORMATS.some((format) => format === value);
+    const work = isFormat
+      ? saved(app, name, edit.text(), value as Format | 'YAML')
+      : good && now ? drawn(app, name, good.text, value as Picture, now) : Promise.reject(new Error('a rule set with errors has no picture'));
+    work.catch((error: Error) => app.say(error.message));
+  }
+
+  async function share(): Promise<void> {
+    const parameters = said();
+    parameters.delete('start');
+    parameters.set('text', await pack(edit.text()));
+    app.navigate(parameters);
+    const link = location.href;
+    if (link.length > LONGEST) app.say('The link is in the address, but long: some programs cut it. A file is safer.');
+    else {
+      const isCopied = await navigator.clipboard?.writeText(link).then(() => true, () => false);
+      app.say(isCopied ? 'The link is copied: the rule set is in it.' : 'The link is in the address: copy it from there.');
+    }
+  }
+
+  function format(): void {
+    const text = edit.text();
+    engine.call('rulesFormat', text).then(
+      (formatted) => {
+        if (edit.text() !== text) return;
+        const before = edit.text();
+        edit.follow(formatted);
+        edit.conclude(before);
+      },
+      (error: Error) => app.say(error.message),
+    );
+  }
+
+  function rename(): void {
+    const [text, at] = [edit.text(), edit.cursor()];
+    const name = prompt('A new name for what stands here, everywhere in the rule set:');
+    if (!name) return;
+    engine.call('rulesRename', text, at, name).then(
+      (edits) => edit.text() === text && edit.apply(edits),
+      (error: Error) => app.say(error.message),
+    );
+  }
+
+  // The address: what is open and what is chosen.
+  function said(): URLSearchParams {
+    const parameters = new URLSearchParams();
+    if (start) parameters.set('start', start);
+    for (const name of ['output', 'x', 'y'] as const) if (choice[name]) parameters.set(name, choice[name]);
+    if (choice.kind !== 'map') parameters.set('show', choice.kind);
+    if (choice.isWhole) parameters.set('whole', '1');
+    if (good) parameters.set('at', point(good.about).map((value) => Number(value.toPrecision(6))).join(','));
+    return parameters;
+  }
+
+  let telling: ReturnType<typeof setTimeout> | undefined;
+  function address(): void {
+    clearTimeout(telling);
+    telling = setTimeout(() => app.navigate(said()), ADDRESS_MS);
+  }
+
+  /** The text that an address names, if it names one; takes over what it says of the view. */
+  async function textOf(parameters: URLSearchParams): Promise<string | undefined> {
+    for (const name of ['output', 'x', 'y'] as const) choice[name] = parameters.get(name) ?? choice[name];
+    const kind = KINDS.find(([kind]) => kind === parameters.get('show'));
+    choice.kind = kind?.[0] ?? 'map';
+    choice.isWhole = parameters.has('whole');
+    const packed = parameters.get('text');
+    if (packed === null) {
+      start = parameters.get('start') ?? undefined;
+      const known = starts.find(({ name }) => name === start);
+      if (start && !known) app.say(`there is no example \`${start}\``);
+      return known?.text;
+    }
+    try {
+      return await unpack(packed);
+    } catch {
+      app.say('The link is damaged: the rule set in it cannot be read.');
+      return undefined;
+    }
+  }
+
+  async function pointed(parameters: URLSearchParams, text: string): Promise<void> {
+    const at = parameters.get('at')?.split(',').map(Number);
+    const { about } = await engine.call('rulesOpen', text).catch(() => ({ about: undefined }));
+    if (!at || at.length !== about?.inputs.length || !at.every(Number.isFinite)) return;
+    about.inputs.forEach(({ name }, i) => values.set(name, at[i]!));
+  }
+
+  // Beginning.
+  const asked = app.parameters();
+  const linked = await textOf(asked);
+  let disk: Backing | undefined;
+  if (app.file) disk = await backing(app.file, app.say, (text) => edit.replace(text));
+  const text = disk?.text ?? linked ?? kept() ?? starts[0]!.text;
+  if (!disk && linked === undefined && text === starts[0]!.text) start = starts[0]!.name;
+  await pointed(asked, text);
+  if (disk) bar.prepend(disk.element);
+  const edit: Editor = editor(paper, text, app.file?.readOnly ?? false, {
+    completions: (text, at) => engine.call('rulesCompletions', text, at),
+    hover: (text, at) => engine.call('rulesHover', text, at),
+    definition: (text, at) => engine.call('rulesDefinition', text, at),
+    changed: (text) => changed(text),
+    save: () => void (disk ? disk.save(edit.text()) : saved(app, good?.about.name ?? 'rules', edit.text(), 'YAML')),
+    format,
+    rename,
+  });
+  root.addEventListener('dragover', (event) => event.preventDefault());
+  root.addEventListener('drop', (event) => {
+    const [first] = event.dataTransfer?.files ?? [];
+    if (!first) return;
+    event.preventDefault();
+    event.stopPropagation();
+    void take(first);
+  }, true);
+  [undo.disabled, redo.disabled] = [true, true];
+  refresh(text);
+  examine(text);
+  await refresh.settled();
+
+  return {
+    async shown(parameters) {
+      if (parameters.toString() === said().toString()) return;
+      const text = await textOf(parameters);
+      if (text === undefined || text === edit.text()) return;
+      const from = start;
+      put(text, from);
+      await pointed(parameters, text);
+    },
+  };
 }

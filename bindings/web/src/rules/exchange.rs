@@ -1,0 +1,82 @@
+//! Rule sets of other programs, in and out.
+
+use fuzzy::Findings;
+use interchange::{Format, Losses};
+use serde::Serialize;
+use wasm_bindgen::{JsError, prelude::wasm_bindgen};
+
+use super::json;
+use crate::failure::failure;
+
+#[derive(Serialize)]
+struct Exchanged {
+    text: String,
+    /// The format that was read or written: `FIS`.
+    format: &'static str,
+    /// What is said in another way, and what is left out.
+    notes: Vec<String>,
+}
+
+/// A rule set of another program in YAML, as `flagred import`: a JSON object with `text`, `format` and `notes`. Where it is
+/// in YAML it stays as it is.
+#[wasm_bindgen(js_name = importRules)]
+pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
+    let Some(format) = Format::of(text) else {
+        return json(&Exchanged {
+            text: text.into(),
+            format: "YAML",
+            notes: Vec::new(),
+        });
+    };
+    let read = interchange::read(text, format, losses(lossy)).map_err(refused)?;
+    let invalid = fuzzy::validate(&read.model, &read.spans);
+    if !invalid.is_empty() {
+        return Err(refused(Findings::locate(invalid, text)));
+    }
+    json(&Exchanged {
+        text: fuzzy::yaml::to_string(&read.model),
+        format: format.name(),
+        notes: notes(&read.warnings),
+    })
+}
+
+/// A rule set for another program, as `flagred export`: `format` is `FIS`, `FLL`, `FCL` or `FML`.
+#[wasm_bindgen(js_name = exportRules)]
+pub fn export(text: &str, format: &str, lossy: bool) -> Result<String, JsError> {
+    let mut formats = Format::ALL.into_iter();
+    let known = formats.find(|known| known.name() == format);
+    let known = known.ok_or_else(|| {
+        let help = Format::ALL.map(Format::name).join(", ");
+        failure(format!("`{format}` is no format"), Some(&help))
+    })?;
+    let document = interchange::document(text).map_err(refused)?;
+    match interchange::write(&document.model, known, losses(lossy)) {
+        Ok(written) => json(&Exchanged {
+            notes: notes(&written.findings),
+            text: written.text,
+            format: known.name(),
+        }),
+        Err(findings) => {
+            let name = &document.model.name;
+            let message = format!("`{name}` cannot be written as {format}");
+            Err(failure(message, Some(&notes(&findings).join("\n"))))
+        }
+    }
+}
+
+fn losses(lossy: bool) -> Losses {
+    match lossy {
+        true => Losses::Accept,
+        false => Losses::Refuse,
+    }
+}
+
+fn notes(findings: &Findings) -> Vec<String> {
+    let told = findings.0.iter();
+    told.map(ToString::to_string).collect()
+}
+
+/// Findings that keep a text from being used.
+pub(super) fn refused(findings: Findings) -> JsError {
+    failure(findings, None)
+}

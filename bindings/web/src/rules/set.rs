@@ -1,0 +1,310 @@
+//! A rule set, compiled: its values, their reasons, maps and pictures.
+
+use authoring::{
+    answers::Explained,
+    slice::{self, Mapped},
+};
+use flagred::{
+    gap::{Filling, GapSettings},
+    loaded::{self, LoadError},
+};
+use fuzzy::{
+    Engine, Findings, Model,
+    drawing::{
+        Axis, Scale, Slice, explanation_svg, map_svg, rules_svg, surface_svg, variables_svg,
+    },
+    engine::{Outcome, State},
+    map::{DecisionMap, Grid},
+    model::Variable,
+};
+use serde::Serialize;
+use wasm_bindgen::{JsError, prelude::wasm_bindgen};
+
+use super::{exchange::refused, json};
+use crate::failure::failure;
+
+/// Points of the curve of a rule set of one input.
+const CURVE_POINTS: usize = 401;
+
+/// A rule set, compiled once.
+#[wasm_bindgen(js_name = RuleSet)]
+pub struct RuleSet {
+    engine: Engine,
+    /// Of a profile: its output, what fills the gaps of its rules, and the name of the method.
+    profile: Option<(usize, Filling, &'static str)>,
+}
+
+/// What a map shows: indices of an output and of one or two inputs, the parts of these, the points along each, and a value for
+/// each input, where the others are held.
+#[wasm_bindgen(js_name = View)]
+#[derive(Debug, Clone)]
+pub struct View {
+    output: usize,
+    axes: Vec<(usize, Scale)>,
+    points: usize,
+    held: Vec<f64>,
+}
+
+#[wasm_bindgen(js_class = View)]
+impl View {
+    /// `axes` holds for each axis the index of its input and the ends of the part to show.
+    #[wasm_bindgen(constructor)]
+    pub fn new(output: usize, axes: &[f64], points: usize, held: Vec<f64>) -> View {
+        let axes = axes.chunks_exact(3).take(2);
+        let axes = axes.map(|axis| match axis {
+            [input, low, high] => (*input as usize, Scale::new(*low, *high)),
+            _ => (usize::MAX, Scale::new(0.0, 1.0)),
+        });
+        View {
+            output,
+            axes: axes.collect(),
+            points: points.clamp(2, 1001),
+            held,
+        }
+    }
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Named<'a> {
+    name: &'a str,
+    description: Option<&'a str>,
+    unit: Option<&'a str>,
+    low: f64,
+    high: f64,
+    /// The part where its terms change.
+    shown: [f64; 2],
+}
+
+impl<'a> Named<'a> {
+    fn new(variable: &'a Variable) -> Named<'a> {
+        let shown = slice::shown(variable);
+        Named {
+            name: &variable.name,
+            description: variable.description.as_deref(),
+            unit: variable.unit.as_deref(),
+            low: variable.low,
+            high: variable.high,
+            shown: [shown.low, shown.high],
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct About<'a> {
+    name: &'a str,
+    inputs: Vec<Named<'a>>,
+    outputs: Vec<Named<'a>>,
+    rules: Vec<String>,
+    /// The index of the output that a profile takes as its risk, and how it fills gaps.
+    output: usize,
+    filling: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Value<'a> {
+    name: &'a str,
+    value: Option<f64>,
+    is_default: bool,
+    coverage: f64,
+    /// The index of the strongest rule.
+    rule: Option<usize>,
+    clamped: bool,
+}
+
+#[wasm_bindgen(js_class = RuleSet)]
+impl RuleSet {
+    /// Compiles a rule set in YAML, FIS, FLL, FCL or FML, or the rule set of a profile.
+    #[wasm_bindgen(constructor)]
+    pub fn new(text: &str) -> Result<RuleSet, JsError> {
+        if authoring::is_profile(text) {
+            return of_profile(text);
+        }
+        let document = interchange::document(text).map_err(refused)?;
+        let invalid = fuzzy::validate(&document.model, &document.spans);
+        if !invalid.is_empty() {
+            return Err(refused(Findings::locate(invalid, text)));
+        }
+        Ok(RuleSet {
+            engine: Engine::new(&document.model).map_err(refused)?,
+            profile: None,
+        })
+    }
+
+    /// Its name, inputs, outputs and rules, as JSON.
+    pub fn about(&self) -> Result<String, JsError> {
+        let model = self.model();
+        let outputs = model.outputs.iter().map(|output| &output.variable);
+        json(&About {
+            name: &model.name,
+            inputs: model.inputs.iter().map(Named::new).collect(),
+            outputs: outputs.map(Named::new).collect(),
+            rules: model
+                .rules
+                .iter()
+                .map(|rule| rule.rule.to_string())
+                .collect(),
+            output: self.profile.as_ref().map_or(0, |(output, ..)| *output),
+            filling: self.profile.as_ref().map(|(_, _, method)| *method),
+        })
+    }
+
+    /// The outputs at a point, as a JSON array.
+    pub fn evaluate(&self, point: &[f64]) -> Result<String, JsError> {
+        let outcomes = self
+            .engine
+            .evaluate(point)
+            .map_err(|error| failure(error, None))?;
+        let names = self.engine.output_names();
+        let value = |(name, outcome): (_, &Outcome)| Value {
+            name,
+            value: outcome.value(),
+            is_default: matches!(outcome.state, State::Default(_)),
+            coverage: outcome.coverage,
+            rule: outcome.dominant,
+            clamped: outcome.clamped,
+        };
+        json(&names.zip(&outcomes).map(value).collect::<Vec<_>>())
+    }
+
+    /// The outputs of many rows: `columns` holds the inputs one behind the other, and so does the answer the outputs. NaN is
+    /// unknown.
+    #[wasm_bindgen(js_name = evaluateColumns)]
+    pub fn evaluate_columns(&self, columns: &[f64]) -> Result<Vec<f64>, JsError> {
+        let inputs = self.engine.input_names().len();
+        let rows = columns.len() / inputs.max(1);
+        if rows == 0 {
+            return Ok(Vec::new());
+        }
+        let columns: Vec<&[f64]> = columns.chunks(rows).collect();
+        let outcomes = self.engine.evaluate_batch(&columns);
+        let outcomes = outcomes.map_err(|error| failure(error, None))?;
+        let outputs = self.engine.output_names().len();
+        let column = |output| outcomes.iter().skip(output).step_by(outputs);
+        let values = (0..outputs).flat_map(column);
+        Ok(values
+            .map(|outcome| outcome.value().unwrap_or(f64::NAN))
+            .collect())
+    }
+
+    /// The document of `flagred explain --json`.
+    pub fn explain(&self, point: &[f64]) -> Result<String, JsError> {
+        let explanation = self.engine.explain(point);
+        let explanation = explanation.map_err(|error| failure(error, None))?;
+        json(&Explained::new(&self.model().name, &explanation))
+    }
+
+    /// Values for the inputs that are no axis, where those of `fixed` that are not NaN stay: the middle of a range, or where the
+    /// output varies more.
+    pub fn held(&self, output: usize, axes: &[usize], fixed: &[f64]) -> Vec<f64> {
+        let fixed: Vec<Option<f64>> = fixed.iter().map(|x| x.is_finite().then_some(*x)).collect();
+        let x = axes.first().copied().unwrap_or(0);
+        slice::held(&self.mapped(output), &fixed, (x, axes.get(1).copied()))
+    }
+
+    /// The cells of a map: all values, then all coverages, then the strongest rules, then whether the value was filled in. For each
+    /// point of the first axis there is one for each of the second. NaN is none.
+    pub fn map(&self, view: &View) -> Result<Vec<f64>, JsError> {
+        let cells = self.slice(view)?.cells;
+        let index = |rule: Option<usize>| rule.map_or(f64::NAN, |rule| rule as f64);
+        let values = cells.iter().map(|cell| cell.value.unwrap_or(f64::NAN));
+        let coverages = cells.iter().map(|cell| cell.coverage);
+        let rules = cells.iter().map(|cell| index(cell.rule));
+        let filled = cells
+            .iter()
+            .map(|cell| f64::from(u8::from(cell.filled_from.is_some())));
+        Ok(values.chain(coverages).chain(rules).chain(filled).collect())
+    }
+
+    /// The picture of `flagred map`; `kind` is `map`, `surface` or `rules`.
+    #[wasm_bindgen(js_name = mapSvg)]
+    pub fn map_svg(&self, kind: &str, view: &View) -> Result<String, JsError> {
+        let slice = self.slice(view)?;
+        match kind {
+            "map" => Ok(map_svg(&slice)),
+            "rules" => Ok(rules_svg(&slice, self.model())),
+            "surface" => surface_svg(&slice)
+                .ok_or_else(|| failure("a surface needs two inputs, and one is left", None)),
+            _ => {
+                let help = "there are `map`, `surface` and `rules`";
+                Err(failure(format!("`{kind}` is no picture"), Some(help)))
+            }
+        }
+    }
+
+    /// The picture of `flagred plot`.
+    #[wasm_bindgen(js_name = termsSvg)]
+    pub fn terms_svg(&self) -> Result<String, JsError> {
+        let model = self.model();
+        let mut curves = Vec::new();
+        for output in 0..model.outputs.len() {
+            if model.inputs.len() == 1 {
+                let grid = Grid::new(&self.engine, CURVE_POINTS);
+                let grid = grid.map_err(|error| failure(error, None))?;
+                let map = DecisionMap::new(&self.engine, grid, output);
+                let map = map.map_err(|error| failure(error, None))?;
+                curves.extend(Slice::new(model, &map));
+            }
+        }
+        Ok(variables_svg(model, &curves))
+    }
+
+    /// The picture of `flagred explain`.
+    #[wasm_bindgen(js_name = explanationSvg)]
+    pub fn explanation_svg(&self, point: &[f64]) -> Result<String, JsError> {
+        let explanation = self.engine.explain(point);
+        let explanation = explanation.map_err(|error| failure(error, None))?;
+        Ok(explanation_svg(self.model(), &explanation))
+    }
+
+    fn model(&self) -> &Model {
+        self.engine.model()
+    }
+
+    fn mapped(&self, output: usize) -> Mapped<'_> {
+        let filling = self.profile.as_ref();
+        let filling = filling.filter(|(risk, ..)| *risk == output);
+        Mapped {
+            model: self.model(),
+            engine: &self.engine,
+            output,
+            filling: filling.map(|(_, filling, method)| (filling, *method)),
+        }
+    }
+
+    fn slice(&self, view: &View) -> Result<Slice, JsError> {
+        let inputs = &self.model().inputs;
+        let axis = |(input, part): &(usize, Scale)| {
+            let variable = inputs.get(*input)?;
+            Some((*input, Axis::new(variable, *part, view.points)))
+        };
+        let mut axes = view.axes.iter().filter_map(axis);
+        let x = axes.next();
+        let x = x.ok_or_else(|| failure("a map needs an input along an axis", None))?;
+        let cut = slice::cut(&self.mapped(view.output), x, axes.next(), view.held.clone());
+        cut.map_err(|error| failure(error, None))
+    }
+}
+
+fn of_profile(text: &str) -> Result<RuleSet, JsError> {
+    let loaded = loaded::from_text("the profile", text.to_owned(), None, |_| Err(()));
+    let loaded = loaded.map_err(|error| match error {
+        LoadError::Findings { findings, .. } => refused(findings),
+        LoadError::Unusable { message, help } => failure(message, help.as_deref()),
+        LoadError::Read(()) => failure("a rule set in a file cannot be read here", None),
+    })?;
+    let engine = loaded.estimator.engine().clone();
+    let profile = loaded.estimator.profile();
+    let output = engine.output(&profile.output).unwrap_or(0);
+    let settings = GapSettings {
+        method: profile.gap.method,
+        coverage_below: profile.gap.coverage_below,
+    };
+    let filling = Filling::new(&engine, engine.model(), output, &settings);
+    let filling = filling.map_err(|error| failure(error, None))?;
+    Ok(RuleSet {
+        profile: Some((output, filling, settings.method.name())),
+        engine,
+    })
+}

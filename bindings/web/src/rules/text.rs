@@ -1,0 +1,337 @@
+//! An open text: findings, completion, names, layout, terms and the points by which they are dragged.
+
+use authoring::{Document, Edit, completion, handles, layout, names, slice};
+use flagred::{profile::Profile, shipped};
+use fuzzy::{
+    diagnostic::{Diagnostic, Severity},
+    model::{Defuzzifier, Term, Variable},
+};
+use serde::Serialize;
+use wasm_bindgen::{JsError, prelude::wasm_bindgen};
+
+use super::json;
+use crate::failure::failure;
+
+/// Points of a curve.
+const SAMPLES: usize = 200;
+
+/// A text, with the shipped rule set that a profile names.
+pub(super) fn document(text: &str) -> Document {
+    Document::new(text, shipped_rules)
+}
+
+fn shipped_rules(profile: &Profile) -> Option<String> {
+    let mut known = shipped::RULE_SETS.iter();
+    let known = known.find(|known| known.name == profile.rules)?;
+    Some(known.text.to_owned())
+}
+
+/// A rule set or a profile as an editor shows it. Places are counted as JavaScript counts letters.
+#[wasm_bindgen(js_name = RuleText)]
+pub struct RuleText {
+    document: Document,
+}
+
+#[wasm_bindgen(js_class = RuleText)]
+impl RuleText {
+    /// Reads a text, whatever is wrong with it.
+    #[wasm_bindgen(constructor)]
+    pub fn new(text: &str) -> RuleText {
+        RuleText {
+            document: document(text),
+        }
+    }
+
+    /// Whether it is a profile.
+    #[wasm_bindgen(getter, js_name = isProfile)]
+    pub fn is_profile(&self) -> bool {
+        self.document.is_profile()
+    }
+
+    /// What `flagred check` finds, as a JSON array.
+    pub fn findings(&self) -> Result<String, JsError> {
+        let text = self.document.text();
+        let found = |finding| Found::new(text, finding);
+        json(
+            &self
+                .document
+                .findings()
+                .0
+                .iter()
+                .map(found)
+                .collect::<Vec<_>>(),
+        )
+    }
+
+    /// What can be written at a place, as a JSON array.
+    pub fn completions(&self, at: usize) -> Result<String, JsError> {
+        let found = completion::at(&self.document, byte(self.document.text(), at));
+        let found = found.into_iter().map(|found| Completion {
+            kind: match found.kind {
+                completion::Kind::Keyword => "keyword",
+                completion::Kind::Variable => "variable",
+                completion::Kind::Choice => "choice",
+                completion::Kind::Key => "key",
+                completion::Kind::Signal => "signal",
+            },
+            label: found.label,
+            text: found.text,
+            detail: found.detail,
+        });
+        json(&found.collect::<Vec<_>>())
+    }
+
+    /// What the name at a place means, as JSON with Markdown; `null` where there is none.
+    pub fn hover(&self, at: usize) -> Result<String, JsError> {
+        let text = self.document.text();
+        let meant = names::describe(&self.document, byte(text, at));
+        json(&meant.map(|meant| Hover {
+            from: utf16(text, meant.span.start),
+            to: utf16(text, meant.span.end),
+            markdown: meant.markdown,
+        }))
+    }
+
+    /// Where the name at a place is defined; nothing where it is no name.
+    pub fn definition(&self, at: usize) -> Option<usize> {
+        let text = self.document.text();
+        let span = names::definition(&self.document, byte(text, at))?;
+        Some(utf16(text, span.start))
+    }
+
+    /// The edits that give the name at a place a new one, as JSON.
+    pub fn rename(&self, at: usize, name: &str) -> Result<String, JsError> {
+        let text = self.document.text();
+        let spans = names::rename(&self.document, byte(text, at), name);
+        let spans = spans.map_err(|why| failure(why, None))?;
+        let edit = |span| Edit {
+            span,
+            text: name.into(),
+        };
+        edits(text, spans.into_iter().map(edit).collect())
+    }
+
+    /// The text in the layout of `flagred fmt`.
+    pub fn formatted(&self) -> Result<String, JsError> {
+        layout::formatted(self.document.text()).map_err(|why| failure(why, None))
+    }
+
+    /// The variables and their terms as curves, with the points by which they are dragged, as a JSON array: inputs first. Empty
+    /// where nothing can be read.
+    pub fn variables(&self) -> Result<String, JsError> {
+        let Some(model) = self.document.model() else {
+            return Ok("[]".into());
+        };
+        let takes_numbers = |kind| {
+            use Defuzzifier::{WeightedAverage, WeightedSum};
+            matches!(kind, WeightedAverage | WeightedSum)
+        };
+        let inputs = model.inputs.iter().map(|input| (input, None));
+        let outputs = model.outputs.iter();
+        let outputs =
+            outputs.map(|output| (&output.variable, Some(takes_numbers(output.defuzzifier))));
+        let drawn = inputs.chain(outputs).enumerate();
+        let drawn =
+            drawn.map(|(i, (variable, output))| Drawn::new(&self.document, i, variable, output));
+        json(&drawn.collect::<Vec<_>>())
+    }
+
+    /// The edits that drag a point of a term to a place and a degree, as JSON: they change numbers and nothing else.
+    pub fn drag(
+        &self,
+        variable: usize,
+        term: usize,
+        handle: usize,
+        x: f64,
+        degree: f64,
+    ) -> Result<String, JsError> {
+        let moved = handles::moved(&self.document, (variable, term), handle, (x, degree));
+        let moved = moved.map_err(|why| failure(why, None))?;
+        edits(self.document.text(), moved)
+    }
+}
+
+#[derive(Serialize)]
+struct Found<'a> {
+    severity: Severity,
+    code: &'a str,
+    message: &'a str,
+    help: Option<&'a str>,
+    from: usize,
+    to: usize,
+    line: usize,
+    related: Vec<Related<'a>>,
+}
+
+#[derive(Serialize)]
+struct Related<'a> {
+    from: usize,
+    to: usize,
+    message: &'a str,
+}
+
+impl<'a> Found<'a> {
+    fn new(text: &str, finding: &'a Diagnostic) -> Found<'a> {
+        let related = finding.related.iter().map(|related| Related {
+            from: utf16(text, related.span.start),
+            to: utf16(text, related.span.end),
+            message: &related.message,
+        });
+        Found {
+            severity: finding.severity,
+            code: finding.code,
+            message: &finding.message,
+            help: finding.help.as_deref(),
+            from: utf16(text, finding.span.start),
+            to: utf16(text, finding.span.end.max(finding.span.start)),
+            line: finding.position.map_or(1, |position| position.line),
+            related: related.collect(),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Completion {
+    label: String,
+    text: String,
+    kind: &'static str,
+    detail: Option<String>,
+}
+
+#[derive(Serialize)]
+struct Hover {
+    from: usize,
+    to: usize,
+    markdown: String,
+}
+
+#[derive(Serialize)]
+struct Change {
+    from: usize,
+    to: usize,
+    insert: String,
+}
+
+fn edits(text: &str, edits: Vec<Edit>) -> Result<String, JsError> {
+    let change = |edit: Edit| Change {
+        from: utf16(text, edit.span.start),
+        to: utf16(text, edit.span.end),
+        insert: edit.text,
+    };
+    json(&edits.into_iter().map(change).collect::<Vec<_>>())
+}
+
+/// A variable to draw.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Drawn<'a> {
+    name: &'a str,
+    description: Option<&'a str>,
+    unit: Option<&'a str>,
+    is_output: bool,
+    low: Option<f64>,
+    high: Option<f64>,
+    /// The part where its terms change.
+    shown: [Option<f64>; 2],
+    terms: Vec<DrawnTerm<'a>>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct DrawnTerm<'a> {
+    name: &'a str,
+    /// As it stands in a rule set: `triangle: [0, 2, 4]`.
+    shape: String,
+    /// Its curve, x and degree in turns; of a number, which is no set, nothing.
+    curve: Vec<f64>,
+    handles: Vec<Handle>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Handle {
+    name: &'static str,
+    x: f64,
+    degree: f64,
+    low: f64,
+    high: f64,
+    moves_degree: bool,
+}
+
+impl<'a> Drawn<'a> {
+    /// `output` tells of an output whether its terms are numbers.
+    fn new(
+        document: &Document,
+        index: usize,
+        variable: &'a Variable,
+        output: Option<bool>,
+    ) -> Self {
+        let number = |value: f64| value.is_finite().then_some(value);
+        let has_range = variable.low < variable.high && (variable.high - variable.low).is_finite();
+        let shown = has_range.then(|| slice::shown(variable));
+        let terms = variable.terms.iter().enumerate().map(|(t, term)| {
+            let handles = handles::of(document, index, t).into_iter();
+            let handles = handles.map(|handle| Handle {
+                name: handle.name,
+                x: handle.x,
+                degree: handle.degree,
+                low: handle.low,
+                high: handle.high,
+                moves_degree: handle.moves_degree,
+            });
+            DrawnTerm {
+                name: &term.name,
+                shape: fuzzy::format::shape_text(&term.membership_function),
+                curve: match output != Some(true) && has_range {
+                    true => curve(variable, term),
+                    false => Vec::new(),
+                },
+                handles: handles.collect(),
+            }
+        });
+        Drawn {
+            name: &variable.name,
+            description: variable.description.as_deref(),
+            unit: variable.unit.as_deref(),
+            is_output: output.is_some(),
+            low: number(variable.low),
+            high: number(variable.high),
+            shown: [shown.map(|s| s.low), shown.map(|s| s.high)],
+            terms: terms.collect(),
+        }
+    }
+}
+
+/// A term over the range of its variable: its corners where it has some.
+fn curve(variable: &Variable, term: &Term) -> Vec<f64> {
+    let (low, high) = (variable.low, variable.high);
+    let at = |x: f64| [x, term.membership(x)];
+    if let Some(corners) = term.membership_function.corners() {
+        let within = corners.into_iter().filter(|(x, _)| *x > low && *x < high);
+        let within = within.flat_map(|(x, degree)| [x, degree * term.height]);
+        return at(low).into_iter().chain(within).chain(at(high)).collect();
+    }
+    let scale = fuzzy::drawing::Scale::new(low, high);
+    let share = |i: usize| i as f64 / (SAMPLES - 1) as f64;
+    (0..SAMPLES)
+        .flat_map(|i| at(scale.value(share(i))))
+        .collect()
+}
+
+/// A place in UTF-16 code units.
+fn utf16(text: &str, byte: usize) -> usize {
+    let before = text.char_indices().take_while(|(at, _)| *at < byte);
+    before.map(|(_, letter)| letter.len_utf16()).sum()
+}
+
+/// A place in bytes.
+fn byte(text: &str, utf16: usize) -> usize {
+    let mut units = 0;
+    for (at, letter) in text.char_indices() {
+        if units >= utf16 {
+            return at;
+        }
+        units += letter.len_utf16();
+    }
+    text.len()
+}

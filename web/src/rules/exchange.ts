@@ -1,0 +1,69 @@
+/** Rule sets from files and into files, in YAML and in the formats of other programs. */
+
+import type { Exchanged, Format } from 'flagred';
+import type { App } from '../app';
+import { download, h } from '../dom';
+import type { Picture } from './calls';
+import type { View } from 'flagred';
+
+const endings: Record<Format, string> = { FIS: 'fis', FLL: 'fll', FCL: 'fcl', FML: 'xml' };
+/** More is no rule set. */
+const LARGEST_BYTES = 10_000_000;
+
+/** The text of a file in YAML. Where something would be lost the user is asked; nothing if he declines. */
+export async function opened(app: App, file: File): Promise<string | undefined> {
+  if (file.size > LARGEST_BYTES) throw new Error(`\`${file.name}\` is larger than 10 MB: a rule set is a small text`);
+  const text = new TextDecoder('utf-8', { fatal: true }).decode(await file.arrayBuffer());
+  const read = await withLosses(`Open ${file.name}`, (lossy) => app.engine.call('rulesImport', text, lossy));
+  if (!read) return undefined;
+  if (read.format === 'YAML') app.say(`${file.name} is open`);
+  else await told(`${file.name} was read as ${read.format}`, read.notes);
+  return read.text;
+}
+
+/** Downloads a rule set in a format. */
+export async function saved(app: App, name: string, text: string, format: Format | 'YAML'): Promise<void> {
+  if (format === 'YAML') return download(`${name}.yaml`, text, 'application/yaml');
+  const written = await withLosses(`Write as ${format}`, (lossy) => app.engine.call('rulesExport', text, format, lossy));
+  if (!written) return;
+  download(`${name}.${endings[format]}`, written.text, 'text/plain');
+  if (written.notes.length > 0) await told(`Written as ${format}`, written.notes);
+}
+
+/** Downloads a picture. */
+export async function drawn(app: App, name: string, text: string, kind: Picture, view: View): Promise<void> {
+  download(`${name}-${kind}.svg`, await app.engine.call('rulesPicture', text, kind, view), 'image/svg+xml');
+}
+
+/** Runs without losses; where that is refused, asks whether to run with them. */
+async function withLosses(title: string, run: (lossy: boolean) => Promise<Exchanged>): Promise<Exchanged | undefined> {
+  try {
+    return await run(false);
+  } catch (error) {
+    const why = error instanceof Error ? error.message : String(error);
+    const goOn = await dialog(title, why.split('\n'), ['Leave it out and go on', 'Cancel']);
+    return goOn === 'Leave it out and go on' ? run(true) : undefined;
+  }
+}
+
+async function told(title: string, notes: string[]): Promise<void> {
+  await dialog(title, notes.length > 0 ? notes : ['Nothing was lost.'], ['Close']);
+}
+
+/** Shows lines; the answer is the word on the button that was pressed. */
+function dialog(title: string, lines: string[], answers: string[]): Promise<string> {
+  return new Promise((resolve) => {
+    const buttons = answers.map((answer, i) => h('button', { value: answer, class: i === 0 ? 'main' : '' }, answer));
+    const made = h(
+      'dialog',
+      { 'aria-label': title, class: 'notes' },
+      h('form', { method: 'dialog' }, h('h2', {}, title), h('ul', {}, ...lines.map((line) => h('li', {}, line))), h('div', { class: 'answers' }, ...buttons)),
+    );
+    made.addEventListener('close', () => {
+      made.remove();
+      resolve(made.returnValue);
+    });
+    document.body.append(made);
+    made.showModal();
+  });
+}

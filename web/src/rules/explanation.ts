@@ -1,0 +1,36 @@
+/** Why the outputs at a point are what they are: the rules that fire, and how strongly. */
+
+import type { About, Explanation } from 'flagred';
+import { fill, h } from '../dom';
+import { short, told } from './numbers';
+
+/** The explanation in `place`. */
+export function explain(place: HTMLElement, about: About, { outputs, rules, inputs }: Explanation): void {
+  const values = outputs.map((output, i) => {
+    const known = about.outputs[i];
+    return h(
+      'p',
+      { class: 'value' },
+      h('span', { class: 'soft' }, `${output.name} `),
+      h('b', {}, output.value === null ? 'unknown' : told(output.value, known?.unit ?? null)),
+      output.value === null && h('span', { class: 'soft' }, ' no rule fires'),
+      output.is_default && h('span', { class: 'soft' }, ' the default: no rule fires'),
+    );
+  });
+  const fired = rules.map(({ rule, text, strength }) => {
+    const bar = h('span', { class: 'bar' });
+    bar.style.inlineSize = `${100 * Math.min(strength, 1)}%`;
+    return h('li', { value: rule }, h('span', { class: 'track', 'aria-hidden': 'true' }, bar), h('span', { class: 'strength' }, short(strength)), h('code', {}, text));
+  });
+  const degrees = inputs.map((input, i) => {
+    const terms = input.terms.filter(({ degree }) => degree > 0).map(({ term, degree }) => `${term} ${short(degree)}`);
+    const unit = about.inputs[i]?.unit ?? null;
+    return h('li', {}, h('b', {}, input.name), ` ${told(input.value, unit)} `, h('span', { class: 'soft' }, terms.join(', ') || 'in no term'));
+  });
+  fill(
+    place,
+    h('div', { class: 'values' }, ...values),
+    fired.length > 0 && h('ol', { class: 'fired', 'aria-label': 'Rules that fire' }, ...fired),
+    h('ul', { class: 'degrees', 'aria-label': 'Inputs and their terms' }, ...degrees),
+  );
+}

@@ -1,0 +1,61 @@
+/** The inputs as sliders: the point that is explained; those that are no axis of the map are held there. */
+
+import type { Variable } from 'flagred';
+import { h, fill } from '../dom';
+import { clamp, step } from './numbers';
+
+export interface Inputs {
+  element: HTMLElement;
+  /** Shows these inputs at a point; `isWhole` is whether sliders go over whole ranges. */
+  show(inputs: Variable[], axes: number[], point: number[], isWhole: boolean): void;
+}
+
+interface Row {
+  row: HTMLElement;
+  slider: HTMLInputElement;
+  number: HTMLInputElement;
+  role: HTMLElement;
+}
+
+export function inputs(moved: (input: number, value: number) => void): Inputs {
+  const element = h('div', { class: 'inputs', role: 'group', 'aria-label': 'Inputs' });
+  let rows: Row[] = [];
+  let names = '';
+
+  function row({ name, unit, description }: Variable, i: number): Row {
+    const slider = h('input', { type: 'range', 'aria-label': unit ? `${name} in ${unit}` : name });
+    const number = h('input', { type: 'number', 'aria-label': `${name}, as a number` });
+    slider.addEventListener('input', () => moved(i, slider.valueAsNumber));
+    number.addEventListener('change', () => {
+      const value = clamp(number.valueAsNumber, Number(number.min), Number(number.max));
+      if (Number.isFinite(value)) moved(i, value);
+    });
+    const role = h('span', { class: 'role soft' });
+    const label = h('span', { class: 'name', title: description }, name, unit && h('span', { class: 'soft' }, ` ${unit}`));
+    return { row: h('div', { class: 'input' }, label, slider, number, role), slider, number, role };
+  }
+
+  return {
+    element,
+    show(inputs, axes, point, isWhole) {
+      const now = JSON.stringify(inputs.map(({ name, unit }) => [name, unit]));
+      if (now !== names) {
+        names = now;
+        rows = inputs.map(row);
+        fill(element, ...rows.map((one) => one.row));
+      }
+      inputs.forEach((input, i) => {
+        const { slider, number, role } = rows[i]!;
+        const [low, high] = isWhole ? [input.low, input.high] : input.shown;
+        const value = point[i]!;
+        slider.min = String(Math.min(low, value));
+        slider.max = String(Math.max(high, value));
+        slider.step = String(step(low, high));
+        slider.value = String(value);
+        [number.min, number.max, number.step] = [String(input.low), String(input.high), 'any'];
+        if (document.activeElement !== number) number.value = String(Number(value.toPrecision(6)));
+        role.textContent = ['across', 'up'][axes.indexOf(i)] ?? 'held';
+      });
+    },
+  };
+}

@@ -1,0 +1,353 @@
+/** The decision map on a canvas: values, the surface over them, or which rule is the strongest; and the point that is explained. */
+
+import type { Cells, Variable, View } from 'flagred';
+import { h } from '../dom';
+import { clamp, short, ticks, told } from './numbers';
+
+export type Kind = 'map' | 'surface' | 'rules';
+
+/** What is drawn. */
+export interface Shown {
+  kind: Kind;
+  view: View;
+  cells: Cells;
+  x: Variable;
+  /** Nothing where there is one axis. */
+  y: Variable | undefined;
+  output: Variable;
+  /** The value for each input. */
+  point: number[];
+}
+
+export interface Colours {
+  scale: Uint8Array;
+  distinct: Uint8Array;
+}
+
+export interface DecisionMap {
+  element: HTMLCanvasElement;
+  draw(shown: Shown): void;
+}
+
+interface Frame {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
+
+/** Room for axes and the colours beside the map, in pixels. */
+const LEFT = 54;
+const RIGHT = 58;
+const TOP = 10;
+const BOTTOM = 44;
+/** How far a key moves the point, as a share of the axis. */
+const KEY_STEP = 0.02;
+
+/** `pick` hears the values of the axes where the map is clicked, or the point moved by keys. */
+export function decisionMap(colours: Colours, pick: (x: number, y: number | undefined) => void): DecisionMap {
+  const canvas = h('canvas', {
+    class: 'decision',
+    tabindex: 0,
+    role: 'application',
+    'aria-roledescription': 'decision map',
+    'aria-label': 'Decision map',
+  });
+  const pen = canvas.getContext('2d', { alpha: true })!;
+  const small = document.createElement('canvas');
+  let shown: Shown | undefined;
+  let asked = 0;
+
+  function draw(next: Shown): void {
+    shown = next;
+    asked ||= requestAnimationFrame(paint);
+  }
+
+  function paint(): void {
+    asked = 0;
+    const width = canvas.clientWidth;
+    const height = canvas.clientHeight;
+    if (!shown || width === 0) return;
+    const ratio = devicePixelRatio || 1;
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+    }
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, width, height);
+    const style = getComputedStyle(canvas);
+    const ink = { ink: style.getPropertyValue('--ink'), soft: style.getPropertyValue('--soft'), rule: style.getPropertyValue('--rule'), paper: style.getPropertyValue('--paper'), accent: style.getPropertyValue('--accent') };
+    pen.font = '12px system-ui, sans-serif';
+    const frame: Frame = { left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - BOTTOM };
+    if (shown.y && shown.kind === 'surface') surface(pen, { ...frame, left: 12, width: width - RIGHT - 12 }, shown, colours, ink);
+    else if (shown.y) flat(pen, small, frame, shown, colours, ink);
+    else curve(pen, frame, shown, ink);
+    if (shown.kind !== 'rules' && shown.y) scale(pen, frame, width, shown, colours, ink);
+    canvas.setAttribute('aria-label', spoken(shown));
+  }
+
+  new ResizeObserver(() => shown && draw(shown)).observe(canvas);
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => shown && draw(shown));
+
+  function at(event: PointerEvent): void {
+    if (!shown || shown.kind === 'surface') return;
+    const box = canvas.getBoundingClientRect();
+    const part = (at: number, low: number, size: number) => clamp((at - low) / size, 0, 1);
+    const [x, y] = shown.view.axes;
+    const across = part(event.clientX - box.left, LEFT, box.width - LEFT - RIGHT);
+    const up = 1 - part(event.clientY - box.top, TOP, box.height - TOP - BOTTOM);
+    if (x) pick(x.low + across * (x.high - x.low), y && y.low + up * (y.high - y.low));
+  }
+  canvas.addEventListener('pointerdown', (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    at(event);
+  });
+  canvas.addEventListener('pointermove', (event) => {
+    if (canvas.hasPointerCapture(event.pointerId)) at(event);
+  });
+  canvas.addEventListener('keydown', (event) => {
+    const [across, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
+    const [x, y] = shown?.view.axes ?? [];
+    if (!shown || !x || (!across && !up)) return;
+    event.preventDefault();
+    const by = KEY_STEP * (event.shiftKey ? 0.1 : 1);
+    const moved = (axis: typeof x, steps: number) =>
+      clamp(shown!.point[axis.input]! + steps * by * (axis.high - axis.low), axis.low, axis.high);
+    pick(moved(x, across!), y && moved(y, up!));
+  });
+  return { element: canvas, draw };
+}
+
+type Ink = Record<'ink' | 'soft' | 'rule' | 'paper' | 'accent', string>;
+
+const share = (value: number, low: number, high: number) => clamp((value - low) / (high - low), 0, 1);
+
+/** The colour of a cell: red, green, blue, opacity. */
+function paintCell(shown: Shown, colours: Colours, cell: number): [number, number, number, number] {
+  const { cells, output, kind } = shown;
+  if (kind === 'rules') {
+    const rule = cells.rules[cell]!;
+    if (Number.isNaN(rule)) return [0, 0, 0, 0];
+    const at = 3 * (rule % (colours.distinct.length / 3));
+    return [colours.distinct[at]!, colours.distinct[at + 1]!, colours.distinct[at + 2]!, 255];
+  }
+  const value = cells.values[cell]!;
+  if (Number.isNaN(value)) return [0, 0, 0, 0];
+  const at = 3 * Math.round(255 * share(value, output.low, output.high));
+  return [colours.scale[at]!, colours.scale[at + 1]!, colours.scale[at + 2]!, cells.filled[cell] ? 150 : 255];
+}
+
+function flat(pen: CanvasRenderingContext2D, small: HTMLCanvasElement, frame: Frame, shown: Shown, colours: Colours, ink: Ink): void {
+  const points = shown.view.points;
+  hatch(pen, frame, ink);
+  const image = new ImageData(points, points);
+  for (let i = 0; i < points; i++) {
+    for (let j = 0; j < points; j++) image.data.set(paintCell(shown, colours, i * points + j), 4 * ((points - 1 - j) * points + i));
+  }
+  small.width = small.height = points;
+  small.getContext('2d')!.putImageData(image, 0, 0);
+  pen.imageSmoothingEnabled = false;
+  pen.drawImage(small, frame.left, frame.top, frame.width, frame.height);
+  axes(pen, frame, shown, ink);
+  const [x, y] = shown.view.axes;
+  if (x && y) cross(pen, frame, share(shown.point[x.input]!, x.low, x.high), share(shown.point[y.input]!, y.low, y.high), ink);
+}
+
+/** Where nothing is known. */
+function hatch(pen: CanvasRenderingContext2D, frame: Frame, ink: Ink): void {
+  pen.save();
+  pen.beginPath();
+  pen.rect(frame.left, frame.top, frame.width, frame.height);
+  pen.clip();
+  pen.strokeStyle = ink.rule;
+  pen.lineWidth = 1;
+  pen.beginPath();
+  for (let x = frame.left - frame.height; x < frame.left + frame.width; x += 8) {
+    pen.moveTo(x, frame.top + frame.height);
+    pen.lineTo(x + frame.height, frame.top);
+  }
+  pen.stroke();
+  pen.restore();
+}
+
+function curve(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, ink: Ink): void {
+  const { output, cells, view } = shown;
+  axes(pen, frame, shown, ink);
+  const place = (i: number, value: number): [number, number] => [
+    frame.left + (frame.width * i) / (view.points - 1),
+    frame.top + frame.height * (1 - share(value, output.low, output.high)),
+  ];
+  pen.strokeStyle = ink.accent;
+  pen.lineWidth = 2;
+  pen.beginPath();
+  let isOn = false;
+  for (let i = 0; i < view.points; i++) {
+    const value = cells.values[i]!;
+    if (!Number.isNaN(value)) pen[isOn ? 'lineTo' : 'moveTo'](...place(i, value));
+    isOn = !Number.isNaN(value);
+  }
+  pen.stroke();
+  const [x] = view.axes;
+  if (!x) return;
+  const across = share(shown.point[x.input]!, x.low, x.high);
+  const value = cells.values[Math.round(across * (view.points - 1))] ?? NaN;
+  cross(pen, frame, across, Number.isNaN(value) ? undefined : share(value, output.low, output.high), ink);
+}
+
+function axes(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, ink: Ink): void {
+  const [x, y] = shown.view.axes;
+  const up = y ?? { low: shown.output.low, high: shown.output.high };
+  const upper = shown.y ?? shown.output;
+  pen.strokeStyle = ink.rule;
+  pen.lineWidth = 1;
+  pen.strokeRect(frame.left + 0.5, frame.top + 0.5, frame.width - 1, frame.height - 1);
+  pen.fillStyle = ink.soft;
+  pen.textBaseline = 'top';
+  pen.textAlign = 'center';
+  const bottom = frame.top + frame.height;
+  if (x) {
+    for (const tick of ticks(x.low, x.high, Math.max(2, frame.width / 80))) {
+      const at = frame.left + frame.width * share(tick, x.low, x.high);
+      pen.fillRect(at, bottom, 1, 4);
+      pen.fillText(short(tick), at, bottom + 6);
+    }
+  }
+  pen.textAlign = 'right';
+  pen.textBaseline = 'middle';
+  for (const tick of ticks(up.low, up.high, Math.max(2, frame.height / 60))) {
+    const at = bottom - frame.height * share(tick, up.low, up.high);
+    pen.fillRect(frame.left - 4, at, 4, 1);
+    pen.fillText(short(tick), frame.left - 7, at);
+  }
+  pen.fillStyle = ink.ink;
+  pen.textAlign = 'center';
+  pen.textBaseline = 'bottom';
+  pen.fillText(titled(shown.x), frame.left + frame.width / 2, bottom + BOTTOM - 2);
+  pen.save();
+  pen.translate(3, frame.top + frame.height / 2);
+  pen.rotate(-Math.PI / 2);
+  pen.textBaseline = 'top';
+  pen.fillText(titled(upper), 0, 0);
+  pen.restore();
+}
+
+const titled = ({ name, unit }: Variable): string => (unit ? `${name} [${unit}]` : name);
+
+/** The point that is explained. */
+function cross(pen: CanvasRenderingContext2D, frame: Frame, across: number, up: number | undefined, ink: Ink): void {
+  const x = frame.left + frame.width * across;
+  const y = up === undefined ? undefined : frame.top + frame.height * (1 - up);
+  for (const [colour, width] of [[ink.paper, 3], [ink.ink, 1]] as const) {
+    pen.strokeStyle = colour;
+    pen.lineWidth = width;
+    pen.beginPath();
+    pen.moveTo(x, frame.top);
+    pen.lineTo(x, frame.top + frame.height);
+    if (y !== undefined) {
+      pen.moveTo(frame.left, y);
+      pen.lineTo(frame.left + frame.width, y);
+    }
+    pen.stroke();
+  }
+  if (y !== undefined) dot(pen, x, y, ink);
+}
+
+function dot(pen: CanvasRenderingContext2D, x: number, y: number, ink: Ink): void {
+  pen.beginPath();
+  pen.arc(x, y, 6, 0, 2 * Math.PI);
+  pen.fillStyle = ink.paper;
+  pen.fill();
+  pen.lineWidth = 2;
+  pen.strokeStyle = ink.ink;
+  pen.stroke();
+}
+
+/** The colours beside the map and what they mean. */
+function scale(pen: CanvasRenderingContext2D, frame: Frame, width: number, shown: Shown, colours: Colours, ink: Ink): void {
+  const left = width - RIGHT + 12;
+  for (let y = 0; y < frame.height; y++) {
+    const at = 3 * Math.round(255 * (1 - y / (frame.height - 1)));
+    pen.fillStyle = `rgb(${colours.scale[at]} ${colours.scale[at + 1]} ${colours.scale[at + 2]})`;
+    pen.fillRect(left, frame.top + y, 10, 1.5);
+  }
+  pen.fillStyle = ink.soft;
+  pen.textAlign = 'left';
+  pen.textBaseline = 'middle';
+  const { low, high } = shown.output;
+  for (const tick of ticks(low, high, 4)) pen.fillText(short(tick), left + 14, frame.top + frame.height * (1 - share(tick, low, high)));
+  pen.fillStyle = ink.ink;
+  pen.textAlign = 'right';
+  pen.textBaseline = 'bottom';
+  pen.fillText(titled(shown.output), width - 2, frame.top + frame.height + BOTTOM - 2);
+}
+
+/** The direction of view, turned about the vertical and tipped; as `flagred map --surface`. */
+const TURN = (35 * Math.PI) / 180;
+const TIP = (28 * Math.PI) / 180;
+/** The most points of the surface along an axis. */
+const MOST = 51;
+
+function surface(pen: CanvasRenderingContext2D, frame: Frame, shown: Shown, colours: Colours, ink: Ink): void {
+  const { points } = shown.view;
+  const { low, high } = shown.output;
+  const size = Math.min(frame.width / 1.42, (frame.height + BOTTOM - 24) / 1.32);
+  const middle = { x: frame.left + frame.width / 2, y: frame.top + (frame.height + BOTTOM - 24) / 2 };
+  const depth = (x: number, y: number) => (y - 0.5) * Math.cos(TURN) - (x - 0.5) * Math.sin(TURN);
+  const place = (x: number, y: number, z: number): [number, number] => [
+    middle.x + size * ((x - 0.5) * Math.cos(TURN) + (y - 0.5) * Math.sin(TURN)),
+    middle.y - size * ((z - 0.5) * 0.75 * Math.cos(TIP) + depth(x, y) * Math.sin(TIP)),
+  ];
+  const line = (...places: [number, number][]) => {
+    pen.beginPath();
+    places.forEach((at, i) => pen[i ? 'lineTo' : 'moveTo'](...at));
+  };
+  pen.strokeStyle = ink.rule;
+  pen.lineWidth = 1;
+  for (let i = 0; i <= 4; i++) {
+    line(place(i / 4, 0, 0), place(i / 4, 1, 0), place(i / 4, 1, 1));
+    pen.stroke();
+    line(place(1, i / 4, 0), place(0, i / 4, 0), place(0, i / 4, 1));
+    pen.stroke();
+    line(place(0, 0, i / 4), place(0, 1, i / 4), place(1, 1, i / 4));
+    pen.stroke();
+  }
+  const count = Math.min(points, MOST);
+  const index = (i: number) => Math.round((i * (points - 1)) / (count - 1));
+  // From the far corner to the near one: what is near covers what is behind it.
+  for (let j = count - 2; j >= 0; j--) {
+    for (let i = 0; i < count - 1; i++) {
+      const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([a, b]) => [index(a!), index(b!)] as const);
+      const values = corners.map(([a, b]) => shown.cells.values[a * points + b]!);
+      if (values.some(Number.isNaN)) continue;
+      const mean = values.reduce((sum, value) => sum + value, 0) / 4;
+      const at = 3 * Math.round(255 * share(mean, low, high));
+      pen.fillStyle = pen.strokeStyle = `rgb(${colours.scale[at]} ${colours.scale[at + 1]} ${colours.scale[at + 2]})`;
+      line(...corners.map(([a, b], k) => place(a / (points - 1), b / (points - 1), share(values[k]!, low, high))));
+      pen.closePath();
+      pen.fill();
+      pen.stroke();
+    }
+  }
+  const [x, y] = shown.view.axes;
+  if (!x || !y) return;
+  const across = share(shown.point[x.input]!, x.low, x.high);
+  const deep = share(shown.point[y.input]!, y.low, y.high);
+  const value = shown.cells.values[Math.round(across * (points - 1)) * points + Math.round(deep * (points - 1))] ?? NaN;
+  if (!Number.isNaN(value)) dot(pen, ...place(across, deep, share(value, low, high)), ink);
+  pen.fillStyle = ink.ink;
+  pen.textAlign = 'center';
+  pen.textBaseline = 'top';
+  const [left, right] = [place(0.5, 0, 0), place(1, 0.5, 0)];
+  pen.fillText(titled(shown.x), left[0], left[1] + 10);
+  pen.textAlign = 'left';
+  pen.fillText(titled(shown.y!), right[0] + 10, right[1] + 6);
+}
+
+/** The map in words. */
+function spoken({ output, x, y, view, cells, point }: Shown): string {
+  const [across, up] = view.axes;
+  const cell = (axis: typeof across) => (axis ? Math.round(share(point[axis.input]!, axis.low, axis.high) * (view.points - 1)) : 0);
+  const value = cells.values[up ? cell(across) * view.points + cell(up) : cell(across)] ?? NaN;
+  const at = [x, ...(y ? [y] : [])].map((variable, i) => `${variable.name} ${short(point[view.axes[i]!.input]!)}`);
+  return `${output.name} over ${x.name}${y ? ` and ${y.name}` : ''}; at ${at.join(', ')}: ${told(value, output.unit)}. Arrow keys move the point.`;
+}

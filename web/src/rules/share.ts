@@ -1,0 +1,23 @@
+/** A text as part of an address: deflated, in base64 without signs that addresses give a meaning. */
+
+/** The most letters of an address that browsers and messengers take for granted. */
+export const LONGEST = 30_000;
+
+export async function pack(text: string): Promise<string> {
+  const bytes = await through(new Blob([text]), new CompressionStream('deflate-raw'));
+  let letters = '';
+  for (const byte of bytes) letters += String.fromCharCode(byte);
+  return btoa(letters).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+}
+
+/** The text of a packed one; fails where it is damaged. */
+export async function unpack(packed: string): Promise<string> {
+  const letters = atob(packed.replaceAll('-', '+').replaceAll('_', '/'));
+  const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+  return new TextDecoder('utf-8', { fatal: true }).decode(await through(new Blob([bytes]), new DecompressionStream('deflate-raw')));
+}
+
+async function through(blob: Blob, stream: GenericTransformStream): Promise<Uint8Array> {
+  const out = blob.stream().pipeThrough(stream as ReadableWritablePair<Uint8Array, Uint8Array<ArrayBuffer>>);
+  return new Uint8Array(await new Response(out).arrayBuffer());
+}

@@ -1,0 +1,204 @@
+/** The terms of every variable as shapes; their points are dragged, by pointer, touch or keys, and write back into the text. */
+
+import type { DrawnTerm, DrawnVariable, Handle } from 'flagred';
+import { fill, h } from '../dom';
+import type { Place } from './calls';
+import type { Colours } from './map';
+import { clamp, short, ticks } from './numbers';
+
+/** The picture of a variable, in its own units. */
+const WIDTH = 440;
+const HEIGHT = 150;
+const FRAME = { left: 30, right: 14, top: 14, bottom: 22 };
+const INNER = { width: WIDTH - FRAME.left - FRAME.right, height: HEIGHT - FRAME.top - FRAME.bottom };
+/** How far a key moves a point, as a share of what is shown. */
+const KEY_STEP = 0.01;
+
+export interface Terms {
+  element: HTMLElement;
+  show(variables: DrawnVariable[], isWhole: boolean): void;
+  /** Marks a value of each input. */
+  mark(point: number[]): void;
+}
+
+/** What is told of a drag. */
+export interface Dragging {
+  begin(): void;
+  move(place: Place, x: number, degree: number): void;
+  end(): void;
+}
+
+export function terms(colours: Colours, dragging: Dragging): Terms {
+  const element = h('div', { class: 'terms' });
+  let plots: Plot[] = [];
+  let shape = '';
+  return {
+    element,
+    show(variables, isWhole) {
+      const now = JSON.stringify(variables.map((v) => [v.name, v.unit, v.terms.map((t) => [t.name, t.curve.length > 0, t.handles.length])]));
+      if (now !== shape) {
+        shape = now;
+        plots = variables.map((variable, i) => plot(variable, i, colours, dragging));
+        fill(element, ...plots.map((one) => one.element));
+      }
+      variables.forEach((variable, i) => plots[i]!.show(variable, isWhole));
+    },
+    mark: (point) => point.forEach((value, i) => plots[i]?.mark(value)),
+  };
+}
+
+interface Plot {
+  element: HTMLElement;
+  show(variable: DrawnVariable, isWhole: boolean): void;
+  mark(value: number): void;
+}
+
+/** An element of SVG. */
+function s<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>, ...children: Node[]): SVGElementTagNameMap[K] {
+  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  set(made, attributes);
+  made.append(...children);
+  return made;
+}
+
+function set(element: Element, attributes: Record<string, string | number>): void {
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+}
+
+function plot(first: DrawnVariable, index: number, { distinct }: Colours, dragging: Dragging): Plot {
+  let variable = first;
+  let [low, high] = [0, 1];
+  const across = (x: number) => FRAME.left + (INNER.width * (x - low)) / (high - low);
+  const up = (degree: number) => FRAME.top + INNER.height * (1 - degree);
+  const colour = (term: number) => {
+    const at = 3 * (term % (distinct.length / 3));
+    return `rgb(${distinct[at]} ${distinct[at + 1]} ${distinct[at + 2]})`;
+  };
+
+  const grid = s('g', { class: 'grid' });
+  const line = s('line', { class: 'mark', y1: FRAME.top, y2: FRAME.top + INNER.height });
+  const curves = first.terms.map((_, t) => s('path', { class: 'curve', stroke: colour(t), fill: colour(t) }));
+  const clip = `clip-${index}`;
+  const frame = s('rect', { x: FRAME.left, y: FRAME.top - 3, width: INNER.width, height: INNER.height + 6 });
+  const svg = s('svg', { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'group', 'aria-label': `Terms of ${first.name}` });
+  const points = first.terms.map((term, t) => term.handles.map((_, i) => handle(t, i)));
+  svg.append(
+    s('defs', {}, s('clipPath', { id: clip }, frame)),
+    grid,
+    s('g', { 'clip-path': `url(#${clip})` }, ...curves),
+    line,
+    ...points.flat().map((point) => point.element),
+  );
+  const told = h('output', { class: 'soft' });
+  const legend = first.terms.map((term, t) => {
+    const swatch = h('span', { class: 'swatch', 'aria-hidden': 'true' });
+    swatch.style.backgroundColor = colour(t);
+    return h('li', {}, swatch, term.name);
+  });
+  const element = h(
+    'section',
+    { class: 'variable', 'aria-label': first.name },
+    h('h3', {}, first.name, first.unit && h('span', { class: 'soft' }, ` ${first.unit}`), first.isOutput && h('span', { class: 'tag' }, 'output')),
+    h('ul', { class: 'legend' }, ...legend),
+    h('div', { class: 'picture' }),
+    told,
+  );
+  element.querySelector('.picture')!.append(svg);
+
+  function handle(t: number, i: number): { element: SVGGElement; show(term: DrawnTerm, handle: Handle): void } {
+    const dot = s('circle', { class: 'dot', r: 6, fill: colour(t) });
+    const group = s('g', { class: 'handle', tabindex: 0, role: 'slider' }, s('circle', { class: 'reach', r: 16 }), dot);
+    const place: Place = { variable: index, term: t, handle: i };
+    const now = () => variable.terms[t]!.handles[i]!;
+    const move = (x: number, degree: number) => dragging.move(place, clamp(x, now().low, now().high), clamp(degree, 0, 1));
+
+    group.addEventListener('pointerdown', (event) => {
+      event.preventDefault();
+      group.focus();
+      group.setPointerCapture(event.pointerId);
+      group.classList.add('held');
+      dragging.begin();
+    });
+    group.addEventListener('pointermove', (event) => {
+      if (!group.hasPointerCapture(event.pointerId)) return;
+      const there = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM()!.inverse());
+      move(low + ((there.x - FRAME.left) / INNER.width) * (high - low), 1 - (there.y - FRAME.top) / INNER.height);
+    });
+    group.addEventListener('lostpointercapture', () => {
+      group.classList.remove('held');
+      dragging.end();
+    });
+    group.addEventListener('keydown', (event) => {
+      const [dx, dy] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
+      if (!dx && !dy) return;
+      event.preventDefault();
+      const { x, degree, movesDegree } = now();
+      // Where a point only goes left and right, up is right: that is how sliders are.
+      const steps = movesDegree ? dx! : dx! + dy!;
+      const by = KEY_STEP * (event.shiftKey ? 0.1 : 1);
+      dragging.begin();
+      move(x + steps * by * (high - low), degree + (movesDegree ? dy! : 0) * by);
+      dragging.end();
+    });
+    return {
+      element: group,
+      show(term, { name, x, degree, low, high }) {
+        group.setAttribute('transform', `translate(${across(x)} ${up(degree)})`);
+        const words = `${term.name}: ${name} ${short(x)}`;
+        set(group, {
+          'aria-label': `${term.name}: ${name}`,
+          'aria-valuemin': low,
+          'aria-valuemax': high,
+          'aria-valuenow': x,
+          'aria-valuetext': variable.unit ? `${short(x)} ${variable.unit}` : short(x),
+        });
+        // A point beyond what is shown cannot be taken hold of.
+        group.style.display = across(x) < FRAME.left - 1 || across(x) > WIDTH - FRAME.right + 1 ? 'none' : '';
+        if (group.classList.contains('held') || document.activeElement === group) told.textContent = words;
+      },
+    };
+  }
+
+  function show(next: DrawnVariable, isWhole: boolean): void {
+    variable = next;
+    const [from, to] = isWhole ? [next.low, next.high] : next.shown;
+    if (from === null || to === null || from === undefined || to === undefined) {
+      told.textContent = 'The range cannot be read.';
+      return;
+    }
+    // What is shown stays while a point is held, or it would run away under the hand.
+    if (!svg.querySelector('.held') || low === high) [low, high] = [from, to];
+    const labels = ticks(low, high, 6).map((tick) => {
+      const text = s('text', { x: across(tick), y: HEIGHT - 6 });
+      text.textContent = short(tick);
+      return [s('line', { x1: across(tick), x2: across(tick), y1: FRAME.top, y2: FRAME.top + INNER.height }), text];
+    });
+    const degrees = [0, 1].map((degree) => {
+      const text = s('text', { x: FRAME.left - 6, y: up(degree) + 4, class: 'degree' });
+      text.textContent = String(degree);
+      return [s('line', { x1: FRAME.left, x2: WIDTH - FRAME.right, y1: up(degree), y2: up(degree) }), text];
+    });
+    grid.replaceChildren(...labels.flat(), ...degrees.flat());
+    next.terms.forEach((term, t) => {
+      curves[t]!.setAttribute('d', outline(term));
+      term.handles.forEach((one, i) => points[t]![i]!.show(term, one));
+    });
+  }
+
+  /** A set as its curve; a number as a stick. */
+  function outline({ curve, handles }: DrawnTerm): string {
+    const places: string[] = [];
+    for (let i = 0; i + 1 < curve.length; i += 2) places.push(`${across(curve[i]!).toFixed(2)} ${up(curve[i + 1]!).toFixed(2)}`);
+    if (places.length > 0) return `M${across(curve[0]!)} ${up(0)}L${places.join('L')}L${across(curve.at(-2)!)} ${up(0)}`;
+    return handles.map(({ x }) => `M${across(x)} ${up(0)}V${up(1)}`).join('');
+  }
+
+  return {
+    element,
+    show,
+    mark(value) {
+      set(line, { x1: across(value), x2: across(value) });
+      line.style.display = value < low || value > high || variable.isOutput ? 'none' : '';
+    },
+  };
+}
