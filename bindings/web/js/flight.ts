@@ -1,7 +1,15 @@
 /** Flight logs: read, assessed, explained, compared. */
 
-import { guarded } from './panic.js';
-import * as wasm from './wasm/flagred.js';
+import { beside, type Source } from './load.js';
+import { guard } from './panic.js';
+import * as wasm from './wasm/flight.js';
+
+const guarded = guard(wasm.panicMessage);
+
+/** Loads the module for flight logs, from beside this file or from elsewhere. Calls after the first do nothing. */
+export async function startFlight(source?: Source): Promise<void> {
+  await wasm.default({ module_or_path: source ?? (await beside('flight')) });
+}
 
 /** Only workers have it. */
 declare const FileReaderSync: new () => { readAsArrayBuffer(blob: Blob): ArrayBuffer };
