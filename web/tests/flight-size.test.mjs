@@ -86,14 +86,20 @@ async function measure(path) {
   const before = await page.evaluate(() => (window.tasks.splice(0), performance.now()));
   const flights = room(page);
   await flights.take(path);
-  const badge = await flights.badge('long.bin');
-  const assessed_s = (await page.evaluate(() => performance.now()) - before) / 1000;
-  await flights.settled();
+  // The questions of the test are tasks too: short ones are asked.
+  const { badge, now } = await page.evaluate(async () => {
+    const badge = () => document.querySelector('.logs .badge')?.textContent;
+    while (!badge() || badge() === '…') await new Promise((resolve) => setTimeout(resolve, 20));
+    return { badge: badge(), now: performance.now() };
+  });
+  const assessed_s = (now - before) / 1000;
+  await page.waitForTimeout(1500);
   // What one does then: move the cursor, zoom, look at all of it.
-  const box = await page.locator('.report .panel .area').first().boundingBox();
+  const area = () => document.querySelector('.report').shadowRoot.querySelector('.area').getBoundingClientRect().toJSON();
+  const box = await page.evaluate(area);
   for (let i = 0; i <= 20; i++) await page.mouse.move(box.x + (box.width * i) / 20, box.y + 20);
-  await page.getByRole('button', { name: 'Zoom in' }).click();
-  await flights.settled();
+  await page.evaluate(() => document.querySelector('[aria-label="Zoom in"]').click());
+  await page.waitForTimeout(1000);
   await page.evaluate(async () => {
     for (let y = 0; y < document.documentElement.scrollHeight; y += 600) {
       window.scrollTo(0, y);

@@ -120,8 +120,9 @@ test('a stretch that is selected is drawn anew, with what thinning left out', as
   await room.settled();
   const [, start] = await points();
   assert.ok(Math.abs(Number(start) - (48.8 + 129.1 / 2)) < 0.5, `it starts at ${start} s`);
+  await page.waitForTimeout(400);
   assert.match(page.url(), /from=113\.\d\d&to=119\.\d\d/);
-  await page.getByRole('button', { name: 'Show the whole flight' }).click();
+  await page.getByRole('button', { name: 'All of the flight' }).click();
   await room.settled();
   assert.equal((await points())[1], whole);
   assert.ok(await page.getByRole('button', { name: 'Zoom out' }).isDisabled());
@@ -217,9 +218,38 @@ test('flights are compared as the command line compares them', async () => {
   await context.close();
 });
 
+test('axe finds nothing serious', async () => {
+  const axe = readFileSync(new URL('../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
+  for (const colorScheme of ['light', 'dark']) {
+    for (const viewport of [
+      { width: 1280, height: 900 },
+      { width: 390, height: 844 },
+    ]) {
+      const { page, room, context } = await open('#/flight', { colorScheme, viewport });
+      const check = async (what) => {
+        const found = await page.evaluate(async () => (await window.axe.run()).violations.map(({ id, impact, nodes }) => [impact, id, nodes[0].html.slice(0, 200), nodes[0].failureSummary]));
+        const grave = found.filter(([impact]) => ['serious', 'critical'].includes(impact));
+        assert.deepEqual(grave, [], `${what}, ${colorScheme}, ${viewport.width}`);
+      };
+      await page.evaluate(axe);
+      await check('empty');
+      await room.take(GUST);
+      await room.badge(basename(GUST));
+      await room.settled();
+      await page.getByText('the thresholds were others?').click();
+      await check('a report');
+      await room.take({ name: 'no.log', mimeType: '', buffer: Buffer.from('nothing') });
+      await room.badge('no.log');
+      await room.row('no.log').locator('.log').click();
+      await check('a refusal');
+      await context.close();
+    }
+  }
+});
+
 test('nothing in a log is markup', async () => {
   const attack = '<img src=x onerror="window.attacked = true"><style>*{display:none}</style>';
-  const csv = gustCsv().toString().replace('# frame: OCTAQUAD/X', `# frame: ${attack}`).replace('# vehicle:', `# vehicle: ${attack}`);
+  const csv = gustCsv().toString().replace('# firmware:', `# firmware: ${attack}`);
   const name = "<img src=x onerror='window.attacked=true'>.csv";
   const { page, room, context, complaints } = await open();
   await page.locator('.drop input').setInputFiles([
@@ -269,7 +299,9 @@ test('the room opens an example by its link, on a phone too', async () => {
   assert.equal(width, 390);
   assert.equal(Number(start), 90);
   assert.equal(await page.locator('.moment summary b').textContent(), '100.0 s');
-  const box = await page.locator('.report .panel .area').first().boundingBox();
+  const area = page.locator('.report .panel .area').first();
+  await area.evaluate((element) => element.scrollIntoView({ block: 'center' }));
+  const box = await area.boundingBox();
   await page.touchscreen.tap(box.x + box.width / 2, box.y + 20);
   await page.waitForTimeout(300);
   assert.ok(Math.abs(parseFloat(await page.locator('.moment summary b').textContent()) - 105) < 0.5);
