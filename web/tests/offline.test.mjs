@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { browser, serve, studio, tab } from './page.mjs';
-import { rooms } from './rooms.mjs';
+import * as rooms from './rooms.mjs';
 
 let chromium;
 before(async () => (chromium = await browser()));
