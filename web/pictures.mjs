@@ -1,0 +1,28 @@
+// Pictures of both rooms, desktop and phone, into a folder: `scripts/web-pictures` runs it.
+
+import { join } from 'node:path';
+import { browser, serve, tab } from './tests/page.mjs';
+import * as rooms from './tests/rooms.mjs';
+
+const [, , folder] = process.argv;
+const devices = {
+  desktop: { viewport: { width: 1280, height: 860 }, deviceScaleFactor: 1 },
+  phone: { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },
+};
+
+const chromium = await browser();
+const server = await serve();
+for (const [room, fill] of Object.entries(rooms)) {
+  for (const [device, options] of Object.entries(devices)) {
+    const { page, context, complaints } = await tab(chromium, `${server.address}#/${room}`, { ...options, reducedMotion: 'reduce' });
+    await fill(page);
+    // The moment of the highest risk, in the middle of what is shown.
+    if (room === 'flight') await page.goto(page.url().replace(/([?&]t=)[^&]*/, '$1178'));
+    await page.waitForTimeout(1000);
+    await page.screenshot({ path: join(folder, `page-${room}-${device}.png`) });
+    if (complaints.length > 0) throw new Error(complaints.join('\n'));
+    await context.close();
+  }
+}
+await chromium.close();
+await server.close();
