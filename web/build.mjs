@@ -67,13 +67,13 @@ async function served(template) {
 
 /** All in one file. Scripts and styles are named in the policy by their hashes; the worker and the module are data. */
 async function oneFile(template) {
-  const parts = await build({
-    ...common,
-    entryPoints: ['src/main.ts', 'src/worker.ts'],
-    outdir: page,
-    write: false,
-  });
-  const part = (name) => parts.outputFiles.find((file) => file.path.endsWith(name)).text;
+  const bundled = async (entry, options) => {
+    const { outputFiles } = await build({ ...common, entryPoints: [entry], outdir: page, write: false, ...options });
+    return (name) => outputFiles.find((file) => file.path.endsWith(name)).text;
+  };
+  const part = await bundled('src/main.ts');
+  // A worker from a blob is no module on every browser; what it would load by its address it is given.
+  const worker = await bundled('src/worker.ts', { format: 'iife', define: { 'import.meta.url': '""' } });
   // Neither may end the element that it stands in.
   const script = part('main.js').replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
   const style = part('main.css').trim();
@@ -88,7 +88,7 @@ async function oneFile(template) {
     .replace(
       '<script type="module" src="main.js"></script>',
       () =>
-        data('worker.js', Buffer.from(part('worker.js'))) +
+        data('worker.js', Buffer.from(worker('worker.js'))) +
         rooms.map((room, i) => data(`${room}.wasm`, gzipSync(modules[i], { level: 9 }))).join('') +
         `<script type="module">${script}</script>`,
     );

@@ -148,7 +148,7 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
         EditorState.allowMultipleSelections.of(true),
         EditorState.readOnly.of(readOnly),
         EditorView.lineWrapping,
-        EditorView.contentAttributes.of({ 'aria-label': 'Rule set in YAML', spellcheck: 'false', autocapitalize: 'off' }),
+        EditorView.contentAttributes.of({ 'aria-label': 'Rule set in YAML', tabindex: '0', spellcheck: 'false', autocapitalize: 'off' }),
         yaml(),
         syntaxHighlighting(colours),
         autocompletion({ override: [complete], icons: false }),
