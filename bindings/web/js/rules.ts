@@ -4,7 +4,7 @@ import { guarded } from './panic.js';
 import * as wasm from './wasm/flagred.js';
 
 /** A finding in a text; places count UTF-16 code units, as JavaScript does. */
-export interface Finding {
+export interface TextFinding {
   severity: 'error' | 'warning' | 'note';
   code: string;
   message: string;
@@ -87,7 +87,7 @@ export class RuleText {
   }
 
   /** What `flagred check` finds. */
-  findings(): Finding[] {
+  findings(): TextFinding[] {
     return parsed(() => this.#text.findings());
   }
 

@@ -37,3 +37,10 @@ pub fn panic_message() -> String {
 pub fn version() -> String {
     env!("CARGO_PKG_VERSION").into()
 }
+
+/// A panic, so that tests see what becomes of one.
+#[wasm_bindgen(js_name = panicNow)]
+#[expect(clippy::panic, reason = "it is asked for")]
+pub fn panic_now(words: &str) {
+    panic!("{words}");
+}

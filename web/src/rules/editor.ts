@@ -17,7 +17,7 @@ import {
   lineNumbers,
 } from '@codemirror/view';
 import { tags } from '@lezer/highlight';
-import type { Completion, Edit, Finding, Hover } from 'flagred';
+import type { Completion, Edit, TextFinding, Hover } from 'flagred';
 import { h } from '../dom';
 import { markdown } from './markdown';
 
@@ -41,7 +41,7 @@ export interface Editor {
   /** Makes all that was followed since `before` one step for undo. */
   conclude(before: string): void;
   apply(edits: Edit[]): void;
-  show(findings: Finding[]): void;
+  show(findings: TextFinding[]): void;
   /** Selects a part and brings it into view. */
   select(from: number, to: number): void;
   cursor(): number;

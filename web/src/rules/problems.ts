@@ -1,17 +1,17 @@
 /** The findings as a list: how many there are is told aloud, a click leads to the place. */
 
-import type { Finding } from 'flagred';
+import type { TextFinding } from 'flagred';
 import { add, fill, h } from '../dom';
 
 export interface Problems {
   element: HTMLElement;
-  show(findings: Finding[]): void;
+  show(findings: TextFinding[]): void;
 }
 
 const words = { error: ['error', 'errors'], warning: ['warning', 'warnings'], note: ['note', 'notes'] } as const;
 
 /** `2 errors, 1 note`. */
-export function counted(findings: Finding[]): string {
+export function counted(findings: TextFinding[]): string {
   const counts = (['error', 'warning', 'note'] as const).map((severity) => {
     const count = findings.filter((finding) => finding.severity === severity).length;
     return count ? `${count} ${words[severity][count === 1 ? 0 : 1]}` : '';
@@ -33,7 +33,7 @@ export function problems(lead: (from: number, to: number) => void): Problems {
   };
 }
 
-function item(finding: Finding, lead: (from: number, to: number) => void): HTMLElement {
+function item(finding: TextFinding, lead: (from: number, to: number) => void): HTMLElement {
   const { severity, line, message, help, related } = finding;
   const button = h(
     'button',

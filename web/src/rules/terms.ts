@@ -77,6 +77,7 @@ function plot(first: DrawnVariable, index: number, { distinct }: Colours, draggi
 
   const grid = s('g', { class: 'grid' });
   const line = s('line', { class: 'mark', y1: FRAME.top, y2: FRAME.top + INNER.height });
+  line.style.display = 'none';
   const curves = first.terms.map((_, t) => s('path', { class: 'curve', stroke: colour(t), fill: colour(t) }));
   const clip = `clip-${index}`;
   const frame = s('rect', { x: FRAME.left, y: FRAME.top - 3, width: INNER.width, height: INNER.height + 6 });
