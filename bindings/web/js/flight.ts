@@ -74,7 +74,7 @@ export interface Brief {
   verdict: Level | 'NA';
   reason?: string;
   help?: string | null;
-  findings: Finding[];
+  findings: FlightFinding[];
   findings_left_out: number;
   summary: {
     in_air_s: number;
@@ -88,7 +88,7 @@ export interface Brief {
   widened_step_s: number | null;
 }
 
-export interface Finding {
+export interface FlightFinding {
   level: Level;
   from_s: number;
   to_s: number;
