@@ -9,7 +9,8 @@ import { build } from 'esbuild';
 const here = fileURLToPath(new URL('.', import.meta.url));
 const page = fileURLToPath(new URL('../target/web/page/', import.meta.url));
 const studio = fileURLToPath(new URL('../cli/page/studio.html', import.meta.url));
-const wasm = fileURLToPath(new URL('../bindings/web/js/wasm/flagred_bg.wasm', import.meta.url));
+const module = (room) => fileURLToPath(new URL(`../bindings/web/js/wasm/${room}_bg.wasm`, import.meta.url));
+const rooms = ['flight', 'rules'];
 
 const common = {
   absWorkingDir: here,
@@ -49,7 +50,7 @@ async function served(template) {
     splitting: true,
     chunkNames: 'part-[hash]',
   });
-  await copyFile(wasm, `${page}flagred.wasm`);
+  for (const room of rooms) await copyFile(module(room), `${page}${room}.wasm`);
   for (const file of ['icon.svg', 'manifest.webmanifest']) await copyFile(here + file, page + file);
   await writeFile(`${page}index.html`, template.replace('{policy}', policy("'self'", "'self'", "'self'")));
   const files = await readdir(page);
@@ -66,17 +67,18 @@ async function served(template) {
 
 /** All in one file. Scripts and styles are named in the policy by their hashes; the worker and the module are data. */
 async function oneFile(template) {
-  const parts = await build({
-    ...common,
-    entryPoints: ['src/main.ts', 'src/worker.ts'],
-    outdir: page,
-    write: false,
-  });
-  const part = (name) => parts.outputFiles.find((file) => file.path.endsWith(name)).text;
+  const bundled = async (entry, options) => {
+    const { outputFiles } = await build({ ...common, entryPoints: [entry], outdir: page, write: false, ...options });
+    return (name) => outputFiles.find((file) => file.path.endsWith(name)).text;
+  };
+  const part = await bundled('src/main.ts');
+  // A worker from a blob is no module on every browser; what it would load by its address it is given.
+  const worker = await bundled('src/worker.ts', { format: 'iife', define: { 'import.meta.url': '""' } });
   // Neither may end the element that it stands in.
   const script = part('main.js').replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
   const style = part('main.css').trim();
   const data = (id, bytes) => `<script type="application/octet-stream" id="${id}">${bytes.toString('base64')}</script>`;
+  const modules = await Promise.all(rooms.map((room) => readFile(module(room))));
   const icon = (await readFile(`${here}icon.svg`)).toString('base64');
   const whole = template
     .replace('{policy}', () => policy(hash(script), hash(style), 'blob:'))
@@ -86,14 +88,13 @@ async function oneFile(template) {
     .replace(
       '<script type="module" src="main.js"></script>',
       () =>
-        data('worker.js', Buffer.from(part('worker.js'))) +
-        data('flagred.wasm', gzipSync(wasmBytes, { level: 9 })) +
+        data('worker.js', Buffer.from(worker('worker.js'))) +
+        rooms.map((room, i) => data(`${room}.wasm`, gzipSync(modules[i], { level: 9 }))).join('') +
         `<script type="module">${script}</script>`,
     );
   await writeFile(studio, whole);
 }
 
-const wasmBytes = await readFile(wasm);
 const template = await readFile(`${here}index.html`, 'utf8');
 await served(template);
 await oneFile(template);

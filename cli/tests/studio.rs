@@ -471,10 +471,7 @@ fn the_page_is_written_as_one_file_and_over_no_input() {
     ] {
         let (code, _, error) = run(&["studio", "--page", "page.html", "--html", out]);
         assert_eq!(code, Some(2), "{out}: {error}");
-        assert!(
-            error.contains(told),
-            "{out}: {error}"
-        );
+        assert!(error.contains(told), "{out}: {error}");
     }
     assert_eq!(
         fs::read_to_string(folder.path().join("page.html")).unwrap(),

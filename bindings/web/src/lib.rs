@@ -2,9 +2,13 @@
 //!
 //! What is refused is thrown as an `Error` with the words of the command line. Documents are JSON, the same as the command
 //! line's; columns and maps are `Float64Array`.
+//!
+//! It is compiled twice, with either feature: whoever looks at flights need not load what rule sets are edited with.
 
 mod failure;
+#[cfg(feature = "flight")]
 pub mod flight;
+#[cfg(feature = "rules")]
 pub mod rules;
 
 use std::sync::Mutex;
@@ -36,4 +40,11 @@ pub fn panic_message() -> String {
 #[wasm_bindgen]
 pub fn version() -> String {
     env!("CARGO_PKG_VERSION").into()
+}
+
+/// A panic, so that tests see what becomes of one.
+#[wasm_bindgen(js_name = panicNow)]
+#[expect(clippy::panic, reason = "it is asked for")]
+pub fn panic_now(words: &str) {
+    panic!("{words}");
 }

@@ -6,7 +6,7 @@ pub(crate) mod tables;
 
 pub(crate) use declared::Declared;
 
-use crate::{Flight, Motor, VehicleKind};
+use crate::{Flight, Motor, Series, VehicleKind};
 
 /// Mixer factors of the motors, and where they came from.
 ///
@@ -42,6 +42,21 @@ pub struct Geometry {
     pub source: String,
     /// Why the commands contradict it; `None` where they do not.
     pub doubt: Option<String>,
+}
+
+/// First and last time of what is read of every log: the motor commands and the signals of the geometry. Which others are
+/// kept must not change when the vehicle is armed or in the air. Of a log without any of these, the time of all that is kept.
+pub(crate) fn span_s(flight: &Flight) -> Option<(f64, f64)> {
+    let is_read = |series: &&Series| {
+        let mut signals = series.signals();
+        signals.any(|signal| infer::SIGNALS.contains(&signal.label.name.as_str()))
+    };
+    let series = flight.series.iter().filter(is_read).map(Series::t_s);
+    std::iter::once(flight.commands.t_s())
+        .chain(series)
+        .filter_map(|t_s| Some((*t_s.first()?, *t_s.last()?)))
+        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        .or_else(|| flight.time_span_s())
 }
 
 /// How a [`Geometry`] is known.

@@ -230,7 +230,7 @@ impl Heard {
             .into_iter()
             .map(|(t_s, number)| Event::new(t_s, mode(number)))
             .collect();
-        if let Some(span_s) = flight.time_span_s() {
+        if let Some(span_s) = geometry::span_s(flight) {
             let intervals = |states: &[(f64, bool)], rule: &str| {
                 (!states.is_empty()).then(|| Intervals::from_states(states, span_s, rule))
             };

@@ -280,7 +280,7 @@ impl<'o> Collector<'o> {
         flight.utc_at_zero_s = self.utc_at_zero_s;
         flight.report = self.report;
         flight.report.left_out.parameters = self.parameters.left_out();
-        let span_s = flight.time_span_s().unwrap_or_default();
+        let span_s = geometry::span_s(&flight).unwrap_or_default();
         if !self.armed.is_empty() {
             let rule = "vehicle_status.arming_state = 2";
             flight.armed = Some(Intervals::from_states(&self.armed, span_s, rule));

@@ -40,7 +40,7 @@ interface Axis {
   high: number;
 }
 
-/** The charts within an element. */
+/** The charts within an element, which get a name for those who do not see them. */
 export function chartsIn(root: ParentNode): Chart[] {
   const charts: Chart[] = [];
   for (const box of root.querySelectorAll<HTMLElement>('.panel')) {
@@ -48,6 +48,8 @@ export function chartsIn(root: ParentNode): Chart[] {
     const plot = area?.querySelector('svg');
     const cursor = plot?.querySelector<SVGPathElement>('.cursor');
     if (!area || !plot || !cursor) continue;
+    plot.setAttribute('role', 'img');
+    plot.setAttribute('aria-label', `${box.querySelector('b')?.textContent ?? ''} over time`);
     const events = [...plot.querySelectorAll('.event')].map((mark) => ({
       x_s: Number(/^M([-\d.]+)/.exec(mark.getAttribute('d') ?? '')?.[1]),
       text: mark.textContent ?? '',
@@ -76,6 +78,9 @@ export function mapIn(root: ParentNode): DecisionMap | undefined {
   const box = root.querySelector<HTMLElement>('.map');
   const here = box?.querySelector<SVGPathElement>('.here');
   const [left, right, low, high] = (box?.dataset['box'] ?? '').split(' ').map(Number);
+  const drawing = box?.querySelector('svg');
+  drawing?.setAttribute('role', 'img');
+  drawing?.setAttribute('aria-label', 'The path of the flight over the decision map');
   if (!box || !here || left === undefined || right === undefined || low === undefined || high === undefined) return undefined;
   return {
     box,
@@ -124,7 +129,7 @@ export function said(value: number, unit = ''): string {
 
 /** Puts the cursor of a chart at a place, and shows the values there. */
 export function point(chart: Chart, x_s: number): void {
-  chart.cursor.setAttribute('d', `M${x_s}${chart.tail}`);
+  chart.cursor.setAttribute('d', `M${Number.isFinite(x_s) ? x_s.toFixed(4) : -1}${chart.tail}`);
   curvesOf(chart).forEach((curve, i) => {
     const output = chart.outputs[i];
     if (output) output.textContent = said(held(curve, x_s), chart.unit);

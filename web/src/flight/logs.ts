@@ -74,6 +74,9 @@ export function logList(actions: Actions): LogList {
         facts.textContent = `${about(entry)} · ${size(entry.log.file.size)}`;
         remove.setAttribute('aria-label', `${isBusy ? 'Cancel' : 'Remove'} ${entry.log.file.name}`);
         remove.title = isBusy ? 'Cancel' : 'Remove';
+        const badged = `${entry.state} ${entry.brief?.verdict}`;
+        if (badged === mark.dataset['of']) return;
+        mark.dataset['of'] = badged;
         if (entry.state === 'done' && entry.brief) fill(mark, badge(entry.brief.verdict));
         else if (entry.state === 'refused') fill(mark, h('span', { class: 'badge refused' }, 'error'));
         else fill(mark, h('span', { class: 'badge na' }, '…'));

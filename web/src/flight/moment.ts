@@ -74,7 +74,7 @@ function rules({ rules: fired, step }: Moment): Child {
       h(
         'li',
         { class: rule === step?.dominant_rule ? 'dominant' : null },
-        h('span', { class: 'strength' }, strength < 0.005 ? '< 0.01' : strength.toFixed(2)),
+        h('span', { class: 'strength' }, strength < 0.005 ? '<0.01' : strength.toFixed(2)),
         h('span', { class: 'rule' }, h('b', {}, `${rule} `), text),
         h('span', { class: 'track', 'aria-hidden': 'true' }, meter),
       ),

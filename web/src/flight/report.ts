@@ -29,6 +29,13 @@ export interface Report {
   near(share: number): string[];
 }
 
+interface Section {
+  element: HTMLElement;
+  charts: Chart[];
+  /** Whether there is nothing to show of the whole flight either. */
+  isEmpty: boolean;
+}
+
 /** What the style sheet of the report does not know: it is a page there. */
 const STYLE = `
 :host{display:block;min-width:0}
@@ -38,6 +45,8 @@ section[data-part=head] h1{margin-top:0}
 .area{cursor:crosshair;touch-action:pan-y;user-select:none;-webkit-user-select:none}
 .selection{position:absolute;top:0;bottom:0;background:var(--accent);opacity:.18;pointer-events:none}
 .preview .times,.preview .phase{visibility:hidden}
+a{color:var(--accent)}
+@media(max-width:40rem){.map .y{font-size:.65rem}}
 .nothing{color:var(--soft);font-size:.9rem}
 `;
 
@@ -54,7 +63,7 @@ export function report(style: string, listener: Listener): Report {
   const body = h('div', {});
   root.append(body);
 
-  const sections = new Map<string, { element: HTMLElement; charts: Chart[] }>();
+  const sections = new Map<string, Section>();
   let map: DecisionMap | undefined;
   let share = 0.5;
   let drawing = 0;
@@ -64,10 +73,10 @@ export function report(style: string, listener: Listener): Report {
     for (const section of sections.values()) yield* section.charts;
   };
 
-  function section(name: string): { element: HTMLElement; charts: Chart[] } {
+  function section(name: string): Section {
     let known = sections.get(name);
     if (!known) {
-      known = { element: h('section', { 'data-part': name }), charts: [] };
+      known = { element: h('section', { 'data-part': name }), charts: [], isEmpty: false };
       sections.set(name, known);
       body.append(known.element);
     }
@@ -136,8 +145,17 @@ export function report(style: string, listener: Listener): Report {
       }
       for (const [name, html] of parts) {
         const made = section(name);
-        const drawn = fragment(html);
-        if (!html && !isAll) drawn.append(h('p', { class: 'nothing' }, 'Nothing is known in this stretch of time.'));
+        const drawn = document.createDocumentFragment();
+        // A chart at a time, so that no task is long.
+        for (const piece of html.split(/(?=<figure class="panel)/)) {
+          drawn.append(fragment(piece));
+          await nextTask();
+          if (mine !== drawing) return false;
+        }
+        if (isAll) made.isEmpty = !html;
+        else if (!html && !made.isEmpty) drawn.append(h('p', { class: 'nothing' }, 'Nothing is known in this stretch of time.'));
+        // What may scroll can be scrolled by keys.
+        for (const wide of drawn.querySelectorAll<HTMLElement>('pre, .scroll')) wide.tabIndex = 0;
         made.charts = chartsIn(drawn);
         if (name === 'map') map = mapIn(drawn);
         made.element.replaceChildren(drawn);

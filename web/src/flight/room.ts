@@ -157,7 +157,7 @@ export function open(root: HTMLElement, app: App): Room {
 
   function take(files: File[]): void {
     for (const file of files) entries.push({ log: { id: next++, file }, state: 'waiting', share: 0 });
-    list.show(entries, current);
+    list.show(entries, isComparing ? undefined : current);
     void pump();
   }
 
@@ -173,10 +173,10 @@ export function open(root: HTMLElement, app: App): Room {
 
   async function read(entry: Entry): Promise<void> {
     entry.state = 'reading';
-    list.show(entries, current);
+    list.show(entries, isComparing ? undefined : current);
     const progress = (share: number) => {
       entry.share = share;
-      list.show(entries, current);
+      list.show(entries, isComparing ? undefined : current);
     };
     try {
       if (!isUnchanged(changes)) {
@@ -198,7 +198,7 @@ export function open(root: HTMLElement, app: App): Room {
     }
     if (!entries.includes(entry)) return;
     if (!current || current.state === 'refused' || (current === entry)) await choose(entry);
-    else list.show(entries, current);
+    else list.show(entries, isComparing ? undefined : current);
     compareButton.disabled = done().length < 2;
     if (isComparing) quiet(redraw(true));
   }
@@ -216,7 +216,7 @@ export function open(root: HTMLElement, app: App): Room {
     }
     if (done().length < 2) isComparing = false;
     compareButton.disabled = done().length < 2;
-    list.show(entries, current);
+    list.show(entries, isComparing ? undefined : current);
     app.say(isBusy ? `Cancelled: ${entry.log.file.name}` : '');
   }
 
@@ -239,7 +239,7 @@ export function open(root: HTMLElement, app: App): Room {
     }
     current = entry;
     isComparing = false;
-    list.show(entries, current);
+    list.show(entries, isComparing ? undefined : current);
     heading.classList.add('visually-hidden');
     drop.classList.add('small');
     if (entry.state === 'refused') {
@@ -261,6 +261,7 @@ export function open(root: HTMLElement, app: App): Room {
   async function compare(on: boolean): Promise<void> {
     isComparing = on;
     shown = undefined;
+    list.show(entries, isComparing ? undefined : current);
     if (!on && current) return choose(current);
     cursor_s = NaN;
     await redraw(true);
@@ -303,6 +304,8 @@ export function open(root: HTMLElement, app: App): Room {
   }
 
   function pointAt(t_s: number): void {
+    // Another flight was chosen, and is not drawn yet.
+    if (!Number.isFinite(t_s)) return;
     const { start_s, end_s } = view();
     cursor_s = Math.min(end_s, Math.max(start_s, t_s));
     report?.point((cursor_s - drawn.start_s) / lengthOf(drawn));
@@ -363,11 +366,12 @@ export function open(root: HTMLElement, app: App): Room {
     }
     listProfiles();
     write();
+    message.hidden = current?.state !== 'refused';
     const first = current?.state === 'done' ? [current] : [];
     for (const entry of [...first, ...done().filter((entry) => entry !== current)]) {
       Object.assign(entry, await engine.call('assessLog', entry.log, source()));
       if (isUnchanged(changes)) entry.unchanged = entry.brief?.verdict;
-      list.show(entries, current);
+      list.show(entries, isComparing ? undefined : current);
       if (entry !== current) continue;
       tellVerdict();
       if (!isComparing) await redraw(true);

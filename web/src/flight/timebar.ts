@@ -45,12 +45,12 @@ export function timeBar(actions: Actions): TimeBar {
   const farther = button('−', 'Zoom out', () => about(2));
   const earlier = button('‹', 'Earlier', () => actions.zoom(-0.5, 0.5));
   const later = button('›', 'Later', () => actions.zoom(0.5, 1.5));
-  const all = button('All', 'Show the whole flight', actions.reset);
+  const all = button('All', 'All of the flight', actions.reset);
   const element = h(
     'div',
     { class: 'timebar', role: 'group', 'aria-label': 'Time' },
     h('div', { class: 'slider' }, slider, h('span', { class: 'overview' }, overview)),
-    h('div', { class: 'zoom' }, span, earlier, farther, all, closer, later),
+    h('div', { class: 'zoom' }, h('span', { class: 'hint soft' }, 'Drag over a chart to zoom.'), span, earlier, farther, all, closer, later),
   );
   return {
     element,

@@ -1,0 +1,32 @@
+// The README of the package runs as printed: what follows `console.log(...); //`, and comments of their own, is what it prints.
+
+import assert from 'node:assert/strict';
+import { cp, readFile, writeFile } from 'node:fs/promises';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { install, repository, run } from './installed.mjs';
+
+const readme = await readFile(join(repository, 'bindings/web/README.md'), 'utf8');
+const blocks = [...readme.matchAll(/^```js\n(.*?)^```$/gms)].map(([, code]) => code);
+
+const { folder, files } = await install();
+
+/** What a block says that it prints. */
+function said(code) {
+  const printed = code.split('\n').map((line) => /^\/\/ (.*)$|console\.log\(.*\); \/\/ (.*)$/.exec(line));
+  return printed.filter((found) => found).map(([, own, behind]) => own ?? behind);
+}
+
+test('every block of the README runs as printed', async () => {
+  await cp(join(repository, 'examples/flights/steady.BIN'), join(folder, 'steady.BIN'));
+  assert.equal(blocks.length, 3);
+  for (const [i, code] of blocks.entries()) {
+    await writeFile(join(folder, `block${i}.js`), code);
+    const { stdout } = await run('node', [`block${i}.js`], { cwd: folder });
+    assert.deepEqual(stdout.trimEnd().split('\n'), said(code), `block ${i + 1}`);
+  }
+});
+
+test('every name that it tells is there', () => {
+  for (const [file] of readme.matchAll(/\b(wasm\/)?\w+\.(js|wasm)\b/g)) assert.ok(files.includes(file), file);
+});

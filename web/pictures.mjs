@@ -1,0 +1,33 @@
+// Pictures of both rooms, desktop and phone, into a folder: `scripts/web-pictures` runs it.
+
+import { join } from 'node:path';
+import { browser, serve, tab } from './tests/page.mjs';
+import * as rooms from './tests/rooms.mjs';
+
+const [, , folder] = process.argv;
+const devices = {
+  desktop: { viewport: { width: 1280, height: 1000 }, deviceScaleFactor: 1 },
+  phone: { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },
+};
+
+const chromium = await browser();
+const server = await serve();
+for (const [room, fill] of Object.entries(rooms)) {
+  for (const [device, options] of Object.entries(devices)) {
+    const { page, context, complaints } = await tab(chromium, `${server.address}#/${room}`, { ...options, reducedMotion: 'reduce' });
+    await fill(page);
+    if (room === 'rules') {
+      const starts = page.getByLabel('Start from an example');
+      const tipper = starts.locator('option', { hasText: 'tipper' }).first();
+      await starts.selectOption(await tipper.getAttribute('value'));
+      await page.locator('.why').filter({ hasText: 'tip' }).waitFor();
+    }
+    // What moves comes to rest.
+    await page.waitForTimeout(1000);
+    await page.screenshot({ path: join(folder, `page-${room}-${device}.png`) });
+    if (complaints.length > 0) throw new Error(complaints.join('\n'));
+    await context.close();
+  }
+}
+await chromium.close();
+await server.close();

@@ -1,0 +1,51 @@
+// Both rooms for readers of every kind: axe-core finds nothing serious or critical, light and dark, phone and desktop.
+
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { browser, serve, tab } from './page.mjs';
+import { flight, rules } from './rooms.mjs';
+
+const axe = await readFile(fileURLToPath(import.meta.resolve('axe-core/axe.min.js')), 'utf8');
+const states = [
+  ['the room for flights', 'flight', (page) => page.locator('.drop').waitFor()],
+  ['a flight', 'flight', flight],
+  ['a rule set', 'rules', rules],
+];
+const sizes = { phone: { width: 390, height: 844 }, desktop: { width: 1280, height: 900 } };
+
+let chromium, server;
+before(async () => {
+  chromium = await browser();
+  server = await serve();
+});
+after(async () => {
+  await chromium.close();
+  await server.close();
+});
+
+/** What is wrong, a line each: which rule, where, and why. */
+async function violations(page) {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
+  const grave = violations.filter(({ impact }) => ['serious', 'critical'].includes(impact));
+  return grave.flatMap(({ id, impact, nodes }) => {
+    return nodes.map(({ target, failureSummary }) => `${impact} ${id} at ${target.flat().join(' ')}: ${failureSummary.replaceAll(/\s+/g, ' ')}`);
+  });
+}
+
+for (const [state, room, reach] of states) {
+  for (const [device, viewport] of Object.entries(sizes)) {
+    for (const colorScheme of ['light', 'dark']) {
+      test(`${state}, ${device}, ${colorScheme}`, { timeout: 120_000 }, async (t) => {
+        const { page, context } = await tab(chromium, `${server.address}#/${room}`, { viewport, colorScheme, reducedMotion: 'reduce' });
+        t.after(() => context.close());
+        await reach(page);
+        assert.deepEqual(await violations(page), []);
+        const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+        assert.ok(wide <= 0, `it is ${wide} pixels too wide`);
+      });
+    }
+  }
+}

@@ -1,0 +1,14 @@
+// The rooms with something in them, as their users see them.
+
+/** The example of a flight, with its report. */
+export async function flight(page) {
+  await page.getByRole('button', { name: 'Try an example' }).click();
+  await page.locator('.report output').first().waitFor({ timeout: 60_000 });
+  await page.locator('.fired li').first().waitFor({ state: 'attached' });
+}
+
+/** A rule set with its map, its terms and a reason. */
+export async function rules(page) {
+  await page.locator('.shapes svg').first().waitFor({ timeout: 60_000 });
+  await page.locator('.why').filter({ hasText: /\d/ }).waitFor();
+}

@@ -1,0 +1,81 @@
+// `flagred studio` with the page it serves: under the policy it sends, with a file and without.
+
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { createInterface } from 'node:readline';
+import { after, before, test } from 'node:test';
+import { browser, repository, serve as site, studio, tab } from './page.mjs';
+
+const command = join(repository, 'target/debug/flagred');
+let chromium, folder, file;
+before(async () => {
+  chromium = await browser();
+  folder = await mkdtemp(join(tmpdir(), 'flagred-studio-'));
+  file = join(folder, 'tipper.yaml');
+  await writeFile(file, await readFile(join(repository, 'rules/tipper.yaml')));
+});
+after(async () => {
+  await chromium.close();
+  await rm(folder, { recursive: true });
+});
+
+/** Starts it, for as long as a test runs, and gives its address. */
+async function serve(t, ...args) {
+  const child = spawn(command, ['studio', '--no-browser', '--page', studio, ...args]);
+  const ended = once(child, 'exit');
+  t.after(async () => {
+    child.kill('SIGINT');
+    assert.deepEqual(await ended, [0, null]);
+  });
+  const [address] = await once(createInterface({ input: child.stdout }), 'line');
+  return address;
+}
+
+/** Opens an address in a tab, for as long as a test runs. */
+async function open(t, address) {
+  const opened = await tab(chromium, address);
+  t.after(() => opened.context.close());
+  return opened;
+}
+
+test('it opens with both rooms', async (t) => {
+  const { page, complaints } = await open(t, await serve(t));
+  await page.getByRole('heading', { level: 1 }).first().waitFor();
+  assert.match(page.url(), /#\/flight/);
+  await page.getByRole('link', { name: 'Rules' }).click();
+  await page.locator('.room.rules:not([hidden])').waitFor();
+  assert.deepEqual(complaints, []);
+});
+
+test('with a file it opens the room for rules, under the policy of the page', async (t) => {
+  const address = await serve(t, file);
+  const { page, complaints } = await open(t, address);
+  await page.locator('.room.rules:not([hidden])').waitFor();
+  assert.match(page.url(), /#\/rules/);
+  assert.deepEqual(complaints, []);
+  const policy = (await page.request.get(address)).headers()['content-security-policy'];
+  const own = await page.locator('meta[http-equiv]').getAttribute('content');
+  assert.equal(policy, `${own}; frame-ancestors 'none'`);
+});
+
+test('another page gets nothing, even if it knows the address', async (t) => {
+  const address = await serve(t, file);
+  await writeFile(join(folder, 'index.html'), '<!doctype html><title>another page</title>');
+  const other = await site(folder);
+  t.after(other.close);
+  const { page } = await open(t, other.address);
+  const ask = ([url, options]) => fetch(url, options).then((answer) => answer.type, () => 'refused');
+  for (const options of [
+    {},
+    { mode: 'no-cors' },
+    { method: 'POST', body: 'x', mode: 'no-cors' },
+    { method: 'PUT', body: 'x', headers: { 'If-Match': '*' } },
+  ]) {
+    assert.equal(await page.evaluate(ask, [`${address}api/file`, options]), 'refused');
+  }
+  assert.equal(await readFile(file, 'utf8'), await readFile(join(repository, 'rules/tipper.yaml'), 'utf8'));
+});
