@@ -85,7 +85,7 @@ test('what can be written is offered, and what a name means', async (t) => {
   assert.deepEqual((await offered.locator('.cm-completionLabel').allTextContents()).slice(0, 3), ['poor', 'good', 'excellent']);
   await page.keyboard.press('Escape');
   await page.keyboard.type('good');
-  await page.locator('.cm-line', { hasText: 'IF service IS good' }).getByText('IF service IS good').hover({ position: { x: 60, y: 8 } });
+  await page.locator('.cm-line', { hasText: 'IF service IS good' }).getByText('IF service IS good').hover({ position: { x: 80, y: 8 } });
   await page.locator('.cm-hover', { hasText: 'How the guest rates the service' }).waitFor();
 });
 
