@@ -238,6 +238,33 @@ test('what one was at is there again; where nothing can be kept it is told', asy
   await other.getByText('This browser keeps nothing').waitFor();
 });
 
+test('what was one\'s own is not lost to a link or an example', async (t) => {
+  const { page } = await room(t);
+  const mine = (await read('rules/tipper.yaml')).replace('name: tipper', 'name: mine');
+  await paste(page, mine);
+  await page.waitForFunction((mine) => localStorage.getItem('flagred.rules') === mine, mine);
+  await page.goto(server.address);
+  await page.goto(`${server.address}#/rules?start=flagred-paper`);
+  await page.getByLabel('margin, as a number').waitFor();
+  await page.locator('.cm-content').focus();
+  await page.keyboard.type('# ');
+  await page.waitForFunction((mine) => localStorage.getItem('flagred.rules') !== mine, mine);
+  await page.getByLabel('Start from').selectOption('before');
+  await page.locator('.cm-line', { hasText: 'name: mine' }).waitFor();
+  await page.waitForFunction((mine) => localStorage.getItem('flagred.rules') === mine, mine);
+});
+
+test('the picture of an explanation follows the point', async (t) => {
+  const { page } = await room(t, '?start=tipper');
+  await page.locator('.explanation summary').click();
+  const image = page.getByAltText('Terms, rules and results at this point');
+  await image.waitFor();
+  const first = await image.getAttribute('src');
+  await page.getByLabel('food, as a number').fill('9');
+  await page.getByLabel('food, as a number').press('Enter');
+  await page.waitForFunction((first) => document.querySelector('.drawing img')?.getAttribute('src') !== first, first);
+});
+
 test('other formats are opened by drop and button, and written', async (t) => {
   const { page } = await room(t);
   const fis = execFileSync(join(repository, 'target/debug/flagred'), ['export', '--fis', '--lossy', 'rules/tipper.yaml'], {
