@@ -9,7 +9,8 @@ import { build } from 'esbuild';
 const here = fileURLToPath(new URL('.', import.meta.url));
 const page = fileURLToPath(new URL('../target/web/page/', import.meta.url));
 const studio = fileURLToPath(new URL('../cli/page/studio.html', import.meta.url));
-const wasm = fileURLToPath(new URL('../bindings/web/js/wasm/flagred_bg.wasm', import.meta.url));
+const module = (room) => fileURLToPath(new URL(`../bindings/web/js/wasm/${room}_bg.wasm`, import.meta.url));
+const rooms = ['flight', 'rules'];
 
 const common = {
   absWorkingDir: here,
@@ -49,7 +50,7 @@ async function served(template) {
     splitting: true,
     chunkNames: 'part-[hash]',
   });
-  await copyFile(wasm, `${page}flagred.wasm`);
+  for (const room of rooms) await copyFile(module(room), `${page}${room}.wasm`);
   for (const file of ['icon.svg', 'manifest.webmanifest']) await copyFile(here + file, page + file);
   await writeFile(`${page}index.html`, template.replace('{policy}', policy("'self'", "'self'", "'self'")));
   const files = await readdir(page);
@@ -77,6 +78,7 @@ async function oneFile(template) {
   const script = part('main.js').replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
   const style = part('main.css').trim();
   const data = (id, bytes) => `<script type="application/octet-stream" id="${id}">${bytes.toString('base64')}</script>`;
+  const modules = await Promise.all(rooms.map((room) => readFile(module(room))));
   const icon = (await readFile(`${here}icon.svg`)).toString('base64');
   const whole = template
     .replace('{policy}', () => policy(hash(script), hash(style), 'blob:'))
@@ -87,13 +89,12 @@ async function oneFile(template) {
       '<script type="module" src="main.js"></script>',
       () =>
         data('worker.js', Buffer.from(worker('worker.js'))) +
-        data('flagred.wasm', gzipSync(wasmBytes, { level: 9 })) +
+        rooms.map((room, i) => data(`${room}.wasm`, gzipSync(modules[i], { level: 9 }))).join('') +
         `<script type="module">${script}</script>`,
     );
   await writeFile(studio, whole);
 }
 
-const wasmBytes = await readFile(wasm);
 const template = await readFile(`${here}index.html`, 'utf8');
 await served(template);
 await oneFile(template);

@@ -10,6 +10,12 @@ export type Tell = (progress: number) => void;
 export type Arguments<K extends Name> = Parameters<Calls[K]> extends [Tell, ...infer A] ? A : never;
 export type Answer<K extends Name> = Awaited<ReturnType<Calls[K]>>;
 
+/** The first message: which room the worker is for, and its module. */
+export interface Begin {
+  room: 'flight' | 'rules';
+  module: WebAssembly.Module;
+}
+
 export interface Request {
   id: number;
   call: string;

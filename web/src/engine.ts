@@ -1,6 +1,6 @@
 /** A worker as an object with promises. */
 
-import type { Answer, Arguments, Name, Reply } from './calls';
+import type { Answer, Arguments, Begin, Name, Reply } from './calls';
 
 /** A defect of flagred ended the worker; a new one is there, without what the old one held. */
 export class Trapped extends Error {
@@ -29,8 +29,8 @@ interface Waiting {
   progress?: (share: number) => void;
 }
 
-/** An engine of its own: `create` makes the worker, `module` is the compiled WebAssembly. */
-export function engine(create: () => Worker, module: Promise<WebAssembly.Module>): Engine {
+/** An engine of its own: `create` makes a worker, `first` is what it is given first. */
+export function engine(create: () => Worker, first: Promise<Begin>): Engine {
   const waiting = new Map<number, Waiting>();
   let next = 0;
   let worker = begin();
@@ -42,16 +42,15 @@ export function engine(create: () => Worker, module: Promise<WebAssembly.Module>
     return made;
   }
 
-  const sent = module.then((compiled) => ({ compiled }));
-  let given: Worker | undefined;
+  let begun: Worker | undefined;
 
   async function send(id: number, call: string, args: unknown[]): Promise<void> {
-    const { compiled } = await sent;
+    const begin = await first;
     // It may have been given up meanwhile.
     if (!waiting.has(id)) return;
-    if (given !== worker) {
-      given = worker;
-      worker.postMessage(compiled);
+    if (begun !== worker) {
+      begun = worker;
+      worker.postMessage(begin);
     }
     worker.postMessage({ id, call, args });
   }

@@ -17,7 +17,6 @@ type Name = keyof typeof rooms;
 
 const main = document.querySelector('main')!;
 const said = document.getElementById('said')!;
-const compiled = module();
 const opened = new Map<Name, { root: HTMLElement; room: Promise<Room> }>();
 /** What each room last said in the address, so that it is there again when one comes back. */
 const addresses = new Map<Name, string>();
@@ -38,7 +37,7 @@ function address(name: Name, parameters: URLSearchParams): string {
 
 async function open(name: Name, root: HTMLElement, file: BackingFile | undefined): Promise<Room> {
   const app: App = {
-    engine: engine(worker, compiled),
+    engine: engine(worker, module(name).then((module) => ({ room: name, module }))),
     parameters: () => place()?.parameters ?? new URLSearchParams(),
     navigate(parameters) {
       addresses.set(name, address(name, parameters));

@@ -13,10 +13,11 @@ export function worker(): Worker {
   return new Worker(url);
 }
 
-/** The compiled module. */
-export async function module(): Promise<WebAssembly.Module> {
-  const packed = embedded('flagred.wasm');
-  if (packed === undefined) return WebAssembly.compileStreaming(fetch('flagred.wasm'));
+/** The compiled module of a room. */
+export async function module(room: 'flight' | 'rules'): Promise<WebAssembly.Module> {
+  const name = `${room}.wasm`;
+  const packed = embedded(name);
+  if (packed === undefined) return WebAssembly.compileStreaming(fetch(name));
   const unpacked = new Blob([bytes(packed)]).stream().pipeThrough(new DecompressionStream('gzip'));
   return WebAssembly.compile(await new Response(unpacked).arrayBuffer());
 }

@@ -1,7 +1,7 @@
-/** Runs flagred beside the page, which stays free to move. The first message is the compiled module. */
+/** Runs flagred beside the page, which stays free to move. The first message is the compiled module of a room. */
 
-import { Panic, start } from 'flagred';
-import type { Reply, Request, Tell } from './calls';
+import { Panic, startFlight, startRules } from 'flagred';
+import type { Begin, Reply, Request, Tell } from './calls';
 import * as flight from './flight/calls';
 import * as rules from './rules/calls';
 
@@ -12,9 +12,9 @@ const calls = new Map(
 );
 let started: Promise<void> | undefined;
 
-self.onmessage = async ({ data }: MessageEvent<WebAssembly.Module | Request>) => {
-  if (data instanceof WebAssembly.Module) {
-    started = start(data);
+self.onmessage = async ({ data }: MessageEvent<Begin | Request>) => {
+  if ('module' in data) {
+    started = data.room === 'flight' ? startFlight(data.module) : startRules(data.module);
     return;
   }
   const { id, call, args } = data;

@@ -1,7 +1,15 @@
 /** Flight logs: read, assessed, explained, compared. */
 
-import { guarded } from './panic.js';
-import * as wasm from './wasm/flagred.js';
+import { beside, type Source } from './load.js';
+import { guard } from './panic.js';
+import * as wasm from './wasm/flight.js';
+
+const guarded = guard(wasm.panicMessage);
+
+/** Loads the module for flight logs, from beside this file or from elsewhere. Calls after the first do nothing. */
+export async function startFlight(source?: Source): Promise<void> {
+  await wasm.default({ module_or_path: source ?? (await beside('flight')) });
+}
 
 /** Only workers have it. */
 declare const FileReaderSync: new () => { readAsArrayBuffer(blob: Blob): ArrayBuffer };
@@ -66,7 +74,7 @@ export interface Brief {
   verdict: Level | 'NA';
   reason?: string;
   help?: string | null;
-  findings: Finding[];
+  findings: FlightFinding[];
   findings_left_out: number;
   summary: {
     in_air_s: number;
@@ -80,7 +88,7 @@ export interface Brief {
   widened_step_s: number | null;
 }
 
-export interface Finding {
+export interface FlightFinding {
   level: Level;
   from_s: number;
   to_s: number;

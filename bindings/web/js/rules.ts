@@ -1,10 +1,18 @@
 /** Rule sets: an open text under an author's hands, a compiled rule set to evaluate and draw, other programs' formats. */
 
-import { guarded } from './panic.js';
-import * as wasm from './wasm/flagred.js';
+import { beside, type Source } from './load.js';
+import { guard } from './panic.js';
+import * as wasm from './wasm/rules.js';
+
+const guarded = guard(wasm.panicMessage);
+
+/** Loads the module for rule sets, from beside this file or from elsewhere. Calls after the first do nothing. */
+export async function startRules(source?: Source): Promise<void> {
+  await wasm.default({ module_or_path: source ?? (await beside('rules')) });
+}
 
 /** A finding in a text; places count UTF-16 code units, as JavaScript does. */
-export interface TextFinding {
+export interface Diagnostic {
   severity: 'error' | 'warning' | 'note';
   code: string;
   message: string;
@@ -87,7 +95,7 @@ export class RuleText {
   }
 
   /** What `flagred check` finds. */
-  findings(): TextFinding[] {
+  findings(): Diagnostic[] {
     return parsed(() => this.#text.findings());
   }
 

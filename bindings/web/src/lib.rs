@@ -2,9 +2,13 @@
 //!
 //! What is refused is thrown as an `Error` with the words of the command line. Documents are JSON, the same as the command
 //! line's; columns and maps are `Float64Array`.
+//!
+//! It is compiled twice, with either feature: whoever looks at flights need not load what rule sets are edited with.
 
 mod failure;
+#[cfg(feature = "flight")]
 pub mod flight;
+#[cfg(feature = "rules")]
 pub mod rules;
 
 use std::sync::Mutex;

@@ -8,8 +8,8 @@ import { repository } from './installed.mjs';
 
 const built = (file) => join(repository, 'target/web/package', file);
 const { Panic, RuleSet, start } = await import(built('index.js'));
-const { guarded } = await import(built('panic.js'));
-const { panicNow } = await import(built('wasm/flagred.js'));
+const { guard } = await import(built('panic.js'));
+const { panicMessage, panicNow } = await import(built('wasm/rules.js'));
 
 test('what is refused is an error and no defect, and it goes on', async () => {
   await start();
@@ -24,7 +24,7 @@ test('what is refused is an error and no defect, and it goes on', async () => {
 test('a panic is caught, with its words', async () => {
   await start();
   assert.throws(
-    () => guarded(() => panicNow('the sky is falling')),
+    () => guard(panicMessage)(() => panicNow('the sky is falling')),
     (error) => error instanceof Panic && error.name === 'Panic' && error.message.includes('the sky is falling'),
   );
 });

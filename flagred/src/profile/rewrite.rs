@@ -65,24 +65,31 @@ fn written(settings: &VerdictSettings) -> [(&'static str, String); 5] {
 
 /// The text with other values of keys of the verdict.
 fn edited(text: &str, tree: &Node, changes: &[(&str, String)]) -> Option<String> {
-    let mut edits = match get(tree, "verdict") {
-        Some(verdict) => {
-            let edits = changes
-                .iter()
-                .map(|(key, value)| set(text, verdict, key, value));
-            edits.collect::<Option<Vec<_>>>()?
-        }
-        None if changes.is_empty() => Vec::new(),
-        None => {
-            let pairs: Vec<String> = changes.iter().map(|(k, v)| format!("{k}: {v}")).collect();
-            Vec::from([set(
-                text,
-                tree,
-                "verdict",
-                &format!("{{{}}}", pairs.join(", ")),
-            )?])
-        }
+    if changes.is_empty() {
+        return Some(text.to_owned());
+    }
+    let Some(verdict) = get(tree, "verdict") else {
+        let all = [("verdict", format!("{{{}}}", pairs(changes).join(", ")))];
+        let (at, first) = added(text, tree, &all)?;
+        return Some([text.get(..at)?, &first, text.get(at..)?].concat());
     };
+    let mut missing = Vec::new();
+    let mut edits: Vec<(Range<usize>, String)> = Vec::new();
+    for (key, value) in changes {
+        match get(verdict, key) {
+            Some(node) => {
+                let old = text.get(node.span.clone())?;
+                // A block ends with the line break before what follows it.
+                let end = node.span.start + old.trim_end().len();
+                edits.push((node.span.start..end, value.clone()));
+            }
+            None => missing.push((*key, value.clone())),
+        }
+    }
+    if !missing.is_empty() {
+        let (at, first) = added(text, verdict, &missing)?;
+        edits.push((at..at, first));
+    }
     // From the end, so that the places before stay where they are.
     edits.sort_by_key(|(span, _)| core::cmp::Reverse(span.start));
     let mut changed = text.to_owned();
@@ -102,26 +109,29 @@ fn get<'a>(mapping: &'a Node, key: &str) -> Option<&'a Node> {
     pair.map(|(_, value)| value)
 }
 
-/// The edit that gives a key of a mapping a value; a key that is not there becomes the first.
-fn set(text: &str, mapping: &Node, key: &str, value: &str) -> Option<(Range<usize>, String)> {
-    if let Some(node) = get(mapping, key) {
-        let old = text.get(node.span.clone())?;
-        // A block ends with the line break before what follows it.
-        let end = node.span.start + old.trim_end().len();
-        return Some((node.span.start..end, value.to_owned()));
-    }
-    let Value::Mapping(pairs) = &mapping.value else {
+/// What makes keys the first of a mapping, and where it is added.
+fn added(text: &str, mapping: &Node, keys: &[(&str, String)]) -> Option<(usize, String)> {
+    let Value::Mapping(known) = &mapping.value else {
         return None;
     };
     if text.get(mapping.span.start..)?.starts_with('{') {
+        let comma = if known.is_empty() { "" } else { ", " };
         let at = mapping.span.start + 1;
-        let comma = if pairs.is_empty() { "" } else { ", " };
-        return Some((at..at, format!("{key}: {value}{comma}")));
+        return Some((at, pairs(keys).join(", ") + comma));
     }
-    let at = pairs.first()?.0.span.start;
+    let at = known.first()?.0.span.start;
     let line = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
     let indentation = text.get(line..at)?;
-    Some((at..at, format!("{key}: {value}\n{indentation}")))
+    let lines = pairs(keys).into_iter();
+    Some((
+        at,
+        lines.map(|pair| format!("{pair}\n{indentation}")).collect(),
+    ))
+}
+
+fn pairs(keys: &[(&str, String)]) -> Vec<String> {
+    let keys = keys.iter();
+    keys.map(|(key, value)| format!("{key}: {value}")).collect()
 }
 
 fn number(value: f64) -> String {

@@ -129,7 +129,7 @@ export function said(value: number, unit = ''): string {
 
 /** Puts the cursor of a chart at a place, and shows the values there. */
 export function point(chart: Chart, x_s: number): void {
-  chart.cursor.setAttribute('d', `M${x_s}${chart.tail}`);
+  chart.cursor.setAttribute('d', `M${Number.isFinite(x_s) ? x_s.toFixed(4) : -1}${chart.tail}`);
   curvesOf(chart).forEach((curve, i) => {
     const output = chart.outputs[i];
     if (output) output.textContent = said(held(curve, x_s), chart.unit);

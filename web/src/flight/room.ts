@@ -304,6 +304,8 @@ export function open(root: HTMLElement, app: App): Room {
   }
 
   function pointAt(t_s: number): void {
+    // Another flight was chosen, and is not drawn yet.
+    if (!Number.isFinite(t_s)) return;
     const { start_s, end_s } = view();
     cursor_s = Math.min(end_s, Math.max(start_s, t_s));
     report?.point((cursor_s - drawn.start_s) / lengthOf(drawn));

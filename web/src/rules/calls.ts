@@ -14,7 +14,7 @@ import {
   type Edit,
   type Exchanged,
   type Explanation,
-  type TextFinding,
+  type Diagnostic,
   type Format,
   type Hover,
   type Start,
@@ -78,7 +78,7 @@ export function rulesOpen(_tell: Tell, text: string): Opened {
   return { text, isProfile: open.isProfile, variables: open.variables(), about: set?.about() };
 }
 
-export const rulesFindings = (_tell: Tell, text: string): TextFinding[] => of(text).open.findings();
+export const rulesFindings = (_tell: Tell, text: string): Diagnostic[] => of(text).open.findings();
 export const rulesCompletions = (_tell: Tell, text: string, at: number): Completion[] => of(text).open.completions(at);
 export const rulesHover = (_tell: Tell, text: string, at: number): Hover | null => of(text).open.hover(at);
 export const rulesDefinition = (_tell: Tell, text: string, at: number): number | undefined => of(text).open.definition(at);

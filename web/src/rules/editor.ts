@@ -4,7 +4,7 @@ import { autocompletion, completionKeymap, type CompletionContext, type Completi
 import { defaultKeymap, history, historyKeymap, redo, redoDepth, undo, undoDepth } from '@codemirror/commands';
 import { yaml } from '@codemirror/lang-yaml';
 import { HighlightStyle, bracketMatching, indentOnInput, syntaxHighlighting } from '@codemirror/language';
-import { lintGutter, setDiagnostics, type Diagnostic } from '@codemirror/lint';
+import { lintGutter, setDiagnostics, type Diagnostic as Mark } from '@codemirror/lint';
 import { highlightSelectionMatches, searchKeymap } from '@codemirror/search';
 import { EditorState, Transaction } from '@codemirror/state';
 import {
@@ -17,7 +17,7 @@ import {
   lineNumbers,
 } from '@codemirror/view';
 import { tags } from '@lezer/highlight';
-import type { Completion, Edit, TextFinding, Hover } from 'flagred';
+import type { Completion, Diagnostic, Edit, Hover } from 'flagred';
 import { h } from '../dom';
 import { markdown } from './markdown';
 
@@ -41,7 +41,7 @@ export interface Editor {
   /** Makes all that was followed since `before` one step for undo. */
   conclude(before: string): void;
   apply(edits: Edit[]): void;
-  show(findings: TextFinding[]): void;
+  show(findings: Diagnostic[]): void;
   /** Selects a part and brings it into view. */
   select(from: number, to: number): void;
   cursor(): number;
@@ -192,7 +192,7 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
     },
     show(findings) {
       const length = view.state.doc.length;
-      const diagnostics = findings.map((finding): Diagnostic => {
+      const diagnostics = findings.map((finding): Mark => {
         const from = Math.min(finding.from, length);
         return {
           from,

@@ -1,17 +1,17 @@
 /** The findings as a list: how many there are is told aloud, a click leads to the place. */
 
-import type { TextFinding } from 'flagred';
+import type { Diagnostic } from 'flagred';
 import { add, fill, h } from '../dom';
 
 export interface Problems {
   element: HTMLElement;
-  show(findings: TextFinding[]): void;
+  show(findings: Diagnostic[]): void;
 }
 
 const words = { error: ['error', 'errors'], warning: ['warning', 'warnings'], note: ['note', 'notes'] } as const;
 
 /** `2 errors, 1 note`. */
-export function counted(findings: TextFinding[]): string {
+export function counted(findings: Diagnostic[]): string {
   const counts = (['error', 'warning', 'note'] as const).map((severity) => {
     const count = findings.filter((finding) => finding.severity === severity).length;
     return count ? `${count} ${words[severity][count === 1 ? 0 : 1]}` : '';
@@ -33,7 +33,7 @@ export function problems(lead: (from: number, to: number) => void): Problems {
   };
 }
 
-function item(finding: TextFinding, lead: (from: number, to: number) => void): HTMLElement {
+function item(finding: Diagnostic, lead: (from: number, to: number) => void): HTMLElement {
   const { severity, line, message, help, related } = finding;
   const button = h(
     'button',

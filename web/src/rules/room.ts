@@ -1,6 +1,6 @@
 /** The rules room: an editor, what is wrong with the text, the decision map, why a value is what it is, the terms as shapes. */
 
-import type { About, TextFinding, Format, Start, View } from 'flagred';
+import type { About, Diagnostic, Format, Start, View } from 'flagred';
 import type { App, Room } from '../app';
 import { add, fill, h } from '../dom';
 import { Trapped } from '../engine';
@@ -190,7 +190,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     address();
   }
 
-  function shown(findings: TextFinding[]): void {
+  function shown(findings: Diagnostic[]): void {
     edit.show(findings);
     found.show(findings);
   }

@@ -1,4 +1,4 @@
-//! `flagred-web-bindgen MODULE FOLDER`: the JavaScript and the types of a compiled module, and the module that fits them.
+//! `flagred-web-bindgen MODULE FOLDER NAME`: the JavaScript and the types of a compiled module, and the module that fits them.
 //!
 //! The same as the program `wasm-bindgen --target web`, which has to be of the version that the module was compiled with. Here
 //! Cargo.lock sees to that, and nothing has to be installed.
@@ -10,14 +10,16 @@ use wasm_bindgen_cli_support::Bindgen;
 #[expect(clippy::print_stderr, reason = "it is a program")]
 fn main() -> ExitCode {
     let mut arguments = env::args().skip(1);
-    let (Some(module), Some(folder)) = (arguments.next(), arguments.next()) else {
-        eprintln!("usage: flagred-web-bindgen MODULE FOLDER");
+    let (Some(module), Some(folder), Some(name)) =
+        (arguments.next(), arguments.next(), arguments.next())
+    else {
+        eprintln!("usage: flagred-web-bindgen MODULE FOLDER NAME");
         return ExitCode::from(2);
     };
     let mut bindgen = Bindgen::new();
     let written = bindgen
         .input_path(&module)
-        .out_name("flagred")
+        .out_name(&name)
         .typescript(true)
         .remove_name_section(true)
         .remove_producers_section(true)
