@@ -12,6 +12,8 @@ export async function backingFile(): Promise<BackingFile | undefined> {
   // 204 where there is none.
   if (first.status !== 200) return undefined;
   let tag = first.headers.get('ETag') ?? '';
+  // An editor ends lines by \n alone; the file keeps its own ends.
+  let end = '\n';
   return {
     name: decodeURIComponent(first.headers.get('X-File-Name') ?? 'the file'),
     readOnly: first.headers.get('X-Read-Only') === 'true',
@@ -19,10 +21,12 @@ export async function backingFile(): Promise<BackingFile | undefined> {
       const answer = await fetch(ADDRESS, { cache: 'no-store' });
       if (!answer.ok) throw new Error(await answer.text());
       tag = answer.headers.get('ETag') ?? '';
-      return answer.text();
+      const text = await answer.text();
+      end = text.includes('\r\n') && !/(^|[^\r])\n/.test(text) ? '\r\n' : '\n';
+      return text.replaceAll('\r\n', '\n');
     },
     async write(text) {
-      const answer = await fetch(ADDRESS, { method: 'PUT', body: text, headers: { 'If-Match': tag } });
+      const answer = await fetch(ADDRESS, { method: 'PUT', body: text.replaceAll('\n', end), headers: { 'If-Match': tag } });
       if (!answer.ok) throw new Error(await answer.text());
       tag = answer.headers.get('ETag') ?? '';
     },
