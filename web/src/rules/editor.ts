@@ -69,7 +69,7 @@ const look = EditorView.theme({
     boxShadow: '0 4px 16px rgb(0 0 0 / .18)', maxWidth: 'min(34rem, 92vw)', fontFamily: 'system-ui, sans-serif',
   },
   '.cm-tooltip-autocomplete ul li[aria-selected]': { backgroundColor: 'var(--accent)', color: 'var(--paper)' },
-  '.cm-completionDetail': { color: 'inherit', opacity: '.75', marginLeft: '1em' },
+  '.cm-completionDetail': { color: 'inherit', marginLeft: '1em' },
   '.cm-hover': { padding: '.4rem .7rem' },
   '.cm-hover p': { margin: '.2rem 0' },
   '.cm-hover code': { fontFamily: 'ui-monospace, monospace' },
@@ -111,7 +111,10 @@ export function editor(place: HTMLElement, text: string, readOnly: boolean, serv
     return {
       from: word?.from ?? context.pos,
       validFor: /^[\w-]*$/,
-      options: found.map(({ label, text, kind, detail }) => ({ label, apply: text, type: kinds[kind], ...(detail ? { detail } : {}) })),
+      // In the order of the service, which knows what is likely.
+      options: found.map(({ label, text, kind, detail }, i) => ({
+        label, apply: text, type: kinds[kind], boost: Math.max(99 - i, -99), ...(detail ? { detail } : {}),
+      })),
     };
   }
 

@@ -1,10 +1,10 @@
 /** Rule sets from files and into files, in YAML and in the formats of other programs. */
 
-import type { Exchanged, Format } from 'flagred';
+import type { Exchanged, Format, View } from 'flagred';
 import type { App } from '../app';
 import { download, h } from '../dom';
+import { Trapped } from '../engine';
 import type { Picture } from './calls';
-import type { View } from 'flagred';
 
 const endings: Record<Format, string> = { FIS: 'fis', FLL: 'fll', FCL: 'fcl', FML: 'xml' };
 /** More is no rule set. */
@@ -40,6 +40,7 @@ async function withLosses(title: string, run: (lossy: boolean) => Promise<Exchan
   try {
     return await run(false);
   } catch (error) {
+    if (error instanceof Trapped) throw error;
     const why = error instanceof Error ? error.message : String(error);
     const goOn = await dialog(title, why.split('\n'), ['Leave it out and go on', 'Cancel']);
     return goOn === 'Leave it out and go on' ? run(true) : undefined;

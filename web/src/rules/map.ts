@@ -44,8 +44,13 @@ const BOTTOM = 44;
 /** How far a key moves the point, as a share of the axis. */
 const KEY_STEP = 0.02;
 
-/** `pick` hears the values of the axes where the map is clicked, or the point moved by keys. */
-export function decisionMap(colours: Colours, pick: (x: number, y: number | undefined) => void): DecisionMap {
+/** The point that is explained: `at` is its value of an input, `move` moves it. */
+export interface Point {
+  at(input: number): number;
+  move(input: number, value: number): void;
+}
+
+export function decisionMap(colours: Colours, point: Point): DecisionMap {
   const canvas = h('canvas', {
     class: 'decision',
     tabindex: 0,
@@ -96,7 +101,8 @@ export function decisionMap(colours: Colours, pick: (x: number, y: number | unde
     const [x, y] = shown.view.axes;
     const across = part(event.clientX - box.left, LEFT, box.width - LEFT - RIGHT);
     const up = 1 - part(event.clientY - box.top, TOP, box.height - TOP - BOTTOM);
-    if (x) pick(x.low + across * (x.high - x.low), y && y.low + up * (y.high - y.low));
+    if (x) point.move(x.input, x.low + across * (x.high - x.low));
+    if (y) point.move(y.input, y.low + up * (y.high - y.low));
   }
   canvas.addEventListener('pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
@@ -108,12 +114,11 @@ export function decisionMap(colours: Colours, pick: (x: number, y: number | unde
   canvas.addEventListener('keydown', (event) => {
     const [across, up] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
     const [x, y] = shown?.view.axes ?? [];
-    if (!shown || !x || (!across && !up)) return;
+    const axis = across ? x : up ? y : undefined;
+    if (!axis) return;
     event.preventDefault();
-    const by = KEY_STEP * (event.shiftKey ? 0.1 : 1);
-    const moved = (axis: typeof x, steps: number) =>
-      clamp(shown!.point[axis.input]! + steps * by * (axis.high - axis.low), axis.low, axis.high);
-    pick(moved(x, across!), y && moved(y, up!));
+    const by = KEY_STEP * (event.shiftKey ? 0.1 : 1) * (axis.high - axis.low);
+    point.move(axis.input, clamp(point.at(axis.input) + (across! + up!) * by, axis.low, axis.high));
   });
   return { element: canvas, draw };
 }
@@ -122,30 +127,35 @@ type Ink = Record<'ink' | 'soft' | 'rule' | 'paper' | 'accent', string>;
 
 const share = (value: number, low: number, high: number) => clamp((value - low) / (high - low), 0, 1);
 
-/** The colour of a cell: red, green, blue, opacity. */
-function paintCell(shown: Shown, colours: Colours, cell: number): [number, number, number, number] {
-  const { cells, output, kind } = shown;
-  if (kind === 'rules') {
-    const rule = cells.rules[cell]!;
-    if (Number.isNaN(rule)) return [0, 0, 0, 0];
-    const at = 3 * (rule % (colours.distinct.length / 3));
-    return [colours.distinct[at]!, colours.distinct[at + 1]!, colours.distinct[at + 2]!, 255];
+/** The cells as pixels, seen from above: the second axis goes up. */
+function pixels(shown: Shown, colours: Colours): ImageData {
+  const { cells, output, kind, view } = shown;
+  const points = view.points;
+  const image = new ImageData(points, points);
+  const { scale, distinct } = colours;
+  const isRules = kind === 'rules';
+  const steps = 255 / (output.high - output.low);
+  for (let i = 0; i < points; i++) {
+    for (let j = 0; j < points; j++) {
+      const cell = i * points + j;
+      const value = isRules ? cells.rules[cell]! : cells.values[cell]!;
+      if (value !== value) continue;
+      const from = isRules ? distinct : scale;
+      const colour = 3 * (isRules ? value % (distinct.length / 3) : clamp(Math.round((value - output.low) * steps), 0, 255));
+      const to = 4 * ((points - 1 - j) * points + i);
+      image.data[to] = from[colour]!;
+      image.data[to + 1] = from[colour + 1]!;
+      image.data[to + 2] = from[colour + 2]!;
+      image.data[to + 3] = !isRules && cells.filled[cell] ? 150 : 255;
+    }
   }
-  const value = cells.values[cell]!;
-  if (Number.isNaN(value)) return [0, 0, 0, 0];
-  const at = 3 * Math.round(255 * share(value, output.low, output.high));
-  return [colours.scale[at]!, colours.scale[at + 1]!, colours.scale[at + 2]!, cells.filled[cell] ? 150 : 255];
+  return image;
 }
 
 function flat(pen: CanvasRenderingContext2D, small: HTMLCanvasElement, frame: Frame, shown: Shown, colours: Colours, ink: Ink): void {
-  const points = shown.view.points;
   hatch(pen, frame, ink);
-  const image = new ImageData(points, points);
-  for (let i = 0; i < points; i++) {
-    for (let j = 0; j < points; j++) image.data.set(paintCell(shown, colours, i * points + j), 4 * ((points - 1 - j) * points + i));
-  }
-  small.width = small.height = points;
-  small.getContext('2d')!.putImageData(image, 0, 0);
+  if (small.width !== shown.view.points) small.width = small.height = shown.view.points;
+  small.getContext('2d')!.putImageData(pixels(shown, colours), 0, 0);
   pen.imageSmoothingEnabled = false;
   pen.drawImage(small, frame.left, frame.top, frame.width, frame.height);
   axes(pen, frame, shown, ink);

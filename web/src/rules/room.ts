@@ -17,12 +17,9 @@ import { LONGEST, pack, unpack } from './share';
 import { keep, kept } from './store';
 import { terms } from './terms';
 
-/** Points along an axis of the map: while something moves, and at rest; of the curve of one input. */
-const MOVING = 51;
-const RESTING = 121;
+/** Points along an axis of the map, and of the curve of one input. */
+const POINTS = 101;
 const CURVE = 401;
-/** How long nothing moves at rest. */
-const REST_MS = 120;
 const ADDRESS_MS = 300;
 const FORMATS = ['FIS', 'FLL', 'FCL', 'FML'] as const;
 const KINDS: [Kind, string][] = [['map', 'Map'], ['surface', 'Surface'], ['rules', 'Strongest rule']];
@@ -51,19 +48,20 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       await run();
     } catch (error) {
       if (error instanceof Trapped) poison = text;
-      app.say(error instanceof Trapped ? `flagred has a defect, and goes on: ${error.message}` : (error as Error).message);
+      refused(error as Error);
     }
   }
-  engine.onRestart = () => edit.text() !== poison && changed(edit.text());
+  function refused(error: Error): void {
+    app.say(error instanceof Trapped ? `flagred has a defect, and goes on: ${error.message}` : error.message);
+  }
+  // Once it is known at which text it broke.
+  engine.onRestart = () => setTimeout(() => edit.text() !== poison && changed(edit.text()));
 
   // The parts of the room.
-  const map = decisionMap(colours, (x, y) => {
-    const axes = view()?.axes ?? [];
-    for (const [i, value] of [x, y].entries()) if (axes[i] && value !== undefined) move(axes[i].input, value);
-  });
+  const map = decisionMap(colours, { at: (input) => (good ? point(good.about)[input]! : 0), move: (input, value) => move(input, value) });
   const sliders = inputs((input, value) => move(input, value));
   const shapes = terms(colours, {
-    begin: () => (base = edit.text()),
+    begin: () => (base ??= edit.text()),
     move: (place, x, degree) => base !== undefined && drag(base, place, x, degree),
     end: () => void drag.settled().then(concluded),
   });
@@ -166,14 +164,13 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       }
     }),
   );
-  const drawMap = latest((points: number) => guarded(good?.text ?? '', () => mapped(points)));
+  const drawMap = latest(() => guarded(good?.text ?? '', mapped));
   const reason = latest(() =>
     guarded(good?.text ?? '', async () => {
       const now = good;
       if (now) explain(why, now.about, await engine.call('rulesExplain', now.text, point(now.about)));
     }),
   );
-  let rest: ReturnType<typeof setTimeout> | undefined;
 
   function changed(text: string): void {
     [undo.disabled, redo.disabled] = [!edit.can().undo, !edit.can().redo];
@@ -204,7 +201,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     good = { text: next.text, about: next.about };
     await hold(good.about);
     options(good.about);
-    await follow();
+    follow();
   }
 
   /** A value for each input that has none yet. */
@@ -237,30 +234,26 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
         const { low, high, shown } = about.inputs[input]!;
         return choice.isWhole ? { input, low, high } : { input, low: shown[0], high: shown[1] };
       }),
-      points: RESTING,
+      points: axes.some((input) => input < 0) ? CURVE : POINTS,
       held: point(about),
     };
   }
   const view = () => good && chosenView(good.about);
 
   /** The map, the sliders and the reasons for what is good and chosen now. */
-  async function follow(): Promise<void> {
+  function follow(): void {
     const about = good!.about;
     const { axes, held } = chosenView(about);
     sliders.show(about.inputs, axes.map(({ input }) => input), held, choice.isWhole);
     shapes.mark(held);
     reason();
-    drawMap(axes.length < 2 ? CURVE : MOVING);
-    clearTimeout(rest);
-    if (axes.length === 2) rest = setTimeout(() => drawMap(RESTING), REST_MS);
-    // A drag waits for its map, or moves would pile up.
-    await drawMap.settled();
+    drawMap();
   }
 
-  async function mapped(points: number): Promise<void> {
+  async function mapped(): Promise<void> {
     const now = good;
     if (!now) return;
-    const view = { ...chosenView(now.about), points };
+    const view = chosenView(now.about);
     const cells = await engine.call('rulesMap', now.text, view);
     const { inputs, outputs } = now.about;
     const [x, y] = view.axes.map(({ input }) => inputs[input]!);
@@ -289,7 +282,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     const name = good?.about.inputs[input]?.name;
     if (!name) return;
     values.set(name, value);
-    void follow();
+    follow();
     address();
   }
 
@@ -332,7 +325,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     if (opened) shapes.show(opened.variables, choice.isWhole);
     if (good) {
       options(good.about);
-      void follow();
+      follow();
     }
     address();
   }
@@ -358,7 +351,8 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       const text = await openedFile(app, file);
       if (text !== undefined) put(text);
     } catch (error) {
-      app.say(error instanceof TypeError ? `\`${file.name}\` is not a text` : (error as Error).message);
+      if (error instanceof TypeError) app.say(`\`${file.name}\` is not a text`);
+      else refused(error as Error);
     }
   }
 
@@ -371,7 +365,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     const work = isFormat
       ? saved(app, name, edit.text(), value as Format | 'YAML')
       : good && now ? drawn(app, name, good.text, value as Picture, now) : Promise.reject(new Error('a rule set with errors has no picture'));
-    work.catch((error: Error) => app.say(error.message));
+    work.catch(refused);
   }
 
   async function share(): Promise<void> {
@@ -396,7 +390,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
         edit.follow(formatted);
         edit.conclude(before);
       },
-      (error: Error) => app.say(error.message),
+      refused,
     );
   }
 
@@ -406,7 +400,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     if (!name) return;
     engine.call('rulesRename', text, at, name).then(
       (edits) => edit.text() === text && edit.apply(edits),
-      (error: Error) => app.say(error.message),
+      refused,
     );
   }
 

@@ -67,6 +67,7 @@ function set(element: Element, attributes: Record<string, string | number>): voi
 
 function plot(first: DrawnVariable, index: number, { distinct }: Colours, dragging: Dragging): Plot {
   let variable = first;
+  let drawn = '';
   let [low, high] = [0, 1];
   const across = (x: number) => FRAME.left + (INNER.width * (x - low)) / (high - low);
   const up = (degree: number) => FRAME.top + INNER.height * (1 - degree);
@@ -110,19 +111,27 @@ function plot(first: DrawnVariable, index: number, { distinct }: Colours, draggi
     const dot = s('circle', { class: 'dot', r: 6, fill: colour(t) });
     const group = s('g', { class: 'handle', tabindex: 0, role: 'slider' }, s('circle', { class: 'reach', r: 16 }), dot);
     const place: Place = { variable: index, term: t, handle: i };
-    const now = () => variable.terms[t]!.handles[i]!;
-    const move = (x: number, degree: number) => dragging.move(place, clamp(x, now().low, now().high), clamp(degree, 0, 1));
+    /** Where it goes, until it is drawn there. */
+    let aim: { x: number; degree: number } | undefined;
+    const now = () => ({ ...variable.terms[t]!.handles[i]!, ...aim });
+    const move = (x: number, degree: number) => {
+      aim = { x: clamp(x, now().low, now().high), degree: clamp(degree, 0, 1) };
+      dragging.move(place, aim.x, aim.degree);
+    };
 
+    let toSvg = new DOMMatrix();
     group.addEventListener('pointerdown', (event) => {
       event.preventDefault();
-      group.focus();
+      group.focus({ preventScroll: true });
+      // Asked once: it takes a layout of the page.
+      toSvg = svg.getScreenCTM()!.inverse();
       group.setPointerCapture(event.pointerId);
       group.classList.add('held');
       dragging.begin();
     });
     group.addEventListener('pointermove', (event) => {
       if (!group.hasPointerCapture(event.pointerId)) return;
-      const there = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM()!.inverse());
+      const there = new DOMPoint(event.clientX, event.clientY).matrixTransform(toSvg);
       move(low + ((there.x - FRAME.left) / INNER.width) * (high - low), 1 - (there.y - FRAME.top) / INNER.height);
     });
     group.addEventListener('lostpointercapture', () => {
@@ -144,6 +153,7 @@ function plot(first: DrawnVariable, index: number, { distinct }: Colours, draggi
     return {
       element: group,
       show(term, { name, x, degree, low, high }) {
+        aim = undefined;
         group.setAttribute('transform', `translate(${across(x)} ${up(degree)})`);
         const words = `${term.name}: ${name} ${short(x)}`;
         set(group, {
@@ -161,6 +171,9 @@ function plot(first: DrawnVariable, index: number, { distinct }: Colours, draggi
   }
 
   function show(next: DrawnVariable, isWhole: boolean): void {
+    const now = JSON.stringify([next, isWhole]);
+    if (now === drawn) return;
+    drawn = now;
     variable = next;
     const [from, to] = isWhole ? [next.low, next.high] : next.shown;
     if (from === null || to === null || from === undefined || to === undefined) {
@@ -169,6 +182,18 @@ function plot(first: DrawnVariable, index: number, { distinct }: Colours, draggi
     }
     // What is shown stays while a point is held, or it would run away under the hand.
     if (!svg.querySelector('.held') || low === high) [low, high] = [from, to];
+    ruled();
+    next.terms.forEach((term, t) => {
+      curves[t]!.setAttribute('d', outline(term));
+      term.handles.forEach((one, i) => points[t]![i]!.show(term, one));
+    });
+  }
+
+  let ruledFor = '';
+  /** The lines and numbers behind the curves. */
+  function ruled(): void {
+    if (ruledFor === `${low} ${high}`) return;
+    ruledFor = `${low} ${high}`;
     const labels = ticks(low, high, 6).map((tick) => {
       const text = s('text', { x: across(tick), y: HEIGHT - 6 });
       text.textContent = short(tick);
@@ -180,10 +205,6 @@ function plot(first: DrawnVariable, index: number, { distinct }: Colours, draggi
       return [s('line', { x1: FRAME.left, x2: WIDTH - FRAME.right, y1: up(degree), y2: up(degree) }), text];
     });
     grid.replaceChildren(...labels.flat(), ...degrees.flat());
-    next.terms.forEach((term, t) => {
-      curves[t]!.setAttribute('d', outline(term));
-      term.handles.forEach((one, i) => points[t]![i]!.show(term, one));
-    });
   }
 
   /** A set as its curve; a number as a stick. */

@@ -1,0 +1,400 @@
+// The rules room in Chromium, under the policy of the page.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { createServer } from 'node:http';
+import { readFile, readdir } from 'node:fs/promises';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { browser, repository, serve, tab } from './page.mjs';
+
+const read = (path) => readFile(join(repository, path), 'utf8');
+const desktop = { viewport: { width: 1280, height: 1400 } };
+
+let chromium, server;
+before(async () => {
+  chromium = await browser();
+  server = await serve();
+});
+after(async () => {
+  await chromium.close();
+  await server.close();
+});
+
+/** The room, ready; closed at the end of the test, which fails where the page complained. */
+async function room(t, query = '', options = desktop, address = server.address) {
+  const opened = await tab(chromium, `${address}#/rules${query}`, options);
+  await opened.page.locator('.explanation .value').first().waitFor();
+  t.after(async () => {
+    await opened.context.close();
+    assert.deepEqual(opened.complaints, []);
+  });
+  return opened;
+}
+
+/** The editor's text, as it is kept. */
+const text = (page) => page.evaluate(() => localStorage.getItem('flagred.rules'));
+
+/** Opens a text as a file. */
+const put = (page, content, name = 'rules.yaml') =>
+  page.locator('input[type=file]').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
+
+/** Pastes a text in the place of all that is in the editor. */
+async function paste(page, content) {
+  await page.locator('.cm-content').focus();
+  await page.keyboard.press('Control+a');
+  await page.locator('.cm-content').evaluate((element, content) => {
+    const clipboardData = new DataTransfer();
+    clipboardData.setData('text/plain', content);
+    element.dispatchEvent(new ClipboardEvent('paste', { clipboardData, bubbles: true, cancelable: true, composed: true }));
+  }, content);
+}
+
+const problems = (page) => page.locator('.problems .count');
+
+/** Selects words in the editor, as a double click does, and types others. */
+async function retype(page, old, typed) {
+  await page.locator('.cm-content').focus();
+  await page.keyboard.press('Control+f');
+  await page.keyboard.type(old);
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Escape');
+  await page.keyboard.type(typed);
+}
+
+test('a mistake is shown at its place as one types, and in the list', async (t) => {
+  const { page } = await room(t, '?start=flagred-paper');
+  await retype(page, 'IF margin', 'IF margn');
+  await page.locator('.problems li', { hasText: 'margn' }).first().waitFor();
+  assert.match(await problems(page).textContent(), /error/);
+  await page.locator('.cm-lintRange-error').first().waitFor();
+  await page.locator('.stale').waitFor();
+  await page.locator('.problems li button').first().click();
+  assert.match(await page.evaluate(() => document.querySelector('.editor').shadowRoot.getSelection?.().toString() ?? 'margn'), /margn/);
+  await page.keyboard.type('margin');
+  await page.waitForFunction(() => !document.querySelector('.problems .count').textContent.includes('error'));
+  await page.locator('.stale').waitFor({ state: 'hidden' });
+});
+
+test('what can be written is offered, and what a name means', async (t) => {
+  const { page } = await room(t, '?start=tipper');
+  await retype(page, 'IS good', 'IS ');
+  await page.keyboard.press('Control+Space');
+  const offered = page.locator('.cm-tooltip-autocomplete');
+  await offered.getByText('excellent').waitFor();
+  assert.deepEqual((await offered.locator('.cm-completionLabel').allTextContents()).slice(0, 3), ['poor', 'good', 'excellent']);
+  await page.keyboard.press('Escape');
+  await page.keyboard.type('good');
+  await page.locator('.cm-line', { hasText: 'IF service IS good' }).getByText('IF service IS good').hover({ position: { x: 80, y: 8 } });
+  await page.locator('.cm-hover', { hasText: 'How the guest rates the service' }).waitFor();
+});
+
+test('every wrong rule set is shown with its message, and the page goes on', async (t) => {
+  const { page } = await room(t);
+  const folder = 'tests/authoring/err';
+  const files = (await readdir(join(repository, folder))).filter((name) => name.endsWith('.yaml'));
+  assert.ok(files.length >= 107);
+  const command = join(repository, 'target/debug/flagred');
+  const said = (() => {
+    try {
+      return execFileSync(command, ['check', '--json', ...files.map((file) => `${folder}/${file}`)], { cwd: repository, encoding: 'utf8', stdio: 'pipe' });
+    } catch (error) {
+      return error.stdout;
+    }
+  })();
+  const known = said.split(/\n(?=\{)/).map((document) => JSON.parse(document));
+  assert.equal(known.length, files.length);
+  for (const { file, findings } of known) {
+    await paste(page, await read(file));
+    const [first] = findings.filter(({ severity }) => severity === 'error');
+    assert.ok(first, file);
+    await page.waitForFunction(
+      ([messages]) => JSON.stringify([...document.querySelectorAll('.problems li > button:first-child')].map((item) => messages.find((message) => item.textContent.includes(message)))) === JSON.stringify(messages),
+      [findings.map(({ message }) => message)],
+      { timeout: 10_000 },
+    ).catch(() => assert.fail(`${file}: ${first.message}`));
+  }
+  // It still works.
+  await paste(page, await read('authoring/src/starter.yaml'));
+  await page.waitForFunction(() => document.querySelector('.problems .count').textContent === 'no findings');
+});
+
+test('a dragged term changes its numbers alone, as one step for undo', async (t) => {
+  const { page } = await room(t, '?start=tipper');
+  const before = await read('rules/tipper.yaml');
+  const handle = page.getByRole('slider', { name: 'good: mean' });
+  const box = await handle.boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  const drawn = () => page.locator('canvas.decision').evaluate((canvas) => canvas.toDataURL());
+  const old = await drawn();
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 10; i++) await page.mouse.move(x + 4 * i, y - i);
+  await page.mouse.up();
+  await page.waitForFunction((before) => (localStorage.getItem('flagred.rules') ?? before) !== before, before);
+  const after = await text(page);
+  const [, mean] = /good: \{gaussian: \{mean: ([\d.]+), sd: 1.5\}\}/.exec(after);
+  assert.ok(Number(mean) > 5.5 && Number(mean) < 6.5, mean);
+  assert.equal(after, before.replace('mean: 5,', `mean: ${mean},`));
+  assert.notEqual(await drawn(), old, 'the map follows');
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction((before) => localStorage.getItem('flagred.rules') === before, before);
+  assert.ok(await page.getByRole('button', { name: 'Undo' }).isDisabled());
+  await page.getByRole('button', { name: 'Redo' }).click();
+  await page.waitForFunction((after) => localStorage.getItem('flagred.rules') === after, after);
+});
+
+test('a point of a term moves by keys, and a comment stays', async (t) => {
+  const { page } = await room(t, '?start=my-rules');
+  await page.getByRole('slider', { name: 'dry: top' }).focus();
+  await page.keyboard.press('ArrowRight');
+  await page.waitForFunction(() => localStorage.getItem('flagred.rules')?.includes('left_shoulder: [40.4, 60]}'));
+  await page.waitForFunction(() => location.hash.includes('?') && !location.hash.includes('start='));
+  assert.match(await text(page), /dry: \{left_shoulder: \[40\.4, 60\]\} # 1 up to 40, 0 from 60 on/);
+});
+
+test('a click on the map is explained as by the command line', async (t) => {
+  const { page } = await room(t, '?start=flagred-paper');
+  const box = await page.locator('canvas.decision').boundingBox();
+  await page.mouse.click(box.x + box.width * 0.3, box.y + box.height * 0.4);
+  const explained = async () => {
+    await page.waitForTimeout(500);
+    const values = await page.locator('.input input[type=range]').evaluateAll((all) => all.map((one) => one.value));
+    const at = new URLSearchParams((await page.evaluate(() => location.hash)).split('?')[1]).get('at').split(',');
+    const said = execFileSync(
+      join(repository, 'target/debug/flagred'),
+      ['explain', '--json', 'rules/flagred-paper.yaml', `margin=${at[0]}`, `spread=${at[1]}`],
+      { cwd: repository, encoding: 'utf8' },
+    );
+    const { rules, outputs } = JSON.parse(said);
+    assert.deepEqual(await page.locator('.fired code').allTextContents(), rules.map(({ text }) => text));
+    assert.deepEqual(
+      await page.locator('.fired li').evaluateAll((all) => all.map((one) => one.value)),
+      rules.map(({ rule }) => rule),
+    );
+    const shown = await page.locator('.strength').allTextContents();
+    shown.forEach((strength, i) => assert.ok(Math.abs(Number(strength) - rules[i].strength) < 1e-3, strength));
+    if (outputs[0].value !== null) assert.ok(Math.abs(parseFloat(await page.locator('.value b').textContent()) - outputs[0].value) < 0.1);
+    return values;
+  };
+  const clicked = await explained();
+  await page.locator('canvas.decision').focus();
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('ArrowUp');
+  const moved = await explained();
+  assert.ok(Number(moved[0]) > Number(clicked[0]) && Number(moved[1]) > Number(clicked[1]));
+});
+
+test('held inputs, axes and pictures are chosen, and the address tells them', async (t) => {
+  const { page, context } = await room(t, '?start=flagred&x=unsteady_lately&y=load&show=surface');
+  assert.equal(await page.getByLabel('Input across').inputValue(), 'unsteady_lately');
+  assert.equal(await page.getByLabel('Show').inputValue(), 'surface');
+  await page.getByLabel('Show').selectOption('rules');
+  await page.locator('.legend.rules li').first().waitFor();
+  await page.getByLabel('Input up').selectOption('spread');
+  await page.getByLabel('at_limit, as a number').fill('0.25');
+  await page.getByLabel('at_limit, as a number').press('Enter');
+  await page.waitForFunction(() => location.hash.includes('y=spread') && location.hash.includes('0.25'));
+  const link = page.url();
+  const other = await context.newPage();
+  await other.goto(link);
+  await other.locator('.legend.rules li').first().waitFor();
+  assert.equal(await other.getByLabel('at_limit, as a number').inputValue(), '0.25');
+  assert.equal(await other.getByLabel('Input up').inputValue(), 'spread');
+});
+
+test('a link holds the rule set', async (t) => {
+  const { page } = await room(t, '?start=tipper');
+  const edited = `${await read('rules/tipper.yaml')}# äöü 𝛼 <b>\n`;
+  await put(page, edited);
+  await page.waitForFunction((text) => localStorage.getItem('flagred.rules') === text, edited);
+  await page.getByRole('button', { name: 'Copy link' }).click();
+  await page.waitForFunction(() => location.hash.includes('text='));
+  const { page: other } = await room(t, page.url().slice(page.url().indexOf('?')));
+  await other.getByLabel('service, as a number').waitFor();
+  await other.locator('.cm-content').focus();
+  await other.keyboard.press('Control+End');
+  await other.keyboard.type('#');
+  await other.waitForFunction((text) => localStorage.getItem('flagred.rules') === `${text}#`, edited);
+  const { page: damaged } = await room(t, '?text=AAAA');
+  await damaged.getByText('The link is damaged').waitFor();
+});
+
+test('what one was at is there again; where nothing can be kept it is told', async (t) => {
+  const { page } = await room(t);
+  await put(page, (await read('rules/tipper.yaml')).replace('name: tipper', 'name: mine'));
+  await page.waitForFunction(() => localStorage.getItem('flagred.rules')?.includes('name: mine'));
+  await page.goto(`${server.address}`);
+  await page.goto(`${server.address}#/rules`);
+  await page.locator('.cm-line', { hasText: 'name: mine' }).waitFor();
+
+  const { page: other } = await room(t);
+  await other.evaluate(() => {
+    Storage.prototype.setItem = () => {
+      throw new DOMException('full', 'QuotaExceededError');
+    };
+  });
+  await put(other, await read('rules/tipper.yaml'));
+  await other.getByText('This browser keeps nothing').waitFor();
+});
+
+test('other formats are opened by drop and button, and written', async (t) => {
+  const { page } = await room(t);
+  const fis = execFileSync(join(repository, 'target/debug/flagred'), ['export', '--fis', '--lossy', 'rules/tipper.yaml'], {
+    cwd: repository, encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'],
+  });
+  await put(page, fis, 'tipper.fis');
+  const dialog = page.getByRole('dialog');
+  await dialog.getByRole('heading', { name: 'tipper.fis was read as FIS' }).waitFor();
+  await dialog.getByRole('button', { name: 'Close' }).click();
+  await page.locator('.cm-line', { hasText: 'fuzzy: 1' }).waitFor();
+  await page.getByLabel('service, as a number').waitFor();
+
+  const dropped = await page.evaluateHandle((content) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([content], 'dropped.yaml'));
+    return transfer;
+  }, await read('rules/flagred-paper.yaml'));
+  await page.dispatchEvent('.room.rules .editor', 'drop', { dataTransfer: dropped });
+  await page.getByLabel('margin, as a number').waitFor();
+
+  const down = page.waitForEvent('download');
+  await page.getByLabel('Download').selectOption('FLL');
+  const leave = page.getByRole('button', { name: 'Leave it out and go on' });
+  const which = await Promise.race([down.then(() => 'down'), leave.waitFor().then(() => 'asked')]);
+  if (which === 'asked') await leave.click();
+  const file = await down;
+  assert.equal(file.suggestedFilename(), 'flagred-paper.fll');
+  assert.match(await readFile(await file.path(), 'utf8'), /^Engine: /m);
+
+  await page.getByRole('dialog').getByRole('button', { name: 'Close' }).click({ timeout: 2000 }).catch(() => undefined);
+  const picture = page.waitForEvent('download');
+  await page.getByLabel('Download').selectOption('map');
+  assert.match(await readFile(await (await picture).path(), 'utf8'), /^<svg /);
+
+  await put(page, '\u0000\u0001'.repeat(10), 'x.bin');
+  await page.waitForFunction(() => document.querySelector('.problems .count').textContent.includes('error'));
+});
+
+test('a profile is checked too, and its map is filled as it says', async (t) => {
+  const { page } = await room(t, '?start=my-profile');
+  assert.doesNotMatch(await problems(page).textContent(), /error/);
+  await retype(page, 'mean: motor_margin', 'mean: motor_margn');
+  await page.locator('.problems li', { hasText: 'motor_margn' }).first().waitFor();
+});
+
+test('nothing in a rule set is markup', async (t) => {
+  const { page } = await room(t);
+  const evil = '<img src=x onerror=alert(1)>';
+  await put(
+    page,
+    `fuzzy: 1\nname: "${evil}"\ninputs:\n  heat: {range: [0, 1], unit: "${evil}", description: "${evil}", partition: {"${evil}": 0, b: 1}}\n` +
+      `outputs: {speed: {range: [0, 1], partition: [slow, fast]}}\nrules:\n  - IF heat IS '${evil}' THEN speed IS slow\n  - IF heat IS b THEN speed IS "${evil}"\n`,
+  );
+  await page.locator('.problems li', { hasText: evil }).first().waitFor();
+  assert.equal(await page.locator('img').count(), 0);
+});
+
+test('a defect is told and the page goes on', async (t) => {
+  const { page, complaints } = await room(t);
+  // A worker that dies at one text.
+  await page.evaluate(() => {
+    const send = Worker.prototype.postMessage;
+    Worker.prototype.postMessage = function (message, ...rest) {
+      if (message?.args?.[0]?.includes?.('name: trap')) {
+        this.onmessage({ data: { id: message.id, trapped: 'index out of bounds' } });
+        return;
+      }
+      send.call(this, message, ...rest);
+    };
+  });
+  const tipper = await read('rules/tipper.yaml');
+  await paste(page, tipper.replace('name: tipper', 'name: trap'));
+  await page.getByText('flagred has a defect, and goes on: index out of bounds').waitFor();
+  await paste(page, tipper);
+  await page.getByLabel('service, as a number').waitFor();
+  assert.deepEqual(complaints, []);
+});
+
+/** The page as `flagred studio FILE` serves it: one file, and the text of a file on disk. */
+async function studio(t, { readOnly = false } = {}) {
+  const html = await readFile(join(repository, 'cli/page/studio.html'));
+  const disk = { text: await read('rules/tipper.yaml'), version: 1 };
+  const made = createServer((request, response) => {
+    if (request.url !== '/api/file') return response.writeHead(200, { 'Content-Type': 'text/html' }).end(html);
+    const tag = () => `"${disk.version}"`;
+    if (request.method === 'GET') {
+      response.writeHead(200, { ETag: tag(), 'X-File-Name': 'my%20rules.yaml', 'X-Read-Only': String(readOnly) });
+      return response.end(disk.text);
+    }
+    let body = '';
+    request.on('data', (part) => (body += part));
+    request.on('end', () => {
+      if (request.headers['if-match'] !== tag()) return response.writeHead(412).end('the file changed on disk');
+      Object.assign(disk, { text: body, version: disk.version + 1 });
+      response.writeHead(204, { ETag: tag() }).end();
+    });
+  });
+  await new Promise((resolve) => made.listen(0, '127.0.0.1', resolve));
+  t.after(() => (made.closeAllConnections(), made.close()));
+  return { disk, address: `http://127.0.0.1:${made.address().port}/` };
+}
+
+test('a file on disk is saved, and a change by somebody else is not lost', async (t) => {
+  const { disk, address } = await studio(t);
+  const { page } = await room(t, '', desktop, address);
+  const state = page.locator('.backing [role=status]');
+  await page.getByText('my rules.yaml', { exact: true }).waitFor();
+  assert.equal(await state.textContent(), 'saved');
+  await page.locator('.cm-content').focus();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type('# mine');
+  assert.equal(await state.textContent(), 'changed');
+  await page.keyboard.press('Control+s');
+  await page.getByText('my rules.yaml is saved').waitFor();
+  assert.ok(disk.text.endsWith('# mine'));
+  assert.equal(await state.textContent(), 'saved');
+
+  // Somebody else changes it: read again where nothing is lost, asked where something would be.
+  Object.assign(disk, { text: disk.text.replace('name: tipper', 'name: theirs'), version: 9 });
+  await page.locator('.cm-line', { hasText: 'name: theirs' }).waitFor();
+  await page.keyboard.type('!');
+  Object.assign(disk, { text: `${disk.text}\n# theirs`, version: 10 });
+  await page.locator('.changed-on-disk').waitFor();
+  await page.keyboard.press('Control+s');
+  assert.ok(disk.text.endsWith('# theirs'));
+  await page.getByRole('button', { name: 'Keep mine' }).click();
+  await page.getByRole('button', { name: 'Save', exact: true }).click();
+  await page.waitForFunction(() => document.querySelector('.backing [role=status]').textContent === 'saved');
+  assert.ok(!disk.text.includes('# theirs'));
+});
+
+test('a read-only file is shown and not written', async (t) => {
+  const { disk, address } = await studio(t, { readOnly: true });
+  const before = disk.text;
+  const { page } = await room(t, '', desktop, address);
+  assert.equal(await page.locator('.backing [role=status]').textContent(), 'read-only');
+  await page.locator('.cm-content').focus();
+  await page.keyboard.type('x');
+  await page.keyboard.press('Control+s');
+  await page.getByText('is read-only').waitFor();
+  assert.equal(disk.text, before);
+});
+
+for (const [name, options] of Object.entries({
+  desktop,
+  phone: { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true },
+  dark: { ...desktop, colorScheme: 'dark' },
+})) {
+  test(`nobody is shut out: ${name}`, async (t) => {
+    const { page } = await room(t, '?start=flagred-paper', options);
+    await retype(page, 'IF margin', 'IF margn');
+    await page.locator('.problems li', { hasText: 'margn' }).first().waitFor();
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.ok(wide <= 0, `${wide} px too wide`);
+    await page.evaluate(await read('web/node_modules/axe-core/axe.min.js'));
+    const { violations } = await page.evaluate(() => window.axe.run());
+    const serious = violations.filter(({ impact }) => ['serious', 'critical'].includes(impact));
+    assert.deepEqual(serious.map(({ id, nodes }) => [id, nodes.map(({ html, failureSummary }) => `${html} ${failureSummary}`)]), []);
+  });
+}
