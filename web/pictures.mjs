@@ -21,6 +21,8 @@ for (const [room, fill] of Object.entries(rooms)) {
       const tipper = starts.locator('option', { hasText: 'tipper' }).first();
       await starts.selectOption(await tipper.getAttribute('value'));
       await page.locator('.why').filter({ hasText: 'tip' }).waitFor();
+      await page.locator('#said').evaluate((said) => (said.textContent = ''));
+      if (device === 'phone') await page.locator('.map').evaluate((map) => map.scrollIntoView());
     }
     // What moves comes to rest.
     await page.waitForTimeout(1000);

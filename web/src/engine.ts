@@ -33,24 +33,26 @@ interface Waiting {
 export function engine(create: () => Worker, first: Promise<Begin>): Engine {
   const waiting = new Map<number, Waiting>();
   let next = 0;
-  let worker = begin();
+  let worker: Worker | undefined = begin();
 
   function begin(): Worker {
     const made = create();
     made.onmessage = ({ data }: MessageEvent<Reply>) => answer(data);
-    made.onerror = (event) => replace(new Trapped(event.message || 'the worker did not start'));
+    // The next one would fail too: it is made when something is asked again, and not before.
+    made.onerror = (event) => drop(new Trapped(event.message || 'the worker did not start'));
     return made;
   }
 
   let begun: Worker | undefined;
 
   async function send(id: number, call: string, args: unknown[]): Promise<void> {
-    const begin = await first;
+    const given = await first;
     // It may have been given up meanwhile.
     if (!waiting.has(id)) return;
+    worker ??= begin();
     if (begun !== worker) {
       begun = worker;
-      worker.postMessage(begin);
+      worker.postMessage(given);
     }
     worker.postMessage({ id, call, args });
   }
@@ -71,11 +73,16 @@ export function engine(create: () => Worker, first: Promise<Begin>): Engine {
     }
   }
 
-  function replace(why: Error): void {
-    worker.terminate();
-    worker = begin();
+  function drop(why: Error): void {
+    worker?.terminate();
+    worker = undefined;
     for (const asked of waiting.values()) asked.reject(why);
     waiting.clear();
+  }
+
+  function replace(why: Error): void {
+    drop(why);
+    worker = begin();
     made.onRestart?.();
   }
 

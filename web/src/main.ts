@@ -21,8 +21,14 @@ const opened = new Map<Name, { root: HTMLElement; room: Promise<Room> }>();
 /** What each room last said in the address, so that it is there again when one comes back. */
 const addresses = new Map<Name, string>();
 
+/** How long something said stays in view. */
+const SAID_MS = 8_000;
+let saying: ReturnType<typeof setTimeout> | undefined;
+
 function say(words: string): void {
   said.textContent = words;
+  clearTimeout(saying);
+  saying = setTimeout(() => (said.textContent = ''), SAID_MS);
 }
 
 function place(): { name: Name; parameters: URLSearchParams } | undefined {
@@ -80,7 +86,8 @@ async function show(file: BackingFile | undefined): Promise<void> {
 
 /** Whatever goes wrong is told; a silent page is worse than a broken one. */
 function broken(error: unknown): void {
-  say(`The page has a defect: ${error instanceof Error ? error.message : String(error)}`);
+  clearTimeout(saying);
+  said.textContent = `The page has a defect: ${error instanceof Error ? error.message : String(error)}`;
 }
 
 addEventListener('unhandledrejection', (event) => broken(event.reason));

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { availableParallelism, loadavg } from 'node:os';
 import { join } from 'node:path';
 import { STEADY, folder, room } from './flights.mjs';
 import { browser, serve, tab } from './page.mjs';
@@ -11,8 +12,9 @@ const LOG_BYTES = 100_000_000;
 const MOST_S = 5;
 const MOST_TASK_MS = 50;
 const MOST_MEMORY_KB = 600_000;
-/** The machine may be busy with other tests. */
 const TRIES = 3;
+/** While other programs want the processors, only processor time can be held against the page. */
+const isBusy = () => loadavg()[0] > availableParallelism();
 
 let chromium, server;
 before(async () => {
@@ -71,6 +73,14 @@ async function peakMemory() {
   return Math.max(...peaks.map(Number));
 }
 
+/** The processor time of the longest task on the main thread of a page, in a trace. */
+function longestTask(trace) {
+  const events = JSON.parse(trace).traceEvents;
+  const mark = events.find(({ name, cat }) => name === 'measured' && cat.includes('blink.user_timing'));
+  const tasks = events.filter(({ pid, tid, name }) => pid === mark.pid && tid === mark.tid && name.endsWith('RunTask'));
+  return Math.max(...tasks.map(({ tdur }) => (tdur ?? 0) / 1000));
+}
+
 async function measure(path) {
   const { page, context, complaints } = await tab(chromium, 'about:blank', { viewport: { width: 1280, height: 900 } });
   await page.addInitScript(() => {
@@ -83,7 +93,8 @@ async function measure(path) {
   await page.goto(`${server.address}#/flight`);
   await page.locator('.drop input').waitFor({ state: 'attached' });
   await page.waitForTimeout(500);
-  const before = await page.evaluate(() => (window.tasks.splice(0), performance.now()));
+  await chromium.startTracing(page, { categories: ['toplevel', 'blink.user_timing', 'disabled-by-default-devtools.timeline'] });
+  const before = await page.evaluate(() => (window.tasks.splice(0), performance.mark('measured').startTime));
   const flights = room(page);
   await flights.take(path);
   // The questions of the test are tasks too: short ones are asked.
@@ -107,27 +118,29 @@ async function measure(path) {
     }
   });
   const tasks = await page.evaluate(() => window.tasks);
+  const processor_ms = longestTask(await chromium.stopTracing());
   const memory_kb = existsSync('/proc/self/status') ? await peakMemory() : 0;
   assert.deepEqual(complaints, []);
   await context.close();
-  return { badge, assessed_s, longest_ms: Math.max(0, ...tasks), memory_kb };
+  return { badge, assessed_s, longest_ms: Math.max(0, ...tasks), processor_ms, memory_kb };
 }
 
 test('a log of 100 MB', { timeout: 600_000 }, async (context) => {
   const there = folder();
   const path = join(there, 'long.bin');
   writeFileSync(path, longLog(readFileSync(STEADY), LOG_BYTES));
-  let best;
-  for (let i = 0; i < TRIES; i++) {
-    const measured = await measure(path);
-    context.diagnostic(JSON.stringify(measured));
-    best = best
-      ? { ...measured, assessed_s: Math.min(best.assessed_s, measured.assessed_s), longest_ms: Math.min(best.longest_ms, measured.longest_ms) }
-      : measured;
-    if (best.assessed_s < MOST_S && best.longest_ms < MOST_TASK_MS) break;
+  const all = [];
+  const best = (name) => Math.min(...all.map((measured) => measured[name]));
+  const isGood = () => best('assessed_s') < MOST_S && best('longest_ms') < MOST_TASK_MS;
+  while (all.length < TRIES && !(all.length > 0 && isGood())) {
+    all.push(await measure(path));
+    context.diagnostic(JSON.stringify(all.at(-1)));
   }
-  assert.notEqual(best.badge, 'error');
-  assert.ok(best.assessed_s < MOST_S, `${best.assessed_s} s`);
-  assert.ok(best.longest_ms < MOST_TASK_MS, `the longest task took ${best.longest_ms} ms`);
-  assert.ok(best.memory_kb < MOST_MEMORY_KB, `${best.memory_kb} kB`);
+  for (const { badge, processor_ms, memory_kb } of all) {
+    assert.equal(badge, 'GOOD');
+    assert.ok(processor_ms > 0 && processor_ms < MOST_TASK_MS, `a task took ${processor_ms} ms of a processor`);
+    assert.ok(memory_kb < MOST_MEMORY_KB, `${memory_kb} kB`);
+  }
+  assert.ok(best('assessed_s') < MOST_S, `${best('assessed_s')} s`);
+  assert.ok(isBusy() || best('longest_ms') < MOST_TASK_MS, `the longest task took ${best('longest_ms')} ms`);
 });

@@ -62,6 +62,23 @@ test('with a file it opens the room for rules, under the policy of the page', as
   assert.equal(policy, `${own}; frame-ancestors 'none'`);
 });
 
+test('what is typed is saved on disk, and what another editor writes is read', async (t) => {
+  const text = '# mine\r\nfuzzy: 1\r\n';
+  const mine = join(folder, 'mine.yaml');
+  await writeFile(mine, text);
+  const { page } = await open(t, await serve(t, mine));
+  const backing = page.locator('.backing');
+  await backing.filter({ hasText: 'mine.yaml' }).filter({ hasText: /saved/ }).waitFor();
+  await page.locator('.cm-content').click();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type('name: typed');
+  await page.keyboard.press('Control+s');
+  await backing.filter({ hasText: /saved/ }).waitFor();
+  assert.equal(await readFile(mine, 'utf8'), `${text}name: typed`);
+  await writeFile(mine, '# theirs\n');
+  await page.locator('.cm-content').filter({ hasText: '# theirs' }).waitFor();
+});
+
 test('another page gets nothing, even if it knows the address', async (t) => {
   const address = await serve(t, file);
   await writeFile(join(folder, 'index.html'), '<!doctype html><title>another page</title>');

@@ -138,8 +138,10 @@ export function point(chart: Chart, x_s: number): void {
 
 /** Puts the point of the map where the inputs are. */
 export function locate(map: DecisionMap, inputs: ReadonlyMap<number, number>): void {
-  const along = ({ input, low, high }: Axis) => (((inputs.get(input) ?? NaN) - low) / (high - low)) * map.size;
+  // What lies beyond the map is at its edge, as the values that the rules use are.
+  const along = ({ input, low, high }: Axis) =>
+    Math.min(1, Math.max(0, ((inputs.get(input) ?? NaN) - low) / (high - low))) * map.size;
   const [across, up] = [along(map.x), along(map.y)];
   const isKnown = Number.isFinite(across) && Number.isFinite(up);
-  map.here.setAttribute('d', isKnown ? `M${across} ${up}h0` : 'M-9-9h0');
+  map.here.setAttribute('d', isKnown ? `M${across.toFixed(2)} ${up.toFixed(2)}h0` : 'M-9-9h0');
 }
