@@ -203,6 +203,10 @@ test('held inputs, axes and pictures are chosen, and the address tells them', as
   await other.locator('.legend.rules li').first().waitFor();
   assert.equal(await other.getByLabel('at_limit, as a number').inputValue(), '0.25');
   assert.equal(await other.getByLabel('Input up').inputValue(), 'spread');
+  // Another address in the same page.
+  await other.evaluate(() => (location.hash = '#/rules?start=flagred-paper&x=spread&y=margin&at=0.125,0.25'));
+  await other.waitForFunction(() => document.querySelector('[aria-label="margin, as a number"]')?.value === '0.125');
+  assert.equal(await other.getByLabel('Input across').inputValue(), 'spread');
 });
 
 test('a link holds the rule set', async (t) => {

@@ -57,6 +57,7 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
   const small = document.createElement('canvas');
   let shown: Shown | undefined;
   let asked = 0;
+  let ink: Ink | undefined;
 
   function draw(next: Shown): void {
     shown = next;
@@ -75,8 +76,7 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
     }
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
-    const style = getComputedStyle(canvas);
-    const ink = { ink: style.getPropertyValue('--ink'), soft: style.getPropertyValue('--soft'), rule: style.getPropertyValue('--rule'), paper: style.getPropertyValue('--paper'), accent: style.getPropertyValue('--accent') };
+    ink ??= inks(canvas);
     pen.font = '12px system-ui, sans-serif';
     const frame: Frame = { left: LEFT, top: TOP, width: width - LEFT - RIGHT, height: height - TOP - BOTTOM };
     if (shown.y && shown.kind === 'surface') surface(pen, { ...frame, left: 12, width: width - RIGHT - 12 }, shown, colours, ink);
@@ -87,7 +87,10 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
   }
 
   new ResizeObserver(() => shown && draw(shown)).observe(canvas);
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => shown && draw(shown));
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+    ink = undefined;
+    if (shown) draw(shown);
+  });
 
   function at(event: PointerEvent): void {
     if (!shown || shown.kind === 'surface') return;
@@ -119,6 +122,13 @@ export function decisionMap(colours: Colours, point: Point): DecisionMap {
 }
 
 type Ink = Record<'ink' | 'soft' | 'rule' | 'paper' | 'accent', string>;
+
+/** The colours of the page. */
+function inks(element: Element): Ink {
+  const style = getComputedStyle(element);
+  const of = (name: keyof Ink) => style.getPropertyValue(`--${name}`);
+  return { ink: of('ink'), soft: of('soft'), rule: of('rule'), paper: of('paper'), accent: of('accent') };
+}
 
 const share = (value: number, low: number, high: number) => clamp((value - low) / (high - low), 0, 1);
 

@@ -6,6 +6,7 @@ import { add, fill, h, picture } from '../dom';
 import { Trapped } from '../engine';
 import { backing, type Backing } from './backing';
 import type { Opened, Picture, Place } from './calls';
+import { KINDS, read, settle, view as viewOf, written, type Choice } from './choice';
 import { editor, type Editor } from './editor';
 import { drawn, opened as openedFile, saved } from './exchange';
 import { explain } from './explanation';
@@ -17,12 +18,9 @@ import { LONGEST, pack, unpack } from './share';
 import { before, keep, kept, setAside } from './store';
 import { terms } from './terms';
 
-/** Points along an axis of the map, and of the curve of one input. */
-const POINTS = 101;
-const CURVE = 401;
 const ADDRESS_MS = 300;
+const REASON_MS = 80;
 const FORMATS = ['FIS', 'FLL', 'FCL', 'FML'] as const;
-const KINDS: [Kind, string][] = [['map', 'Map'], ['surface', 'Surface'], ['rules', 'Strongest rule']];
 
 /** Opens the room. */
 export async function open(root: HTMLElement, app: App): Promise<Room> {
@@ -32,7 +30,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   /** What the editor's text means; of the map, what the last text without errors means. */
   let opened: Opened | undefined;
   let good: { text: string; about: About } | undefined;
-  const choice = { output: '', x: '', y: '', kind: 'map' as Kind, isWhole: false };
+  const choice: Choice = { output: '', x: '', y: '', kind: 'map', isWhole: false };
   /** The value of each input that was ever set or held, by name. */
   const values = new Map<string, number>();
   /** The text from which a point is dragged. */
@@ -171,7 +169,10 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   const reason = latest(() =>
     guarded(good?.text ?? '', async () => {
       const now = good;
-      if (now) explain(why, now.about, await engine.call('rulesExplain', now.text, point(now.about)));
+      if (!now) return;
+      explain(why, now.about, await engine.call('rulesExplain', now.text, point(now.about)));
+      // Words that change faster are not read, and laying them out takes time from what moves.
+      await new Promise((done) => setTimeout(done, REASON_MS));
     }),
   );
   const illustrate = latest(() =>
@@ -216,10 +217,8 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
 
   /** A value for each input that has none yet. */
   async function hold(about: About): Promise<void> {
+    settle(choice, about);
     const names = about.inputs.map(({ name }) => name);
-    if (!about.outputs.some(({ name }) => name === choice.output)) choice.output = about.outputs[about.output]!.name;
-    if (!names.includes(choice.x)) choice.x = names.find((name) => name !== choice.y)!;
-    if (!names.includes(choice.y) || choice.y === choice.x) choice.y = names.find((name) => name !== choice.x) ?? '';
     for (const { name, low, high } of about.inputs) {
       const value = values.get(name);
       if (value !== undefined && (value < low || value > high)) values.delete(name);
@@ -236,18 +235,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
 
   const point = (about: About) => about.inputs.map(({ name, low }) => values.get(name) ?? low);
 
-  function chosenView(about: About): View {
-    const axes = [choice.x, choice.y].map((name) => about.inputs.findIndex((input) => input.name === name));
-    return {
-      output: about.outputs.findIndex(({ name }) => name === choice.output),
-      axes: axes.filter((input) => input >= 0).map((input) => {
-        const { low, high, shown } = about.inputs[input]!;
-        return choice.isWhole ? { input, low, high } : { input, low: shown[0], high: shown[1] };
-      }),
-      points: axes.some((input) => input < 0) ? CURVE : POINTS,
-      held: point(about),
-    };
-  }
+  const chosenView = (about: About): View => viewOf(choice, about, point(about));
   const view = () => good && chosenView(good.about);
 
   /** The map, the sliders and the reasons for what is good and chosen now. */
@@ -327,10 +315,9 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   }
 
   function chosen(): void {
-    const [before, x, y] = [choice.x, selects.x.value, selects.y.value];
-    Object.assign(choice, { output: selects.output.value, x, y: x === y ? (x === choice.y ? before : choice.y) : y });
-    if (x === y && x !== before) choice.y = before;
-    else if (x === y) choice.x = choice.y === x ? before : choice.x;
+    const [x, y] = [selects.x.value, selects.y.value];
+    // The axis that has the input already takes the other one.
+    Object.assign(choice, { output: selects.output.value, ...(x === y ? { x: choice.y, y: choice.x } : { x, y }) });
     choice.kind = selects.kind.value as Kind;
     choice.isWhole = whole.checked;
     if (opened) shapes.show(opened.variables, choice.isWhole);
@@ -427,12 +414,8 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
 
   // The address: what is open and what is chosen.
   function said(): URLSearchParams {
-    const parameters = new URLSearchParams();
+    const parameters = written(choice, good && point(good.about));
     if (start) parameters.set('start', start);
-    for (const name of ['output', 'x', 'y'] as const) if (choice[name]) parameters.set(name, choice[name]);
-    if (choice.kind !== 'map') parameters.set('show', choice.kind);
-    if (choice.isWhole) parameters.set('whole', '1');
-    if (good) parameters.set('at', point(good.about).map((value) => Number(value.toPrecision(6))).join(','));
     return parameters;
   }
 
@@ -442,12 +425,8 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     telling = setTimeout(() => app.navigate(said()), ADDRESS_MS);
   }
 
-  /** The text that an address names, if it names one; takes over what it says of the view. */
+  /** The text that an address names, if it names one. */
   async function textOf(parameters: URLSearchParams): Promise<string | undefined> {
-    for (const name of ['output', 'x', 'y'] as const) choice[name] = parameters.get(name) ?? choice[name];
-    const kind = KINDS.find(([kind]) => kind === parameters.get('show'));
-    choice.kind = kind?.[0] ?? 'map';
-    choice.isWhole = parameters.has('whole');
     const packed = parameters.get('text');
     if (packed === null) {
       start = parameters.get('start') ?? undefined;
@@ -463,11 +442,12 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     }
   }
 
-  async function pointed(parameters: URLSearchParams, text: string): Promise<void> {
-    const at = parameters.get('at')?.split(',').map(Number);
+  /** Takes over what an address says of the view of a text. */
+  async function look(parameters: URLSearchParams, text: string): Promise<void> {
+    const at = read(choice, parameters);
     const { about } = await engine.call('rulesOpen', text).catch(() => ({ about: undefined }));
-    if (!at || at.length !== about?.inputs.length || !at.every(Number.isFinite)) return;
-    about.inputs.forEach(({ name }, i) => values.set(name, at[i]!));
+    if (at?.length !== about?.inputs.length) return;
+    about?.inputs.forEach(({ name }, i) => values.set(name, at![i]!));
   }
 
   // Beginning.
@@ -479,7 +459,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   // A link of somebody else must not take what was one's own.
   if (!disk && linked !== undefined && !starts.some((one) => one.text === kept())) setAside();
   if (!disk && linked === undefined && text === starts[0]!.text) start = starts[0]!.name;
-  await pointed(asked, text);
+  await look(asked, text);
   if (disk) bar.prepend(disk.element);
   const edit: Editor = editor(paper, text, app.file?.readOnly ?? false, {
     completions: (text, at) => engine.call('rulesCompletions', text, at),
@@ -507,11 +487,14 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     async shown(parameters) {
       if (parameters.toString() === said().toString()) return;
       const text = await textOf(parameters);
-      if (text === undefined || text === edit.text()) return;
+      if (text === undefined || text === edit.text()) {
+        await look(parameters, edit.text());
+        return changed(edit.text());
+      }
       setAside();
-      const from = start;
-      put(text, from);
-      await pointed(parameters, text);
+      values.clear();
+      await look(parameters, text);
+      edit.replace(text);
     },
   };
 }
