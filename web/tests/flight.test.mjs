@@ -142,6 +142,38 @@ test('a stretch that is selected is drawn anew, with what thinning left out', as
   await context.close();
 });
 
+test('two fingers zoom, and keys move the cursor', async () => {
+  const { page, room, context } = await open('#/flight', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  await room.take(GUST);
+  await room.badge(basename(GUST));
+  await room.settled();
+  const area = page.locator('.report .panel .area').first();
+  await area.evaluate((element) => element.scrollIntoView({ block: 'center' }));
+  const { x, y, width } = await area.boundingBox();
+  const session = await context.newCDPSession(page);
+  const touch = (type, ...shares) =>
+    session.send('Input.dispatchTouchEvent', { type, touchPoints: shares.map((share, id) => ({ x: x + share * width, y: y + 40, id })) });
+  await touch('touchStart', 0.45);
+  await touch('touchStart', 0.45, 0.55);
+  for (let i = 1; i <= 5; i++) await touch('touchMove', 0.45 - 0.03 * i, 0.55 + 0.03 * i);
+  await touch('touchEnd');
+  await room.settled();
+  const [start, length] = await area.evaluate((element) => [element.closest('.panel').dataset.start, element.closest('.panel').dataset.length].map(Number));
+  // What was a tenth of the chart is four tenths of it.
+  assert.ok(Math.abs(length - 185.15 / 4) < 3, `${length} s`);
+  assert.ok(Math.abs(start + length / 2 - (49 + 185.15 / 2)) < 3, `from ${start} s`);
+  const shown = async () => parseFloat(await page.locator('.moment summary b').textContent());
+  await page.evaluate(() => document.activeElement?.blur());
+  const before = await shown();
+  await page.keyboard.press('Shift+ArrowRight');
+  await page.waitForTimeout(300);
+  assert.ok(Math.abs((await shown()) - before - length * 0.02) < 0.11);
+  await page.keyboard.press('0');
+  await room.settled();
+  assert.ok(await page.getByRole('button', { name: 'Zoom out' }).isDisabled());
+  await context.close();
+});
+
 test('other thresholds give the verdict of a profile that has them', async () => {
   const { page, room, context, complaints } = await withLog(GUST);
   assert.equal(await room.badge(basename(GUST)), 'FAIL');
@@ -186,6 +218,14 @@ test('a profile from a file is used, and one with errors is told and changes not
   await choose('calm.yaml', profile.replace('fail: {risk: 80', 'fail: {risk: 99'));
   await page.locator('.logs .badge').getByText('WARN').waitFor();
   assert.ok(await page.locator('.message').isHidden());
+  // With a rule set beside it, as the command line finds one.
+  const rules = readFileSync(new URL('../../rules/flagred.yaml', import.meta.url), 'utf8').replace('unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_high', 'unsteady_lately IS stormy AND at_limit IS none THEN risk IS very_low');
+  const there = folder({ [basename(GUST)]: readFileSync(GUST), 'mine.yaml': profile.replace('rules: flagred ', 'rules: mild.yaml '), 'mild.yaml': rules });
+  await page.getByLabel('Profile from a file').setInputFiles([`${there}/mild.yaml`, `${there}/mine.yaml`]);
+  const { out } = await command([`${there}/${basename(GUST)}`], '--json', '--profile', 'mine.yaml');
+  await page.locator('.logs .badge').getByText(JSON.parse(out).verdict).waitFor();
+  await room.settled();
+  assert.ok((await room.download('JSON')).content.equals(out), 'the JSON is another');
   await context.close();
 });
 

@@ -25,10 +25,11 @@ export interface Log {
   file: File;
 }
 
-/** A shipped profile's name, or a text and the name of its file. */
+/** A shipped profile's name, or a text and the name of its file; and a rule set that stands in for the one it names. */
 export interface ProfileSource {
   name: string;
   text?: string;
+  rules?: string;
 }
 
 export interface ProfileFacts extends ProfileSource {
@@ -49,13 +50,14 @@ const assessments = new Map<number, { key: string; assessment: Assessment }>();
 /** Profiles that are kept compiled. */
 const MOST_PROFILES = 8;
 
-const keyOf = (source: ProfileSource) => source.text ?? source.name;
+const keyOf = ({ name, text, rules }: ProfileSource) => JSON.stringify([text ?? name, rules]);
 
 function profileOf(source: ProfileSource): Profile {
   const key = keyOf(source);
   const known = profiles.get(key);
   if (known) return known;
-  const made = source.text === undefined ? Profile.named(source.name) : Profile.fromText(source.name, source.text);
+  const { name, text, rules } = source;
+  const made = text === undefined ? Profile.named(name, rules) : Profile.fromText(name, text, rules);
   for (const [oldest, profile] of profiles) {
     if (profiles.size < MOST_PROFILES) break;
     profile.free();
@@ -104,7 +106,7 @@ export function profileFacts(_tell: Tell, source: ProfileSource, changes: Verdic
   const changed = base.withVerdict(changes);
   const { name: title, text, warnings, verdict } = changed;
   changed.free();
-  return { name: source.name, text, title, warnings, verdict };
+  return { ...source, text, title, warnings, verdict };
 }
 
 /** The verdict of a log. */

@@ -66,6 +66,7 @@ export function logList(actions: Actions): LogList {
     return {
       element: h('li', {}, choose, remove),
       update(isCurrent) {
+        if (isCurrent && !choose.hasAttribute('aria-current')) choose.scrollIntoView({ block: 'nearest', inline: 'nearest' });
         if (isCurrent) choose.setAttribute('aria-current', 'true');
         else choose.removeAttribute('aria-current');
         const isBusy = entry.state === 'reading';

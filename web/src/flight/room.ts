@@ -4,7 +4,7 @@ import './flight.css';
 import type { Part, Stretch, VerdictChanges } from 'flagred';
 import type { App, Room } from '../app';
 import { add, download, fill, h } from '../dom';
-import { Cancelled } from '../engine';
+import { Cancelled, Trapped } from '../engine';
 import type { Download, ProfileFacts, ProfileSource } from './calls';
 import { badge, logList, verdictClass, type Entry } from './logs';
 import { momentPanel } from './moment';
@@ -50,7 +50,7 @@ export function open(root: HTMLElement, app: App): Room {
     reset: () => show(undefined),
   });
   const profiles = h('select', { 'aria-label': 'Profile' });
-  const profileFile = h('input', { type: 'file', accept: '.yaml,.yml', 'aria-label': 'Profile from a file', hidden: true });
+  const profileFile = h('input', { type: 'file', accept: '.yaml,.yml', multiple: true, 'aria-label': 'Profile from a file', hidden: true });
   const compareButton = h('button', { type: 'button', 'aria-pressed': 'false' }, 'Compare');
   const downloads = h('div', { class: 'menu-body' });
   const downloadMenu = h('details', { class: 'menu' }, h('summary', { class: 'button' }, 'Download'), downloads);
@@ -86,13 +86,16 @@ export function open(root: HTMLElement, app: App): Room {
     else quiet(useProfile({ name: profiles.value }, {}));
   });
   profileFile.addEventListener('change', async () => {
-    const [file] = profileFile.files ?? [];
-    if (file) quiet(useProfile({ name: file.name, text: await file.text() }, {}));
+    const chosen = [...(profileFile.files ?? [])];
     profileFile.value = '';
+    if (chosen.length > 0) quiet(useProfile(await profileIn(chosen), {}));
   });
-  root.addEventListener('keydown', (event) => {
+  document.addEventListener('click', (event) => {
+    if (!event.composedPath().includes(downloadMenu)) downloadMenu.open = false;
+  });
+  document.addEventListener('keydown', (event) => {
     const isTyping = event.composedPath().some((target) => target instanceof Element && target.matches('input, select, textarea'));
-    if (isTyping || view_.hidden || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (isTyping || root.hidden || view_.hidden || event.ctrlKey || event.metaKey || event.altKey) return;
     const share = (cursor_s - view().start_s) / lengthOf(view());
     const act: Record<string, () => void> = {
       ArrowLeft: () => pointAt(cursor_s - lengthOf(view()) * (event.shiftKey ? 0.02 : 0.002)),
@@ -100,10 +103,12 @@ export function open(root: HTMLElement, app: App): Room {
       '+': () => show(zoomed(view(), share / 2, (1 + share) / 2, whole)),
       '-': () => show(zoomed(view(), -share, 2 - share, whole)),
       '0': () => show(undefined),
+      Escape: () => (downloadMenu.open = false),
     };
-    if (!(event.key in act)) return;
+    const wanted = act[event.key];
+    if (!wanted) return;
     event.preventDefault();
-    act[event.key]?.();
+    wanted();
   });
 
   function dropZone(): HTMLElement {
@@ -140,11 +145,11 @@ export function open(root: HTMLElement, app: App): Room {
   /** What is given up needs no words; whatever else goes wrong is told. */
   function quiet(work: Promise<unknown>): void {
     work.catch((error: Error) => {
-      if (!(error instanceof Cancelled)) app.say(error.message);
+      if (!(error instanceof Cancelled)) app.say(told(error));
     });
   }
 
-  const source = (): ProfileSource => (isUnchanged(changes) || !facts ? base : { name: base.name, text: facts.text });
+  const source = (): ProfileSource => (isUnchanged(changes) || !facts ? base : { ...base, text: facts.text });
   const view = (): Stretch => shown ?? whole;
   const done = (): Entry[] => entries.filter((entry) => entry.state === 'done');
   const compared = (): Entry[] => (isComparing ? done() : current ? [current] : []);
@@ -194,7 +199,7 @@ export function open(root: HTMLElement, app: App): Room {
         return;
       }
       entry.state = 'refused';
-      entry.refusal = (error as Error).message;
+      entry.refusal = told(error as Error);
     }
     if (!entries.includes(entry)) return;
     if (!current || current.state === 'refused' || (current === entry)) await choose(entry);
@@ -383,7 +388,7 @@ export function open(root: HTMLElement, app: App): Room {
   function listProfiles(): void {
     const names = base.text === undefined ? shipped : [...shipped, base.name];
     const option = (value: string, words: string, selected: boolean) => h('option', { value, selected }, words);
-    fill(profiles, ...names.map((name) => option(name, name, name === base.name)), option('', 'from a file …', false));
+    fill(profiles, ...names.map((name) => option(name, name, name === base.name)), option('', 'from a file, or with its rules …', false));
   }
 
   async function save(kind: Download | 'flight'): Promise<void> {
@@ -437,7 +442,33 @@ export function open(root: HTMLElement, app: App): Room {
   quiet(ready);
   if (example) quiet(takeExample(example));
   compareButton.disabled = true;
-  return {};
+  return {
+    shown(parameters) {
+      const wanted = parameters.get('example');
+      if (wanted && wanted !== example) quiet(takeExample(wanted));
+      const name = parameters.get('profile') ?? shipped[0];
+      const tried = changesIn(parameters);
+      const isOther = base.text === undefined && name !== undefined && name !== base.name;
+      if (isOther || JSON.stringify(tried) !== JSON.stringify(changes)) quiet(useProfile(isOther ? { name } : base, tried));
+      if (view_.hidden) return;
+      const stretch = stretchIn(parameters);
+      const [t_s, now] = [Number(parameters.get('t') ?? NaN), view()];
+      if (stretch && Math.abs(stretch.start_s - now.start_s) + Math.abs(stretch.end_s - now.end_s) > 0.02) show(within(stretch, whole));
+      if (Math.abs(t_s - cursor_s) > 0.01) pointAt(t_s);
+    },
+  };
+}
+
+/** The words of an error; those of a defect are told apart from a refusal. */
+const told = (error: Error): string => (error instanceof Trapped ? `flagred has a defect: ${error.message}` : error.message);
+
+/** A profile that was chosen, with its rule set where that was chosen, too. */
+async function profileIn(files: File[]): Promise<ProfileSource> {
+  const texts = await Promise.all(files.map(async (file) => ({ name: file.name, text: await file.text() })));
+  const isProfile = ({ text }: { text: string }) => /^flagred\s*:/m.test(text);
+  const profile = texts.find(isProfile) ?? texts[0]!;
+  const rules = texts.find((other) => other !== profile)?.text;
+  return rules === undefined ? profile : { ...profile, rules };
 }
 
 const lengthOf = ({ start_s, end_s }: Stretch) => Math.max(end_s - start_s, 1e-6);
