@@ -8,8 +8,8 @@ export interface BackingFile {
   readOnly: boolean;
   /** Its text now. */
   read(): Promise<string>;
-  /** Writes it, if it is still what was read last. */
-  write(text: string): Promise<void>;
+  /** Writes it over a text that was read or written before, if that is what is still there. */
+  write(text: string, over: string): Promise<void>;
 }
 
 export interface App {

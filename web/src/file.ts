@@ -11,24 +11,42 @@ export async function backingFile(): Promise<BackingFile | undefined> {
   const first = await fetch(ADDRESS, { cache: 'no-store' });
   // 204 where there is none.
   if (first.status !== 200) return undefined;
-  let tag = first.headers.get('ETag') ?? '';
+  // What was there last, and the tag that the server knows it by.
+  let known = '';
+  let tag = '';
   // An editor ends lines by \n alone; the file keeps its own ends.
   let end = '\n';
+  // One after the other, so that no answer is older than what was written.
+  let last: Promise<unknown> = Promise.resolve();
+  const inTurn = <T>(run: () => Promise<T>): Promise<T> => {
+    const next = last.then(run, run);
+    last = next;
+    return next;
+  };
+
+  async function read(): Promise<string> {
+    const answer = await fetch(ADDRESS, { cache: 'no-store' });
+    const text = await answer.text();
+    if (!answer.ok) throw new Error(text);
+    tag = answer.headers.get('ETag') ?? '';
+    end = text.includes('\r\n') && !/(^|[^\r])\n/.test(text) ? '\r\n' : '\n';
+    known = text.replaceAll('\r\n', '\n');
+    return known;
+  }
+
+  async function write(text: string, over: string): Promise<void> {
+    if (over !== known) throw new Error(`\`${name}\` was changed on disk meanwhile`);
+    const answer = await fetch(ADDRESS, { method: 'PUT', body: text.replaceAll('\n', end), headers: { 'If-Match': tag } });
+    if (!answer.ok) throw new Error(await answer.text());
+    tag = answer.headers.get('ETag') ?? '';
+    known = text;
+  }
+
+  const name = decodeURIComponent(first.headers.get('X-File-Name') ?? 'the file');
   return {
-    name: decodeURIComponent(first.headers.get('X-File-Name') ?? 'the file'),
+    name,
     readOnly: first.headers.get('X-Read-Only') === 'true',
-    async read() {
-      const answer = await fetch(ADDRESS, { cache: 'no-store' });
-      if (!answer.ok) throw new Error(await answer.text());
-      tag = answer.headers.get('ETag') ?? '';
-      const text = await answer.text();
-      end = text.includes('\r\n') && !/(^|[^\r])\n/.test(text) ? '\r\n' : '\n';
-      return text.replaceAll('\r\n', '\n');
-    },
-    async write(text) {
-      const answer = await fetch(ADDRESS, { method: 'PUT', body: text.replaceAll('\n', end), headers: { 'If-Match': tag } });
-      if (!answer.ok) throw new Error(await answer.text());
-      tag = answer.headers.get('ETag') ?? '';
-    },
+    read: () => inTurn(read),
+    write: (text, over) => inTurn(() => write(text, over)),
   };
 }

@@ -72,7 +72,7 @@ export async function backing(file: BackingFile, say: (words: string) => void, l
       if (file.readOnly) return say(`${file.name} is read-only`);
       if (theirs !== undefined) return say(`${file.name} changed on disk: load it, or keep yours`);
       try {
-        await file.write(text);
+        await file.write(text, saved);
         saved = text;
         say(`${file.name} is saved`);
       } catch (error) {
