@@ -46,7 +46,8 @@ export function open(root: HTMLElement, app: App): Room {
   const moments = momentPanel();
   const thresholds = whatIf((changed) => retry(changed));
   const bar = timeBar({
-    point: (share) => pointAt(view().start_s + share * lengthOf(view())),
+    seek,
+    move,
     zoom: (from, to) => show(zoomed(view(), from, to, whole)),
     reset: () => show(undefined),
   });
@@ -82,8 +83,8 @@ export function open(root: HTMLElement, app: App): Room {
     if (isTyping || root.hidden || viewer.hidden || event.ctrlKey || event.metaKey || event.altKey) return;
     const share = (cursor_s - view().start_s) / lengthOf(view());
     const act: Record<string, () => void> = {
-      ArrowLeft: () => pointAt(cursor_s - lengthOf(view()) * (event.shiftKey ? 0.02 : 0.002)),
-      ArrowRight: () => pointAt(cursor_s + lengthOf(view()) * (event.shiftKey ? 0.02 : 0.002)),
+      ArrowLeft: () => move(event.shiftKey ? -5 : -1),
+      ArrowRight: () => move(event.shiftKey ? 5 : 1),
       '+': () => show(zoomed(view(), share / 2, (1 + share) / 2, whole)),
       '-': () => show(zoomed(view(), -share, 2 - share, whole)),
       '0': () => show(undefined),
@@ -272,13 +273,26 @@ export function open(root: HTMLElement, app: App): Room {
     quiet(redraw(false));
   }
 
+  /** Moves the cursor by steps of a five-hundredth of what is shown. */
+  function move(steps: number): void {
+    pointAt(cursor_s + (steps * lengthOf(view())) / 500);
+  }
+
+  /** Points at a time that may lie outside of what is shown: then other times are shown. */
+  function seek(t_s: number): void {
+    const { start_s, end_s } = view();
+    const half_s = lengthOf(view()) / 2;
+    if (t_s < start_s || t_s > end_s) show(within({ start_s: t_s - half_s, end_s: t_s + half_s }, whole));
+    pointAt(t_s);
+  }
+
   function pointAt(t_s: number): void {
     // Another flight was chosen, and is not drawn yet.
     if (!Number.isFinite(t_s)) return;
     const { start_s, end_s } = view();
     cursor_s = Math.min(end_s, Math.max(start_s, t_s));
     report?.point((cursor_s - drawn.start_s) / lengthOf(drawn));
-    bar.show(view(), whole, (cursor_s - start_s) / lengthOf(view()));
+    bar.show(view(), whole, cursor_s);
     bar.say(`${cursor_s.toFixed(1)} s`);
     quiet(follow());
     write();
@@ -418,7 +432,7 @@ export function open(root: HTMLElement, app: App): Room {
       const { stretch, t_s } = wanted;
       const apart_s = stretch ? Math.abs(stretch.start_s - view().start_s) + Math.abs(stretch.end_s - view().end_s) : 0;
       if (stretch && apart_s > 0.02) show(within(stretch, whole));
-      if (t_s !== undefined && Math.abs(t_s - cursor_s) > 0.01) pointAt(t_s);
+      if (t_s !== undefined && Math.abs(t_s - cursor_s) > 0.01) seek(t_s);
     },
   };
 }
