@@ -2,7 +2,7 @@
 
 import type { About, Diagnostic, Format, Start, View } from 'flagred';
 import type { App, Room } from '../app';
-import { add, fill, h } from '../dom';
+import { add, fill, h, picture } from '../dom';
 import { Trapped } from '../engine';
 import { backing, type Backing } from './backing';
 import type { Opened, Picture, Place } from './calls';
@@ -14,7 +14,7 @@ import { latest } from './latest';
 import { decisionMap, type Kind } from './map';
 import { problems } from './problems';
 import { LONGEST, pack, unpack } from './share';
-import { keep, kept } from './store';
+import { before, keep, kept, setAside } from './store';
 import { terms } from './terms';
 
 /** Points along an axis of the map, and of the curve of one input. */
@@ -67,6 +67,8 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   });
   const found = problems((from, to) => edit.select(from, to));
   const why = h('div', { class: 'why' });
+  const drawing = h('div', { class: 'drawing' });
+  const details = h('details', { ontoggle: () => illustrate() }, h('summary', {}, 'Picture'), drawing);
   const stale = h('p', { class: 'stale', hidden: true }, 'The text has errors: this is of the last text without.');
   const legend = h('ul', { class: 'legend rules', hidden: true });
   const selects = {
@@ -83,6 +85,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   add(
     startFrom,
     h('option', { value: '' }, 'Start from ...'),
+    h('option', { value: 'before' }, 'what I had before'),
     ...starts.map(({ name, about }, i) => h('option', { value: i }, `${name}: ${about}`)),
   );
   const file = h('input', { type: 'file', hidden: true, accept: '.yaml,.yml,.json,.fis,.fll,.fcl,.fml,.xml', 'aria-label': 'Rule set' });
@@ -137,10 +140,10 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
           legend,
           sliders.element,
         ),
-        h('section', { class: 'explanation', 'aria-label': 'Explanation' }, h('h2', {}, 'Why'), why),
+        h('section', { class: 'explanation', 'aria-label': 'Explanation' }, h('h2', {}, 'Why'), why, details),
       ),
+      h('section', { class: 'shapes', 'aria-label': 'Terms' }, h('h2', {}, 'Terms ', h('span', { class: 'soft' }, 'drag a point, or move it with the arrow keys')), shapes.element),
     ),
-    h('section', { class: 'shapes', 'aria-label': 'Terms' }, h('h2', {}, 'Terms ', h('span', { class: 'soft' }, 'drag a point, or move it with the arrow keys')), shapes.element),
   );
 
   // What happens as the text changes.
@@ -169,6 +172,13 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     guarded(good?.text ?? '', async () => {
       const now = good;
       if (now) explain(why, now.about, await engine.call('rulesExplain', now.text, point(now.about)));
+    }),
+  );
+  const illustrate = latest(() =>
+    guarded(good?.text ?? '', async () => {
+      const now = view();
+      if (!good || !now || !details.open) return;
+      fill(drawing, picture(await engine.call('rulesPicture', good.text, 'explanation', now), 'Terms, rules and results at this point'));
     }),
   );
 
@@ -247,6 +257,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
     sliders.show(about.inputs, axes.map(({ input }) => input), held, choice.isWhole);
     shapes.mark(held);
     reason();
+    illustrate();
     drawMap();
   }
 
@@ -339,9 +350,17 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   }
 
   function startChosen(): void {
-    const one: Start | undefined = startFrom.value === '' ? undefined : starts[Number(startFrom.value)];
+    const value = startFrom.value;
     startFrom.value = '';
+    if (value === 'before') {
+      const text = before();
+      if (text === undefined) return app.say('There is nothing from before.');
+      setAside();
+      return put(text);
+    }
+    const one: Start | undefined = value === '' ? undefined : starts[Number(value)];
     if (!one) return;
+    if (start === undefined) setAside();
     put(one.text, one.name);
     app.say(`${one.name} is open. Undo brings back what you had.`);
   }
@@ -349,7 +368,9 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   async function take(file: File): Promise<void> {
     try {
       const text = await openedFile(app, file);
-      if (text !== undefined) put(text);
+      if (text === undefined) return;
+      setAside();
+      put(text);
     } catch (error) {
       if (error instanceof TypeError) app.say(`\`${file.name}\` is not a text`);
       else refused(error as Error);
@@ -455,6 +476,8 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
   let disk: Backing | undefined;
   if (app.file) disk = await backing(app.file, app.say, (text) => edit.replace(text));
   const text = disk?.text ?? linked ?? kept() ?? starts[0]!.text;
+  // A link of somebody else must not take what was one's own.
+  if (!disk && linked !== undefined && !starts.some((one) => one.text === kept())) setAside();
   if (!disk && linked === undefined && text === starts[0]!.text) start = starts[0]!.name;
   await pointed(asked, text);
   if (disk) bar.prepend(disk.element);
@@ -485,6 +508,7 @@ export async function open(root: HTMLElement, app: App): Promise<Room> {
       if (parameters.toString() === said().toString()) return;
       const text = await textOf(parameters);
       if (text === undefined || text === edit.text()) return;
+      setAside();
       const from = start;
       put(text, from);
       await pointed(parameters, text);

@@ -32,7 +32,7 @@ pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
 /// A text to start from.
 #[derive(Serialize)]
 struct Start {
-    name: &'static str,
+    name: String,
     about: &'static str,
     text: String,
 }
@@ -40,50 +40,53 @@ struct Start {
 /// Texts to start from, as a JSON array: the starter of `flagred new`, the shipped rule sets and profiles, examples.
 #[wasm_bindgen(js_name = startingPoints)]
 pub fn starting_points() -> Result<String, JsError> {
-    let shipped = |all: &'static [shipped::Shipped], about: [&'static str; 2]| {
-        let of = |(known, about): (&'static shipped::Shipped, &'static str)| Start {
-            name: known.name,
-            about,
-            text: known.text.to_owned(),
-        };
-        all.iter().zip(about).map(of)
-    };
-    let example = |name, about, text: &str| Start {
+    let start = |name: String, about, text: &str| Start {
         name,
         about,
         text: text.to_owned(),
     };
-    let mut all = vec![
-        Start {
-            name: "my-rules",
-            about: "a fan in a few lines, with a comment on each",
-            text: starter::rules("my-rules"),
-        },
-        example(
-            "tipper",
-            "how much to tip: the example of every textbook",
+    let [rules, paper_rules] = &shipped::RULE_SETS;
+    let [profile, paper_profile] = &shipped::PROFILES;
+    // A profile has the name of its rule set.
+    let profile_name = |known: &shipped::Shipped| format!("profile-{}", known.name);
+    json(&[
+        start(
+            "my-rules".into(),
+            "a fan, with a comment on each line",
+            &starter::rules("my-rules"),
+        ),
+        start(
+            "tipper".into(),
+            "how much to tip, the example of every textbook",
             include_str!("../../../../rules/tipper.yaml"),
         ),
-    ];
-    all.extend(shipped(
-        &shipped::RULE_SETS,
-        ["the rule set to fly with", "the rule set of the paper"],
-    ));
-    all.push(example(
-        "flagred-battery",
-        "the paper's rules and the battery",
-        include_str!("../../../../rules/flagred-battery.yaml"),
-    ));
-    all.extend(shipped(
-        &shipped::PROFILES,
-        ["a profile: the rules to fly with", "a profile: the paper's"],
-    ));
-    all.push(Start {
-        name: "my-profile",
-        about: "a profile with a comment on each line",
-        text: starter::profile("my-profile"),
-    });
-    json(&all)
+        start(rules.name.into(), "the rule set to fly with", rules.text),
+        start(
+            paper_rules.name.into(),
+            "the rule set of the paper",
+            paper_rules.text,
+        ),
+        start(
+            "flagred-battery".into(),
+            "the paper's rules and the battery",
+            include_str!("../../../../rules/flagred-battery.yaml"),
+        ),
+        start(
+            "my-profile".into(),
+            "a profile, with a comment on each line",
+            &starter::profile("my-profile"),
+        ),
+        start(
+            profile_name(profile),
+            "the profile to fly with",
+            profile.text,
+        ),
+        start(
+            profile_name(paper_profile),
+            "the profile of the paper",
+            paper_profile.text,
+        ),
+    ])
 }
 
 /// 256 colours of a scale from low to high, then 12 colours without order: red, green and blue of each.
