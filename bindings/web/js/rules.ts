@@ -306,10 +306,21 @@ export const importRules = (text: string, lossy = false): Exchanged => parsed(()
 export const exportRules = (text: string, format: Format, lossy = false): Exchanged =>
   parsed(() => wasm.exportRules(text, format, lossy));
 
-/** Colours of values from low to high (256), and colours without order (12): red, green and blue of each. */
-export function colours(): { scale: Uint8Array; distinct: Uint8Array } {
+/** Colours: red, green and blue of each. */
+export interface Colours {
+  /** Of values from low to high, 256. */
+  scale: Uint8Array;
+  /** Without order. */
+  distinct: Uint8Array;
+  /** Without order, dark enough for thin lines on white. */
+  lines: Uint8Array;
+}
+
+/** The colours of flagred's pictures. */
+export function colours(): Colours {
   const all = guarded(() => wasm.colours());
-  return { scale: all.slice(0, 768), distinct: all.slice(768) };
+  const part = (from: number, to: number) => all.slice(3 * from, 3 * to);
+  return { scale: part(0, 256), distinct: part(256, 268), lines: part(268, 280) };
 }
 
 function parsed<T>(call: () => string): T {

@@ -101,7 +101,7 @@ pub fn distinct(i: usize) -> Colour {
 }
 
 /// As [`distinct`], dark enough for a thin line on white: without yellow, and darker after seven.
-pub(super) fn distinct_line(i: usize) -> Colour {
+pub fn distinct_line(i: usize) -> Colour {
     const ORDER: [usize; 6] = [5, 4, 2, 6, 1, 0];
     let darker = (i / ORDER.len() % 3) as f64 * 0.35;
     OKABE_ITO[ORDER[i % ORDER.len()]].mix(Colour::BLACK, darker)

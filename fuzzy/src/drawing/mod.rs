@@ -44,7 +44,7 @@ mod surface_text;
 mod text;
 mod variables;
 
-pub use colour::{Colour, distinct, reds, viridis};
+pub use colour::{Colour, distinct, distinct_line, reds, viridis};
 pub use curve::{Stretch, over_time_text, path};
 pub use explanation::{explanation_svg, terms_svg};
 pub use explanation_text::explanation_text;

@@ -9,6 +9,7 @@ import {
   startingPoints,
   type About,
   type Cells,
+  type Colours,
   type Completion,
   type DrawnVariable,
   type Edit,
@@ -122,7 +123,7 @@ function edited(text: string, edits: Edit[]): string {
 }
 
 export const rulesStarts = (_tell: Tell): Start[] => startingPoints();
-export const rulesColours = (_tell: Tell): { scale: Uint8Array; distinct: Uint8Array } => colours();
+export const rulesColours = (_tell: Tell): Colours => colours();
 export const rulesImport = (_tell: Tell, text: string, lossy: boolean): Exchanged => importRules(text, lossy);
 export const rulesExport = (_tell: Tell, text: string, format: Format, lossy: boolean): Exchanged =>
   exportRules(text, format, lossy);

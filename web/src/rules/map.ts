@@ -1,6 +1,6 @@
 /** The decision map on a canvas: values, the surface over them, or which rule is the strongest; and the point that is explained. */
 
-import type { Cells, Variable, View } from 'flagred';
+import type { Cells, Colours, Variable, View } from 'flagred';
 import { h } from '../dom';
 import { clamp, short, ticks, told } from './numbers';
 
@@ -17,11 +17,6 @@ export interface Shown {
   output: Variable;
   /** The value for each input. */
   point: number[];
-}
-
-export interface Colours {
-  scale: Uint8Array;
-  distinct: Uint8Array;
 }
 
 export interface DecisionMap {

@@ -1,15 +1,14 @@
 /** The terms of every variable as shapes; their points are dragged, by pointer, touch or keys, and write back into the text. */
 
-import type { DrawnTerm, DrawnVariable, Handle } from 'flagred';
+import type { Colours, DrawnTerm, DrawnVariable, Handle } from 'flagred';
 import { fill, h } from '../dom';
 import type { Place } from './calls';
-import type { Colours } from './map';
 import { clamp, short, ticks } from './numbers';
 
 /** The picture of a variable, in its own units. */
-const WIDTH = 440;
-const HEIGHT = 150;
-const FRAME = { left: 30, right: 14, top: 14, bottom: 22 };
+const WIDTH = 320;
+const HEIGHT = 130;
+const FRAME = { left: 20, right: 12, top: 12, bottom: 22 };
 const INNER = { width: WIDTH - FRAME.left - FRAME.right, height: HEIGHT - FRAME.top - FRAME.bottom };
 /** How far a key moves a point, as a share of what is shown. */
 const KEY_STEP = 0.01;
@@ -65,21 +64,26 @@ function set(element: Element, attributes: Record<string, string | number>): voi
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
 }
 
-function plot(first: DrawnVariable, index: number, { distinct }: Colours, dragging: Dragging): Plot {
+function plot(first: DrawnVariable, index: number, { distinct, lines }: Colours, dragging: Dragging): Plot {
   let variable = first;
   let drawn = '';
   let [low, high] = [0, 1];
   const across = (x: number) => FRAME.left + (INNER.width * (x - low)) / (high - low);
   const up = (degree: number) => FRAME.top + INNER.height * (1 - degree);
-  const colour = (term: number) => {
-    const at = 3 * (term % (distinct.length / 3));
-    return `rgb(${distinct[at]} ${distinct[at + 1]} ${distinct[at + 2]})`;
-  };
+  /** Gives an element the colours of a term, on light and on dark ground. */
+  function coloured<E extends HTMLElement | SVGElement>(element: E, term: number): E {
+    element.classList.add('term');
+    for (const [name, all] of [['--light', lines], ['--dark', distinct]] as const) {
+      const at = 3 * (term % (all.length / 3));
+      element.style.setProperty(name, `rgb(${all[at]} ${all[at + 1]} ${all[at + 2]})`);
+    }
+    return element;
+  }
 
   const grid = s('g', { class: 'grid' });
   const line = s('line', { class: 'mark', y1: FRAME.top, y2: FRAME.top + INNER.height });
   line.style.display = 'none';
-  const curves = first.terms.map((_, t) => s('path', { class: 'curve', stroke: colour(t), fill: colour(t) }));
+  const curves = first.terms.map((_, t) => coloured(s('path', { class: 'curve' }), t));
   const clip = `clip-${index}`;
   const frame = s('rect', { x: FRAME.left, y: FRAME.top - 3, width: INNER.width, height: INNER.height + 6 });
   const svg = s('svg', { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'group', 'aria-label': `Terms of ${first.name}` });
@@ -93,9 +97,7 @@ function plot(first: DrawnVariable, index: number, { distinct }: Colours, draggi
   );
   const told = h('output', { class: 'soft' });
   const legend = first.terms.map((term, t) => {
-    const swatch = h('span', { class: 'swatch', 'aria-hidden': 'true' });
-    swatch.style.backgroundColor = colour(t);
-    return h('li', {}, swatch, term.name);
+    return h('li', {}, coloured(h('span', { class: 'swatch', 'aria-hidden': 'true' }), t), term.name);
   });
   const element = h(
     'section',
@@ -108,7 +110,7 @@ function plot(first: DrawnVariable, index: number, { distinct }: Colours, draggi
   element.querySelector('.picture')!.append(svg);
 
   function handle(t: number, i: number): { element: SVGGElement; show(term: DrawnTerm, handle: Handle): void } {
-    const dot = s('circle', { class: 'dot', r: 6, fill: colour(t) });
+    const dot = coloured(s('circle', { class: 'dot', r: 6 }), t);
     const group = s('g', { class: 'handle', tabindex: 0, role: 'slider' }, s('circle', { class: 'reach', r: 16 }), dot);
     const place: Place = { variable: index, term: t, handle: i };
     /** Where it goes, until it is drawn there. */
@@ -194,7 +196,7 @@ function plot(first: DrawnVariable, index: number, { distinct }: Colours, draggi
   function ruled(): void {
     if (ruledFor === `${low} ${high}`) return;
     ruledFor = `${low} ${high}`;
-    const labels = ticks(low, high, 6).map((tick) => {
+    const labels = ticks(low, high, 5).map((tick) => {
       const text = s('text', { x: across(tick), y: HEIGHT - 6 });
       text.textContent = short(tick);
       return [s('line', { x1: across(tick), x2: across(tick), y1: FRAME.top, y2: FRAME.top + INNER.height }), text];

@@ -8,7 +8,7 @@ use authoring::{answers::Checked, starter};
 use flagred::shipped;
 use fuzzy::{
     check,
-    drawing::{distinct, viridis},
+    drawing::{distinct, distinct_line, viridis},
 };
 use serde::Serialize;
 use wasm_bindgen::{JsError, prelude::wasm_bindgen};
@@ -89,11 +89,13 @@ pub fn starting_points() -> Result<String, JsError> {
     ])
 }
 
-/// 256 colours of a scale from low to high, then 12 colours without order: red, green and blue of each.
+/// 256 colours of a scale from low to high, then 12 colours without order, then 12 for thin lines on white: red, green and blue of
+/// each.
 #[wasm_bindgen]
 pub fn colours() -> Vec<u8> {
     let scale = (0..=255u8).map(|i| viridis(f64::from(i) / 255.0));
-    let all = scale.chain((0..12).map(distinct));
+    let unordered = (0..12).map(distinct).chain((0..12).map(distinct_line));
+    let all = scale.chain(unordered);
     all.flat_map(|colour| [colour.0, colour.1, colour.2])
         .collect()
 }
