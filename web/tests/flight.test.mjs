@@ -3,9 +3,10 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { basename } from 'node:path';
+import { pathToFileURL } from 'node:url';
 import { readFileSync } from 'node:fs';
 import { GUST, STEADY, command, convert, folder, gustCsv, logs, room } from './flights.mjs';
-import { browser, serve, tab } from './page.mjs';
+import { browser, serve, studio, tab } from './page.mjs';
 
 let chromium, server;
 before(async () => {
@@ -329,6 +330,17 @@ test('a log that is read can be given up, and the next one is read', async () =>
   await page.getByRole('button', { name: 'Cancel long.csv' }).click();
   assert.equal(await room.badge('gust.csv.gz'), 'FAIL');
   assert.equal(await room.row('long.csv').count(), 0);
+  await context.close();
+});
+
+test('the page as one file reads logs, too', async () => {
+  const { page, context, complaints } = await tab(chromium, `${pathToFileURL(studio).href}#/flight?example=gust`);
+  const flights = room(page);
+  assert.equal(await flights.badge('octocopter-in-a-gust.csv.gz'), 'FAIL');
+  await flights.settled();
+  await flights.take(STEADY);
+  assert.equal(await flights.badge('steady.BIN'), 'GOOD');
+  assert.deepEqual(complaints, []);
   await context.close();
 });
 
