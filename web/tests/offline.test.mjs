@@ -1,9 +1,12 @@
 // Without a network: the page after its first load, and the one file from the disk. It computes, and complains of nothing.
 
 import assert from 'node:assert/strict';
+import { cp, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { browser, serve, studio, tab } from './page.mjs';
+import { browser, page as built, serve, studio, tab } from './page.mjs';
 import * as rooms from './rooms.mjs';
 
 let chromium;
@@ -29,6 +32,34 @@ test('what was loaded once works without a network', { timeout: 120_000 }, async
   await page.reload();
   await work(page);
   assert.deepEqual(complaints, []);
+});
+
+/** Servers tell browsers to keep files for a while: what is kept must not get into the next build. */
+test('another build takes the place of the one that was loaded', { timeout: 120_000 }, async (t) => {
+  const folder = await mkdtemp(join(tmpdir(), 'flagred-page-'));
+  t.after(() => rm(folder, { recursive: true }));
+  await cp(built, folder, { recursive: true });
+  const server = await serve(folder, { 'Cache-Control': 'max-age=3600' });
+  t.after(server.close);
+  const { page, context } = await tab(chromium, server.address);
+  t.after(() => context.close());
+  await page.evaluate(() => navigator.serviceWorker.ready);
+  const change = async (file, from, to) => {
+    const text = await readFile(join(folder, file), 'utf8');
+    assert.match(text, from);
+    await writeFile(join(folder, file), text.replace(from, to));
+  };
+  await change('index.html', /<\/body>/, '<p id="build">2</p></body>');
+  await change('main.css', /^/, '#build { color: rgb(1, 2, 3) }');
+  await change('offline.js', /"[0-9a-f]{16}"/g, '"2"');
+  const colour = () => page.evaluate(() => getComputedStyle(document.getElementById('build') ?? document.body).color);
+  for (let tries = 0; (await colour()) !== 'rgb(1, 2, 3)'; tries++) {
+    assert.ok(tries < 10, 'the old build stays');
+    // As the browser does some time after a load.
+    await page.evaluate(async () => (await navigator.serviceWorker.getRegistration()).update());
+    await page.waitForTimeout(500);
+    await page.reload();
+  }
 });
 
 test('the one file works from the disk and asks nobody for anything', { timeout: 120_000 }, async (t) => {

@@ -9,7 +9,7 @@ import { chromium } from 'playwright-core';
 
 export const repository = fileURLToPath(new URL('../../', import.meta.url));
 export const studio = join(repository, 'cli/page/studio.html');
-const page = join(repository, 'target/web/page');
+export const page = join(repository, 'target/web/page');
 const types = {
   '.html': 'text/html',
   '.js': 'text/javascript',
@@ -20,13 +20,13 @@ const types = {
 };
 
 /** Serves the page as any server of files would. `close` ends it, as a network does that is gone. */
-export async function serve(folder = page) {
+export async function serve(folder = page, headers = {}) {
   const server = createServer(async (request, response) => {
     const path = normalize(decodeURIComponent(new URL(request.url, 'http://page').pathname));
     const file = join(folder, path.endsWith('/') ? `${path}index.html` : path);
     const content = await readFile(file).catch(() => undefined);
     if (content === undefined) response.writeHead(404).end('not found');
-    else response.writeHead(200, { 'Content-Type': types[extname(file)] ?? 'application/octet-stream' }).end(content);
+    else response.writeHead(200, { 'Content-Type': types[extname(file)] ?? 'application/octet-stream', ...headers }).end(content);
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   return {

@@ -36,13 +36,15 @@ for (const [from, address] of [
 }
 
 for (const room of ['flight', 'rules']) {
-  test(`the first load of the ${room} room is small`, async () => {
+  test(`the first load of the ${room} room is small`, async (told) => {
     const context = await chromium.newContext({ serviceWorkers: 'block' });
     const page = await context.newPage();
     const sizes = [];
     page.on('response', (response) => sizes.push(response.body().then((body) => gzipSync(body, { level: 9 }).length)));
     await page.goto(`${server.address}#/${room}`, { waitUntil: 'networkidle' });
     const bytes = (await Promise.all(sizes)).reduce((sum, size) => sum + size, 0);
+    const ready_ms = await page.evaluate(() => performance.getEntriesByName('interactive')[0].startTime);
+    told.diagnostic(`${bytes} bytes gzipped, interactive after ${ready_ms.toFixed()} ms`);
     assert.ok(sizes.length > 4 && bytes < MOST_BYTES, `${bytes} bytes gzipped in ${sizes.length} files`);
     await context.close();
   });

@@ -1,13 +1,14 @@
 // `flagred studio` with the page it serves: under the policy it sends, with a file and without.
 
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
+import { execFile, spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
 import { after, before, test } from 'node:test';
+import { promisify } from 'node:util';
 import { browser, repository, serve as site, studio, tab } from './page.mjs';
 
 const command = join(repository, 'target/debug/flagred');
@@ -41,6 +42,11 @@ async function open(t, address) {
   t.after(() => opened.context.close());
   return opened;
 }
+
+test('the program holds the page', async () => {
+  const { stdout } = await promisify(execFile)(command, ['studio', '--html', '-'], { maxBuffer: 1 << 27 });
+  assert.ok(stdout === (await readFile(studio, 'utf8')), 'it holds another: cargo build -p flagred-cli');
+});
 
 test('it opens with both rooms', async (t) => {
   const { page, complaints } = await open(t, await serve(t));

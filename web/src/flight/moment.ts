@@ -97,7 +97,7 @@ function inputs({ inputs: explained, step, units }: Moment): Child {
   }
   const list = h('dl', { class: 'inputs' });
   for (const { name, given, terms } of explained) {
-    const degrees = terms.filter(({ degree }) => degree > 0).map(({ term, degree }) => `${term} ${said(degree)}`);
+    const degrees = terms.filter(({ degree }) => degree >= 0.005).map(({ term, degree }) => `${term} ${degree.toFixed(2)}`);
     list.append(
       h('div', {}, h('dt', {}, name), h('dd', {}, said(given, units[name]), h('span', { class: 'soft' }, ` ${degrees.join(', ')}`))),
     );

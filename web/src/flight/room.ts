@@ -5,7 +5,10 @@ import type { Part, Stretch, VerdictChanges } from 'flagred';
 import type { App, Room } from '../app';
 import { add, download, fill, h } from '../dom';
 import { Cancelled, Trapped } from '../engine';
-import type { Download, ProfileFacts, ProfileSource } from './calls';
+import { placeIn, said } from './address';
+import type { ProfileFacts, ProfileSource } from './calls';
+import { ENDINGS, downloadMenu, type Kind } from './download';
+import { dropZone } from './drop';
 import { badge, logList, verdictClass, type Entry } from './logs';
 import { momentPanel } from './moment';
 import { report as makeReport, type Report } from './report';
@@ -16,24 +19,22 @@ import { isUnchanged, whatIf } from './whatif';
 /** The parts of a report that change with the stretch of time. */
 const OVER_TIME: readonly Part[] = ['risk', 'inputs', 'motors', 'attitude'];
 
-const FORMATS = 'ArduPilot .bin and .log, PX4 .ulg, MAVLink .tlog, flight CSV; plain or gzipped';
-
 /** Opens the room. */
 export function open(root: HTMLElement, app: App): Room {
   const { engine } = app;
-  const address = app.parameters();
+  const begun = placeIn(app.parameters());
   const entries: Entry[] = [];
   let current: Entry | undefined;
   let isComparing = false;
-  let base: ProfileSource = { name: address.get('profile') ?? 'flagred' };
-  let changes: VerdictChanges = changesIn(address);
+  let base: ProfileSource = { name: begun.profile ?? 'flagred' };
+  let changes: VerdictChanges = begun.changes;
   let facts: ProfileFacts | undefined;
   /** What can be shown, what is shown of it, and what the charts were drawn for: in seconds. */
   let whole: Stretch = { start_s: 0, end_s: 1 };
-  let shown: Stretch | undefined = stretchIn(address);
+  let shown = begun.stretch;
   let drawn: Stretch = whole;
-  let cursor_s = Number(address.get('t') ?? NaN);
-  let example = address.get('example');
+  let cursor_s = begun.t_s ?? NaN;
+  let example = begun.example;
   let next = 0;
   let report: Report | undefined;
 
@@ -45,41 +46,28 @@ export function open(root: HTMLElement, app: App): Room {
   const moments = momentPanel();
   const thresholds = whatIf((changed) => retry(changed));
   const bar = timeBar({
-    point: (share) => pointAt(view().start_s + share * lengthOf(view())),
+    seek,
+    move,
     zoom: (from, to) => show(zoomed(view(), from, to, whole)),
     reset: () => show(undefined),
   });
   const profiles = h('select', { 'aria-label': 'Profile' });
   const profileFile = h('input', { type: 'file', accept: '.yaml,.yml', multiple: true, 'aria-label': 'Profile from a file', hidden: true });
   const compareButton = h('button', { type: 'button', 'aria-pressed': 'false' }, 'Compare');
-  const downloads = h('div', { class: 'menu-body' });
-  const downloadMenu = h('details', { class: 'menu' }, h('summary', { class: 'button' }, 'Download'), downloads);
+  const downloads = downloadMenu((kind) => quiet(save(kind)));
   const tools = h(
     'div',
     { class: 'tools' },
     h('label', {}, h('span', { class: 'soft' }, 'Profile '), profiles),
     profileFile,
     compareButton,
-    downloadMenu,
+    downloads,
   );
   const aside = h('div', { class: 'aside' }, thresholds.element, moments.element);
-  const view_ = h('div', { class: 'flight-view', hidden: true }, tools, bar.element, h('div', { class: 'columns' }, place, aside));
-  const drop = dropZone();
-  add(root, heading, status, h('div', { class: 'top' }, list.element, drop), message, view_);
+  const viewer = h('div', { class: 'flight-view', hidden: true }, tools, bar.element, h('div', { class: 'columns' }, place, aside));
+  const drop = dropZone(root, { take, takeExample: () => quiet(takeExample('gust')) });
+  add(root, heading, status, h('div', { class: 'top' }, list.element, drop), message, viewer);
 
-  for (const [kind, words] of [
-    ['html', 'Report (HTML)'],
-    ['csv', 'Steps (CSV)'],
-    ['json', 'JSON'],
-    ['flight', 'Flight CSV'],
-  ] as const) {
-    const button = h('button', { type: 'button', 'data-kind': kind }, words);
-    button.addEventListener('click', () => {
-      downloadMenu.open = false;
-      quiet(save(kind));
-    });
-    downloads.append(button);
-  }
   compareButton.addEventListener('click', () => quiet(compare(!isComparing)));
   profiles.addEventListener('change', () => {
     if (profiles.value === '') profileFile.click();
@@ -90,57 +78,22 @@ export function open(root: HTMLElement, app: App): Room {
     profileFile.value = '';
     if (chosen.length > 0) quiet(useProfile(await profileIn(chosen), {}));
   });
-  document.addEventListener('click', (event) => {
-    if (!event.composedPath().includes(downloadMenu)) downloadMenu.open = false;
-  });
   document.addEventListener('keydown', (event) => {
     const isTyping = event.composedPath().some((target) => target instanceof Element && target.matches('input, select, textarea'));
-    if (isTyping || root.hidden || view_.hidden || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (isTyping || root.hidden || viewer.hidden || event.ctrlKey || event.metaKey || event.altKey) return;
     const share = (cursor_s - view().start_s) / lengthOf(view());
     const act: Record<string, () => void> = {
-      ArrowLeft: () => pointAt(cursor_s - lengthOf(view()) * (event.shiftKey ? 0.02 : 0.002)),
-      ArrowRight: () => pointAt(cursor_s + lengthOf(view()) * (event.shiftKey ? 0.02 : 0.002)),
+      ArrowLeft: () => move(event.shiftKey ? -5 : -1),
+      ArrowRight: () => move(event.shiftKey ? 5 : 1),
       '+': () => show(zoomed(view(), share / 2, (1 + share) / 2, whole)),
       '-': () => show(zoomed(view(), -share, 2 - share, whole)),
       '0': () => show(undefined),
-      Escape: () => (downloadMenu.open = false),
     };
     const wanted = act[event.key];
     if (!wanted) return;
     event.preventDefault();
     wanted();
   });
-
-  function dropZone(): HTMLElement {
-    const input = h('input', { type: 'file', multiple: true, 'aria-label': 'Flight logs', class: 'visually-hidden' });
-    input.addEventListener('change', () => {
-      take([...(input.files ?? [])]);
-      input.value = '';
-    });
-    const tryOne = h('button', { type: 'button' }, 'Try an example');
-    tryOne.addEventListener('click', () => quiet(takeExample('gust')));
-    const zone = h(
-      'div',
-      { class: 'drop' },
-      h('p', { class: 'invitation' }, 'Drop flight logs here'),
-      h('p', { class: 'buttons' }, h('label', { class: 'button main' }, h('span', { class: 'first' }, 'Choose logs'), h('span', { class: 'more' }, '+ Add logs'), input), tryOne),
-      h('p', { class: 'soft' }, `${FORMATS}.`),
-      h('p', { class: 'soft' }, 'They are read in this browser. Nothing is sent anywhere.'),
-    );
-    const isOver = (event: DragEvent) => !root.hidden && event.dataTransfer?.types.includes('Files');
-    document.addEventListener('dragover', (event) => {
-      if (!isOver(event)) return;
-      event.preventDefault();
-      root.classList.add('dragging');
-    });
-    for (const end of ['dragleave', 'drop'] as const) document.addEventListener(end, () => root.classList.remove('dragging'));
-    document.addEventListener('drop', (event) => {
-      if (!isOver(event)) return;
-      event.preventDefault();
-      take([...(event.dataTransfer?.files ?? [])]);
-    });
-    return zone;
-  }
 
   /** What is given up needs no words; whatever else goes wrong is told. */
   function quiet(work: Promise<unknown>): void {
@@ -149,6 +102,7 @@ export function open(root: HTMLElement, app: App): Room {
     });
   }
 
+  const listLogs = (): void => list.show(entries, isComparing ? undefined : current);
   const source = (): ProfileSource => (isUnchanged(changes) || !facts ? base : { ...base, text: facts.text });
   const view = (): Stretch => shown ?? whole;
   const done = (): Entry[] => entries.filter((entry) => entry.state === 'done');
@@ -162,7 +116,7 @@ export function open(root: HTMLElement, app: App): Room {
 
   function take(files: File[]): void {
     for (const file of files) entries.push({ log: { id: next++, file }, state: 'waiting', share: 0 });
-    list.show(entries, isComparing ? undefined : current);
+    listLogs();
     void pump();
   }
 
@@ -178,10 +132,10 @@ export function open(root: HTMLElement, app: App): Room {
 
   async function read(entry: Entry): Promise<void> {
     entry.state = 'reading';
-    list.show(entries, isComparing ? undefined : current);
+    listLogs();
     const progress = (share: number) => {
       entry.share = share;
-      list.show(entries, isComparing ? undefined : current);
+      listLogs();
     };
     try {
       if (!isUnchanged(changes)) {
@@ -198,14 +152,18 @@ export function open(root: HTMLElement, app: App): Room {
         entry.share = 0;
         return;
       }
-      entry.state = 'refused';
-      entry.refusal = told(error as Error);
+      refuse(entry, error as Error);
     }
     if (!entries.includes(entry)) return;
-    if (!current || current.state === 'refused' || (current === entry)) await choose(entry);
-    else list.show(entries, isComparing ? undefined : current);
     compareButton.disabled = done().length < 2;
     if (isComparing) quiet(redraw(true));
+    else if (!current || current.state === 'refused' || current === entry) await choose(entry);
+    listLogs();
+  }
+
+  function refuse(entry: Entry, error: Error): void {
+    entry.state = 'refused';
+    entry.refusal = told(error);
   }
 
   function remove(entry: Entry): void {
@@ -213,25 +171,23 @@ export function open(root: HTMLElement, app: App): Room {
     entries.splice(entries.indexOf(entry), 1);
     if (isBusy) engine.restart();
     else quiet(engine.call('forgetLog', entry.log.id));
-    if (current === entry) {
-      current = undefined;
-      const [other] = [...done(), ...entries];
-      if (other) void choose(other);
-      else clear();
-    }
-    if (done().length < 2) isComparing = false;
+    const wasSeen = current === entry || (isComparing && entry.state === 'done');
+    if (current === entry) current = done()[0] ?? entries[0];
     compareButton.disabled = done().length < 2;
-    list.show(entries, isComparing ? undefined : current);
+    if (!current) clear();
+    else if (isComparing && done().length > 1) quiet(redraw(true));
+    else if (wasSeen) void choose(current);
+    listLogs();
     app.say(isBusy ? `Cancelled: ${entry.log.file.name}` : '');
   }
 
   function clear(): void {
     report?.clear();
-    view_.hidden = true;
+    viewer.hidden = true;
     message.hidden = true;
     heading.classList.remove('visually-hidden');
     drop.classList.remove('small');
-    example = null;
+    example = undefined;
     shown = undefined;
     write();
   }
@@ -244,18 +200,18 @@ export function open(root: HTMLElement, app: App): Room {
     }
     current = entry;
     isComparing = false;
-    list.show(entries, isComparing ? undefined : current);
+    listLogs();
     heading.classList.add('visually-hidden');
     drop.classList.add('small');
     if (entry.state === 'refused') {
-      view_.hidden = true;
+      viewer.hidden = true;
       message.hidden = false;
       fill(message, h('b', {}, `${entry.log.file.name} cannot be used`), h('pre', {}, entry.refusal ?? ''));
       return;
     }
-    if (entry.state !== 'done' || !entry.stretch) return;
     message.hidden = true;
-    view_.hidden = false;
+    viewer.hidden = entry.state !== 'done';
+    if (!entry.stretch) return;
     whole = entry.stretch;
     if (shown) shown = within(shown, whole);
     if (!Number.isFinite(cursor_s)) cursor_s = entry.brief?.summary.risk_max?.t_s ?? (whole.start_s + whole.end_s) / 2;
@@ -266,7 +222,7 @@ export function open(root: HTMLElement, app: App): Room {
   async function compare(on: boolean): Promise<void> {
     isComparing = on;
     shown = undefined;
-    list.show(entries, isComparing ? undefined : current);
+    listLogs();
     if (!on && current) return choose(current);
     cursor_s = NaN;
     await redraw(true);
@@ -280,9 +236,19 @@ export function open(root: HTMLElement, app: App): Room {
   let isStale = false;
   const drawAgain = latest(async () => {
     if (!report) return;
-    const wanted = shown;
     const isAll = isStale;
     isStale = false;
+    try {
+      await draw(report, isAll);
+    } catch (error) {
+      isStale ||= isAll;
+      throw error;
+    }
+    pointAt(cursor_s);
+  });
+
+  async function draw(report: Report, isAll: boolean): Promise<void> {
+    const wanted = shown;
     compareButton.setAttribute('aria-pressed', String(isComparing));
     aside.hidden = isComparing;
     if (isComparing) {
@@ -296,8 +262,7 @@ export function open(root: HTMLElement, app: App): Room {
       drawn = wanted ?? whole;
       await report.draw(parts, isAll);
     }
-    pointAt(cursor_s);
-  });
+  }
 
   function show(stretch: Stretch | undefined): void {
     shown = stretch;
@@ -308,13 +273,26 @@ export function open(root: HTMLElement, app: App): Room {
     quiet(redraw(false));
   }
 
+  /** Moves the cursor by steps of a five-hundredth of what is shown. */
+  function move(steps: number): void {
+    pointAt(cursor_s + (steps * lengthOf(view())) / 500);
+  }
+
+  /** Points at a time that may lie outside of what is shown: then other times are shown. */
+  function seek(t_s: number): void {
+    const { start_s, end_s } = view();
+    const half_s = lengthOf(view()) / 2;
+    if (t_s < start_s || t_s > end_s) show(within({ start_s: t_s - half_s, end_s: t_s + half_s }, whole));
+    pointAt(t_s);
+  }
+
   function pointAt(t_s: number): void {
     // Another flight was chosen, and is not drawn yet.
     if (!Number.isFinite(t_s)) return;
     const { start_s, end_s } = view();
     cursor_s = Math.min(end_s, Math.max(start_s, t_s));
     report?.point((cursor_s - drawn.start_s) / lengthOf(drawn));
-    bar.show(view(), whole, (cursor_s - start_s) / lengthOf(view()));
+    bar.show(view(), whole, cursor_s);
     bar.say(`${cursor_s.toFixed(1)} s`);
     quiet(follow());
     write();
@@ -339,7 +317,7 @@ export function open(root: HTMLElement, app: App): Room {
     status.textContent = `${brief.verdict}: ${brief.log.path}, ${findings}`;
     if (isUnchanged(changes)) thresholds.tell('The verdict is ', badge(brief.verdict), '.');
     else if (unchanged) thresholds.tell('With the profile ', badge(unchanged), ', with these thresholds ', badge(brief.verdict), '.');
-    view_.dataset['verdict'] = verdictClass(brief.verdict);
+    viewer.dataset['verdict'] = verdictClass(brief.verdict);
   }
 
   let timer = 0;
@@ -374,10 +352,20 @@ export function open(root: HTMLElement, app: App): Room {
     message.hidden = current?.state !== 'refused';
     const first = current?.state === 'done' ? [current] : [];
     for (const entry of [...first, ...done().filter((entry) => entry !== current)]) {
-      Object.assign(entry, await engine.call('assessLog', entry.log, source()));
+      try {
+        Object.assign(entry, await engine.call('assessLog', entry.log, source()));
+      } catch (error) {
+        // The file may be gone.
+        if (error instanceof Cancelled) throw error;
+        refuse(entry, error as Error);
+      }
       if (isUnchanged(changes)) entry.unchanged = entry.brief?.verdict;
-      list.show(entries, isComparing ? undefined : current);
+      listLogs();
       if (entry !== current) continue;
+      if (entry.state === 'refused') {
+        await choose(entry);
+        continue;
+      }
       tellVerdict();
       if (!isComparing) await redraw(true);
     }
@@ -391,18 +379,17 @@ export function open(root: HTMLElement, app: App): Room {
     fill(profiles, ...names.map((name) => option(name, name, name === base.name)), option('', 'from a file, or with its rules …', false));
   }
 
-  async function save(kind: Download | 'flight'): Promise<void> {
+  async function save(kind: Kind): Promise<void> {
     const logs = compared().map(({ log }) => log);
     const [first] = logs;
     if (!first) return;
     const stem = isComparing ? 'comparison' : first.file.name.replace(/(\.(bin|log|ulg|tlog|csv|gz))+$/i, '');
     if (kind !== 'flight') {
-      const name = kind === 'csv' ? `${stem}.steps.csv` : `${stem}.${kind}`;
-      download(name, await engine.call('downloadLogs', logs, source(), kind), '');
+      download(stem + ENDINGS[kind], await engine.call('downloadLogs', logs, source(), kind), '');
       return;
     }
     const { csv, warnings } = await engine.call('convertLog', first);
-    download(`${stem}.csv`, csv, '');
+    download(stem + ENDINGS[kind], csv, '');
     app.say(warnings.join('; '));
   }
 
@@ -410,25 +397,16 @@ export function open(root: HTMLElement, app: App): Room {
   /** Says in the address what is looked at, but not with every move of the pointer. */
   function write(): void {
     clearTimeout(written);
-    written = window.setTimeout(() => {
-      const said = new URLSearchParams();
-      if (example) said.set('example', example);
-      if (base.text === undefined && base.name !== 'flagred') said.set('profile', base.name);
-      if (!isUnchanged(changes)) said.set('verdict', JSON.stringify(changes));
-      if (current && !isComparing) said.set('t', cursor_s.toFixed(2));
-      if (shown) {
-        said.set('from', shown.start_s.toFixed(2));
-        said.set('to', shown.end_s.toFixed(2));
-      }
-      app.navigate(said);
-    }, 300);
+    const profile = base.text === undefined && base.name !== shipped[0] ? base.name : undefined;
+    const t_s = current && !isComparing ? cursor_s : undefined;
+    written = window.setTimeout(() => app.navigate(said({ example, profile, changes, t_s, stretch: shown })), 300);
   }
 
   const ready = (async () => {
-    const begun = await engine.call('beginFlights');
-    shipped = begun.shipped;
+    const { shipped: names, style } = await engine.call('beginFlights');
+    shipped = names;
     if (!shipped.includes(base.name)) base = { name: shipped[0] ?? 'flagred' };
-    report = makeReport(begun.style, {
+    report = makeReport(style, {
       onPoint: (share) => pointAt(view().start_s + share * lengthOf(view())),
       onZoom: (from, to) => show(zoomed(view(), from, to, whole)),
       onFlight: (placed) => {
@@ -444,17 +422,17 @@ export function open(root: HTMLElement, app: App): Room {
   compareButton.disabled = true;
   return {
     shown(parameters) {
-      const wanted = parameters.get('example');
-      if (wanted && wanted !== example) quiet(takeExample(wanted));
-      const name = parameters.get('profile') ?? shipped[0];
-      const tried = changesIn(parameters);
+      const wanted = placeIn(parameters);
+      if (wanted.example && wanted.example !== example) quiet(takeExample(wanted.example));
+      const name = wanted.profile ?? shipped[0];
       const isOther = base.text === undefined && name !== undefined && name !== base.name;
-      if (isOther || JSON.stringify(tried) !== JSON.stringify(changes)) quiet(useProfile(isOther ? { name } : base, tried));
-      if (view_.hidden) return;
-      const stretch = stretchIn(parameters);
-      const [t_s, now] = [Number(parameters.get('t') ?? NaN), view()];
-      if (stretch && Math.abs(stretch.start_s - now.start_s) + Math.abs(stretch.end_s - now.end_s) > 0.02) show(within(stretch, whole));
-      if (Math.abs(t_s - cursor_s) > 0.01) pointAt(t_s);
+      const isTried = JSON.stringify(wanted.changes) !== JSON.stringify(changes);
+      if (isOther || isTried) quiet(useProfile(isOther ? { name } : base, wanted.changes));
+      if (viewer.hidden) return;
+      const { stretch, t_s } = wanted;
+      const apart_s = stretch ? Math.abs(stretch.start_s - view().start_s) + Math.abs(stretch.end_s - view().end_s) : 0;
+      if (stretch && apart_s > 0.02) show(within(stretch, whole));
+      if (t_s !== undefined && Math.abs(t_s - cursor_s) > 0.01) seek(t_s);
     },
   };
 }
@@ -472,18 +450,3 @@ async function profileIn(files: File[]): Promise<ProfileSource> {
 }
 
 const lengthOf = ({ start_s, end_s }: Stretch) => Math.max(end_s - start_s, 1e-6);
-
-function stretchIn(address: URLSearchParams): Stretch | undefined {
-  const [start_s, end_s] = ['from', 'to'].map((name) => Number(address.get(name) ?? NaN));
-  const isGiven = Number.isFinite(start_s) && Number.isFinite(end_s);
-  return isGiven ? { start_s: start_s!, end_s: end_s! } : undefined;
-}
-
-function changesIn(address: URLSearchParams): VerdictChanges {
-  try {
-    const given: unknown = JSON.parse(address.get('verdict') ?? '{}');
-    return typeof given === 'object' && given !== null ? (given as VerdictChanges) : {};
-  } catch {
-    return {};
-  }
-}

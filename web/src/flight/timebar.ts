@@ -5,29 +5,32 @@ import { h } from '../dom';
 
 export interface TimeBar {
   element: HTMLElement;
-  /** The stretch that is shown of the whole, and where the cursor is in it. */
-  show(shown: Stretch, whole: Stretch, share: number): void;
+  /** The stretch that is shown of the whole, and the cursor's time. */
+  show(shown: Stretch, whole: Stretch, t_s: number): void;
   /** What the cursor's time is called. */
   say(words: string): void;
 }
 
 interface Actions {
-  point(share: number): void;
+  /** Leads to a time, in seconds. */
+  seek(t_s: number): void;
+  /** Moves the cursor, in steps. */
+  move(steps: number): void;
   /** As on the charts: between two places of what is shown. */
   zoom(from: number, to: number): void;
   reset(): void;
 }
 
-const STEPS = 1000;
-
 export function timeBar(actions: Actions): TimeBar {
-  const slider = h('input', { type: 'range', min: 0, max: STEPS, step: 1, 'aria-label': 'Time' });
-  slider.addEventListener('input', () => actions.point(slider.valueAsNumber / STEPS));
+  /** Where the cursor is in what is shown, from 0 to 1. */
+  let share = 0.5;
+  const slider = h('input', { type: 'range', step: 'any', 'aria-label': 'Time' });
+  slider.addEventListener('input', () => actions.seek(slider.valueAsNumber));
   slider.addEventListener('keydown', (event) => {
-    const step = { ArrowLeft: -10, ArrowRight: 10, ArrowDown: -10, ArrowUp: 10 }[event.key];
-    if (!step || !event.shiftKey) return;
+    const steps = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -1, ArrowUp: 1 }[event.key];
+    if (!steps) return;
     event.preventDefault();
-    actions.point(Math.min(1, Math.max(0, (slider.valueAsNumber + step) / STEPS)));
+    actions.move(event.shiftKey ? 5 * steps : steps);
   });
   const span = h('span', { class: 'span soft' });
   const overview = h('span', { class: 'shown', 'aria-hidden': 'true' });
@@ -37,10 +40,7 @@ export function timeBar(actions: Actions): TimeBar {
     return made;
   };
   /** Around the cursor, which stays where it is. */
-  const about = (scale: number) => {
-    const share = slider.valueAsNumber / STEPS;
-    actions.zoom(share - share * scale, share + (1 - share) * scale);
-  };
+  const about = (scale: number) => actions.zoom(share - share * scale, share + (1 - share) * scale);
   const closer = button('+', 'Zoom in', () => about(0.5));
   const farther = button('−', 'Zoom out', () => about(2));
   const earlier = button('‹', 'Earlier', () => actions.zoom(-0.5, 0.5));
@@ -54,8 +54,11 @@ export function timeBar(actions: Actions): TimeBar {
   );
   return {
     element,
-    show(shown, whole, share) {
-      slider.value = String(Math.round(share * STEPS));
+    show(shown, whole, t_s) {
+      share = (t_s - shown.start_s) / Math.max(shown.end_s - shown.start_s, 1e-6);
+      slider.min = String(whole.start_s);
+      slider.max = String(whole.end_s);
+      slider.value = String(t_s);
       const length_s = Math.max(whole.end_s - whole.start_s, 1e-3);
       const isAll = shown.end_s - shown.start_s > length_s * 0.999;
       overview.style.left = `${(100 * (shown.start_s - whole.start_s)) / length_s}%`;

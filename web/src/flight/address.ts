@@ -1,0 +1,55 @@
+/** What the address says of the flight room: it can be linked to, but for the logs, which stay on the user's machine. */
+
+import type { Stretch, VerdictChanges } from 'flagred';
+import { isUnchanged } from './whatif';
+
+export interface Place {
+  example: string | undefined;
+  /** A shipped profile's name; the default is not said. */
+  profile: string | undefined;
+  /** Other thresholds. */
+  changes: VerdictChanges;
+  /** The cursor's time, in seconds. */
+  t_s: number | undefined;
+  /** The stretch that is shown; nothing for all of the flight. */
+  stretch: Stretch | undefined;
+}
+
+/** What an address says; what is no number or no JSON is not said. */
+export function placeIn(address: URLSearchParams): Place {
+  const number = (name: string) => {
+    const value = parseFloat(address.get(name) ?? '');
+    return Number.isFinite(value) ? value : undefined;
+  };
+  const [start_s, end_s] = [number('from'), number('to')];
+  return {
+    example: address.get('example') ?? undefined,
+    profile: address.get('profile') ?? undefined,
+    changes: changesIn(address.get('verdict')),
+    t_s: number('t'),
+    stretch: start_s !== undefined && end_s !== undefined && start_s < end_s ? { start_s, end_s } : undefined,
+  };
+}
+
+function changesIn(text: string | null): VerdictChanges {
+  try {
+    const given: unknown = JSON.parse(text ?? '{}');
+    return typeof given === 'object' && given !== null ? (given as VerdictChanges) : {};
+  } catch {
+    return {};
+  }
+}
+
+/** A place as an address. */
+export function said({ example, profile, changes, t_s, stretch }: Place): URLSearchParams {
+  const address = new URLSearchParams();
+  if (example) address.set('example', example);
+  if (profile) address.set('profile', profile);
+  if (!isUnchanged(changes)) address.set('verdict', JSON.stringify(changes));
+  if (t_s !== undefined && Number.isFinite(t_s)) address.set('t', t_s.toFixed(2));
+  if (stretch) {
+    address.set('from', stretch.start_s.toFixed(2));
+    address.set('to', stretch.end_s.toFixed(2));
+  }
+  return address;
+}

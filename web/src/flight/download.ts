@@ -1,0 +1,39 @@
+/** The menu of what can be kept of a flight. */
+
+import { h } from '../dom';
+import type { Download } from './calls';
+
+export type Kind = Download | 'flight';
+
+const WORDS: Record<Kind, string> = {
+  html: 'Report (HTML)',
+  csv: 'Steps (CSV)',
+  json: 'JSON',
+  flight: 'Flight CSV',
+};
+
+/** How the names of the files end. */
+export const ENDINGS: Record<Kind, string> = { html: '.html', csv: '.steps.csv', json: '.json', flight: '.csv' };
+
+/** A menu that closes when one chooses, or goes elsewhere. */
+export function downloadMenu(choose: (kind: Kind) => void): HTMLElement {
+  const body = h('div', { class: 'menu-body' });
+  const menu = h('details', { class: 'menu' }, h('summary', { class: 'button' }, 'Download'), body);
+  for (const kind of Object.keys(WORDS) as Kind[]) {
+    const button = h('button', { type: 'button' }, WORDS[kind]);
+    button.addEventListener('click', () => {
+      menu.open = false;
+      choose(kind);
+    });
+    body.append(button);
+  }
+  document.addEventListener('click', (event) => {
+    if (!event.composedPath().includes(menu)) menu.open = false;
+  });
+  menu.addEventListener('keydown', (event) => {
+    if (event.key !== 'Escape' || !menu.open) return;
+    menu.open = false;
+    menu.querySelector('summary')?.focus();
+  });
+  return menu;
+}
