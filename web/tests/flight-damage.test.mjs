@@ -1,23 +1,15 @@
 // Damaged logs: whatever is in them, the page goes on, and says of each what the command line says.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { GUST, STEADY, command, folder, gustCsv, room } from './flights.mjs';
-import { browser, serve, tab } from './page.mjs';
+import { opened, tab } from './page.mjs';
 
 const COUNT = 200;
 
-let chromium, server;
-before(async () => {
-  chromium = await browser();
-  server = await serve();
-});
-after(async () => {
-  await chromium.close();
-  await server.close();
-});
+const { chromium, server } = await opened();
 
 /** Numbers from a seed: the generator of Lehmer. */
 function random(seed) {

@@ -1,30 +1,19 @@
 // A log of 100 MB: read and assessed in seconds and in bounded memory, while the page stays free to move.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
-import { availableParallelism, loadavg } from 'node:os';
 import { join } from 'node:path';
 import { STEADY, folder, room } from './flights.mjs';
-import { browser, serve, tab } from './page.mjs';
+import { isBusy, opened, tab } from './page.mjs';
 
 const LOG_BYTES = 100_000_000;
 const MOST_S = 5;
 const MOST_TASK_MS = 50;
 const MOST_MEMORY_KB = 600_000;
 const TRIES = 3;
-/** While other programs want the processors, only processor time can be held against the page. */
-const isBusy = () => loadavg()[0] > availableParallelism();
 
-let chromium, server;
-before(async () => {
-  chromium = await browser();
-  server = await serve();
-});
-after(async () => {
-  await chromium.close();
-  await server.close();
-});
+const { chromium, server } = await opened();
 
 /** A DataFlash log that goes on: its messages again and again, each time later. */
 function longLog(bytes, length) {

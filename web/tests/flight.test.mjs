@@ -1,22 +1,14 @@
 // The flight room says of every log what the command line says, to the byte, and its cursor, zoom and thresholds show why.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { basename } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { readFileSync } from 'node:fs';
 import { GUST, STEADY, command, convert, folder, gustCsv, logs, room } from './flights.mjs';
-import { browser, serve, studio, tab } from './page.mjs';
+import { opened, studio, tab } from './page.mjs';
 
-let chromium, server;
-before(async () => {
-  chromium = await browser();
-  server = await serve();
-});
-after(async () => {
-  await chromium.close();
-  await server.close();
-});
+const { chromium, server } = await opened();
 
 async function open(hash = '#/flight', options = {}) {
   const opened = await tab(chromium, server.address + hash, { viewport: { width: 1280, height: 900 }, ...options });

@@ -3,7 +3,9 @@
 import { createServer } from 'node:http';
 import { readFile } from 'node:fs/promises';
 import { existsSync } from 'node:fs';
+import { availableParallelism, loadavg } from 'node:os';
 import { extname, join, normalize } from 'node:path';
+import { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
@@ -66,3 +68,17 @@ export async function tab(chromium, address, options = {}) {
   await made.goto(address);
   return { page: made, context, complaints };
 }
+
+/** Chromium and the page on a server, for the tests of a file; gone when they are done. */
+export async function opened() {
+  const chromium = await browser();
+  const server = await serve();
+  after(async () => {
+    await chromium.close();
+    await server.close();
+  });
+  return { chromium, server };
+}
+
+/** Whether other programs want the processors, so that only processor time can be held against the page. */
+export const isBusy = () => loadavg()[0] > availableParallelism();

@@ -1,23 +1,15 @@
 // The page around the rooms: it starts under its policy, from a server and as one file, and tells defects.
 
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
-import { browser, serve, studio, tab } from './page.mjs';
+import { opened, studio, tab } from './page.mjs';
 
 /** What the first load of the page may take, gzipped. */
 const MOST_BYTES = 1_000_000;
 
-let chromium, server;
-before(async () => {
-  chromium = await browser();
-  server = await serve();
-});
-after(async () => {
-  await chromium.close();
-  await server.close();
-});
+const { chromium, server } = await opened();
 
 for (const [from, address] of [
   ['a server', () => server.address],

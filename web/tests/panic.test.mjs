@@ -2,20 +2,12 @@
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { after, before, test } from 'node:test';
-import { browser, repository, serve, tab } from './page.mjs';
+import { test } from 'node:test';
+import { opened, repository, tab } from './page.mjs';
 import { panicking } from './panics.mjs';
 import { flight, rules } from './rooms.mjs';
 
-let chromium, server;
-before(async () => {
-  chromium = await browser();
-  server = await serve();
-});
-after(async () => {
-  await chromium.close();
-  await server.close();
-});
+const { chromium, server } = await opened();
 
 /** A room whose module panics in a function. */
 async function defective(t, room, name) {

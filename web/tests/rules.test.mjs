@@ -5,21 +5,13 @@ import { execFileSync } from 'node:child_process';
 import { createServer } from 'node:http';
 import { readFile, readdir } from 'node:fs/promises';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
-import { browser, repository, serve, tab } from './page.mjs';
+import { test } from 'node:test';
+import { opened, repository, tab } from './page.mjs';
 
 const read = (path) => readFile(join(repository, path), 'utf8');
 const desktop = { viewport: { width: 1280, height: 1400 } };
 
-let chromium, server;
-before(async () => {
-  chromium = await browser();
-  server = await serve();
-});
-after(async () => {
-  await chromium.close();
-  await server.close();
-});
+const { chromium, server } = await opened();
 
 /** The room, ready; closed at the end of the test, which fails where the page complained. */
 async function room(t, query = '', options = desktop, address = server.address) {
