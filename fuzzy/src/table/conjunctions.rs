@@ -92,6 +92,11 @@ pub(super) fn fire_uniform<A: Arrays, const L: usize>(
         let [c, d] = &at(table, second, values);
         let mut reached = [*a, *b, *a, *b];
         for (cell, other) in reached.iter_mut().zip([c, c, d, d]) {
+            // Without this check between them, a compiler compares the four pairs at once and picks by branches, which a processor
+            // mispredicts. It fails in a damaged table alone.
+            if L == 1 && (cell.at[0] + other.at[0]) as usize >= cells.actions.len() {
+                return;
+            }
             *cell = cell.and(other, &and);
         }
         firing.act_in_cells(cells, &mut reached);
