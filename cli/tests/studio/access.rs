@@ -1,0 +1,166 @@
+//! Who gets what: the page for its user, nothing for anybody else.
+
+use std::{
+    fs,
+    os::unix::fs::PermissionsExt,
+    process::Command,
+    thread,
+    time::{Duration, Instant},
+};
+
+use super::{
+    client::{POLICY, RULES, Studio, page},
+    common::folder,
+};
+
+#[test]
+fn the_page_comes_with_its_own_policy() {
+    let folder = folder(&[]);
+    let studio = Studio::start(folder.path(), &[]);
+    assert_eq!(studio.said.len(), 2, "{:?}", studio.said);
+    let answer = studio.ask("GET", "", &[], "");
+    assert_eq!((answer.status, answer.body.as_str()), (200, &*page()));
+    let policy = format!("{POLICY}; frame-ancestors 'none'");
+    for (name, value) in [
+        ("content-type", "text/html; charset=utf-8"),
+        ("content-security-policy", &policy),
+        ("x-content-type-options", "nosniff"),
+        ("referrer-policy", "no-referrer"),
+        ("cross-origin-opener-policy", "same-origin"),
+        ("cross-origin-resource-policy", "same-origin"),
+        ("cache-control", "no-store"),
+    ] {
+        assert_eq!(answer.header(name), value, "{name}");
+    }
+    let head = studio.ask("HEAD", "", &[], "");
+    assert_eq!((head.status, head.body.as_str()), (200, ""));
+    assert_eq!(head.header("content-length"), page().len().to_string());
+    // Nothing to edit.
+    assert_eq!(studio.file().status, 204);
+    assert_eq!(studio.save("\"x\"", "text").status, 404);
+    assert_eq!(studio.interrupt(), Some(0));
+}
+
+#[test]
+fn nobody_else_gets_anything() {
+    let folder = folder(&[("rules.yaml", RULES), ("secret.txt", "secret")]);
+    let studio = Studio::start(folder.path(), &["rules.yaml"]);
+    let (authority, token) = (&studio.authority, &studio.token);
+    let port = authority.split_once(':').unwrap().1;
+    let own = format!("http://{authority}");
+    let request = |path: &str, host: &str, headers: &str| {
+        studio.send(&format!(
+            "GET {path} HTTP/1.1\r\nHost: {host}\r\n{headers}\r\n"
+        ))
+    };
+    let (page, file) = (format!("/{token}/"), format!("/{token}/api/file"));
+    assert_eq!(request(&page, authority, "").status, 200);
+    assert_eq!(
+        request(&file, authority, &format!("Origin: {own}\r\n")).status,
+        200
+    );
+    // A name that another page made lead here.
+    for host in [
+        "evil.example",
+        &format!("evil.example:{port}"),
+        "127.0.0.1",
+        "",
+    ] {
+        assert_eq!(request(&page, host, "").status, 403, "{host}");
+        assert_eq!(request(&file, host, "").status, 403, "{host}");
+    }
+    assert_eq!(
+        studio.send(&format!("GET {page} HTTP/1.0\r\n\r\n")).status,
+        403
+    );
+    let twice = format!("Host: {authority}\r\n");
+    assert_eq!(request(&page, authority, &twice).status, 403);
+    for origin in [
+        "http://evil.example",
+        "null",
+        "http://127.0.0.1:1",
+        &format!("{own}, {own}"),
+    ] {
+        let refused = request(&file, authority, &format!("Origin: {origin}\r\n"));
+        assert_eq!(refused.status, 403, "{origin}");
+    }
+    let tag = studio.file().header("etag").to_owned();
+    let headers = [("If-Match", &*tag), ("Origin", "http://evil.example")];
+    assert_eq!(studio.ask("PUT", "api/file", &headers, "x").status, 403);
+    let wrong = "0".repeat(token.len());
+    for path in [
+        "/",
+        "/api/file",
+        "/favicon.ico",
+        "//",
+        "*",
+        &format!("/{token}"),
+        &format!("/{wrong}/"),
+        &format!("/{wrong}/api/file"),
+        &format!("/{token}/secret.txt"),
+        &format!("/{token}/../secret.txt"),
+        &format!("/{token}/api/../secret.txt"),
+        &format!("/{token}/api/file/"),
+        &format!("/{token}//etc/passwd"),
+        &format!("http://{authority}/{token}/"),
+    ] {
+        let answer = request(path, authority, "");
+        assert_eq!(answer.status, 404, "{path}");
+        assert!(!answer.body.contains(&**token), "{path}");
+    }
+    for method in ["POST", "DELETE", "PATCH", "OPTIONS", "TRACE"] {
+        for path in ["", "api/file"] {
+            assert_eq!(
+                studio.ask(method, path, &[], "").status,
+                405,
+                "{method} {path}"
+            );
+        }
+    }
+    assert_eq!(studio.send("\u{1}\u{2}\r\n\r\n").status, 400);
+    assert_eq!(
+        fs::read_to_string(folder.path().join("rules.yaml")).unwrap(),
+        RULES
+    );
+    // None of it made it stop.
+    assert_eq!(studio.file().status, 200);
+}
+
+/// What is sent on the command line of the browser leads to the page once, so that who reads it there comes too late.
+#[test]
+fn the_address_that_a_browser_is_given_works_once() {
+    let folder = folder(&[]);
+    let opener = folder.path().join("xdg-open");
+    fs::write(
+        &opener,
+        "#!/bin/sh\necho \"$1\" > opened.part\nmv opened.part opened\n",
+    )
+    .unwrap();
+    fs::set_permissions(&opener, fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_flagred"));
+    let path = std::env::var("PATH").unwrap();
+    let path = format!("{}:{path}", folder.path().display());
+    command.env("PATH", path).arg("studio");
+    let studio = Studio::run(command, folder.path());
+    let opened = folder.path().join("opened");
+    let start = Instant::now();
+    while !opened.exists() {
+        assert!(
+            start.elapsed() < Duration::from_secs(20),
+            "no browser is opened"
+        );
+        thread::sleep(Duration::from_millis(10));
+    }
+    let address = fs::read_to_string(opened).unwrap();
+    assert!(!address.contains(&studio.token), "{address}");
+    let path = address.trim_end().split_once(&studio.authority).unwrap().1;
+    let request = format!("GET {path} HTTP/1.1\r\nHost: {}\r\n\r\n", studio.authority);
+    let first = studio.send(&request);
+    assert_eq!(
+        (first.status, first.header("location")),
+        (303, &*format!("/{}/", studio.token))
+    );
+    let second = studio.send(&request);
+    assert_eq!(second.status, 404);
+    assert!(second.body.contains("opened already"), "{}", second.body);
+}

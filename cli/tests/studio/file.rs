@@ -1,0 +1,151 @@
+//! The file that the page edits: what is read, saved and refused.
+
+use std::{
+    fs,
+    io::{Read, Write},
+    net::TcpStream,
+    os::unix::fs::{PermissionsExt, symlink},
+    time::{Duration, Instant},
+};
+
+use super::{
+    client::{Answer, RULES, Studio},
+    common::folder,
+};
+
+#[test]
+fn the_file_is_read_and_written_as_long_as_nobody_else_writes_it() {
+    let folder = folder(&[("my räder.yaml", RULES)]);
+    let studio = Studio::start(folder.path(), &["my räder.yaml"]);
+    assert_eq!(studio.said[1], "edits `my räder.yaml`");
+    let path = folder.path().join("my räder.yaml");
+    let first = studio.file();
+    assert_eq!((first.status, first.body.as_str()), (200, RULES));
+    assert_eq!(first.header("content-type"), "text/plain; charset=utf-8");
+    assert_eq!(first.header("x-file-name"), "my%20r%C3%A4der%2Eyaml");
+    assert_eq!(first.header("x-read-only"), "false");
+    let tag = first.header("etag");
+    let unchanged = studio.ask("GET", "api/file", &[("If-None-Match", tag)], "");
+    assert_eq!((unchanged.status, unchanged.body.as_str()), (304, ""));
+
+    let text = format!("{RULES}# grün\n");
+    let saved = studio.save(tag, &text);
+    assert_eq!(saved.status, 204, "{}", saved.body);
+    assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    let changed = studio.ask("GET", "api/file", &[("If-None-Match", tag)], "");
+    assert_eq!(
+        (changed.status, changed.body.as_str()),
+        (200, text.as_str())
+    );
+    assert_eq!(changed.header("etag"), saved.header("etag"));
+    // The tag of before, another's tag, none.
+    assert_eq!(studio.save(tag, "lost").status, 412);
+    assert_eq!(studio.save("*", "lost").status, 412);
+    assert_eq!(studio.ask("PUT", "api/file", &[], "lost").status, 428);
+
+    fs::write(&path, "another editor").unwrap();
+    let refused = studio.save(saved.header("etag"), "lost");
+    assert_eq!(refused.status, 412);
+    assert_eq!(
+        refused.body,
+        "`my räder.yaml` was changed on disk meanwhile"
+    );
+    assert_eq!(fs::read_to_string(&path).unwrap(), "another editor");
+
+    fs::remove_file(&path).unwrap();
+    let gone = studio.file();
+    assert_eq!(gone.status, 500);
+    assert!(
+        gone.body.contains("`my räder.yaml` cannot be read"),
+        "{}",
+        gone.body
+    );
+    assert_eq!(studio.save(tag, "lost").status, 500);
+    assert!(!path.exists());
+    assert_eq!(studio.interrupt(), Some(0));
+}
+
+#[test]
+fn a_text_that_is_too_large_or_none_changes_nothing() {
+    let folder = folder(&[("rules.yaml", RULES)]);
+    let studio = Studio::start(folder.path(), &["rules.yaml"]);
+    let tag = studio.file().header("etag").to_owned();
+    let large = "#".repeat(4_000_001);
+    let refused = studio.save(&tag, &large);
+    assert_eq!(
+        (refused.status, refused.body.as_str()),
+        (413, "the text is larger than 4 MB")
+    );
+    let (authority, token) = (&studio.authority, &studio.token);
+    let head =
+        format!("PUT /{token}/api/file HTTP/1.1\r\nHost: {authority}\r\nIf-Match: {tag}\r\n");
+    let chunked = format!("{head}Transfer-Encoding: chunked\r\n\r\n1\r\na\r\n0\r\n\r\n");
+    assert_eq!(studio.send(&chunked).status, 411);
+    let endless = format!("{head}Content-Length: 999999999999\r\n\r\n");
+    assert_eq!(studio.send(&endless).status, 413);
+    let mut stream = TcpStream::connect(authority).unwrap();
+    let latin = b"Content-Length: 1\r\n\r\n\xe4";
+    stream
+        .write_all(&[head.as_bytes(), latin].concat())
+        .unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    assert_eq!(Answer::parse(&answer).status, 400);
+    assert_eq!(
+        fs::read_to_string(folder.path().join("rules.yaml")).unwrap(),
+        RULES
+    );
+    // One that says nothing keeps nobody waiting.
+    let _silent: Vec<TcpStream> = (0..8)
+        .map(|_| TcpStream::connect(authority).unwrap())
+        .collect();
+    let start = Instant::now();
+    assert_eq!(studio.file().status, 200);
+    assert!(start.elapsed() < Duration::from_secs(5));
+}
+
+#[test]
+fn what_is_read_only_is_never_written() {
+    let folder = folder(&[("rules.yaml", RULES)]);
+    let studio = Studio::start(folder.path(), &["rules.yaml", "--read-only"]);
+    assert_eq!(studio.said[1], "shows `rules.yaml`, read only");
+    let file = studio.file();
+    assert_eq!(file.header("x-read-only"), "true");
+    let refused = studio.save(file.header("etag"), "text");
+    assert_eq!(
+        (refused.status, refused.body.as_str()),
+        (403, "`rules.yaml` is read only")
+    );
+    assert_eq!(
+        fs::read_to_string(folder.path().join("rules.yaml")).unwrap(),
+        RULES
+    );
+}
+
+/// Another name of the old file shows that the new one is another file, put in its place.
+#[test]
+fn the_file_is_replaced_where_its_link_leads_and_keeps_its_mode() {
+    let folder = folder(&[("real.yaml", RULES)]);
+    let (real, old) = (
+        folder.path().join("real.yaml"),
+        folder.path().join("old.yaml"),
+    );
+    fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
+    fs::hard_link(&real, &old).unwrap();
+    let link = folder.path().join("link.yaml");
+    symlink("real.yaml", &link).unwrap();
+    let studio = Studio::start(folder.path(), &["link.yaml"]);
+    let file = studio.file();
+    assert_eq!(file.header("x-file-name"), "link%2Eyaml");
+    assert_eq!(studio.save(file.header("etag"), "new").status, 204);
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(fs::read_to_string(&real).unwrap(), "new");
+    assert_eq!(
+        fs::metadata(&real).unwrap().permissions().mode() & 0o777,
+        0o640
+    );
+    assert_eq!(fs::read_to_string(&old).unwrap(), RULES);
+    let names = fs::read_dir(folder.path()).unwrap();
+    let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    assert!(names.into_iter().all(|name| !name.ends_with(".part")));
+}
