@@ -48,14 +48,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     let document = read.map_err(|findings| refuse(&findings, &file, &text))?;
     show(&document.warnings, &file, &text);
-    let invalid = fuzzy::validate(&document.model, &document.spans);
-    if !invalid.is_empty() {
-        return Err(refuse(
-            &fuzzy::Findings::locate(invalid, &text),
-            &file,
-            &text,
-        ));
-    }
+    let validated = document.validate(&text);
+    validated.map_err(|findings| refuse(&findings, &file, &text))?;
     output.write(&fuzzy::yaml::to_string(&document.model))?;
     Ok(Exit::Clean)
 }

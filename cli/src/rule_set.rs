@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use flagred::profile::Profile;
-use fuzzy::{Engine, Findings, Model, format::Document, validate};
+use fuzzy::{Engine, Model, format::Document};
 
 use crate::{
     diagnostics::{read_text, refuse},
@@ -34,11 +34,9 @@ pub(crate) fn load(path: &Path) -> Result<(Model, Engine), Failure> {
 
 /// Compiles a rule set that was read. Its errors are drawn on standard error.
 pub(crate) fn compile(document: &Document, file: &str, text: &str) -> Result<Engine, Failure> {
-    let invalid = validate(&document.model, &document.spans);
-    if !invalid.is_empty() {
-        return Err(refuse(&Findings::locate(invalid, text), file, text));
-    }
-    Engine::new(&document.model).map_err(|findings| refuse(&findings, file, text))
+    let compiled = document.validate(text);
+    let compiled = compiled.and_then(|()| Engine::new(&document.model));
+    compiled.map_err(|findings| refuse(&findings, file, text))
 }
 
 /// What to say of a text that is no rule set because it is a profile: one thing, where its keys would be a page of

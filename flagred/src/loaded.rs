@@ -12,7 +12,7 @@ use alloc::{
     vec::Vec,
 };
 
-use fuzzy::{Engine, Findings, Model, validate};
+use fuzzy::{Engine, Findings, Model};
 
 use crate::{check, estimator::Estimator, profile::Profile, shipped};
 
@@ -190,11 +190,8 @@ fn compiled<E>(profile: &Profile, file: String, text: &str) -> Result<Model, Loa
         parsed => parsed,
     };
     let compiled = document.and_then(|document| {
-        let invalid = validate(&document.model, &document.spans);
-        match invalid.is_empty() {
-            true => Engine::new(&document.model).map(|_| document.model),
-            false => Err(Findings::locate(invalid, text)),
-        }
+        document.validate(text)?;
+        Engine::new(&document.model).map(|_| document.model)
     });
     compiled.map_err(|findings| LoadError::Findings {
         file,

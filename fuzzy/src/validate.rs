@@ -7,11 +7,11 @@ use alloc::{collections::BTreeMap, format, string::String, vec::Vec};
 use core::ops::Range;
 
 use crate::{
-    diagnostic::{Diagnostic, duplicate},
+    diagnostic::{Diagnostic, Findings, duplicate},
     model::{
         Model, Variable,
         chain::circles,
-        document::{RuleSpans, Spans, VariableSpans},
+        document::{Document, RuleSpans, Spans, VariableSpans},
     },
 };
 
@@ -29,6 +29,20 @@ const MOST_TERMS_IN_ALL: usize = 10_000;
 const MOST_RULES: usize = 100_000;
 /// Errors that are told of a model; what follows is not looked at.
 const MOST_FINDINGS: usize = 1000;
+
+impl Document {
+    /// Whether its model compiles; `text` is what it was read from.
+    ///
+    /// # Errors
+    /// What [`validate`] finds, with line and column.
+    pub fn validate(&self, text: &str) -> Result<(), Findings> {
+        let invalid = validate(&self.model, &self.spans);
+        match invalid.is_empty() {
+            true => Ok(()),
+            false => Err(Findings::locate(invalid, text)),
+        }
+    }
+}
 
 /// All errors of a model, in the order of its parts; none if it compiles. `spans` says where its parts stand in a text;
 /// it is empty for a model made in code, and the findings then have no position.

@@ -155,11 +155,8 @@ pub fn document(text: &str) -> Result<Document, Findings> {
         return fuzzy::yaml::parse(text);
     };
     let document = read(text, format, Losses::Refuse)?;
-    let invalid = fuzzy::validate(&document.model, &document.spans);
-    match invalid.is_empty() {
-        true => Ok(document),
-        false => Err(Findings::locate(invalid, text)),
-    }
+    document.validate(text)?;
+    Ok(document)
 }
 
 /// What [`write()`] makes.

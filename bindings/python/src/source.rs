@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use fuzzy::{
     Engine, Findings,
     format::{self, Document},
-    validate, yaml,
+    yaml,
 };
 use pyo3::prelude::*;
 
@@ -38,10 +38,7 @@ impl Source {
     }
 
     fn compile(&self, py: Python<'_>) -> Result<Arc<Compiled>, Findings> {
-        let invalid = validate(&self.document.model, &self.document.spans);
-        if !invalid.is_empty() {
-            return Err(Findings::locate(invalid, &self.text));
-        }
+        self.document.validate(&self.text)?;
         let engine = Engine::new(&self.document.model)?;
         Ok(Arc::new(Compiled::new(py, engine)))
     }

@@ -14,7 +14,6 @@ use crate::{
         chain::{Stage, stages},
         document::{Document, Spans},
     },
-    validate::validate,
 };
 
 mod axis;
@@ -215,9 +214,8 @@ pub fn document(
     text: &str,
     options: &Options,
 ) -> Result<(Findings, Option<Report>), alloc::boxed::Box<Diagnostic>> {
-    let invalid = validate(&document.model, &document.spans);
-    if !invalid.is_empty() {
-        return Ok((Findings::locate(invalid, text), None));
+    if let Err(findings) = document.validate(text) {
+        return Ok((findings, None));
     }
     let engine = match Engine::new(&document.model) {
         Ok(engine) => engine,

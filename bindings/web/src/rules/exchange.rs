@@ -29,10 +29,7 @@ pub fn import(text: &str, lossy: bool) -> Result<String, JsError> {
         });
     };
     let read = interchange::read(text, format, losses(lossy)).map_err(refused)?;
-    let invalid = fuzzy::validate(&read.model, &read.spans);
-    if !invalid.is_empty() {
-        return Err(refused(Findings::locate(invalid, text)));
-    }
+    read.validate(text).map_err(refused)?;
     json(&Exchanged {
         text: fuzzy::yaml::to_string(&read.model),
         format: format.name(),

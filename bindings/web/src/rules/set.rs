@@ -5,11 +5,11 @@ use authoring::{
     slice::{self, Mapped},
 };
 use flagred::{
-    gap::{Filling, GapSettings},
+    gap::Filling,
     loaded::{self, LoadError},
 };
 use fuzzy::{
-    Engine, Findings, Model,
+    Engine, Model,
     drawing::{
         Axis, Scale, Slice, explanation_svg, map_svg, rules_svg, surface_svg, variables_svg,
     },
@@ -122,10 +122,7 @@ impl RuleSet {
             return of_profile(text);
         }
         let document = interchange::document(text).map_err(refused)?;
-        let invalid = fuzzy::validate(&document.model, &document.spans);
-        if !invalid.is_empty() {
-            return Err(refused(Findings::locate(invalid, text)));
-        }
+        document.validate(text).map_err(refused)?;
         Ok(RuleSet {
             engine: Engine::new(&document.model).map_err(refused)?,
             profile: None,
@@ -297,14 +294,10 @@ fn of_profile(text: &str) -> Result<RuleSet, JsError> {
     let engine = loaded.estimator.engine().clone();
     let profile = loaded.estimator.profile();
     let output = engine.output(&profile.output).unwrap_or(0);
-    let settings = GapSettings {
-        method: profile.gap.method,
-        coverage_below: profile.gap.coverage_below,
-    };
-    let filling = Filling::new(&engine, engine.model(), output, &settings);
+    let filling = Filling::new(&engine, engine.model(), output, &profile.gap);
     let filling = filling.map_err(|error| failure(error, None))?;
     Ok(RuleSet {
-        profile: Some((output, filling, settings.method.name())),
+        profile: Some((output, filling, profile.gap.method.name())),
         engine,
     })
 }
