@@ -45,20 +45,25 @@ pub fn comparison_fragment(
     shown(comparison_body(subjects, loaded, since_start))
 }
 
+/// How long the longest of some flights is, in seconds: a comparison shows as much of all.
+pub fn longest_s(subjects: &[&Subject]) -> f64 {
+    let lengths = subjects.iter().map(|subject| subject.stretch().length_s());
+    lengths.fold(0.0, f64::max)
+}
+
 fn together(subjects: &[&Subject]) -> String {
     format!("{} flights compared", subjects.len())
 }
 
 fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<Stretch>) -> Markup {
-    let stretches = subjects.iter().map(|s| charts::stretch(&s.flight));
-    let longest_s = stretches.clone().map(|stretch| stretch.length_s());
-    let longest_s = longest_s.fold(0.0, f64::max);
+    let longest_s = longest_s(subjects);
     let all = Stretch {
         start_s: 0.0,
         end_s: longest_s,
     };
     let since_start = since_start.map_or(all, |part| charts::within(part, all));
-    let timelines = subjects.iter().zip(stretches).map(|(subject, whole)| {
+    let timelines = subjects.iter().map(|subject| {
+        let whole = subject.stretch();
         let stretch = Stretch {
             start_s: whole.start_s + since_start.start_s,
             end_s: whole.start_s + since_start.end_s,
@@ -113,7 +118,7 @@ fn comparison_body(subjects: &[&Subject], loaded: &Loaded, since_start: Option<S
 pub fn svg(subject: &Subject, loaded: &Loaded) -> Option<String> {
     const STYLE: &str = "text{font:12px system-ui,sans-serif;fill:var(--soft)}.y{text-anchor:end}.x{text-anchor:middle}\
         .key{fill:var(--c)}.title{font-size:16px;font-weight:700;fill:var(--ink)}.verdict{font-size:16px;font-weight:700;fill:var(--c)}";
-    let whole = charts::stretch(&subject.flight);
+    let whole = subject.stretch();
     let timeline = charts::timeline(&subject.flight, &subject.assessed, whole);
     let risk = charts::risk(&subject.assessed, &loaded.estimator, whole)?;
     let verdict = &subject.assessed.verdict;

@@ -37,6 +37,11 @@ impl Subject {
         file.and_then(|file| file.to_str()).unwrap_or(&self.name)
     }
 
+    /// The time that a report shows where none is chosen: from the first take-off to the last landing, or the whole log.
+    pub fn stretch(&self) -> Stretch {
+        charts::stretch(&self.flight)
+    }
+
     pub(crate) fn in_air_s(&self) -> f64 {
         self.assessed.summary.in_air_s
     }
@@ -109,18 +114,13 @@ pub struct Report<'a> {
 impl<'a> Report<'a> {
     /// The report with curves of a stretch of time, or of all of the flight.
     pub fn new(subject: &'a Subject, loaded: &'a Loaded, stretch: Option<Stretch>) -> Report<'a> {
-        let whole = charts::stretch(&subject.flight);
+        let whole = subject.stretch();
         let stretch = stretch.map_or(whole, |part| charts::within(part, whole));
         Report {
             timeline: charts::timeline(&subject.flight, &subject.assessed, stretch),
             subject,
             loaded,
         }
-    }
-
-    /// The stretch of time that the curves show.
-    pub fn stretch(&self) -> Stretch {
-        self.timeline.stretch
     }
 
     /// A part as HTML; empty where there is nothing to show.

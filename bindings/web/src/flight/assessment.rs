@@ -55,7 +55,7 @@ impl Assessment {
 
     /// The stretch of time that the report shows: its start and its end, in seconds.
     pub fn stretch(&self) -> Vec<f64> {
-        let Stretch { start_s, end_s } = self.report(None).stretch();
+        let Stretch { start_s, end_s } = self.subject.stretch();
         vec![start_s, end_s]
     }
 
@@ -70,7 +70,7 @@ impl Assessment {
         let part = part.ok_or_else(|| failure(format!("a report has no part `{name}`"), None))?;
         let stretch = start_s.zip(end_s);
         let stretch = stretch.map(|(start_s, end_s)| Stretch { start_s, end_s });
-        Ok(self.report(stretch).part(part))
+        Ok(Report::new(&self.subject, &self.loaded, stretch).part(part))
     }
 
     /// What was known at a time in seconds, and the rules that fire there, as JSON.
@@ -80,12 +80,6 @@ impl Assessment {
         } = &*self.subject;
         let moment = moment::moment(flight, &self.loaded.estimator, assessed, t_s);
         serde_json::to_string(&moment).map_err(|error| failure(error, None))
-    }
-}
-
-impl Assessment {
-    fn report(&self, stretch: Option<Stretch>) -> Report<'_> {
-        Report::new(&self.subject, &self.loaded, stretch)
     }
 }
 

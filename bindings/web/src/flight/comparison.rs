@@ -67,11 +67,7 @@ impl Comparison {
 
     /// How long the longest of the flights is, in seconds.
     pub fn length_s(&self) -> f64 {
-        let lengths = self.0.iter().map(|one| match one.stretch()[..] {
-            [start_s, end_s] => end_s - start_s,
-            _ => 0.0,
-        });
-        lengths.fold(0.0, f64::max)
+        page::longest_s(&self.subjects())
     }
 }
 
