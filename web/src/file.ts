@@ -24,8 +24,9 @@ export async function backingFile(): Promise<BackingFile | undefined> {
     return next;
   };
 
-  async function read(): Promise<string> {
-    const answer = await fetch(ADDRESS, { cache: 'no-store' });
+  async function take(answer: Response): Promise<string> {
+    // What is known is there still.
+    if (answer.status === 304) return known;
     const text = await answer.text();
     if (!answer.ok) throw new Error(text);
     tag = answer.headers.get('ETag') ?? '';
@@ -33,6 +34,9 @@ export async function backingFile(): Promise<BackingFile | undefined> {
     known = text.replaceAll('\r\n', '\n');
     return known;
   }
+
+  const read = async (): Promise<string> =>
+    take(await fetch(ADDRESS, { cache: 'no-store', headers: { 'If-None-Match': tag } }));
 
   async function write(text: string, over: string): Promise<void> {
     if (over !== known) throw new Error(`\`${name}\` was changed on disk meanwhile`);
@@ -42,6 +46,7 @@ export async function backingFile(): Promise<BackingFile | undefined> {
     known = text;
   }
 
+  await take(first);
   const name = decodeURIComponent(first.headers.get('X-File-Name') ?? 'the file');
   return {
     name,

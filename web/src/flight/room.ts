@@ -1,10 +1,10 @@
 /** The flight room: logs are dropped, assessed and looked at. */
 
-import './flight.css';
 import type { Part, Stretch, VerdictChanges } from 'flagred';
 import type { App, Room } from '../app';
 import { add, download, fill, h } from '../dom';
 import { Cancelled, Trapped } from '../engine';
+import { latest } from '../latest';
 import { placeIn, said } from './address';
 import type { ProfileFacts, ProfileSource } from './calls';
 import { ENDINGS, downloadMenu, type Kind } from './download';
@@ -13,7 +13,7 @@ import { badge, logList, verdictClass, type Entry } from './logs';
 import { momentPanel } from './moment';
 import { report as makeReport, type Report } from './report';
 import { timeBar } from './timebar';
-import { latest, within, zoomed } from './time';
+import { within, zoomed } from './time';
 import { isUnchanged, whatIf } from './whatif';
 
 /** The parts of a report that change with the stretch of time. */

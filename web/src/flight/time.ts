@@ -1,4 +1,4 @@
-/** Stretches of time that are shown, and calls of which only the last counts. */
+/** Stretches of time that are shown. */
 
 import type { Stretch } from 'flagred';
 
@@ -17,30 +17,4 @@ export function within(part: Stretch, whole: Stretch): Stretch | undefined {
 export function zoomed({ start_s, end_s }: Stretch, from: number, to: number, whole: Stretch): Stretch | undefined {
   const at = (share: number) => start_s + share * (end_s - start_s);
   return within({ start_s: at(from), end_s: at(to) }, whole);
-}
-
-/** Runs a task; of what is asked for while it runs only the last is done after. All that wait hear of that one. */
-export function latest<A extends unknown[]>(task: (...args: A) => Promise<void>): (...args: A) => Promise<void> {
-  let running: Promise<void> | undefined;
-  let waiting: { args: A; end: Promise<void> } | undefined;
-  const begin = (args: A): Promise<void> => {
-    running = task(...args).finally(() => (running = undefined));
-    return running;
-  };
-  return (...args) => {
-    if (!running) return begin(args);
-    if (waiting) {
-      waiting.args = args;
-      return waiting.end;
-    }
-    const end = running
-      .catch(() => undefined)
-      .then(() => {
-        const { args } = waiting!;
-        waiting = undefined;
-        return begin(args);
-      });
-    waiting = { args, end };
-    return end;
-  };
 }

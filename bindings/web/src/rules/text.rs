@@ -1,7 +1,7 @@
 //! An open text: findings, completion, names, layout, terms and the points by which they are dragged.
 
 use authoring::{Document, Edit, completion, handles, layout, names, slice};
-use flagred::{profile::Profile, shipped};
+use flagred::{loaded, profile::Profile};
 use fuzzy::{
     diagnostic::{Diagnostic, Severity},
     model::{Defuzzifier, Term, Variable},
@@ -21,9 +21,8 @@ pub(super) fn document(text: &str) -> Document {
 }
 
 fn shipped_rules(profile: &Profile) -> Option<String> {
-    let mut known = shipped::RULE_SETS.iter();
-    let known = known.find(|known| known.name == profile.rules)?;
-    Some(known.text.to_owned())
+    let found = loaded::rules(profile, None, |_| Err(())).ok();
+    found.map(|(_, text)| text)
 }
 
 /// A rule set or a profile as an editor shows it. Places are counted as JavaScript counts letters.
