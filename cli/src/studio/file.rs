@@ -6,6 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use authoring::provenance::digits;
 use sha2::{Digest, Sha256};
 
 use crate::{
@@ -13,6 +14,9 @@ use crate::{
     failure::Failure,
     output::{Files, Replace},
 };
+
+/// Digits of a hash that tell texts apart: 128 bits.
+const TAG_DIGITS: usize = 32;
 
 pub(super) struct EditedFile {
     path: PathBuf,
@@ -85,7 +89,7 @@ impl EditedFile {
 }
 
 fn tag(text: &str) -> String {
-    let digest = Sha256::digest(text.as_bytes());
-    let half = digest.iter().take(16).map(|byte| format!("{byte:02x}"));
-    format!("\"{}\"", half.collect::<String>())
+    let mut digest = digits(&Sha256::digest(text.as_bytes()));
+    digest.truncate(TAG_DIGITS);
+    format!("\"{digest}\"")
 }

@@ -14,6 +14,7 @@ use std::{
     },
 };
 
+use authoring::provenance::digits;
 use fuzzy::yaml::LARGEST_BYTES;
 use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
 
@@ -214,5 +215,5 @@ fn secret() -> Result<String, Failure> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes)
         .map_err(|error| Failure::unreadable(format!("there are no random numbers: {error}")))?;
-    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(digits(&bytes))
 }
