@@ -93,7 +93,7 @@ pub(super) fn fire_uniform<A: Arrays, const L: usize>(
         let mut reached = [*a, *b, *a, *b];
         for (cell, other) in reached.iter_mut().zip([c, c, d, d]) {
             // Without this check between them, a compiler compares the four pairs at once and picks by branches, which a processor
-            // mispredicts. It fails in a damaged table alone.
+            // mispredicts. It fails only in a damaged table.
             if L == 1 && (cell.at[0] + other.at[0]) as usize >= cells.actions.len() {
                 return;
             }
