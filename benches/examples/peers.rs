@@ -16,6 +16,8 @@ use fuzzy::model::{Defuzzifier, Implication, MembershipFunction, Model, Variable
 use fuzzy::{Engine, rule::Condition, rule::Rule};
 
 const POINTS: usize = 1024;
+/// So many that a processor cannot learn which way each branch goes at each of them, as it does with the 1024.
+const MANY_POINTS: usize = 16_384;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let systems = [
@@ -170,15 +172,21 @@ fn fastest(calls: usize, mut round: impl FnMut()) -> f64 {
 
 fn time(name: &str, model: &Model) -> Result<(), Box<dyn std::error::Error>> {
     let engine = Engine::new(model)?;
-    let points = points(model, POINTS);
     let mut scratch = engine.scratch();
     let mut outcome = [Outcome::default()];
-    let single = fastest(POINTS, || {
-        for point in &points {
-            let _ = engine.evaluate_with(&mut scratch, std::hint::black_box(point), &mut outcome);
-        }
-    });
-    println!("{name},ours,{single},0");
+    let mut single = |points: &[Vec<f64>]| {
+        fastest(points.len(), || {
+            for point in points {
+                let _ =
+                    engine.evaluate_with(&mut scratch, std::hint::black_box(point), &mut outcome);
+            }
+        })
+    };
+    let few = points(model, POINTS);
+    println!("{name},ours,{},0", single(&few));
+    let many = single(&points(model, MANY_POINTS));
+    println!("{name},ours: {MANY_POINTS} points,{many},0");
+    let points = few;
     let columns: Vec<Vec<f64>> = (0..model.inputs.len())
         .map(|input| points.iter().map(|point| point[input]).collect())
         .collect();
