@@ -76,7 +76,7 @@ pub(crate) struct Defuzzify {
 #[derive(Debug, Clone)]
 pub(crate) enum Method {
     Lines(Polylines),
-    /// The centroid of minimum and maximum over a partition.
+    /// The centroid of the maximum over a partition.
     Partition(Partition),
     Curves(Curves),
     Sampled(Sampling, Curves),
@@ -134,13 +134,14 @@ impl Method {
             return Method::Sampled(sampling, Curves::new(terms, low, high));
         }
         let lines = Polylines::new(terms, low, high).filter(|_| Polylines::can(joint));
+        let scales = joint.implication == Implication::Product;
         if output.defuzzifier == Defuzzifier::Centroid
-            && joint.implication == Implication::Minimum
+            && (scales || joint.implication == Implication::Minimum)
             && joint.aggregation == Aggregation::Maximum
             && let Some(lines) = &lines
         {
-            let origin = low + 0.5 * (high - low);
-            let partition = Partition::new(lines, terms.len(), origin, unit(high - low));
+            let about = (low + 0.5 * (high - low), unit(high - low));
+            let partition = Partition::new(lines, terms.len(), about, scales);
             if let Some(partition) = partition {
                 return Method::Partition(partition);
             }

@@ -1,4 +1,4 @@
-//! The centroid of minimum and maximum over a partition, as a polynomial in the firing strengths. The terms of a partition
+//! The centroid of the maximum over a partition, as a formula of the firing strengths. The terms of a partition
 //! have height 1, rise straight from 0 to 1, stay there and fall straight to 0. Two overlap only where one falls from 1 to 0
 //! while the other rises from 0 to 1. [`Pair`] has the formulas.
 
@@ -16,8 +16,14 @@ pub(crate) struct Partition {
 }
 
 impl Partition {
-    /// `None` where the terms are no partition.
-    pub(crate) fn new(lines: &Polylines, terms: usize, origin: f64, unit: f64) -> Option<Self> {
+    /// Terms that are scaled by their firing strengths, or cut at them; `None` where they are no partition. Moments are measured
+    /// from `origin`, areas in lengths of `unit`.
+    pub(crate) fn new(
+        lines: &Polylines,
+        terms: usize,
+        (origin, unit): (f64, f64),
+        scales: bool,
+    ) -> Option<Self> {
         // A term that is 0 all over the range comes last.
         let mut middles = vec![f64::INFINITY; terms];
         for (from, to, alive) in lines.intervals() {
@@ -66,6 +72,11 @@ impl Partition {
                     }
                     _ => return None,
                 };
+                if scales {
+                    area[0][lane] += 0.5 * w;
+                    moment[0][lane] += w * (0.5 * m + side * length / 12.0);
+                    continue;
+                }
                 area[0][lane] += w;
                 area[1][lane] -= 0.5 * w;
                 moment[0][lane] += m * w;
@@ -74,8 +85,13 @@ impl Partition {
             }
             match (falling, rising, alive.len()) {
                 (Some(left), Some(right), 2) if right == left + 1 => {
-                    partition.pairs[left / 2].width[left % 2] = w;
-                    partition.pairs[left / 2].middle[left % 2] = m;
+                    let pair = &mut partition.pairs[left / 2];
+                    pair.width[left % 2] = w;
+                    pair.middle[left % 2] = m;
+                    if scales {
+                        pair.width[left % 2] = 0.5 * w;
+                        pair.moment[1][left % 2] = length / 6.0;
+                    }
                 }
                 (_, _, 0 | 1) => {}
                 _ => return None,
@@ -164,10 +180,11 @@ mod tests {
     }
 
     proptest! {
-        /// The polynomials and the walk over pieces are two ways to one number.
+        /// The formulas and the walk over pieces are two ways to one number.
         #[test]
-        fn polynomials_equal_pieces(
+        fn formulas_equal_pieces(
             which in 0..3usize,
+            scales in any::<bool>(),
             strengths in prop::collection::vec(
                 prop_oneof![Just(0.0), Just(0.5), Just(1.0), 0.0..=1.0, 1e-12..1e-9], 5),
         ) {
@@ -176,17 +193,18 @@ mod tests {
             let count = variable.terms.len();
             let origin = 0.5 * (variable.low + variable.high);
             let strengths = &strengths[..count];
-            let partition = Partition::new(&lines, count, origin, 1.0).unwrap();
+            let partition = Partition::new(&lines, count, (origin, 1.0), scales).unwrap();
             let mut ranked = vec![[0.0]; partition.strengths()];
             for (strength, rank) in strengths.iter().zip(partition.ranks()) {
                 ranked[*rank] = [*strength];
             }
-            let [[area], [moment]] = Pair::integrals(partition.pairs(), &ranked);
+            let add = if scales { Pair::scaled } else { Pair::cut };
+            let [[area], [moment]] = Pair::integrals(partition.pairs(), &ranked, add);
             let fast = centroid(area, moment, origin);
             let offsets: Vec<usize> = (0..=count).collect();
             let mut slow = Integrals::about(origin, 1.0);
             let joint = Joint {
-                implication: Implication::Minimum,
+                implication: if scales { Implication::Product } else { Implication::Minimum },
                 aggregation: Aggregation::Maximum,
             };
             let strengths = Strengths { strengths, offsets: &offsets };

@@ -119,6 +119,9 @@ impl OwnedTable {
             return None;
         }
         table.sizes.partial = 1;
+        // In the order of the model the strongest is found in fewer steps.
+        let mut drafts: Vec<&Draft> = drafts.iter().collect();
+        drafts.sort_by_key(|draft| draft.rule);
         for draft in drafts {
             table.program(draft);
         }
@@ -196,10 +199,13 @@ impl OwnedTable {
             Method::Lines(_) | Method::Curves(_) | Method::Sampled(..) | Method::Singletons(_) => {
                 (ClosedForm::NONE, (0, 0))
             }
-            Method::Partition(partition) => (
-                ClosedForm::PARTITION,
-                extend(&mut self.pairs, partition.pairs()),
-            ),
+            Method::Partition(partition) => {
+                let form = match defuzzify.implication() {
+                    Implication::Product => ClosedForm::SCALED_PARTITION,
+                    _ => ClosedForm::PARTITION,
+                };
+                (form, extend(&mut self.pairs, partition.pairs()))
+            }
             Method::Prepared(prepared) => {
                 let form = match defuzzify.implication() {
                     Implication::Product => ClosedForm::SCALED,

@@ -303,6 +303,8 @@ impl<'m> Compiler<'m> {
         Stage {
             batch: OwnedTable::programs_alone(firing, &inputs, &formulas, &drafts, &outputs),
             has_cells_alone: has_cells_alone(&arrays),
+            #[cfg(feature = "simd")]
+            vectors: super::vectors::Vectors::new(&arrays).map(Box::new),
             arrays,
             outputs,
         }

@@ -6,6 +6,7 @@ use core::ops::Range;
 use crate::defuzzify::polyline::Workspace;
 use crate::defuzzify::{Defuzzify, Strengths};
 use crate::model::{Model, NoRuleFires};
+use crate::rows::Rows;
 use crate::table::{self, Buffers, Partial, Strongest, Table};
 use arrays::OwnedTable;
 use chain::Chain;
@@ -22,6 +23,11 @@ mod named;
 mod raising;
 mod rules;
 mod sequence;
+#[cfg(feature = "simd")]
+mod vectors;
+
+#[cfg(feature = "simd")]
+use vectors::Vectors;
 
 pub(crate) use crate::table::operators;
 pub use crate::table::{Outcome, State};
@@ -71,6 +77,9 @@ struct Stage {
     batch: Option<OwnedTable>,
     /// [`table::has_cells_alone`] of `arrays`.
     has_cells_alone: bool,
+    /// The same for single evaluations, where that is faster.
+    #[cfg(feature = "simd")]
+    vectors: Option<Box<Vectors>>,
 }
 
 #[derive(Debug, Clone)]
@@ -119,10 +128,12 @@ pub struct Scratch {
 
 #[derive(Debug, Clone)]
 struct StageScratch<const L: usize = 1> {
-    table: Buffers<Vec<[f64; L]>, Vec<Partial<L>>, Vec<Strongest<L>>>,
+    table: RowBuffers<L>,
     /// For outputs that have no closed form.
     workspace: Workspace,
 }
+
+type RowBuffers<const L: usize> = Buffers<Rows<L>, Vec<Partial<L>>, Vec<Strongest<L>>>;
 
 impl Engine {
     /// The index of an input.
@@ -303,14 +314,14 @@ impl Stage {
         let cuts = self.outputs.iter().map(|output| output.defuzzify.cuts());
         StageScratch {
             table: Buffers {
-                values: vec![[0.0; L]; arrays.inputs.len()],
-                degrees: vec![[0.0; L]; sizes.degrees as usize],
+                values: Rows::new(arrays.inputs.len()),
+                degrees: Rows::new(sizes.degrees as usize),
                 alive: vec![Partial::NONE; sizes.alive as usize],
                 partial: vec![Partial::NONE; sizes.partial as usize],
                 next: vec![Partial::NONE; sizes.partial as usize],
-                stack: vec![[0.0; L]; sizes.stack as usize],
+                stack: Rows::new(sizes.stack as usize),
                 // Cleared eight at a time.
-                strengths: vec![[0.0; L]; strengths.next_multiple_of(8)],
+                strengths: Rows::new(strengths.next_multiple_of(8)),
                 strongest: vec![Strongest::NONE; self.outputs.len()],
             },
             // A term passes two levels of its implication, each rising and falling.
@@ -320,19 +331,35 @@ impl Stage {
 
     #[inline(always)]
     fn outcomes(&self, scratch: &mut StageScratch, inputs: &[f64], outcomes: &mut [Outcome]) {
+        #[cfg(feature = "simd")]
+        match (self.vectors.as_deref(), &mut *outcomes) {
+            (Some(Vectors::Plane(plane)), [outcome]) => return plane.evaluate(inputs, outcome),
+            (Some(Vectors::Uniform(uniform)), _) => {
+                return self.outcomes_by(scratch, inputs, outcomes, |_, buffers| {
+                    let strongest = uniform.fire(&buffers.values, &mut buffers.strengths);
+                    buffers.strongest.fill(strongest);
+                });
+            }
+            _ => {}
+        }
         if self.has_cells_alone {
-            self.outcomes_by::<true>(scratch, inputs, outcomes);
+            self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
+                table::fire::<_, _, _, _, 1, true>(arrays, buffers);
+            });
         } else {
-            self.outcomes_by::<false>(scratch, inputs, outcomes);
+            self.outcomes_by(scratch, inputs, outcomes, |arrays, buffers| {
+                table::fire_row(arrays, buffers);
+            });
         }
     }
 
     #[inline(never)]
-    fn outcomes_by<const CELLS: bool>(
+    fn outcomes_by(
         &self,
         scratch: &mut StageScratch,
         inputs: &[f64],
         outcomes: &mut [Outcome],
+        fire: impl FnOnce(&OwnedTable, &mut RowBuffers<1>),
     ) {
         let StageScratch {
             table: buffers,
@@ -340,13 +367,7 @@ impl Stage {
         } = scratch;
         let integrate =
             |index: usize, strengths: &[f64]| self.integrate(index, strengths, workspace);
-        table::evaluate_row::<_, _, _, _, CELLS>(
-            &self.arrays,
-            buffers,
-            inputs,
-            outcomes,
-            integrate,
-        );
+        table::evaluate_row(&self.arrays, buffers, inputs, outcomes, fire, integrate);
     }
 
     fn integrate(&self, index: usize, strengths: &[f64], workspace: &mut Workspace) -> Option<f64> {

@@ -62,13 +62,14 @@ impl Kind {
         degrees: &mut [f64; L],
     ) {
         let [a, b, c, d] = *parameters;
-        let degree = |degree: f64, x: f64| into_unit(if x.is_nan() { 0.0 } else { degree });
+        let known = |degree: f64, x: f64| if x.is_nan() { 0.0 } else { degree };
+        let degree = |degree: f64, x: f64| into_unit(known(degree, x));
         let x = |row: usize| values[row];
         match self {
-            Kind::TRIANGLE => set(degrees, |i| degree(trapezoid(x(i), a, b, b, c), x(i))),
-            Kind::TRAPEZOID => set(degrees, |i| degree(trapezoid(x(i), a, b, c, d), x(i))),
-            Kind::LEFT_SHOULDER => set(degrees, |i| degree(falling(x(i), a, b), x(i))),
-            Kind::RIGHT_SHOULDER => set(degrees, |i| degree(rising(x(i), a, b), x(i))),
+            Kind::TRIANGLE => set(degrees, |i| known(trapezoid(x(i), a, b, b, c), x(i))),
+            Kind::TRAPEZOID => set(degrees, |i| known(trapezoid(x(i), a, b, c, d), x(i))),
+            Kind::LEFT_SHOULDER => set(degrees, |i| known(falling(x(i), a, b), x(i))),
+            Kind::RIGHT_SHOULDER => set(degrees, |i| known(rising(x(i), a, b), x(i))),
             Kind::GAUSSIAN => set(degrees, |i| degree(gaussian(x(i), a, b), x(i))),
             Kind::SIGMOID => set(degrees, |i| degree(sigmoid(x(i), a, b), x(i))),
             Kind::S_SHAPE => set(degrees, |i| degree(s_shape(x(i), a, b), x(i))),

@@ -117,7 +117,7 @@ fn act<A: Arrays>(table: &A, program: &Program, strength: f64, firing: &mut impl
     let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
     let strength = hedges.iter().fold(strength, |x, hedge| hedge.of(x));
     let actions = program.first_action as usize..program.end_action as usize;
-    firing.act_with(&table.actions()[actions], &[strength]);
+    firing.act_with(&table.actions()[actions], |_| strength);
 }
 
 /// Gives the rules of all blocks that fire to `firing`, with the strengths that the activation methods leave. `rules` has room

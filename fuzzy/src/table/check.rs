@@ -102,7 +102,7 @@ impl Table<'_> {
             let strengths = output.end_strength.saturating_sub(output.first_strength) as usize;
             let numbers = output.end.saturating_sub(output.first) as usize;
             let length = match output.form {
-                ClosedForm::PARTITION => self.pairs.len(),
+                ClosedForm::PARTITION | ClosedForm::SCALED_PARTITION => self.pairs.len(),
                 ClosedForm::MOMENTS => self.moments.len(),
                 ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => self.consequents.len(),
                 ClosedForm::TSUKAMOTO => self.curves.len(),

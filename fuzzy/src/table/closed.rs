@@ -7,7 +7,7 @@ use libm::fabs;
 use super::operators::{larger, smaller};
 use super::{Arrays, Curve, Output, Point};
 use crate::formula::evaluate;
-use crate::rows::{change, join, set};
+use crate::rows::{join, set};
 
 /// The closed form of a defuzzifier.
 #[doc(hidden)] // Exported data.
@@ -33,6 +33,8 @@ impl ClosedForm {
     pub const CUT: ClosedForm = ClosedForm(6);
     /// A [`FuzzySet`](super::FuzzySet) of terms that are scaled: the implication is the product.
     pub const SCALED: ClosedForm = ClosedForm(7);
+    /// The centroid of product and maximum over a partition: [`Pair`]s.
+    pub const SCALED_PARTITION: ClosedForm = ClosedForm(8);
 }
 
 /// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
@@ -43,15 +45,20 @@ impl ClosedForm {
 /// falling; on a plateau `w h` and `m w h`. Both sum over the term's stretches to polynomials in h. Where a
 /// falling and a rising slope overlap, the minimum of the two cut terms has area `w v (1 - v)` with
 /// `v = min(h_falling, h_rising, 1/2)`, symmetric about m. The area of the union is the sum less the overlaps.
+///
+/// A term scaled by firing strength h has, on such a slope, area `w h / 2` and first moment `(m / 2 + s w / 12) w h`. The
+/// minimum of a falling slope scaled by a and a rising one scaled by b is a triangle, highest at the part `t = a / (a + b)` of
+/// the overlap: it has area `w b t / 2`, and its centre lies at `m + w (2 t - 1) / 6`.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
 pub struct Pair {
-    /// `area = area[0] h + area[1] h^2`.
+    /// `area = area[0] h + area[1] h^2`; scaled, `area[0] h`.
     pub area: [[f64; 2]; 2],
-    /// `moment = moment[0] h + moment[1] h^2 + moment[2] h^3`.
+    /// `moment = moment[0] h + moment[1] h^2 + moment[2] h^3`; scaled, `moment[0] h`, and `moment[1]` is a sixth of the length of
+    /// the overlap.
     pub moment: [[f64; 2]; 3],
-    /// The width of the overlap; 0 where there is none.
+    /// The width of the overlap, 0 where there is none; scaled, half of it.
     pub width: [f64; 2],
     /// The middle of the overlap, from the middle of the range.
     pub middle: [f64; 2],
@@ -97,9 +104,9 @@ pub struct Coefficient {
 }
 
 impl Pair {
-    /// The area and moment that one of the two terms adds, from its firing strength and that of the term to its right.
+    /// The area and moment that one of the two terms adds, cut at its firing strength, from that of the term to its right.
     #[inline(always)]
-    pub(crate) fn add(&self, side: usize, h: f64, right: f64) -> (f64, f64) {
+    pub(crate) fn cut(&self, side: usize, h: f64, right: f64) -> (f64, f64) {
         let v = smaller(smaller(h, right), 0.5);
         let common = self.width[side] * (v * (1.0 - v));
         let area = h * (self.area[0][side] + h * self.area[1][side]) - common;
@@ -108,29 +115,40 @@ impl Pair {
         (area, alone - self.middle[side] * common)
     }
 
-    /// The areas and moments of the aggregated sets of a partition. Firing strengths are ordered from left to right.
+    /// [`Pair::cut`] for a term that is scaled.
+    #[inline(always)]
+    pub(crate) fn scaled(&self, side: usize, h: f64, right: f64) -> (f64, f64) {
+        let t = h / larger(h + right, f64::MIN_POSITIVE);
+        let common = self.width[side] * (right * t);
+        let place = self.middle[side] + self.moment[1][side] * (t + t - 1.0);
+        (
+            h * self.area[0][side] - common,
+            h * self.moment[0][side] - common * place,
+        )
+    }
+
+    /// The areas and moments of the aggregated sets of a partition, whose terms are cut or scaled. Firing strengths are ordered
+    /// from left to right.
     #[inline(always)]
     pub(crate) fn integrals<const L: usize>(
         pairs: &[Pair],
         mut strengths: &[[f64; L]],
+        add: impl Fn(&Pair, usize, f64, f64) -> (f64, f64),
     ) -> [[f64; L]; 2] {
-        let (mut area, mut moment) = ([[0.0; L]; 2], [[0.0; L]; 2]);
+        let (mut areas, mut moments) = ([0.0; L], [0.0; L]);
         for pair in pairs {
             let Some((three, _)) = strengths.split_first_chunk::<3>() else {
                 break;
             };
             for side in 0..2 {
                 for row in 0..L {
-                    let (a, m) = pair.add(side, three[side][row], three[side + 1][row]);
-                    area[side][row] += a;
-                    moment[side][row] += m;
+                    let (area, moment) = add(pair, side, three[side][row], three[side + 1][row]);
+                    areas[row] += area;
+                    moments[row] += moment;
                 }
             }
             strengths = &strengths[2..];
         }
-        let ([mut areas, right], [mut moments, right_moments]) = (area, moment);
-        join(&mut areas, &right, |a, b| a + b);
-        join(&mut moments, &right_moments, |a, b| a + b);
         [areas, moments]
     }
 }
@@ -153,7 +171,8 @@ pub(super) fn closed<A: Arrays, const L: usize>(
 ) -> bool {
     let range = output.first as usize..output.end as usize;
     match output.form {
-        ClosedForm::PARTITION => partition(table, output, strengths, values),
+        ClosedForm::PARTITION => partition(table, output, strengths, values, Pair::cut),
+        ClosedForm::SCALED_PARTITION => partition(table, output, strengths, values, Pair::scaled),
         ClosedForm::MOMENTS => {
             let (mut areas, mut moments) = ([0.0; L], [0.0; L]);
             for (Moment { area, moment }, strengths) in table.moments()[range].iter().zip(strengths)
@@ -163,14 +182,12 @@ pub(super) fn closed<A: Arrays, const L: usize>(
                     moments[row] += strengths[row] * moment;
                 }
             }
-            set(values, |row| centroid_in(output, areas[row], moments[row]));
+            set(values, |row| output.centroid((areas[row], moments[row])));
         }
-        // Not clamped to the range unless the author says so: consequents are numbers that the author chose.
-        form @ (ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM) => {
+        ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => {
             let (consequents, coefficients) = (&table.consequents()[range], table.coefficients());
             let numbers = (consequents, coefficients, table.points());
-            weighted(form, numbers, strengths, inputs, values);
-            change(values, |value| output.clamped(value));
+            weighted(output, numbers, strengths, inputs, values);
         }
         _ => return false,
     }
@@ -196,18 +213,29 @@ pub(super) fn partition<A: Arrays, const L: usize>(
     output: &Output,
     strengths: &[[f64; L]],
     values: &mut [f64; L],
+    add: impl Fn(&Pair, usize, f64, f64) -> (f64, f64),
 ) {
     let pairs = &table.pairs()[output.first as usize..output.end as usize];
-    let [areas, moments] = Pair::integrals(pairs, strengths);
-    set(values, |row| centroid_in(output, areas[row], moments[row]));
+    let [areas, moments] = Pair::integrals(pairs, strengths, add);
+    set(values, |row| output.centroid((areas[row], moments[row])));
 }
 
-/// The centroid of a set whose moment is measured from the middle of the range; NaN where it has no area.
-#[inline(always)]
-fn centroid_in(output: &Output, area: f64, moment: f64) -> f64 {
-    let value = output.origin() + moment / area;
-    let value = larger(output.low, smaller(output.high, value));
-    select_unpredictable(area > 0.0, value, f64::NAN)
+impl Output {
+    /// The centroid of a set, from its area and its moment from the middle of the range; NaN where it has no area.
+    #[inline(always)]
+    pub(crate) fn centroid(&self, (area, moment): (f64, f64)) -> f64 {
+        let value = self.origin() + moment / area;
+        let value = larger(self.low, smaller(self.high, value));
+        select_unpredictable(area > 0.0, value, f64::NAN)
+    }
+
+    /// The value of a Takagi-Sugeno output with this total of weights; NaN where no rule fired, and where there is no value. It
+    /// is not clamped to the range unless the author says so: consequents are numbers that the author chose.
+    #[inline(always)]
+    pub(crate) fn weighted(&self, value: f64, total: f64) -> f64 {
+        let is_value = (total > 0.0) & (fabs(value) < f64::INFINITY);
+        self.clamped(select_unpredictable(is_value, value, f64::NAN))
+    }
 }
 
 /// The value of an output with another closed form; `None` where no rule fired.
@@ -261,7 +289,7 @@ fn tsukamoto(
 /// Writes `sum(w z) / sum(w)` or `sum(w z)` with firing strengths w; NaN where none is over 0, and where a formula has no value.
 #[inline(always)]
 fn weighted<const L: usize>(
-    form: ClosedForm,
+    output: &Output,
     (consequents, coefficients, points): (&[Consequent], &[Coefficient], &[Point]),
     strengths: &[[f64; L]],
     inputs: &[[f64; L]],
@@ -293,11 +321,10 @@ fn weighted<const L: usize>(
         }
     }
     set(values, |row| {
-        let value = match form {
+        let value = match output.form {
             ClosedForm::WEIGHTED_SUM => sums[row],
             _ => sums[row] / totals[row],
         };
-        let is_value = (totals[row] > 0.0) & (fabs(value) < f64::INFINITY);
-        select_unpredictable(is_value, value, f64::NAN)
+        output.weighted(value, totals[row])
     });
 }

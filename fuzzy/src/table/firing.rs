@@ -21,12 +21,31 @@ pub struct Strongest<const L: usize = 1> {
     pub(super) rule: [f64; L],
 }
 
+impl Strongest {
+    /// The rule of this index.
+    #[cfg(feature = "simd")]
+    pub(crate) fn of(strength: f64, rule: u32) -> Self {
+        Strongest {
+            strength: [strength],
+            rule: [number_of(rule)],
+        }
+    }
+}
+
 impl<const L: usize> Strongest<L> {
     /// No rule yet.
     pub const NONE: Self = Strongest {
         strength: [0.0; L],
         rule: [f64::INFINITY; L],
     };
+
+    /// Takes the firing strengths of a rule that stands behind all before it. As [`Strongest::or`], it takes no branch.
+    #[inline(always)]
+    fn or_later(&mut self, row: usize, strength: f64, rule: f64) {
+        let (top, first) = (self.strength[row], self.rule[row]);
+        self.rule[row] = select_unpredictable(strength > top, rule, first);
+        self.strength[row] = larger(strength, top);
+    }
 
     /// Takes no branch, which a processor could mispredict.
     #[inline(always)]
@@ -49,8 +68,8 @@ pub(super) trait Act<const L: usize> {
     /// Takes rules with the degree of their antecedent in a row.
     fn act(&mut self, actions: &[Action], row: usize, degree: f64);
 
-    /// Takes rules with their firing strengths, whatever their weights.
-    fn act_with(&mut self, actions: &[Action], strengths: &[f64; L]);
+    /// Takes rules with their firing strength in each row, whatever their weights.
+    fn act_with(&mut self, actions: &[Action], strength: impl Fn(usize) -> f64);
 
     /// Takes the rules of cells of a uniform table, which are of no use afterwards.
     #[inline(always)]
@@ -64,12 +83,27 @@ pub(super) trait Act<const L: usize> {
 }
 
 /// The firing strengths and strongest rules that actions update.
+#[repr(C, align(64))]
 struct Firing<'m, const L: usize> {
+    /// The strongest program where there is one output, in registers: each rule would wait for memory.
+    one: Strongest<L>,
     least: f64,
     strengths: &'m mut [[f64; L]],
     strongest: &'m mut [Strongest<L>],
-    /// The strongest program where there is one output, in registers: each rule would wait for memory.
-    one: Strongest<L>,
+    /// The [number](number_of) of the last rule in the model among the programs that have fired.
+    latest: f64,
+}
+
+/// Calls `take` with what is kept of each row; the two are known to be apart.
+#[inline(always)]
+fn each_row<const L: usize>(
+    kept: &mut [f64; L],
+    strongest: &mut Strongest<L>,
+    take: impl Fn(&mut f64, &mut Strongest<L>, usize),
+) {
+    for (row, kept) in kept.iter_mut().enumerate() {
+        take(kept, strongest, row);
+    }
 }
 
 impl<const L: usize> Firing<'_, L> {
@@ -102,24 +136,32 @@ impl<const L: usize> Act<L> for Firing<'_, L> {
     }
 
     #[inline(always)]
-    fn act_with(&mut self, actions: &[Action], strengths: &[f64; L]) {
+    fn act_with(&mut self, actions: &[Action], strength: impl Fn(usize) -> f64) {
         for action in actions {
             let kept = &mut self.strengths[action.strength as usize];
-            if action.sums != 0 {
-                join(kept, strengths, |a, b| a + b);
-            } else {
-                join(kept, strengths, larger);
-            }
+            let strongest = match &mut *self.strongest {
+                [_] => &mut self.one,
+                all => &mut all[action.output as usize],
+            };
             let rule = number_of(action.rule);
-            if self.strongest.len() == 1 {
-                for (row, &strength) in strengths.iter().enumerate() {
-                    self.one.or(row, strength, rule);
-                }
-            } else {
-                let strongest = &mut self.strongest[action.output as usize];
-                for (row, &strength) in strengths.iter().enumerate() {
+            let is_later = rule > self.latest;
+            self.latest = larger(rule, self.latest);
+            match (action.sums, is_later) {
+                (0, true) => each_row(kept, strongest, |kept, strongest, row| {
+                    let strength = strength(row);
+                    *kept = larger(*kept, strength);
+                    strongest.or_later(row, strength, rule);
+                }),
+                (0, false) => each_row(kept, strongest, |kept, strongest, row| {
+                    let strength = strength(row);
+                    *kept = larger(*kept, strength);
                     strongest.or(row, strength, rule);
-                }
+                }),
+                _ => each_row(kept, strongest, |kept, strongest, row| {
+                    let strength = strength(row);
+                    *kept += strength;
+                    strongest.or(row, strength, rule);
+                }),
             }
         }
     }
@@ -177,7 +219,7 @@ pub(crate) fn has_cells_alone<A: Arrays>(table: &A) -> bool {
 /// Fires all rules on the values in the scratch memory into its firing strengths and strongest rules. `CELLS` is
 /// [`has_cells_alone`]: the code for other tables would take registers from that of cells.
 #[inline(always)]
-pub(super) fn fire<A, N, P, S, const L: usize, const CELLS: bool>(
+pub(crate) fn fire<A, N, P, S, const L: usize, const CELLS: bool>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
 ) where
@@ -195,7 +237,7 @@ pub(super) fn fire<A, N, P, S, const L: usize, const CELLS: bool>(
 
 /// As [`fire`], for rules of any kind in one row.
 #[inline(always)]
-pub(super) fn fire_row<A, N, P, S>(table: &A, scratch: &mut Buffers<N, P, S>)
+pub(crate) fn fire_row<A, N, P, S>(table: &A, scratch: &mut Buffers<N, P, S>)
 where
     A: Arrays,
     N: DerefMut<Target = [[f64; 1]]>,
@@ -231,6 +273,7 @@ where
         strengths,
         strongest,
         one: Strongest::NONE,
+        latest: 0.0,
     };
     (finding, firing)
 }
@@ -270,7 +313,9 @@ impl<'m, const L: usize> Finding<'m, L> {
         if self.degrees.is_empty() {
             return;
         }
-        self.degrees.fill([0.0; L]);
+        if !table.lines().is_empty() {
+            self.degrees.fill([0.0; L]);
+        }
         for (input, values) in table.inputs().iter().zip(self.values) {
             // In a damaged table an input without literals may begin anywhere.
             let of_input = self.degrees.get_mut(input.first_literal as usize..);
@@ -395,19 +440,37 @@ fn fire_with<A: Arrays, const L: usize, const CELLS: bool>(
         return;
     }
     let least = table.least_strength();
-    let mut strengths = [0.0; L];
+    let mut degree = [0.0; L];
     for program in table.programs() {
         let steps = &table.steps()[program.first_step as usize..program.end_step as usize];
-        run(steps, degrees, (&and, &or), stack, &mut strengths);
-        change(&mut strengths, |degree| {
-            fires(program.weight * degree, least)
-        });
-        for hedge in &table.hedges()[program.first_hedge as usize..program.end_hedge as usize] {
-            change(&mut strengths, |strength| hedge.of(strength));
+        let actions = &table.actions()[program.first_action as usize..program.end_action as usize];
+        let hedges = &table.hedges()[program.first_hedge as usize..program.end_hedge as usize];
+        let strength = |degree: f64| fires(program.weight * degree, least);
+        match steps {
+            // The commonest rule, in one pass over the rows.
+            [first, second] if L > 1 && second.op == Op::AND_LITERAL && hedges.is_empty() => {
+                let first = &degrees[first.literal as usize];
+                let second = &degrees[second.literal as usize];
+                firing.act_with(actions, |row| {
+                    strength(into_unit(and(first[row], second[row])))
+                });
+            }
+            _ => {
+                run(steps, degrees, (&and, &or), stack, &mut degree);
+                change(&mut degree, strength);
+                for hedge in hedges {
+                    change(&mut degree, |strength| hedge.of(strength));
+                }
+                firing.act_with(actions, |row| degree[row]);
+            }
         }
-        let actions = program.first_action as usize..program.end_action as usize;
-        firing.act_with(&table.actions()[actions], &strengths);
     }
+}
+
+/// Rounding may have led out of [0, 1].
+#[inline(always)]
+fn into_unit(degree: f64) -> f64 {
+    larger(0.0, smaller(1.0, degree))
 }
 
 /// Writes the degrees of an antecedent to `top`. `stack` holds at least the depth of the program.
@@ -449,5 +512,5 @@ pub(super) fn run<const L: usize>(
             _ => change(top, |top| 1.0 - top),
         }
     }
-    change(top, |top| larger(0.0, smaller(1.0, top)));
+    change(top, into_unit);
 }

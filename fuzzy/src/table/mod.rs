@@ -22,7 +22,7 @@ pub(crate) mod numeric;
 pub(crate) mod operators;
 mod outcome;
 mod raising;
-mod results;
+pub(crate) mod results;
 mod rules;
 pub(crate) mod set;
 
@@ -49,8 +49,7 @@ pub use crate::shape::Kind;
 
 use crate::rows::{each, set};
 use closed::{closed, closed_apart, closed_in_row, partition};
-pub(crate) use firing::has_cells_alone;
-use firing::{fire, fire_row};
+pub(crate) use firing::{fire, fire_row, has_cells_alone};
 use operators::{larger, smaller};
 pub(crate) use raising::{concluded_by, raised_by};
 use results::Given;
@@ -194,7 +193,14 @@ impl Table<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn evaluate(&self, scratch: &mut Scratch<'_>, inputs: &[f64], outcomes: &mut [Outcome]) {
-        evaluate_row::<_, _, _, _, false>(self, &mut scratch.rows(), inputs, outcomes, |_, _| None);
+        evaluate_row(
+            self,
+            &mut scratch.rows(),
+            inputs,
+            outcomes,
+            fire_row,
+            |_, _| None,
+        );
     }
 }
 
@@ -216,13 +222,14 @@ impl Scratch<'_> {
 }
 
 /// [`Table::evaluate`], with `integrate` giving the value of an output without a closed form from its index and its firing
-/// strengths. `CELLS` is [`has_cells_alone`].
+/// strengths. `fire` fires the rules, as [`fire_row`] does.
 #[inline(always)]
-pub(crate) fn evaluate_row<A, N, P, S, const CELLS: bool>(
+pub(crate) fn evaluate_row<A, N, P, S>(
     table: &A,
     scratch: &mut Buffers<N, P, S>,
     inputs: &[f64],
     outcomes: &mut [Outcome],
+    fire: impl FnOnce(&A, &mut Buffers<N, P, S>),
     mut integrate: impl FnMut(usize, &[f64]) -> Option<f64>,
 ) where
     A: Arrays,
@@ -232,11 +239,7 @@ pub(crate) fn evaluate_row<A, N, P, S, const CELLS: bool>(
 {
     let inputs = inputs.as_chunks().0.iter().copied();
     let given = clamp(table, inputs, &mut scratch.values);
-    if CELLS {
-        fire::<_, _, _, _, 1, CELLS>(table, scratch);
-    } else {
-        fire_row(table, scratch);
-    }
+    fire(table, scratch);
     let mut in_row = |index: usize, output: &Output, _, strengths: &[[f64; 1]]| {
         let strengths = strengths.as_flattened();
         value_in_row(table, index, output, strengths, &mut integrate)
@@ -305,7 +308,7 @@ fn clamp<A: Arrays, const L: usize>(
             given.clamped[row] |= u64::from(nearest[row] != values[row]);
         }
         // What is not finite is outside, which is rare.
-        if given.clamped != [0; L] {
+        if given.clamped.iter().fold(0, |any, one| any | one) != 0 {
             for (infinite, value) in given.infinite.iter_mut().zip(&values) {
                 *infinite |= u64::from(!value.is_finite());
             }
@@ -334,7 +337,7 @@ fn fill<A, N, P, S, const L: usize>(
     let strengths = &scratch.strengths[strengths];
     let (inputs, values) = (&scratch.values, &mut results.values);
     let is_known = if output.form == ClosedForm::PARTITION {
-        partition(table, output, strengths, values);
+        partition(table, output, strengths, values, Pair::cut);
         true
     } else if L == 1 {
         closed_apart(table, output, strengths, inputs, values)

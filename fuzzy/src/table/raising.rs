@@ -132,11 +132,12 @@ impl<F: FnMut(u32) -> Option<f64>> Act<1> for Raising<F> {
     fn act(&mut self, actions: &[Action], _row: usize, degree: f64) {
         for action in actions {
             let strength = fires(action.weight * degree, self.least);
-            self.act_with(core::slice::from_ref(action), &[strength]);
+            self.act_with(core::slice::from_ref(action), |_| strength);
         }
     }
 
-    fn act_with(&mut self, actions: &[Action], &[strength]: &[f64; 1]) {
+    fn act_with(&mut self, actions: &[Action], strength: impl Fn(usize) -> f64) {
+        let strength = strength(0);
         for action in actions.iter().filter(|action| action.output == self.output) {
             if strength > 0.0
                 && let Some(score) = (self.score)(action.strength)

@@ -27,7 +27,7 @@ pub(crate) struct Given<const L: usize> {
 
 /// The number of a rule, `2^52 + index`: as wide as a strength, so that vectors hold as many.
 #[inline(always)]
-pub(super) fn number_of(rule: u32) -> f64 {
+pub(crate) fn number_of(rule: u32) -> f64 {
     f64::from_bits(0x4330 << 48 | u64::from(rule))
 }
 

@@ -1,0 +1,121 @@
+//! Single evaluations by the widest vectors of the processor, for rule sets that are plain ANDs of straight terms, of which at
+//! most two overlap. The operations and their order are those of the table, and so are the bits.
+
+use fearless_simd::f64x4;
+use fearless_simd::prelude::*;
+
+use super::arrays::OwnedTable;
+use crate::table::{Arrays as _, Axis, Conjunction, Line};
+
+mod plane;
+mod regions;
+mod uniform;
+
+use plane::Plane;
+use uniform::Uniform;
+
+/// How a table is evaluated.
+#[derive(Debug, Clone)]
+pub(super) enum Vectors {
+    Plane(Plane),
+    Uniform(Uniform),
+}
+
+impl Vectors {
+    /// `None` where vectors are of no use.
+    pub(super) fn new(table: &OwnedTable) -> Option<Self> {
+        let plane = || Some(Vectors::Plane(Plane::new(table)?));
+        let uniform = || Some(Vectors::Uniform(Uniform::new(table)?));
+        plane().or_else(uniform)
+    }
+}
+
+/// The most intervals of an input, less one.
+const MOST_CUTS: usize = 8;
+
+/// The bounds between the intervals of an input, ascending, padded with infinity.
+#[derive(Debug, Clone)]
+struct Cuts([f64; MOST_CUTS]);
+
+impl Cuts {
+    /// `None` where there are too many.
+    fn new(table: &OwnedTable, axis: &Axis) -> Option<Self> {
+        let given = table
+            .cuts
+            .get(axis.first_cut as usize..axis.end_cut as usize)?;
+        let mut cuts = [f64::INFINITY; MOST_CUTS];
+        cuts.get_mut(..given.len())?.copy_from_slice(given);
+        Some(Cuts(cuts))
+    }
+
+    fn intervals(&self) -> usize {
+        1 + self.0.iter().filter(|cut| cut.is_finite()).count()
+    }
+
+    /// The number of the interval that holds `x`.
+    #[inline(always)]
+    fn interval<S: Simd>(&self, simd: S, x: f64) -> usize {
+        let mut above = 0;
+        for (i, cuts) in self.0.as_chunks().0.iter().enumerate() {
+            above |= splat(simd, x).simd_ge(four(simd, cuts)).to_bitmask() << (4 * i);
+        }
+        // The cuts are ascending, so those at or below it are the lowest bits.
+        (above + 1).trailing_zeros() as usize
+    }
+}
+
+/// The conjunctions that vectors know.
+#[derive(Debug, Clone, Copy)]
+enum And {
+    Minimum,
+    Product,
+}
+
+impl And {
+    fn of(table: &OwnedTable) -> Option<Self> {
+        match table.and() {
+            Conjunction::Minimum => Some(And::Minimum),
+            Conjunction::Product => Some(And::Product),
+            _ => None,
+        }
+    }
+
+    #[inline(always)]
+    fn both<S: Simd>(self, one: f64x4<S>, other: f64x4<S>) -> f64x4<S> {
+        match self {
+            And::Minimum => one.min(other),
+            And::Product => one * other,
+        }
+    }
+
+    /// Of the degrees of two lines of each of two inputs: the first of both, the second with the first, the first with the
+    /// second, and the second of both.
+    #[inline(always)]
+    fn cells<S: Simd>(self, simd: S, degrees: f64x4<S>) -> f64x4<S> {
+        let [a, b, c, d] = degrees.to_array();
+        self.both(four(simd, &[a, b, a, b]), four(simd, &[c, c, d, d]))
+    }
+}
+
+/// The two lines of an interval of an axis.
+fn lines(table: &OwnedTable, axis: &Axis, interval: usize) -> Option<[Line; 2]> {
+    let first = axis.first_line as usize + 2 * interval;
+    table.lines.get(first..first + 2)?.try_into().ok()
+}
+
+/// Firing strengths, 0 where they are below the least one.
+#[inline(always)]
+fn fires<S: Simd>(simd: S, strengths: f64x4<S>, least: f64) -> f64x4<S> {
+    let is_below = strengths.simd_lt(splat(simd, least));
+    is_below.select(splat(simd, 0.0), strengths)
+}
+
+#[inline(always)]
+fn four<S: Simd>(simd: S, numbers: &[f64; 4]) -> f64x4<S> {
+    f64x4::simd_from(simd, *numbers)
+}
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, number: f64) -> f64x4<S> {
+    f64x4::splat(simd, number)
+}

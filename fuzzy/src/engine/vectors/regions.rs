@@ -1,0 +1,171 @@
+//! From a compiled table to the regions of its plane.
+
+use alloc::vec::Vec;
+use core::array::from_fn;
+
+use fearless_simd::Level;
+
+use super::plane::{Defuzzifies, Plane, Region, Side};
+use super::{And, Cuts, lines};
+use crate::engine::arrays::OwnedTable;
+use crate::table::{
+    Action, Arrays as _, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Line, Moment,
+    Pair, has_cells_alone,
+};
+
+impl Plane {
+    /// `None` where the table is another one.
+    pub(in super::super) fn new(table: &OwnedTable) -> Option<Self> {
+        let ([first, second], [_, _], [output]) = (&*table.axes, &*table.inputs, &*table.outputs)
+        else {
+            return None;
+        };
+        let Conjunctions::Uniform {
+            actions_a_cell: 1,
+            first_action,
+            sums,
+        } = table.conjunctions
+        else {
+            return None;
+        };
+        let defuzzifies = match (output.form, sums) {
+            (ClosedForm::PARTITION, false) => Defuzzifies::Cut,
+            (ClosedForm::SCALED_PARTITION, false) => Defuzzifies::Scaled,
+            (ClosedForm::MOMENTS, true) => Defuzzifies::Summed,
+            (ClosedForm::WEIGHTED_AVERAGE, true) => Defuzzifies::Average,
+            (ClosedForm::WEIGHTED_SUM, true) => Defuzzifies::Sum,
+            _ => return None,
+        };
+        if (first.input, second.input) != (0, 1) || !has_cells_alone(table) {
+            return None;
+        }
+        let sides = [side(table, first)?, side(table, second)?];
+        let span = output.first as usize..output.end as usize;
+        let numbers = Numbers {
+            pairs: table.pairs.get(span.clone()).unwrap_or_default(),
+            moments: table.moments.get(span.clone()).unwrap_or_default(),
+            consequents: table.consequents.get(span).unwrap_or_default(),
+            coefficients: &table.coefficients,
+            defuzzifies,
+        };
+        let actions = table.actions.get(first_action as usize..)?;
+        let mut regions = Vec::new();
+        let [rows, columns] = [&sides[0], &sides[1]].map(|side| side.cuts.intervals());
+        for row in 0..rows {
+            for column in 0..columns {
+                let [a, b] = lines(table, first, row)?;
+                let [c, d] = lines(table, second, column)?;
+                let cell = |one: &Line, other: &Line| {
+                    let action = actions.get((one.literal + other.literal) as usize)?;
+                    // Rules of weight 0 act on nothing, nor do cells without a rule.
+                    Some((*action, action.weight > 0.0))
+                };
+                let cells = [cell(&a, &c)?, cell(&b, &c)?, cell(&a, &d)?, cell(&b, &d)?];
+                regions.push(numbers.region([a, b, c, d], cells)?);
+            }
+        }
+        Some(Plane {
+            level: Level::new(),
+            sides,
+            columns,
+            regions,
+            least: table.least_strength(),
+            and: And::of(table)?,
+            output: *output,
+            defuzzifies,
+        })
+    }
+}
+
+/// An input of the table; `None` where it has too many cuts.
+fn side(table: &OwnedTable, axis: &Axis) -> Option<Side> {
+    let input = table.inputs.get(axis.input as usize)?;
+    Some(Side {
+        low: input.low,
+        high: input.high,
+        cuts: Cuts::new(table, axis)?,
+    })
+}
+
+/// What the closed form knows of the firing strengths.
+struct Numbers<'t> {
+    pairs: &'t [Pair],
+    moments: &'t [Moment],
+    consequents: &'t [Consequent],
+    coefficients: &'t [Coefficient],
+    defuzzifies: Defuzzifies,
+}
+
+impl Numbers<'_> {
+    /// The region of four lines and four cells, each with whether it acts.
+    fn region(&self, lines: [Line; 4], cells: [(Action, bool); 4]) -> Option<Region> {
+        let acting = cells.iter().filter(|(_, acts)| *acts);
+        let mut slots: Vec<u32> = acting.map(|(action, _)| action.strength).collect();
+        slots.sort_unstable();
+        slots.dedup();
+        let mut numbers = [[0.0; 4]; 7];
+        for (slot, strength) in slots.iter().enumerate() {
+            let next_is_there = slots.get(slot + 1) == Some(&(strength + 1));
+            let of_slot = self.of(*strength as usize, next_is_there)?;
+            for (numbers, number) in numbers.iter_mut().zip(of_slot) {
+                numbers[slot] = number;
+            }
+        }
+        let acts_on = |(action, acts): (Action, bool), slot: usize| {
+            acts && slots.get(slot) == Some(&action.strength)
+        };
+        let first_rule = |set: usize| {
+            let rules = (0..4).filter(|cell| set >> cell & 1 != 0);
+            rules.map(|cell| cells[cell].0.rule).min().unwrap_or(0)
+        };
+        Some(Region {
+            base: lines.map(|line| line.base),
+            rise: lines.map(|line| line.rise),
+            foot: lines.map(|line| line.foot),
+            run: lines.map(|line| line.run),
+            weights: cells.map(|(action, _)| action.weight),
+            acts: cells.map(|cell| {
+                from_fn(|slot| match acts_on(cell, slot) {
+                    true => f64::INFINITY,
+                    false => 0.0,
+                })
+            }),
+            numbers,
+            first_rules: from_fn(first_rule),
+        })
+    }
+
+    /// The numbers of a firing strength, where that of the next one is or is not in the region; `None` where the plane has no
+    /// place for them.
+    fn of(&self, strength: usize, next_is_there: bool) -> Option<[f64; 7]> {
+        match self.defuzzifies {
+            Defuzzifies::Cut | Defuzzifies::Scaled => {
+                let (pair, side) = (self.pairs.get(strength / 2)?, strength % 2);
+                let [a0, a1] = pair.area.map(|sides| sides[side]);
+                let [m0, m1, m2] = pair.moment.map(|sides| sides[side]);
+                let width = if next_is_there { pair.width[side] } else { 0.0 };
+                Some([a0, a1, m0, m1, m2, width, pair.middle[side]])
+            }
+            Defuzzifies::Summed => {
+                let Moment { area, moment } = self.moments.get(strength)?;
+                Some([*area, *moment, 0.0, 0.0, 0.0, 0.0, 0.0])
+            }
+            Defuzzifies::Average | Defuzzifies::Sum => {
+                let consequent = self.consequents.get(strength)?;
+                let span = consequent.first as usize..consequent.end as usize;
+                let coefficients = self.coefficients.get(span)?;
+                let mut of = [0.0; 2];
+                // In the order of the inputs, each at most once: another order may give other bits.
+                if !coefficients.is_sorted_by(|a, b| a.input < b.input)
+                    || consequent.first_code < consequent.end_code
+                {
+                    return None;
+                }
+                for c in coefficients {
+                    *of.get_mut(c.input as usize)? = c.coefficient;
+                }
+                Some([consequent.constant, of[0], of[1], 0.0, 0.0, 0.0, 0.0])
+            }
+        }
+    }
+}
