@@ -40,7 +40,7 @@
 //! - `std` and `yaml` (default): the standard library; rule sets as YAML, and `Model: FromStr`.
 //! - `serde`: models in any format that serde knows; outcomes, explanations and findings as data.
 //! - `check`, `learn`: the modules of these names.
-//! - `simd`, `parallel`: batches with wide vectors; batches and maps on all cores.
+//! - `simd`: batches and common single calls with wide vectors; `parallel`: batches and maps on all cores.
 //! - `alloc` alone builds without `std`; without any feature only compiled tables are left, which need `core`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
