@@ -119,3 +119,6 @@ fn four<S: Simd>(simd: S, numbers: &[f64; 4]) -> f64x4<S> {
 fn splat<S: Simd>(simd: S, number: f64) -> f64x4<S> {
     f64x4::splat(simd, number)
 }
+
+#[cfg(test)]
+mod tests;
