@@ -182,11 +182,10 @@ fn time(name: &str, model: &Model) -> Result<(), Box<dyn std::error::Error>> {
             }
         })
     };
-    let few = points(model, POINTS);
-    println!("{name},ours,{},0", single(&few));
     let many = single(&points(model, MANY_POINTS));
+    let points = points(model, POINTS);
+    println!("{name},ours,{},0", single(&points));
     println!("{name},ours: {MANY_POINTS} points,{many},0");
-    let points = few;
     let columns: Vec<Vec<f64>> = (0..model.inputs.len())
         .map(|input| points.iter().map(|point| point[input]).collect())
         .collect();

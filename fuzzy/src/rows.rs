@@ -4,11 +4,6 @@
 //! choice by a mask keeps it from making a branch for each row. The operations of a row and their order do not depend on the
 //! number of rows, so the bits are the same.
 
-#[cfg(feature = "alloc")]
-use alloc::{vec, vec::Vec};
-#[cfg(feature = "alloc")]
-use core::ops::{Deref, DerefMut};
-
 /// A number for each row. Unlike [`core::array::from_fn`] it is inlined into functions for wide vectors.
 #[inline(always)]
 pub(crate) fn each<const L: usize>(mut of_row: impl FnMut(usize) -> f64) -> [f64; L] {
@@ -44,51 +39,5 @@ pub(crate) fn join<const L: usize>(
 ) {
     for (number, other) in numbers.iter_mut().zip(others) {
         *number = join(*number, *other);
-    }
-}
-
-/// Numbers of `L` rows each. Those of several rows begin where a cache line does, because a vector that lies on two lines takes
-/// twice as long.
-#[cfg(feature = "alloc")]
-#[derive(Debug, Clone)]
-pub(crate) struct Rows<const L: usize> {
-    numbers: Vec<f64>,
-    /// Where the first row begins.
-    start: usize,
-}
-
-#[cfg(feature = "alloc")]
-impl<const L: usize> Rows<L> {
-    /// So many, all 0.
-    pub(crate) fn new(count: usize) -> Self {
-        const LINE: usize = 64;
-        let spare = if L > 1 {
-            LINE / size_of::<f64>() - 1
-        } else {
-            0
-        };
-        let numbers = vec![0.0; count * L + spare];
-        let start = numbers.as_ptr().align_offset(LINE).min(spare);
-        Rows { numbers, start }
-    }
-}
-
-#[cfg(feature = "alloc")]
-impl<const L: usize> Deref for Rows<L> {
-    type Target = [[f64; L]];
-
-    #[inline(always)]
-    fn deref(&self) -> &[[f64; L]] {
-        let start = if L > 1 { self.start } else { 0 };
-        self.numbers[start..].as_chunks().0
-    }
-}
-
-#[cfg(feature = "alloc")]
-impl<const L: usize> DerefMut for Rows<L> {
-    #[inline(always)]
-    fn deref_mut(&mut self) -> &mut [[f64; L]] {
-        let start = if L > 1 { self.start } else { 0 };
-        self.numbers[start..].as_chunks_mut().0
     }
 }

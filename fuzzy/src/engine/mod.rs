@@ -6,11 +6,12 @@ use core::ops::Range;
 use crate::defuzzify::polyline::Workspace;
 use crate::defuzzify::{Defuzzify, Strengths};
 use crate::model::{Model, NoRuleFires};
-use crate::rows::Rows;
 use crate::table::{self, Buffers, Partial, Strongest, Table};
+use aligned::Rows;
 use arrays::OwnedTable;
 use chain::Chain;
 
+mod aligned;
 mod arrays;
 pub(crate) mod batch;
 mod chain;
@@ -77,7 +78,7 @@ struct Stage {
     batch: Option<OwnedTable>,
     /// [`table::has_cells_alone`] of `arrays`.
     has_cells_alone: bool,
-    /// The same for single evaluations, where that is faster.
+    /// The same rules for single evaluations, where vectors make them faster.
     #[cfg(feature = "simd")]
     vectors: Option<Box<Vectors>>,
 }
@@ -332,9 +333,11 @@ impl Stage {
     #[inline(always)]
     fn outcomes(&self, scratch: &mut StageScratch, inputs: &[f64], outcomes: &mut [Outcome]) {
         #[cfg(feature = "simd")]
-        match (self.vectors.as_deref(), &mut *outcomes) {
-            (Some(Vectors::Plane(plane)), [outcome]) => return plane.evaluate(inputs, outcome),
-            (Some(Vectors::Uniform(uniform)), _) => {
+        match (self.vectors.as_deref(), inputs, &mut *outcomes) {
+            (Some(Vectors::Plane(plane)), &[x, y], [outcome]) => {
+                return plane.evaluate([x, y], outcome);
+            }
+            (Some(Vectors::Uniform(uniform)), ..) => {
                 return self.outcomes_by(scratch, inputs, outcomes, |_, buffers| {
                     let strongest = uniform.fire(&buffers.values, &mut buffers.strengths);
                     buffers.strongest.fill(strongest);

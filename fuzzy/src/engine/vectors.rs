@@ -97,6 +97,34 @@ impl And {
     }
 }
 
+/// Four lines, two of each of two inputs: [`Line`].
+#[derive(Debug, Clone)]
+struct Lines {
+    base: [f64; 4],
+    rise: [f64; 4],
+    foot: [f64; 4],
+    run: [f64; 4],
+}
+
+impl Lines {
+    fn new(lines: [Line; 4]) -> Self {
+        Lines {
+            base: lines.map(|line| line.base),
+            rise: lines.map(|line| line.rise),
+            foot: lines.map(|line| line.foot),
+            run: lines.map(|line| line.run),
+        }
+    }
+
+    /// Their degrees at the values of the two inputs.
+    #[inline(always)]
+    fn degrees<S: Simd>(&self, simd: S, [x, y]: [f64; 2]) -> f64x4<S> {
+        let at = four(simd, &[x, x, y, y]);
+        let along = (at - four(simd, &self.foot)) / four(simd, &self.run);
+        four(simd, &self.base) + four(simd, &self.rise) * along
+    }
+}
+
 /// The two lines of an interval of an axis.
 fn lines(table: &OwnedTable, axis: &Axis, interval: usize) -> Option<[Line; 2]> {
     let first = axis.first_line as usize + 2 * interval;

@@ -1,6 +1,7 @@
 //! Rule blocks with operators and an activation method of their own. Each rule is a program.
 
-use super::firing::{Act, run};
+use super::acting::Act;
+use super::firing::run;
 use super::{Activation, Arrays, Comparison, Conjunction, Disjunction, Partial, Program};
 
 /// A rule block.

@@ -4,7 +4,7 @@
 //! with terms that sum to 1, that is 16 of the 625 rules of 4 inputs with 5 terms.
 
 use super::Arrays;
-use super::firing::Act;
+use super::acting::Act;
 use super::input::{along, curves, lines};
 use super::rules::{Action, Axis, Dimension};
 

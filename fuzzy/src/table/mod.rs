@@ -8,6 +8,7 @@
 
 use core::ops::DerefMut;
 
+mod acting;
 mod activation;
 mod arrays;
 mod blocks;
@@ -26,6 +27,7 @@ pub(crate) mod results;
 mod rules;
 pub(crate) mod set;
 
+pub use acting::Strongest;
 pub use activation::{Activation, Comparison, LEAST_STRENGTH};
 pub(crate) use arrays::{Arrays, arrays_from_fields};
 pub use arrays::{Table, arrays};
@@ -35,7 +37,6 @@ pub use check::Damaged;
 pub use closed::{ClosedForm, Coefficient, Consequent, Moment, Pair};
 pub(crate) use closed::{centroid, finite};
 pub use conjunctions::Partial;
-pub use firing::Strongest;
 pub use flank::{Flank, Knot};
 #[cfg(test)]
 pub(crate) use input::degrees_in_rows;

@@ -2,9 +2,10 @@
 
 use core::ops::DerefMut;
 
+use super::acting::{Act, Strongest, fires};
 use super::closed::closed;
 use super::conjunctions::Partial;
-use super::firing::{Act, Strongest, fire_row_into, fires};
+use super::firing::fire_row_into;
 use super::{Action, Arrays, Buffers, Output, Scratch, Table, clamp, value_in_row};
 
 impl Table<'_> {

@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, f64x4};
 
-use super::{And, Cuts, fires, four, splat};
+use super::{And, Cuts, Lines, fires, four, splat};
 use crate::table::operators::{larger, smaller};
 use crate::table::results::{Given, number_of};
 use crate::table::{Outcome, Output, Results};
@@ -59,11 +59,7 @@ pub(super) struct Side {
 /// slots are the firing strengths that the cells act on, ascending; those that are left over are 0.
 #[derive(Debug, Clone)]
 pub(super) struct Region {
-    /// Of each line: [`Line`](crate::table::Line).
-    pub(super) base: [f64; 4],
-    pub(super) rise: [f64; 4],
-    pub(super) foot: [f64; 4],
-    pub(super) run: [f64; 4],
+    pub(super) lines: Lines,
     /// Of each cell: the weight of its rule.
     pub(super) weights: [f64; 4],
     /// Of each cell, for each slot: infinite where it acts on it, else 0.
@@ -77,14 +73,12 @@ pub(super) struct Region {
 impl Plane {
     /// [`Engine::evaluate_with`](crate::Engine::evaluate_with).
     #[inline(always)]
-    pub(in super::super) fn evaluate(&self, inputs: &[f64], outcome: &mut Outcome) {
-        if let Ok(inputs) = inputs.try_into() {
-            fearless_simd::dispatch!(self.level, simd => self.evaluate_by(simd, inputs, outcome));
-        }
+    pub(in super::super) fn evaluate(&self, inputs: [f64; 2], outcome: &mut Outcome) {
+        fearless_simd::dispatch!(self.level, simd => self.evaluate_by(simd, inputs, outcome));
     }
 
     #[inline(always)]
-    fn evaluate_by<S: Simd>(&self, simd: S, inputs: &[f64; 2], outcome: &mut Outcome) {
+    fn evaluate_by<S: Simd>(&self, simd: S, inputs: [f64; 2], outcome: &mut Outcome) {
         let [first, second] = &self.sides;
         // NaN becomes the upper end.
         let near = |x: f64, side: &Side| larger(smaller(x, side.high), side.low);
@@ -94,10 +88,11 @@ impl Plane {
         let infinite = clamped && !(inputs[0].is_finite() && inputs[1].is_finite());
         let (row, column) = (first.cuts.interval(simd, x), second.cuts.interval(simd, y));
         let Some(region) = self.regions.get(row * self.columns + column) else {
+            // There is one for each two intervals.
+            *outcome = Outcome::UNDEFINED;
             return;
         };
-        let degrees = region.degrees(simd, [x, y]);
-        let degrees = self.and.cells(simd, degrees);
+        let degrees = self.and.cells(simd, region.lines.degrees(simd, [x, y]));
         let weights = four(simd, &region.weights);
         let strengths = fires(simd, weights * degrees, self.least);
         let [a, b, c, d] = strengths.to_array();
@@ -132,9 +127,9 @@ impl Plane {
             }
             Defuzzifies::Summed => {
                 let heights = region.sums(simd, strengths);
-                let [area, moment, ..] = region.numbers;
+                let [area, moment, ..] = &region.numbers;
                 let of = |numbers| sum(heights * four(simd, numbers));
-                output.centroid((of(&area), of(&moment)))
+                output.centroid((of(area), of(moment)))
             }
             Defuzzifies::Average | Defuzzifies::Sum => {
                 let weights = region.sums(simd, strengths);
@@ -147,14 +142,6 @@ impl Plane {
 }
 
 impl Region {
-    /// The degrees of the four lines.
-    #[inline(always)]
-    fn degrees<S: Simd>(&self, simd: S, [x, y]: [f64; 2]) -> f64x4<S> {
-        let at = four(simd, &[x, x, y, y]);
-        let along = (at - four(simd, &self.foot)) / four(simd, &self.run);
-        four(simd, &self.base) + four(simd, &self.rise) * along
-    }
-
     /// What each cell adds to the slots.
     #[inline(always)]
     fn parts<S: Simd>(&self, simd: S, strengths: f64x4<S>) -> [f64x4<S>; 4] {

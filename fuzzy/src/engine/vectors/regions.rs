@@ -6,7 +6,7 @@ use core::array::from_fn;
 use fearless_simd::Level;
 
 use super::plane::{Defuzzifies, Plane, Region, Side};
-use super::{And, Cuts, lines};
+use super::{And, Cuts, Lines, lines};
 use crate::engine::arrays::OwnedTable;
 use crate::table::{
     Action, Arrays as _, Axis, ClosedForm, Coefficient, Conjunctions, Consequent, Line, Moment,
@@ -119,10 +119,7 @@ impl Numbers<'_> {
             rules.map(|cell| cells[cell].0.rule).min().unwrap_or(0)
         };
         Some(Region {
-            base: lines.map(|line| line.base),
-            rise: lines.map(|line| line.rise),
-            foot: lines.map(|line| line.foot),
-            run: lines.map(|line| line.run),
+            lines: Lines::new(lines),
             weights: cells.map(|(action, _)| action.weight),
             acts: cells.map(|cell| {
                 from_fn(|slot| match acts_on(cell, slot) {

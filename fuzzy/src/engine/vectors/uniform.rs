@@ -2,13 +2,13 @@
 
 use alloc::vec::Vec;
 
+use fearless_simd::Level;
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f64x4};
 
-use super::{And, Cuts, fires, four, lines, splat};
+use super::{And, Cuts, Lines, fires, four, lines, splat};
 use crate::engine::arrays::OwnedTable;
 use crate::table::operators::larger;
-use crate::table::{Arrays as _, Conjunctions, Strongest, has_cells_alone};
+use crate::table::{Arrays as _, Conjunctions, Line, Strongest, has_cells_alone};
 
 /// A uniform table that has an action a cell, on one output.
 #[derive(Debug, Clone)]
@@ -21,22 +21,13 @@ pub(in super::super) struct Uniform {
     least: f64,
 }
 
-/// An input, with an entry for each interval.
+/// An input.
 #[derive(Debug, Clone)]
 struct Axis {
     input: usize,
     cuts: Cuts,
-    spans: Vec<Span>,
-}
-
-/// Of the two [`Line`](crate::table::Line)s of an interval.
-#[derive(Debug, Clone)]
-struct Span {
-    base: [f64; 2],
-    rise: [f64; 2],
-    foot: [f64; 2],
-    run: [f64; 2],
-    offset: [u32; 2],
+    /// The two lines of each interval.
+    intervals: Vec<[Line; 2]>,
 }
 
 /// What the rule of a cell does: [`Action`](crate::table::Action).
@@ -72,19 +63,10 @@ impl Uniform {
         let mut axes = Vec::new();
         for axis in &table.axes {
             let cuts = Cuts::new(table, axis)?;
-            let span = |interval: usize| {
-                let lines = lines(table, axis, interval)?;
-                Some(Span {
-                    base: lines.map(|line| line.base),
-                    rise: lines.map(|line| line.rise),
-                    foot: lines.map(|line| line.foot),
-                    run: lines.map(|line| line.run),
-                    offset: lines.map(|line| line.literal),
-                })
-            };
+            let intervals = (0..cuts.intervals()).map(|interval| lines(table, axis, interval));
             axes.push(Axis {
                 input: axis.input as usize,
-                spans: (0..cuts.intervals()).map(span).collect::<Option<_>>()?,
+                intervals: intervals.collect::<Option<_>>()?,
                 cuts,
             });
         }
@@ -116,7 +98,11 @@ impl Uniform {
             [a, b, c, d] => self.fire_by(simd, ([a, b], [c, d]), values, strengths),
             _ => None,
         });
-        strongest.unwrap_or(Strongest::NONE)
+        strongest.unwrap_or_else(|| {
+            // There is a line for each interval and a cell for all lines.
+            strengths.fill([0.0]);
+            Strongest::NONE
+        })
     }
 
     #[inline(always)]
@@ -130,24 +116,26 @@ impl Uniform {
         let at = |axis: &Axis| values.get(axis.input).map(|[x]| *x);
         let at = [at(first)?, at(second)?];
         let [x, y] = at;
-        let spans = [first.span(simd, x)?, second.span(simd, y)?];
-        let of_cells = self.and.cells(simd, degrees(simd, spans, at));
-        let [[a, b], [c, d]] = spans.map(|span| span.offset);
+        let ([a, b], [c, d]) = (*first.lines(simd, x)?, *second.lines(simd, y)?);
+        let degrees = Lines::new([a, b, c, d]).degrees(simd, at);
+        let of_cells = self.and.cells(simd, degrees);
+        let [a, b, c, d] = [a, b, c, d].map(|line| line.literal);
         let mut visited = [of_cells; MOST_VISITED / 4];
         let mut cells = [a + c; MOST_VISITED];
         (cells[1], cells[2], cells[3]) = (b + c, a + d, b + d);
         let mut vectors = 1;
         for axis in more {
             let [x] = *values.get(axis.input)?;
-            let span = axis.span(simd, x)?;
-            let [low, high, ..] = degrees(simd, [span; 2], [x; 2]).to_array();
+            let [a, b] = *axis.lines(simd, x)?;
+            let degrees = Lines::new([a, b, a, b]).degrees(simd, [x, x]);
+            let [low, high, ..] = degrees.to_array();
             for i in 0..vectors {
                 visited[vectors + i] = self.and.both(visited[i], splat(simd, high));
                 visited[i] = self.and.both(visited[i], splat(simd, low));
             }
             for i in 0..4 * vectors {
-                cells[4 * vectors + i] = cells[i] + span.offset[1];
-                cells[i] += span.offset[0];
+                cells[4 * vectors + i] = cells[i] + b.literal;
+                cells[i] += a.literal;
             }
             vectors *= 2;
         }
@@ -188,19 +176,7 @@ impl Uniform {
 
 impl Axis {
     #[inline(always)]
-    fn span<S: Simd>(&self, simd: S, x: f64) -> Option<&Span> {
-        self.spans.get(self.cuts.interval(simd, x))
+    fn lines<S: Simd>(&self, simd: S, x: f64) -> Option<&[Line; 2]> {
+        self.intervals.get(self.cuts.interval(simd, x))
     }
-}
-
-/// The degrees of the two lines of each of two inputs.
-#[inline(always)]
-fn degrees<S: Simd>(simd: S, [one, other]: [&Span; 2], [x, y]: [f64; 2]) -> f64x4<S> {
-    let four = |of: fn(&Span) -> &[f64; 2]| {
-        let ([a, b], [c, d]) = (of(one), of(other));
-        four(simd, &[*a, *b, *c, *d])
-    };
-    let at = super::four(simd, &[x, x, y, y]);
-    let along = (at - four(|span| &span.foot)) / four(|span| &span.run);
-    four(|span| &span.base) + four(|span| &span.rise) * along
 }

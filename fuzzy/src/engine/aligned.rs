@@ -1,0 +1,46 @@
+//! Memory for the numbers of several rows.
+
+use alloc::{vec, vec::Vec};
+use core::ops::{Deref, DerefMut};
+
+/// Numbers of `L` rows each. Those of several rows begin where a cache line does, because a vector that lies on two lines takes
+/// twice as long.
+#[derive(Debug, Clone)]
+pub(super) struct Rows<const L: usize> {
+    numbers: Vec<f64>,
+    /// Where the first row begins.
+    start: usize,
+}
+
+impl<const L: usize> Rows<L> {
+    /// So many, all 0.
+    pub(super) fn new(count: usize) -> Self {
+        const LINE: usize = 64;
+        let spare = if L > 1 {
+            LINE / size_of::<f64>() - 1
+        } else {
+            0
+        };
+        let numbers = vec![0.0; count * L + spare];
+        let start = numbers.as_ptr().align_offset(LINE).min(spare);
+        Rows { numbers, start }
+    }
+}
+
+impl<const L: usize> Deref for Rows<L> {
+    type Target = [[f64; L]];
+
+    #[inline(always)]
+    fn deref(&self) -> &[[f64; L]] {
+        let start = if L > 1 { self.start } else { 0 };
+        self.numbers[start..].as_chunks().0
+    }
+}
+
+impl<const L: usize> DerefMut for Rows<L> {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [[f64; L]] {
+        let start = if L > 1 { self.start } else { 0 };
+        self.numbers[start..].as_chunks_mut().0
+    }
+}

@@ -1,0 +1,231 @@
+//! What is done with the rules that fire: firing strengths join, and the strongest rule of each output is kept.
+
+use core::hint::select_unpredictable;
+
+use super::conjunctions::{Cells, Partial};
+use super::operators::{larger, smaller};
+use super::results::number_of;
+use super::rules::Action;
+use crate::rows::join;
+
+/// The strongest rule of an output in each of `L` rows: the first in the model of several equally strong rules, in whatever
+/// order they fire.
+#[derive(Debug, Clone, Copy)]
+pub struct Strongest<const L: usize = 1> {
+    pub(super) strength: [f64; L],
+    /// Its [number](number_of), infinite where there is none.
+    pub(super) rule: [f64; L],
+}
+
+impl Strongest {
+    /// The rule of this index, with its firing strength.
+    #[cfg(feature = "simd")]
+    pub(crate) fn of(strength: f64, rule: u32) -> Self {
+        Strongest {
+            strength: [strength],
+            rule: [number_of(rule)],
+        }
+    }
+}
+
+impl<const L: usize> Strongest<L> {
+    /// No rule yet.
+    pub const NONE: Self = Strongest {
+        strength: [0.0; L],
+        rule: [f64::INFINITY; L],
+    };
+
+    /// Takes the firing strengths of a rule that stands behind all before it. As [`Strongest::or`], it takes no branch.
+    #[inline(always)]
+    fn or_later(&mut self, row: usize, strength: f64, rule: f64) {
+        let (top, first) = (self.strength[row], self.rule[row]);
+        self.rule[row] = select_unpredictable(strength > top, rule, first);
+        self.strength[row] = larger(strength, top);
+    }
+
+    /// Takes no branch, which a processor could mispredict.
+    #[inline(always)]
+    fn or(&mut self, row: usize, strength: f64, rule: f64) {
+        let (top, first) = (self.strength[row], self.rule[row]);
+        let of_equal = select_unpredictable(strength == top, smaller(rule, first), first);
+        self.rule[row] = select_unpredictable(strength > top, rule, of_equal);
+        self.strength[row] = larger(strength, top);
+    }
+}
+
+/// A firing strength, or 0 below the least one.
+#[inline(always)]
+pub(super) fn fires(strength: f64, least: f64) -> f64 {
+    if strength < least { 0.0 } else { strength }
+}
+
+/// What is done with the rules that fire.
+pub(super) trait Act<const L: usize> {
+    /// Takes rules with the degree of their antecedent in a row.
+    fn act(&mut self, actions: &[Action], row: usize, degree: f64);
+
+    /// Takes rules with their firing strength in each row, whatever their weights.
+    fn act_with(&mut self, actions: &[Action], strength: impl Fn(usize) -> f64);
+
+    /// Takes the rules of cells of a uniform table, which are of no use afterwards.
+    #[inline(always)]
+    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [Partial<L>]) {
+        for cell in reached {
+            for row in 0..L {
+                self.act(cells.actions_of(cell.at[row]), row, cell.degree[row]);
+            }
+        }
+    }
+}
+
+/// The firing strengths and strongest rules that actions update. A vector of `one` that lay on two cache lines would take twice
+/// as long.
+#[repr(C, align(64))]
+pub(super) struct Firing<'m, const L: usize> {
+    /// The strongest program where there is one output, in registers: each rule would wait for memory.
+    one: Strongest<L>,
+    least: f64,
+    strengths: &'m mut [[f64; L]],
+    strongest: &'m mut [Strongest<L>],
+    /// The [number](number_of) of the last rule in the model among the programs that have fired.
+    latest: f64,
+}
+
+impl<'m, const L: usize> Firing<'m, L> {
+    /// Nothing has fired yet; the firing strengths are 0.
+    #[inline(always)]
+    pub(super) fn new(
+        least: f64,
+        strengths: &'m mut [[f64; L]],
+        strongest: &'m mut [Strongest<L>],
+    ) -> Self {
+        Firing {
+            one: Strongest::NONE,
+            least,
+            strengths,
+            strongest,
+            latest: 0.0,
+        }
+    }
+
+    /// All rules have fired.
+    #[inline(always)]
+    pub(super) fn end(self) {
+        if let [strongest] = self.strongest {
+            let mut all = self.one;
+            for row in 0..L {
+                all.or(row, strongest.strength[row], strongest.rule[row]);
+            }
+            *strongest = all;
+        }
+    }
+}
+
+impl<const L: usize> Act<L> for Firing<'_, L> {
+    #[inline(always)]
+    fn act(&mut self, actions: &[Action], row: usize, degree: f64) {
+        for action in actions {
+            let strength = fires(action.weight * degree, self.least);
+            let kept = &mut self.strengths[action.strength as usize][row];
+            *kept = if action.sums != 0 {
+                *kept + strength
+            } else {
+                larger(*kept, strength)
+            };
+            self.strongest[action.output as usize].or(row, strength, number_of(action.rule));
+        }
+    }
+
+    #[inline(always)]
+    fn act_with(&mut self, actions: &[Action], strength: impl Fn(usize) -> f64) {
+        for action in actions {
+            let kept = &mut self.strengths[action.strength as usize];
+            let strongest = match &mut *self.strongest {
+                [_] => &mut self.one,
+                all => &mut all[action.output as usize],
+            };
+            let rule = number_of(action.rule);
+            let is_later = rule > self.latest;
+            self.latest = larger(rule, self.latest);
+            match (action.sums, is_later) {
+                (0, true) => take(
+                    kept,
+                    strongest,
+                    &strength,
+                    rule,
+                    larger,
+                    Strongest::or_later,
+                ),
+                (0, false) => take(kept, strongest, &strength, rule, larger, Strongest::or),
+                _ => take(
+                    kept,
+                    strongest,
+                    &strength,
+                    rule,
+                    |a, b| a + b,
+                    Strongest::or,
+                ),
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn act_in_cells(&mut self, cells: &Cells<'_>, reached: &mut [Partial<L>]) {
+        if let ([one], 1, false) = (&mut *self.strongest, cells.actions_a_cell, cells.sums) {
+            *one = fire_cells(cells, reached, self.strengths, self.least);
+            return;
+        }
+        for cell in reached {
+            for row in 0..L {
+                self.act(cells.actions_of(cell.at[row]), row, cell.degree[row]);
+            }
+        }
+    }
+}
+
+/// Joins the firing strengths of a rule with those that are kept, and takes it as the strongest by `or` where it is.
+#[inline(always)]
+fn take<const L: usize>(
+    kept: &mut [f64; L],
+    strongest: &mut Strongest<L>,
+    strength: impl Fn(usize) -> f64,
+    rule: f64,
+    join: impl Fn(f64, f64) -> f64,
+    or: impl Fn(&mut Strongest<L>, usize, f64, f64),
+) {
+    for (row, kept) in kept.iter_mut().enumerate() {
+        let strength = strength(row);
+        *kept = join(*kept, strength);
+        or(strongest, row, strength, rule);
+    }
+}
+
+/// Fires the rules of cells that have an action each, on one output, and returns the strongest.
+#[inline(always)]
+fn fire_cells<const L: usize>(
+    cells: &Cells<'_>,
+    reached: &mut [Partial<L>],
+    strengths: &mut [[f64; L]],
+    least: f64,
+) -> Strongest<L> {
+    let mut strongest = Strongest::NONE;
+    for cell in &mut *reached {
+        let rows = cell.degree.iter_mut().zip(&mut cell.at).enumerate();
+        for (row, (degree, at)) in rows {
+            let action = &cells.actions[*at as usize];
+            let strength = fires(action.weight * *degree, least);
+            let kept = &mut strengths[action.strength as usize][row];
+            *kept = larger(*kept, strength);
+            (*degree, *at) = (strength, action.rule);
+        }
+        join(&mut strongest.strength, &cell.degree, larger);
+    }
+    for cell in &*reached {
+        for row in 0..L {
+            let is_strongest = cell.degree[row] == strongest.strength[row];
+            let rule = select_unpredictable(is_strongest, number_of(cell.at[row]), f64::INFINITY);
+            strongest.rule[row] = smaller(rule, strongest.rule[row]);
+        }
+    }
+    strongest
+}
