@@ -333,9 +333,9 @@ impl Stage {
     #[inline(always)]
     fn outcomes(&self, scratch: &mut StageScratch, inputs: &[f64], outcomes: &mut [Outcome]) {
         #[cfg(feature = "simd")]
-        match (self.vectors.as_deref(), inputs, &mut *outcomes) {
-            (Some(Vectors::Plane(plane)), &[x, y], [outcome]) => {
-                return plane.evaluate([x, y], outcome);
+        match (self.vectors.as_deref(), inputs.try_into(), &mut *outcomes) {
+            (Some(Vectors::Plane(plane)), Ok(inputs), [outcome]) => {
+                return plane.evaluate(inputs, outcome);
             }
             (Some(Vectors::Uniform(uniform)), ..) => {
                 return self.outcomes_by(scratch, inputs, outcomes, |_, buffers| {

@@ -73,12 +73,12 @@ pub(super) struct Region {
 impl Plane {
     /// [`Engine::evaluate_with`](crate::Engine::evaluate_with).
     #[inline(always)]
-    pub(in super::super) fn evaluate(&self, inputs: [f64; 2], outcome: &mut Outcome) {
+    pub(in super::super) fn evaluate(&self, inputs: &[f64; 2], outcome: &mut Outcome) {
         fearless_simd::dispatch!(self.level, simd => self.evaluate_by(simd, inputs, outcome));
     }
 
     #[inline(always)]
-    fn evaluate_by<S: Simd>(&self, simd: S, inputs: [f64; 2], outcome: &mut Outcome) {
+    fn evaluate_by<S: Simd>(&self, simd: S, inputs: &[f64; 2], outcome: &mut Outcome) {
         let [first, second] = &self.sides;
         // NaN becomes the upper end.
         let near = |x: f64, side: &Side| larger(smaller(x, side.high), side.low);
