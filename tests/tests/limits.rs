@@ -169,6 +169,26 @@ fn rows_headers_and_columns_of_a_flight_csv_are_bounded() {
     refused(&["inspect", &twice], "the column `a` is there twice");
 }
 
+/// One damaged time must not make all later ones go back.
+#[test]
+fn a_time_of_another_millennium_costs_its_row_alone() {
+    let folder = Folder::new();
+    let log = folder.file(
+        "far.csv",
+        "t_s,pwm1,pwm2,pwm3,pwm4\n0,1500,1500,1500,1500\n7e40,1500,1500,1500,1500\n-1e11,1500,1500,1500,1500\n\
+         0.02,1500,1500,1500,1500\n",
+    );
+    let output = run(&["inspect", &log, "--json"]);
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["read"]["bad_messages"], 2, "{document}");
+    assert_eq!(document["read"]["messages"], 2, "{document}");
+    let told = document.to_string();
+    assert!(
+        told.contains("line 3: the time is beyond 10000000000 s"),
+        "{told}"
+    );
+}
+
 #[test]
 fn a_report_shows_the_first_flight_modes_and_counts_the_rest() {
     let mut log = DataFlash::new();

@@ -121,6 +121,9 @@ fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
 /// Bytes of a row, with the comments above it. Longer header lines are not taken for a flight CSV.
 const LONGEST_ROW: usize = 1_000_000;
 const MOST_COLUMNS: usize = 4096;
+/// About 300 years, on either side of 0: clocks that count from 1970 are within it. One damaged time beyond it would make all
+/// later ones go back.
+const FURTHEST_S: f64 = 1e10;
 /// ArduPilot's frames have up to 12 motors, its outputs 32.
 const MOST_MOTORS: usize = 32;
 
@@ -320,6 +323,9 @@ impl Rows {
         let t_s = number(record, layout.time)?;
         if !t_s.is_finite() {
             return Err("the time is missing".into());
+        }
+        if t_s.abs() > FURTHEST_S {
+            return Err(format!("the time is beyond {FURTHEST_S} s"));
         }
         if t_s < self.last_s {
             return Err("the time goes back".into());
