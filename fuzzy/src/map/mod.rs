@@ -40,11 +40,18 @@ pub use table::{DecisionTable, TableError};
 pub struct DecisionMap {
     grid: Grid,
     output: String,
+    cells: Vec<Cell>,
+}
+
+/// What an output is in a cell. All of a map is one piece of memory: an allocator that gives several large ones back to the
+/// system, and gets them again for the next map, takes longer than the evaluation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Cell {
     /// NaN where there is no value.
-    values: Vec<f64>,
-    coverage: Vec<f64>,
+    value: f64,
+    coverage: f64,
     /// The rule's index plus one; 0 where no rule fired.
-    dominant: Vec<u32>,
+    dominant: u32,
 }
 
 /// The number of cells in a batch, which fits the cache.
@@ -85,14 +92,8 @@ impl<'a> Worker<'a> {
     }
 
     /// Evaluates the cells that begin at index `first`.
-    fn fill(
-        &mut self,
-        first: usize,
-        values: &mut [f64],
-        coverage: &mut [f64],
-        dominant: &mut [u32],
-    ) {
-        let cells = values.len();
+    fn fill(&mut self, first: usize, cells: &mut [Cell]) {
+        let count = cells.len();
         let mut stride = self.grid.cells();
         for (axis, coordinates) in self.grid.axes().iter().zip(&self.coordinates) {
             stride /= axis.points;
@@ -101,7 +102,7 @@ impl<'a> Worker<'a> {
                     coordinates,
                     first,
                     stride,
-                    column.get_mut(..cells).unwrap_or_default(),
+                    column.get_mut(..count).unwrap_or_default(),
                 );
             }
         }
@@ -110,17 +111,16 @@ impl<'a> Worker<'a> {
             if output != self.output {
                 return;
             }
-            let values = values[rows.clone()].iter_mut();
-            let cells = values.zip(&mut coverage[rows.clone()]);
-            let cells = cells.zip(&mut dominant[rows]).enumerate();
-            for (row, ((value, coverage), dominant)) in cells {
-                *value = results.value(row);
-                *coverage = results.coverage[row];
-                *dominant = results.dominant(row).map_or(0, |rule| rule + 1);
+            for (row, cell) in cells[rows].iter_mut().enumerate() {
+                *cell = Cell {
+                    value: results.value(row),
+                    coverage: results.coverage[row],
+                    dominant: results.dominant(row).map_or(0, |rule| rule + 1),
+                };
             }
         };
         self.engine
-            .evaluate_rows(&mut self.memory, &columns, 0..cells, put);
+            .evaluate_rows(&mut self.memory, &columns, 0..count, put);
     }
 }
 
@@ -163,40 +163,33 @@ impl DecisionMap {
                 got: output,
             });
         };
-        let cells = grid.cells();
-        let mut map = DecisionMap {
-            output: name.into(),
-            // The system provides zeroed memory at no cost; every cell is written below.
-            values: vec![0.0; cells],
-            coverage: vec![0.0; cells],
-            dominant: vec![0; cells],
-            grid,
+        let none = Cell {
+            value: f64::NAN,
+            coverage: 0.0,
+            dominant: 0,
         };
-        let tasks = map
-            .values
-            .chunks_mut(CELLS_A_TASK)
-            .zip(map.coverage.chunks_mut(CELLS_A_TASK))
-            .zip(map.dominant.chunks_mut(CELLS_A_TASK));
-        let worker = || Worker::new(engine, &map.grid, output);
+        let mut cells = vec![none; grid.cells()];
+        let worker = || Worker::new(engine, &grid, output);
         #[cfg(feature = "parallel")]
         {
             use rayon::prelude::*;
-            let tasks: Vec<_> = tasks.enumerate().collect();
-            tasks.into_par_iter().for_each_init(
-                worker,
-                |worker, (task, ((values, coverage), dominant))| {
-                    worker.fill(task * CELLS_A_TASK, values, coverage, dominant);
-                },
-            );
+            let tasks = cells.par_chunks_mut(CELLS_A_TASK).enumerate();
+            tasks.for_each_init(worker, |worker, (task, cells)| {
+                worker.fill(task * CELLS_A_TASK, cells);
+            });
         }
         #[cfg(not(feature = "parallel"))]
         {
             let mut worker = worker();
-            for (task, ((values, coverage), dominant)) in tasks.enumerate() {
-                worker.fill(task * CELLS_A_TASK, values, coverage, dominant);
+            for (task, cells) in cells.chunks_mut(CELLS_A_TASK).enumerate() {
+                worker.fill(task * CELLS_A_TASK, cells);
             }
         }
-        Ok(map)
+        Ok(DecisionMap {
+            output: name.into(),
+            cells,
+            grid,
+        })
     }
 
     /// The grid.
@@ -211,17 +204,18 @@ impl DecisionMap {
 
     /// The value of a cell; `None` where it has none, or where it is not on the grid.
     pub fn value(&self, cell: usize) -> Option<f64> {
-        self.values.get(cell).copied().filter(|v| !v.is_nan())
+        let value = self.cells.get(cell)?.value;
+        (!value.is_nan()).then_some(value)
     }
 
     /// The largest firing strength of a rule of this output in a cell, in [0, 1].
     pub fn coverage(&self, cell: usize) -> f64 {
-        self.coverage.get(cell).copied().unwrap_or(0.0)
+        self.cells.get(cell).map_or(0.0, |cell| cell.coverage)
     }
 
     /// The rule of the largest firing strength in a cell, as its index in the model.
     pub fn dominant(&self, cell: usize) -> Option<usize> {
-        let rule = self.dominant.get(cell)?.checked_sub(1)?;
+        let rule = self.cells.get(cell)?.dominant.checked_sub(1)?;
         Some(rule as usize)
     }
 

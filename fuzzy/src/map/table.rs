@@ -113,7 +113,7 @@ impl DecisionTable {
         let map = DecisionMap::new(engine, grid, output)?;
         let between = DecisionMap::new(engine, finer, output)?;
         let mut table = DecisionTable {
-            values: map.values,
+            values: map.cells.iter().map(|cell| cell.value).collect(),
             grid: map.grid,
             error: 0.0,
         };
