@@ -1,5 +1,5 @@
 // The profile `flagred` with the rule set `flagred`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 4276 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122680 bytes of memory.
+// 4324 bytes of constants, 0 of them to fill gaps of the rules. A monitor of 4 motors takes 122728 bytes of memory.
 
 /// Memory for a monitor of so many motors.
 #[allow(dead_code)]
@@ -149,6 +149,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                     Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(2), first: 0, end: 5, first_strength: 0, end_strength: 5, clamps: 0 },
                 ],
                 pairs: &[],
+                layered_sets: &[],
+                bases: &[],
+                layers: &[],
                 moments: &[
                     Moment { area: 5.0, moment: -225.0 }, Moment { area: 5.0, moment: -125.0 },
                     Moment { area: 5.0, moment: 0.0 }, Moment { area: 5.0, moment: 125.0 },

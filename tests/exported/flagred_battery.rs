@@ -1,5 +1,5 @@
 // The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --rust` 0.1.0. Do not edit.
-// 9588 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 71744 bytes of memory.
+// 9636 bytes of constants, 5560 of them to fill gaps of the rules. A monitor of 4 motors takes 71792 bytes of memory.
 // Signals of a sample, in this order: battery_remaining_pct.
 
 /// Memory for a monitor of so many motors.
@@ -159,6 +159,9 @@ pub static PLAN: ::flagred::board::Plan<'static> = {
                     Pair { area: [[50.0, 50.0], [-25.0, -25.0]], moment: [[0.0, 1250.0], [0.0, -625.0], [0.0, 0.0]], width: [25.0, 25.0], middle: [12.5, 37.5] },
                     Pair { area: [[25.0, 0.0], [-12.5, 0.0]], moment: [[937.5, 0.0], [-312.5, 0.0], [-104.16666666666667, 0.0]], width: [0.0, 0.0], middle: [0.0, 0.0] },
                 ],
+                layered_sets: &[],
+                bases: &[],
+                layers: &[],
                 moments: &[],
                 consequents: &[],
                 coefficients: &[],

@@ -1,7 +1,7 @@
 // The rule set `chain`, written by `flagred export --rust` 0.1.0. Do not edit.
 // Inputs, in this order: x (0 to 10), y (0 to 1).
 // Outputs, in this order: risk (0 to 100), strain (0 to 10), trend (0 to 10), comfort (0 to 10).
-// 4468 bytes of constants. An evaluation takes 736 bytes of memory.
+// 4552 bytes of constants. An evaluation takes 736 bytes of memory.
 
 /// The outcome of each output at values of the inputs. It depends on nothing else.
 #[allow(dead_code)]
@@ -143,6 +143,9 @@ pub static RULES: ::fuzzy::table::Chain<'static> = {
                 Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(3), first: 0, end: 3, first_strength: 0, end_strength: 3, clamps: 0 },
             ],
             pairs: &[],
+            layered_sets: &[],
+            bases: &[],
+            layers: &[],
             moments: &[
                 Moment { area: 2.5, moment: -8.333333333333334 }, Moment { area: 5.0, moment: 0.0 },
                 Moment { area: 2.5, moment: 8.333333333333334 }, Moment { area: 2.0, moment: -6.0 },
@@ -166,9 +169,9 @@ pub static RULES: ::fuzzy::table::Chain<'static> = {
             knots: &[],
         },
         stages: &[
-            Stage { conjunctions: 2, actions_a_cell: 0, first_action: 0, sums: 0, sizes: Sizes { degrees: 5, alive: 4, partial: 1, stack: 1, strengths: 6 }, reads: 0, outputs: 2, rules: 4, ends: Ends { inputs: 2, cuts: 2, starts: 6, lines: 5, curves: 2, points: 0, hedges: 2, axes: 0, dimensions: 0, cells: 0, nodes: 1, edges: 0, actions: 6, programs: 4, steps: 6, blocks: 0, outputs: 2, pairs: 0, moments: 5, consequents: 0, coefficients: 0, sets: 0, set_terms: 0, sections: 0, strands: 0, flanks: 0, knots: 0 } },
-            Stage { conjunctions: 2, actions_a_cell: 0, first_action: 0, sums: 0, sizes: Sizes { degrees: 5, alive: 5, partial: 1, stack: 1, strengths: 3 }, reads: 1, outputs: 1, rules: 3, ends: Ends { inputs: 5, cuts: 6, starts: 16, lines: 11, curves: 4, points: 0, hedges: 3, axes: 0, dimensions: 0, cells: 0, nodes: 2, edges: 0, actions: 9, programs: 7, steps: 11, blocks: 0, outputs: 3, pairs: 0, moments: 7, consequents: 0, coefficients: 0, sets: 0, set_terms: 0, sections: 0, strands: 0, flanks: 0, knots: 0 } },
-            Stage { conjunctions: 2, actions_a_cell: 0, first_action: 0, sums: 0, sizes: Sizes { degrees: 5, alive: 4, partial: 1, stack: 1, strengths: 4 }, reads: 3, outputs: 1, rules: 3, ends: Ends { inputs: 10, cuts: 9, starts: 29, lines: 14, curves: 7, points: 4, hedges: 6, axes: 0, dimensions: 0, cells: 0, nodes: 3, edges: 0, actions: 12, programs: 10, steps: 16, blocks: 0, outputs: 4, pairs: 0, moments: 7, consequents: 3, coefficients: 3, sets: 0, set_terms: 0, sections: 0, strands: 0, flanks: 0, knots: 0 } },
+            Stage { conjunctions: 2, actions_a_cell: 0, first_action: 0, sums: 0, sizes: Sizes { degrees: 5, alive: 4, partial: 1, stack: 1, strengths: 6 }, reads: 0, outputs: 2, rules: 4, ends: Ends { inputs: 2, cuts: 2, starts: 6, lines: 5, curves: 2, points: 0, hedges: 2, axes: 0, dimensions: 0, cells: 0, nodes: 1, edges: 0, actions: 6, programs: 4, steps: 6, blocks: 0, outputs: 2, pairs: 0, layered_sets: 0, bases: 0, layers: 0, moments: 5, consequents: 0, coefficients: 0, sets: 0, set_terms: 0, sections: 0, strands: 0, flanks: 0, knots: 0 } },
+            Stage { conjunctions: 2, actions_a_cell: 0, first_action: 0, sums: 0, sizes: Sizes { degrees: 5, alive: 5, partial: 1, stack: 1, strengths: 3 }, reads: 1, outputs: 1, rules: 3, ends: Ends { inputs: 5, cuts: 6, starts: 16, lines: 11, curves: 4, points: 0, hedges: 3, axes: 0, dimensions: 0, cells: 0, nodes: 2, edges: 0, actions: 9, programs: 7, steps: 11, blocks: 0, outputs: 3, pairs: 0, layered_sets: 0, bases: 0, layers: 0, moments: 7, consequents: 0, coefficients: 0, sets: 0, set_terms: 0, sections: 0, strands: 0, flanks: 0, knots: 0 } },
+            Stage { conjunctions: 2, actions_a_cell: 0, first_action: 0, sums: 0, sizes: Sizes { degrees: 5, alive: 4, partial: 1, stack: 1, strengths: 4 }, reads: 3, outputs: 1, rules: 3, ends: Ends { inputs: 10, cuts: 9, starts: 29, lines: 14, curves: 7, points: 4, hedges: 6, axes: 0, dimensions: 0, cells: 0, nodes: 3, edges: 0, actions: 12, programs: 10, steps: 16, blocks: 0, outputs: 4, pairs: 0, layered_sets: 0, bases: 0, layers: 0, moments: 7, consequents: 3, coefficients: 3, sets: 0, set_terms: 0, sections: 0, strands: 0, flanks: 0, knots: 0 } },
         ],
         places: &[1, 3, 3, 4, 5, 6, 1, 2, 7, 8, 9, 1, 2, 3, 0, 0, 1, 2],
     }

@@ -1,7 +1,7 @@
 // The rule set `sets`, written by `flagred export --rust` 0.1.0. Do not edit.
 // Inputs, in this order: a (0 to 1), b (-2 to 2).
 // Outputs, in this order: risk (0 to 100), place (0 to 1).
-// 6860 bytes of constants. An evaluation takes 464 bytes of memory.
+// 6908 bytes of constants. An evaluation takes 464 bytes of memory.
 
 /// The outcome of each output at values of the inputs. It depends on nothing else.
 #[allow(dead_code)]
@@ -90,6 +90,9 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
             Output { low: 0.0, high: 1.0, default_value: NaN, form: ClosedForm(6), first: 1, end: 2, first_strength: 4, end_strength: 6, clamps: 0 },
         ],
         pairs: &[],
+        layered_sets: &[],
+        bases: &[],
+        layers: &[],
         moments: &[],
         consequents: &[],
         coefficients: &[],

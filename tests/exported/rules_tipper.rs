@@ -1,7 +1,7 @@
 // The rule set `tipper`, written by `flagred export --rust` 0.1.0. Do not edit.
 // Inputs, in this order: service (0 to 10), food (0 to 10).
 // Outputs, in this order: tip (0 to 30 %).
-// 1556 bytes of constants. An evaluation takes 336 bytes of memory.
+// 1604 bytes of constants. An evaluation takes 336 bytes of memory.
 
 /// The outcome of each output at values of the inputs. It depends on nothing else.
 #[allow(dead_code)]
@@ -86,6 +86,9 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
             Pair { area: [[10.0, 10.0], [-5.0, -5.0]], moment: [[-100.0, 0.0], [50.0, 0.0], [0.0, 0.0]], width: [0.0, 0.0], middle: [0.0, 0.0] },
             Pair { area: [[10.0, 0.0], [-5.0, 0.0]], moment: [[100.0, 0.0], [-50.0, 0.0], [0.0, 0.0]], width: [0.0, 0.0], middle: [0.0, 0.0] },
         ],
+        layered_sets: &[],
+        bases: &[],
+        layers: &[],
         moments: &[],
         consequents: &[],
         coefficients: &[],

@@ -24,7 +24,7 @@ extern "C" {
 #endif
 
 /* The format of the data that `flagred export --c` writes. */
-#define FLAGRED_FORMAT 6
+#define FLAGRED_FORMAT 7
 
 /* ---- Assessing a flight ------------------------------------------------------------------------------------------- */
 
@@ -282,6 +282,19 @@ typedef struct flagred_pair {
     double area[2][2], moment[3][2], width[2], middle[2];
 } flagred_pair;
 
+typedef struct flagred_layered_set {
+    uint32_t first_base, end_base, first_layer, end_layer;
+} flagred_layered_set;
+
+typedef struct flagred_base {
+    uint32_t others, strength;
+} flagred_base;
+
+typedef struct flagred_layers {
+    double low[4], high[4], area[2][4], moment[3][4];
+    uint32_t bases[4], strength;
+} flagred_layers;
+
 typedef struct flagred_moment {
     double area, moment;
 } flagred_moment;
@@ -344,8 +357,8 @@ typedef struct flagred_stage {
     uint32_t reads, outputs, rules;
     struct {
         uint32_t inputs, cuts, starts, lines, curves, points, hedges, axes, dimensions, cells, nodes, edges,
-            actions, programs, steps, blocks, outputs, pairs, moments, consequents, coefficients, sets, set_terms,
-            sections, strands, flanks, knots;
+            actions, programs, steps, blocks, outputs, pairs, layered_sets, bases, layers, moments,
+            consequents, coefficients, sets, set_terms, sections, strands, flanks, knots;
     } ends;
 } flagred_stage;
 
@@ -407,6 +420,9 @@ struct flagred_rules {
     FLAGRED_ARRAY(flagred_block, blocks);
     FLAGRED_ARRAY(flagred_output, outputs);
     FLAGRED_ARRAY(flagred_pair, pairs);
+    FLAGRED_ARRAY(flagred_layered_set, layered_sets);
+    FLAGRED_ARRAY(flagred_base, bases);
+    FLAGRED_ARRAY(flagred_layers, layers);
     FLAGRED_ARRAY(flagred_moment, moments);
     FLAGRED_ARRAY(flagred_consequent, consequents);
     FLAGRED_ARRAY(flagred_coefficient, coefficients);

@@ -3,16 +3,17 @@
 use flagred::board::{
     self,
     table::{
-        self, Action, Axis, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
-        Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node,
-        Output, Pair, Point, Program, Section, SetTerm, Sizes, Stage, Step, Strand, Table,
+        self, Action, Axis, Base, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
+        Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, LayeredSet, Layers,
+        Line, Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Stage, Step,
+        Strand, Table,
     },
 };
 
 use crate::{array::Array, status::Status};
 
 /// The version of the data that this library reads.
-pub(crate) const FORMAT: u32 = 6;
+pub(crate) const FORMAT: u32 = 7;
 
 macro_rules! define {
     ($($(#[$doc:meta])* $array:ident: $item:ident,)*) => {

@@ -8,6 +8,7 @@ use crate::model::{
 use crate::table::Moment;
 use crate::table::operators::{larger, smaller};
 use curves::Curves;
+pub(crate) use layers::Layered;
 use maxima::{Highest, Maxima};
 pub(crate) use partition::Partition;
 use piece::{Integrals, Piece, unit};
@@ -17,6 +18,7 @@ use singletons::Singletons;
 use weighted::Consequents;
 
 mod curves;
+mod layers;
 mod maxima;
 mod partition;
 mod piece;
@@ -84,6 +86,8 @@ pub(crate) enum Method {
     Singletons(Singletons),
     /// What does not depend on the inputs is computed.
     Prepared(Prepared),
+    /// The centroid of the maximum of straight terms that are cut.
+    Layered(Layered),
     /// The centroid of a sum of products: the area and moment of each term at a firing strength of 1.
     Moments(Vec<Moment>),
     /// Takagi-Sugeno.
@@ -155,6 +159,16 @@ impl Method {
             {
                 Method::Moments(prepared.moments(unit(high - low)))
             }
+            (Some(prepared), Some(_))
+                if output.defuzzifier == Defuzzifier::Centroid
+                    && joint.implication == Implication::Minimum
+                    && joint.aggregation == Aggregation::Maximum =>
+            {
+                match Layered::new(&prepared, (low, high)) {
+                    Some(layered) => Method::Layered(layered),
+                    None => Method::Prepared(prepared),
+                }
+            }
             (Some(prepared), _) => Method::Prepared(prepared),
             (None, Some(lines)) => Method::Lines(lines),
             (None, None) => Method::Curves(Curves::new(terms, low, high)),
@@ -224,6 +238,7 @@ impl Defuzzify {
             Method::Curves(curves) | Method::Sampled(_, curves) => curves.is_empty(term),
             Method::Partition(partition) => partition.is_empty(term),
             Method::Prepared(prepared) => prepared.is_empty(term),
+            Method::Layered(layered) => layered.is_empty(term),
             Method::Moments(moments) => moments.get(term).is_none_or(|m| m.area <= 0.0),
             Method::Singletons(singletons) => singletons.is_empty(term),
             Method::Weighted(_) | Method::Places(_) => false,
@@ -246,6 +261,7 @@ impl Defuzzify {
             }
             Method::Partition(_)
             | Method::Prepared(_)
+            | Method::Layered(_)
             | Method::Moments(_)
             | Method::Weighted(_)
             | Method::Places(_) => None,
@@ -314,6 +330,7 @@ impl Defuzzify {
             Method::Curves(curves) => curves.pieces(strengths, self.joint, workspace, visit),
             Method::Partition(_)
             | Method::Prepared(_)
+            | Method::Layered(_)
             | Method::Sampled(..)
             | Method::Singletons(_)
             | Method::Moments(_)

@@ -6,7 +6,7 @@ use crate::model::{
 };
 
 /// An output of these terms, with a rule for each that fires with its weight.
-fn model(
+pub(super) fn model(
     (low, high): (f64, f64),
     terms: &[(MembershipFunction, f64)],
     (implication, aggregation): (Implication, Aggregation),
@@ -55,7 +55,8 @@ fn gaussian(mean: f64, sd: f64) -> MembershipFunction {
 
 const PRODUCT_SUM: (Implication, Aggregation) = (Implication::Product, Aggregation::Sum);
 const PRODUCT_MAXIMUM: (Implication, Aggregation) = (Implication::Product, Aggregation::Maximum);
-const MINIMUM_MAXIMUM: (Implication, Aggregation) = (Implication::Minimum, Aggregation::Maximum);
+pub(super) const MINIMUM_MAXIMUM: (Implication, Aggregation) =
+    (Implication::Minimum, Aggregation::Maximum);
 
 #[test]
 fn a_maximum_close_to_the_end_of_a_piece_is_found() {

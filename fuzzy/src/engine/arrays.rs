@@ -10,9 +10,10 @@ use crate::model::{
     Conjunction, Defuzzifier, Disjunction, Implication, MembershipFunction, NoRuleFires, Term,
 };
 use crate::table::{
-    Action, Axis, Block, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension, Edge,
-    Ends, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair, Point, Program,
-    Section, SetTerm, Sizes, Step, Strand, Table, arrays, arrays_from_fields,
+    Action, Axis, Base, Block, ClosedForm, Coefficient, Conjunctions, Consequent, Curve, Dimension,
+    Edge, Ends, Flank, FuzzySet, Hedge, Input, Knot, LayeredSet, Layers, Line, Moment, Node,
+    Output, Pair, Point, Program, Section, SetTerm, Sizes, Step, Strand, Table, arrays,
+    arrays_from_fields,
 };
 
 /// Above this number, a batch looks for the terms that are over 0.
@@ -212,6 +213,19 @@ impl OwnedTable {
                     _ => ClosedForm::CUT,
                 };
                 (form, self.set(prepared, &output.offsets))
+            }
+            Method::Layered(layered) => {
+                let bases = layered.bases.len() as u32 + 1;
+                self.sizes.stack = self.sizes.stack.max(bases);
+                let (first_base, end_base) = extend(&mut self.bases, &layered.bases);
+                let (first_layer, end_layer) = extend(&mut self.layers, &layered.layers);
+                let set = LayeredSet {
+                    first_base,
+                    end_base,
+                    first_layer,
+                    end_layer,
+                };
+                (ClosedForm::LAYERS, extend(&mut self.layered_sets, &[set]))
             }
             Method::Moments(moments) => (ClosedForm::MOMENTS, extend(&mut self.moments, moments)),
             Method::Places(terms) => {

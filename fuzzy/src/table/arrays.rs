@@ -1,9 +1,9 @@
 //! The list of a table's arrays, and access to them one at a time.
 
 use super::{
-    Action, Axis, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve, Dimension,
-    Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, Line, Moment, Node, Output, Pair,
-    Point, Program, Section, SetTerm, Sizes, Step, Strand,
+    Action, Axis, Base, Block, Coefficient, Conjunction, Conjunctions, Consequent, Curve,
+    Dimension, Disjunction, Edge, Flank, FuzzySet, Hedge, Input, Knot, LayeredSet, Layers, Line,
+    Moment, Node, Output, Pair, Point, Program, Section, SetTerm, Sizes, Step, Strand,
 };
 
 /// Calls `$then!` with the given tokens and the arrays of a table, each as `name: Item,` with its documentation.
@@ -53,6 +53,12 @@ macro_rules! table_arrays {
             outputs: Output,
             /// The closed forms of partitions.
             pairs: Pair,
+            /// The closed forms of straight terms that are cut.
+            layered_sets: LayeredSet,
+            /// Where the layers of layered sets begin.
+            bases: Base,
+            /// The layers of layered sets.
+            layers: Layers,
             /// The closed forms of sums of products.
             moments: Moment,
             /// The Takagi-Sugeno consequents.

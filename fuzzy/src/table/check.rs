@@ -1,6 +1,8 @@
 //! Verifies the indices of a table.
 
-use super::{ClosedForm, Conjunctions, Dimension, FuzzySet, Input, Op, Table};
+use core::ops::Range;
+
+use super::{ClosedForm, Conjunctions, Dimension, FuzzySet, Input, LayeredSet, Op, Table};
 
 /// The array of a damaged table or plan that has an index out of bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,6 +105,7 @@ impl Table<'_> {
             let numbers = output.end.saturating_sub(output.first) as usize;
             let length = match output.form {
                 ClosedForm::PARTITION | ClosedForm::SCALED_PARTITION => self.pairs.len(),
+                ClosedForm::LAYERS => self.layered_sets.len(),
                 ClosedForm::MOMENTS => self.moments.len(),
                 ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => self.consequents.len(),
                 ClosedForm::TSUKAMOTO => self.curves.len(),
@@ -116,6 +119,10 @@ impl Table<'_> {
                     && (output.form != ClosedForm::PARTITION || 2 * numbers < strengths),
                 "outputs",
             )?;
+            if output.form == ClosedForm::LAYERS {
+                require(numbers == 1, "outputs")?;
+                self.check_layers(&self.layered_sets[output.first as usize], strengths)?;
+            }
             if let ClosedForm::CUT | ClosedForm::SCALED = output.form {
                 require(numbers == 1, "outputs")?;
                 self.check_set(&self.sets[output.first as usize], strengths)?;
@@ -140,6 +147,26 @@ impl Table<'_> {
         }
         for coefficient in self.coefficients {
             require((coefficient.input as usize) < inputs, "coefficients")?;
+        }
+        Ok(())
+    }
+
+    /// Verifies the layers of an output with so many firing strengths.
+    fn check_layers(&self, set: &LayeredSet, strengths: usize) -> Result<(), Damaged> {
+        require(
+            within(set.first_base, set.end_base, self.bases.len())
+                && within(set.first_layer, set.end_layer, self.layers.len()),
+            "layered_sets",
+        )?;
+        let bases = &self.bases[set.first_base as usize..set.end_base as usize];
+        require(bases.len() < self.sizes.stack as usize, "bases")?;
+        for (index, base) in bases.iter().enumerate() {
+            let is_earlier = base.others as usize <= index;
+            require(is_earlier && (base.strength as usize) < strengths, "bases")?;
+        }
+        for four in &self.layers[set.first_layer as usize..set.end_layer as usize] {
+            let has_bases = four.bases.iter().all(|base| *base as usize <= bases.len());
+            require(has_bases && (four.strength as usize) < strengths, "layers")?;
         }
         Ok(())
     }
@@ -284,7 +311,7 @@ impl Table<'_> {
     }
 
     /// Whether a program neither joins fewer than two degrees nor pushes beyond the size of the stack.
-    fn fits_stack(&self, steps: core::ops::Range<usize>) -> bool {
+    fn fits_stack(&self, steps: Range<usize>) -> bool {
         let mut depth = 0usize;
         let steps = self.steps.get(steps).unwrap_or_default();
         steps.iter().all(|step| {

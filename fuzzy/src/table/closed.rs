@@ -35,6 +35,8 @@ impl ClosedForm {
     pub const SCALED: ClosedForm = ClosedForm(7);
     /// The centroid of product and maximum over a partition: [`Pair`]s.
     pub const SCALED_PARTITION: ClosedForm = ClosedForm(8);
+    /// The centroid of minimum and maximum over straight terms: a [`LayeredSet`](super::LayeredSet).
+    pub const LAYERS: ClosedForm = ClosedForm(9);
 }
 
 /// The coefficients of two neighbouring terms of a partition, and of the overlap of each with the term to its right.
@@ -160,12 +162,13 @@ pub(crate) fn centroid(area: f64, moment: f64, origin: f64) -> Option<f64> {
 }
 
 /// Writes the values of an output with a closed form that is the same few sums in every row; NaN where no rule fired. `false`
-/// for another output.
+/// for another output. `bases` is memory for those of a [`LayeredSet`](super::LayeredSet).
 #[inline(always)]
 pub(super) fn closed<A: Arrays, const L: usize>(
     table: &A,
     output: &Output,
     strengths: &[[f64; L]],
+    bases: &mut [[f64; L]],
     inputs: &[[f64; L]],
     values: &mut [f64; L],
 ) -> bool {
@@ -173,6 +176,11 @@ pub(super) fn closed<A: Arrays, const L: usize>(
     match output.form {
         ClosedForm::PARTITION => partition(table, output, strengths, values, Pair::cut),
         ClosedForm::SCALED_PARTITION => partition(table, output, strengths, values, Pair::scaled),
+        ClosedForm::LAYERS => {
+            let layered = table.layered_sets()[output.first as usize];
+            let [areas, moments] = layered.integrals(table, strengths, bases);
+            set(values, |row| output.centroid((areas[row], moments[row])));
+        }
         ClosedForm::MOMENTS => {
             let (mut areas, mut moments) = ([0.0; L], [0.0; L]);
             for (Moment { area, moment }, strengths) in table.moments()[range].iter().zip(strengths)
@@ -200,10 +208,11 @@ pub(super) fn closed_apart<A: Arrays, const L: usize>(
     table: &A,
     output: &Output,
     strengths: &[[f64; L]],
+    bases: &mut [[f64; L]],
     inputs: &[[f64; L]],
     values: &mut [f64; L],
 ) -> bool {
-    closed(table, output, strengths, inputs, values)
+    closed(table, output, strengths, bases, inputs, values)
 }
 
 /// [`closed`] of a partition.

@@ -19,6 +19,7 @@ mod conjunctions;
 mod firing;
 pub(crate) mod flank;
 mod input;
+mod layers;
 pub(crate) mod numeric;
 pub(crate) mod operators;
 mod outcome;
@@ -41,6 +42,7 @@ pub use flank::{Flank, Knot};
 #[cfg(test)]
 pub(crate) use input::degrees_in_rows;
 pub use input::{Curve, Input, Line, Point};
+pub use layers::{Base, LayeredSet, Layers};
 pub use operators::{Aggregation, Conjunction, Disjunction, Hedge, Implication};
 pub use outcome::{Outcome, State};
 pub use rules::{Action, Axis, Dimension, Edge, Node, Op, Program, Step};
@@ -323,7 +325,7 @@ fn clamp<A: Arrays, const L: usize>(
 #[inline(always)]
 fn fill<A, N, P, S, const L: usize>(
     table: &A,
-    scratch: &Buffers<N, P, S>,
+    scratch: &mut Buffers<N, P, S>,
     (index, given): (usize, Given<L>),
     in_row: &mut impl FnMut(usize, &Output, usize, &[[f64; L]]) -> Option<f64>,
     results: &mut Results<L>,
@@ -337,13 +339,14 @@ fn fill<A, N, P, S, const L: usize>(
     let strengths = output.first_strength as usize..output.end_strength as usize;
     let strengths = &scratch.strengths[strengths];
     let (inputs, values) = (&scratch.values, &mut results.values);
+    let bases = &mut scratch.stack;
     let is_known = if output.form == ClosedForm::PARTITION {
         partition(table, output, strengths, values, Pair::cut);
         true
     } else if L == 1 {
-        closed_apart(table, output, strengths, inputs, values)
+        closed_apart(table, output, strengths, bases, inputs, values)
     } else {
-        closed(table, output, strengths, inputs, values)
+        closed(table, output, strengths, bases, inputs, values)
     };
     if !is_known {
         set(values, |row| {

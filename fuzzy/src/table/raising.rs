@@ -6,7 +6,7 @@ use super::acting::{Act, Strongest, fires};
 use super::closed::closed;
 use super::conjunctions::Partial;
 use super::firing::fire_row_into;
-use super::{Action, Arrays, Buffers, Output, Scratch, Table, clamp, value_in_row};
+use super::{Action, Arrays, Buffers, ClosedForm, Output, Scratch, Table, clamp, value_in_row};
 
 impl Table<'_> {
     /// The index of the rule that raises an output most where it has a value, without allocating: of the rules that fire, the
@@ -100,14 +100,17 @@ where
         // In a damaged table it may be one of another output.
         let index = strength.checked_sub(first)? as usize;
         *strengths.get_mut(index)? = [1.0];
-        let mut value = [0.0];
-        let alone = if closed(table, of, strengths, values, &mut value) {
-            Some(value[0]).filter(|value| !value.is_nan())
+        let mut value = [f64::NAN];
+        let alone = if of.form == ClosedForm::LAYERS {
+            let set = table.layered_sets().get(of.first as usize)?;
+            Some(of.centroid(set.alone(table, index as u32)))
+        } else if closed(table, of, strengths, &mut [], values, &mut value) {
+            Some(value[0])
         } else {
             value_in_row(table, output, of, strengths.as_flattened(), &mut integrate)
         };
         *strengths.get_mut(index)? = [0.0];
-        alone.map(&score)
+        alone.filter(|value| !value.is_nan()).map(&score)
     };
     let mut raising = Raising {
         least: table.least_strength(),

@@ -107,6 +107,7 @@ fn the_header_has_the_arrays_of_a_table() {
         "f64" => format!("FLAGRED_ARRAY(double, {array})"),
         "u32" => format!("FLAGRED_ARRAY(uint32_t, {array})"),
         "FuzzySet" => format!("FLAGRED_ARRAY(flagred_fuzzy_set, {array})"),
+        "LayeredSet" => format!("FLAGRED_ARRAY(flagred_layered_set, {array})"),
         "SetTerm" => format!("FLAGRED_ARRAY(flagred_set_term, {array})"),
         item => format!("FLAGRED_ARRAY(flagred_{}, {array})", item.to_lowercase()),
     });

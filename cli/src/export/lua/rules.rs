@@ -218,18 +218,18 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
             }
             lines.push("}".into());
         }
-        ClosedForm::CUT | ClosedForm::SCALED => {
-            return Err(Refused::new(
-                "the output has neither the centroid of a sum of products nor that of a partition, which are all the script has"
-                    .into(),
-                "choose `implication: product` and `aggregation: sum`, or a `partition` with minimum and maximum, and the centroid",
-            ));
-        }
-        _ => {
+        ClosedForm::WEIGHTED_AVERAGE | ClosedForm::WEIGHTED_SUM => {
             return Err(Refused::new(
                 "the output is a Takagi-Sugeno one, which the script does not have".into(),
                 "the script has the centroid, with `implication: product` and `aggregation: sum` or over a `partition` with \
                  minimum and maximum",
+            ));
+        }
+        _ => {
+            return Err(Refused::new(
+                "the output has neither the centroid of a sum of products nor that of minimum and maximum over a partition, which are all the script has"
+                    .into(),
+                "choose `implication: product` and `aggregation: sum`, or a `partition` with minimum and maximum, and the centroid",
             ));
         }
     }

@@ -1,0 +1,175 @@
+//! From a prepared set of straight terms to its layers.
+
+use alloc::vec::Vec;
+
+use super::Prepared;
+use super::piece::unit;
+use crate::table::{Base, Kind, Layers, Strand};
+
+/// The closed form of the centroid of the maximum of straight terms that are cut.
+#[derive(Debug, Clone)]
+pub(crate) struct Layered {
+    pub(crate) bases: Vec<Base>,
+    pub(crate) layers: Vec<Layers>,
+    /// Whether each term is 0 all over the range.
+    empty: Vec<bool>,
+}
+
+/// More take longer than walking over the sections.
+const MOST_PARTS: usize = 128;
+/// Flatter slopes have powers that no number holds.
+const LEAST_SLOPE: f64 = 1e-100;
+
+/// A part of the range on which a term is straight and the same terms are above it.
+struct Part {
+    flank: u32,
+    strength: u32,
+    /// The firing strengths of the terms above it, ascending.
+    above: Vec<u32>,
+    /// Its ends, with the degrees just inside.
+    from: (f64, f64),
+    to: (f64, f64),
+}
+
+impl Layered {
+    /// The layers of a set whose sections are those of the minimum, with moments about the middle of the range; `None` where a
+    /// term is curved, or there would be too many.
+    pub(super) fn new(prepared: &Prepared, (low, high): (f64, f64)) -> Option<Self> {
+        let is_straight = prepared.flanks.iter().all(|f| f.kind == Kind::PIECEWISE);
+        if !is_straight {
+            return None;
+        }
+        let mut parts = parts(prepared)?;
+        if parts.len() > MOST_PARTS {
+            return None;
+        }
+        parts.sort_by_key(|part| part.strength);
+        let measure = (low + 0.5 * (high - low), unit(high - low));
+        let mut bases = Bases::default();
+        let mut layers: Vec<Layers> = Vec::new();
+        for of_term in parts.chunk_by(|a, b| a.strength == b.strength) {
+            for parts in of_term.chunks(4) {
+                let mut four = Layers::default();
+                for (index, part) in parts.iter().enumerate() {
+                    four.strength = part.strength;
+                    four.bases[index] = bases.of(&part.above);
+                    part.write(measure, index, &mut four)?;
+                }
+                layers.push(four);
+            }
+        }
+        Some(Layered {
+            bases: bases.bases,
+            layers,
+            empty: prepared
+                .terms
+                .iter()
+                .map(|term| term.highest <= 0.0)
+                .collect(),
+        })
+    }
+
+    pub(crate) fn is_empty(&self, term: usize) -> bool {
+        self.empty.get(term).is_none_or(|empty| *empty)
+    }
+}
+
+/// The parts of all terms: those of the sections, joined where nothing changes.
+fn parts(prepared: &Prepared) -> Option<Vec<Part>> {
+    let mut parts: Vec<Part> = Vec::new();
+    for section in &prepared.sections {
+        let strands: &[Strand] = prepared
+            .strands
+            .get(section.first_strand as usize..section.end_strand as usize)?;
+        let mut above = Vec::new();
+        for strand in strands {
+            let is_same = |part: &&mut Part| {
+                part.flank == strand.flank && part.to.0 == section.from && part.above == above
+            };
+            let to = (section.to, strand.right);
+            match parts.iter_mut().rev().find(is_same) {
+                Some(part) => part.to = to,
+                None => parts.push(Part {
+                    flank: strand.flank,
+                    strength: strand.strength,
+                    above: above.clone(),
+                    from: (section.from, strand.left),
+                    to,
+                }),
+            }
+            if let Err(place) = above.binary_search(&strand.strength) {
+                above.insert(place, strand.strength);
+            }
+        }
+    }
+    Some(parts)
+}
+
+impl Part {
+    /// Writes the numbers of a layer, which has this index among its four; `None` where there are none.
+    fn write(&self, (origin, unit): (f64, f64), index: usize, four: &mut Layers) -> Option<()> {
+        let ((from, left), (to, right)) = (self.from, self.to);
+        let length = to - from;
+        let width = length / unit;
+        let (low, high) = (left.min(right), left.max(right));
+        (four.low[index], four.high[index]) = (low, high);
+        four.area[0][index] = width;
+        four.moment[0][index] = width * (from + 0.5 * length - origin);
+        let slope = high - low;
+        if slope > 0.0 {
+            if slope < LEAST_SLOPE {
+                return None;
+            }
+            let (lower_end, sign) = if left < right {
+                (from, -1.0)
+            } else {
+                (to, 1.0)
+            };
+            let half = 0.5 * width / slope;
+            four.area[1][index] = -half;
+            four.moment[1][index] = -half * (lower_end - origin);
+            four.moment[2][index] = sign * half * (length / slope) / 3.0;
+        }
+        Some(())
+    }
+}
+
+/// The bases of sets of firing strengths.
+#[derive(Default)]
+struct Bases {
+    /// The set of each base, ascending.
+    sets: Vec<Vec<u32>>,
+    bases: Vec<Base>,
+}
+
+impl Bases {
+    fn known(&self, set: &[u32]) -> Option<u32> {
+        if set.is_empty() {
+            return Some(0);
+        }
+        let base = self.sets.iter().position(|known| known == set)?;
+        Some(base as u32 + 1)
+    }
+
+    /// The base of a set, added where it is not there.
+    fn of(&mut self, set: &[u32]) -> u32 {
+        if let Some(base) = self.known(set) {
+            return base;
+        }
+        let without = |index: usize| {
+            let mut others = set.to_vec();
+            let strength = others.remove(index);
+            (others, strength)
+        };
+        // From a known one, if there is any.
+        let near = (0..set.len()).find(|index| self.known(&without(*index).0).is_some());
+        let (others, strength) = without(near.unwrap_or(0));
+        let others = self.of(&others);
+        self.sets.push(set.to_vec());
+        self.bases.push(Base { others, strength });
+        self.bases.len() as u32
+    }
+}
+
+#[cfg(test)]
+mod tests;
