@@ -304,29 +304,39 @@ fn weighted<const L: usize>(
     inputs: &[[f64; L]],
     values: &mut [f64; L],
 ) {
-    let (mut sums, mut totals, mut z) = ([0.0; L], [0.0; L], [0.0; L]);
+    let (mut sums, mut totals) = ([0.0; L], [0.0; L]);
     for (consequent, strengths) in consequents.iter().zip(strengths) {
         if strengths.iter().all(|strength| *strength <= 0.0) {
             continue;
         }
-        z.fill(consequent.constant);
-        for c in &coefficients[consequent.first as usize..consequent.end as usize] {
-            join(&mut z, &inputs[c.input as usize], |z, x| {
-                z + c.coefficient * x
-            });
-        }
+        let constant = consequent.constant;
+        let terms = &coefficients[consequent.first as usize..consequent.end as usize];
         let code = &points[consequent.first_code as usize..consequent.end_code as usize];
-        if !code.is_empty() {
-            for row in 0..L {
-                let value = |i: usize| inputs.get(i).map_or(f64::NAN, |inputs| inputs[row]);
-                z[row] += evaluate(code, value);
+        let product = |c: &Coefficient, row: usize| c.coefficient * inputs[c.input as usize][row];
+        match (terms, code) {
+            // The commonest ones in one pass.
+            ([], []) => add(&mut sums, &mut totals, strengths, |_| constant),
+            ([a], []) => add(&mut sums, &mut totals, strengths, |row| {
+                constant + product(a, row)
+            }),
+            ([a, b], []) => add(&mut sums, &mut totals, strengths, |row| {
+                constant + product(a, row) + product(b, row)
+            }),
+            _ => {
+                let mut z = [constant; L];
+                for c in terms {
+                    join(&mut z, &inputs[c.input as usize], |z, x| {
+                        z + c.coefficient * x
+                    });
+                }
+                if !code.is_empty() {
+                    for row in 0..L {
+                        let value = |i: usize| inputs.get(i).map_or(f64::NAN, |inputs| inputs[row]);
+                        z[row] += evaluate(code, value);
+                    }
+                }
+                add(&mut sums, &mut totals, strengths, |row| z[row]);
             }
-        }
-        for row in 0..L {
-            // It may be infinite where the rule does not fire.
-            let z = select_unpredictable(strengths[row] > 0.0, z[row], 0.0);
-            sums[row] += strengths[row] * z;
-            totals[row] += strengths[row];
         }
     }
     set(values, |row| {
@@ -336,4 +346,20 @@ fn weighted<const L: usize>(
         };
         output.weighted(value, totals[row])
     });
+}
+
+/// Adds the weighted values of a consequent, and its weights.
+#[inline(always)]
+fn add<const L: usize>(
+    sums: &mut [f64; L],
+    totals: &mut [f64; L],
+    strengths: &[f64; L],
+    z: impl Fn(usize) -> f64,
+) {
+    for row in 0..L {
+        // It may be infinite where the rule does not fire.
+        let z = select_unpredictable(strengths[row] > 0.0, z(row), 0.0);
+        sums[row] += strengths[row] * z;
+        totals[row] += strengths[row];
+    }
 }

@@ -87,7 +87,7 @@ pub struct Sizes {
     pub alive: u32,
     /// The most cells or edges held at once.
     pub partial: u32,
-    /// The depth of the deepest program.
+    /// The depth of the deepest program, and one more than the bases of the largest layered set.
     pub stack: u32,
     /// The number of firing strengths of all outputs, and one that belongs to no output.
     pub strengths: u32,
