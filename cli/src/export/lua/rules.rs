@@ -227,7 +227,8 @@ fn closed_form(plan: &Plan<'_>, output: &Output) -> Result<Vec<String>, Refused>
         }
         _ => {
             return Err(Refused::new(
-                "the output has neither the centroid of a sum of products nor that of minimum and maximum over a partition, which are all the script has"
+                "the output has neither the centroid of a sum of products nor that of minimum and maximum over a partition, which \
+                 are all the script has"
                     .into(),
                 "choose `implication: product` and `aggregation: sum`, or a `partition` with minimum and maximum, and the centroid",
             ));
