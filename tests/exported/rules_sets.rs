@@ -1,12 +1,12 @@
 // The rule set `sets`, written by `flagred export --rust` 0.1.0. Do not edit.
 // Inputs, in this order: a (0 to 1), b (-2 to 2).
-// Outputs, in this order: risk (0 to 100), place (0 to 1).
-// 6908 bytes of constants. An evaluation takes 464 bytes of memory.
+// Outputs, in this order: risk (0 to 100), place (0 to 1), load (0 to 10).
+// 8380 bytes of constants. An evaluation takes 680 bytes of memory.
 
 /// The outcome of each output at values of the inputs. It depends on nothing else.
 #[allow(dead_code)]
 #[rustfmt::skip]
-pub fn evaluate(inputs: &[f64; 2]) -> [::fuzzy::table::Outcome; 2] {
+pub fn evaluate(inputs: &[f64; 2]) -> [::fuzzy::table::Outcome; 3] {
     #[allow(unused_imports)]
     use ::fuzzy::table::{Outcome, Partial, Scratch, Strongest, Values};
     let mut scratch = Scratch {
@@ -15,11 +15,11 @@ pub fn evaluate(inputs: &[f64; 2]) -> [::fuzzy::table::Outcome; 2] {
         alive: &mut [Partial::NONE; 5],
         partial: &mut [Partial::NONE; 1],
         next: &mut [Partial::NONE; 1],
-        stack: &mut [0.0; 1],
-        strengths: &mut [0.0; 7],
-        strongest: &mut [Strongest::NONE; 2],
+        stack: &mut [0.0; 10],
+        strengths: &mut [0.0; 11],
+        strongest: &mut [Strongest::NONE; 3],
     };
-    let mut outcomes = [Outcome::UNDEFINED; 2];
+    let mut outcomes = [Outcome::UNDEFINED; 3];
     RULES.evaluate(&mut scratch, inputs, &mut outcomes);
     outcomes
 }
@@ -38,7 +38,7 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
         or: Disjunction::Maximum,
         conjunctions: Conjunctions::Trie,
         least_strength: 1e-12,
-        sizes: Sizes { degrees: 6, alive: 5, partial: 1, stack: 1, strengths: 7 },
+        sizes: Sizes { degrees: 6, alive: 5, partial: 1, stack: 10, strengths: 11 },
         inputs: &[
             Input { low: 0.0, high: 1.0, first_literal: 0, first_cut: 0, end_cut: 2, first_start: 0, first_curve: 0, end_curve: 0 },
             Input { low: -2.0, high: 2.0, first_literal: 3, first_cut: 2, end_cut: 4, first_start: 4, first_curve: 0, end_curve: 2 },
@@ -68,17 +68,21 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
         actions: &[
             Action { weight: 1.0, strength: 0, output: 0, rule: 0, sums: 0 },
             Action { weight: 1.0, strength: 4, output: 1, rule: 0, sums: 0 },
+            Action { weight: 1.0, strength: 6, output: 2, rule: 0, sums: 0 },
             Action { weight: 0.7, strength: 1, output: 0, rule: 1, sums: 0 },
             Action { weight: 0.7, strength: 5, output: 1, rule: 1, sums: 0 },
+            Action { weight: 0.7, strength: 7, output: 2, rule: 1, sums: 0 },
             Action { weight: 1.0, strength: 3, output: 0, rule: 2, sums: 0 },
             Action { weight: 1.0, strength: 5, output: 1, rule: 2, sums: 0 },
+            Action { weight: 1.0, strength: 8, output: 2, rule: 2, sums: 0 },
             Action { weight: 1.0, strength: 2, output: 0, rule: 3, sums: 0 },
+            Action { weight: 1.0, strength: 9, output: 2, rule: 3, sums: 0 },
         ],
         programs: &[
-            Program { weight: 1.0, first_step: 0, end_step: 2, first_action: 0, end_action: 2, first_hedge: 0, end_hedge: 0 },
-            Program { weight: 0.7, first_step: 2, end_step: 3, first_action: 2, end_action: 4, first_hedge: 0, end_hedge: 0 },
-            Program { weight: 1.0, first_step: 3, end_step: 5, first_action: 4, end_action: 6, first_hedge: 0, end_hedge: 0 },
-            Program { weight: 1.0, first_step: 5, end_step: 6, first_action: 6, end_action: 7, first_hedge: 0, end_hedge: 0 },
+            Program { weight: 1.0, first_step: 0, end_step: 2, first_action: 0, end_action: 3, first_hedge: 0, end_hedge: 0 },
+            Program { weight: 0.7, first_step: 2, end_step: 3, first_action: 3, end_action: 6, first_hedge: 0, end_hedge: 0 },
+            Program { weight: 1.0, first_step: 3, end_step: 5, first_action: 6, end_action: 9, first_hedge: 0, end_hedge: 0 },
+            Program { weight: 1.0, first_step: 5, end_step: 6, first_action: 9, end_action: 11, first_hedge: 0, end_hedge: 0 },
         ],
         steps: &[
             Step { op: Op(0), literal: 0 }, Step { op: Op(1), literal: 3 }, Step { op: Op(0), literal: 1 },
@@ -88,11 +92,22 @@ pub static RULES: ::fuzzy::table::Table<'static> = {
         outputs: &[
             Output { low: 0.0, high: 100.0, default_value: NaN, form: ClosedForm(6), first: 0, end: 1, first_strength: 0, end_strength: 4, clamps: 0 },
             Output { low: 0.0, high: 1.0, default_value: NaN, form: ClosedForm(6), first: 1, end: 2, first_strength: 4, end_strength: 6, clamps: 0 },
+            Output { low: 0.0, high: 10.0, default_value: NaN, form: ClosedForm(9), first: 0, end: 1, first_strength: 6, end_strength: 10, clamps: 0 },
         ],
         pairs: &[],
-        layered_sets: &[],
-        bases: &[],
-        layers: &[],
+        layered_sets: &[LayeredSet { first_base: 0, end_base: 9, first_layer: 0, end_layer: 5 }],
+        bases: &[
+            Base { others: 0, strength: 1 }, Base { others: 1, strength: 3 }, Base { others: 2, strength: 2 },
+            Base { others: 0, strength: 0 }, Base { others: 0, strength: 2 }, Base { others: 5, strength: 3 },
+            Base { others: 2, strength: 0 }, Base { others: 1, strength: 0 }, Base { others: 5, strength: 1 },
+        ],
+        layers: &[
+            Layers { low: [0.5999999999999999, 0.5, 0.2857142857142856, 0.0], high: [1.0, 0.5999999999999999, 0.5, 0.2857142857142856], area: [[2.4000000000000004, 0.5999999999999996, 1.2857142857142865, 1.7142857142857135], [-2.9999999999999996, -3.000000000000002, -3.0, -3.0]], moment: [[-9.120000000000001, -1.379999999999999, -1.744897959183674, 0.24489795918367402], [7.799999999999998, 6.000000000000004, 2.1428571428571406, -3.0], [5.999999999999999, 6.00000000000001, 6.0, 6.0]], bases: [0, 1, 2, 3], strength: 0 },
+            Layers { low: [0.0, 0.6000000000000001, 1.0, 0.636363636363636], high: [0.6000000000000001, 1.0, 1.0, 1.0], area: [[2.4000000000000004, 1.5999999999999996, 2.0, 1.0909090909090917], [-2.0, -2.0, 0.0, -1.4999999999999998]], moment: [[-9.120000000000001, -2.879999999999999, 0.0, 1.6859504132231422], [10.0, 5.199999999999999, 0.0, -3.136363636363637], [-2.6666666666666665, -2.6666666666666665, 0.0, 1.4999999999999998]], bases: [4, 0, 0, 0], strength: 1 },
+            Layers { low: [0.09090909090909112, 0.0, 0.0, 0.0], high: [0.636363636363636, 0.09090909090909112, 0.0, 0.0], area: [[1.636363636363635, 0.2727272727272734, 0.0, 0.0], [-1.5000000000000002, -1.5, 0.0, 0.0]], moment: [[4.760330578512392, 1.0537190082644652, 0.0, 0.0], [-5.590909090909091, -6.0, 0.0, 0.0], [1.5000000000000007, 1.5, 0.0, 0.0]], bases: [5, 6, 0, 0], strength: 1 },
+            Layers { low: [0.0, 0.2857142857142858, 0.36363636363636365, 0.6363636363636365], high: [0.2857142857142858, 0.36363636363636365, 0.6363636363636365, 1.0], area: [[2.2857142857142865, 0.6233766233766227, 2.1818181818181825, 2.9090909090909083], [-4.0, -4.0, -4.0, -4.0]], moment: [[-4.244897959183674, -0.2509698094113676, 2.1818181818181825, 10.31404958677686], [12.0, 2.857142857142854, 0.3636363636363633, -8.363636363636367], [-10.666666666666666, -10.666666666666666, -10.666666666666666, -10.666666666666666]], bases: [7, 2, 1, 0], strength: 2 },
+            Layers { low: [0.0, 0.36363636363636365, 0.09090909090909095, 0.0], high: [0.5, 0.5, 0.36363636363636365, 0.09090909090909095], area: [[3.0, 1.9090909090909092, 3.8181818181818175, 1.2727272727272734], [-3.0, -7.000000000000001, -6.999999999999999, -7.0]], moment: [[-10.5, -1.9958677685950412, 6.942148760330578, 5.553719008264466], [15.0, 0.6363636363636359, -26.090909090909083, -35.0], [-6.0, 32.66666666666668, 32.66666666666666, 32.666666666666664]], bases: [8, 1, 9, 5], strength: 3 },
+        ],
         moments: &[],
         consequents: &[],
         coefficients: &[],

@@ -454,6 +454,7 @@ fn tables_of_every_kind_say_what_the_estimator_says_lent_and_in_c() {
             (!table.blocks.is_empty(), "blocks"),
             (!table.nodes.is_empty(), "nodes"),
             (!table.pairs.is_empty(), "pairs"),
+            (!table.layers.is_empty(), "layers"),
             (!table.moments.is_empty(), "moments"),
             (!table.coefficients.is_empty(), "coefficients"),
             (!plan.rules.stages.is_empty(), "stages"),
