@@ -1,6 +1,6 @@
 //! From a prepared set of straight terms to its layers.
 
-use alloc::vec::Vec;
+use alloc::{collections::BTreeMap, vec::Vec};
 
 use super::Prepared;
 use super::piece::unit;
@@ -15,8 +15,8 @@ pub(crate) struct Layered {
     empty: Vec<bool>,
 }
 
-/// More take longer than walking over the sections.
-const MOST_PARTS: usize = 128;
+/// More, and more bases, take more memory than they are worth: a base is a number in each row.
+const MOST_PARTS: usize = 1024;
 /// Flatter slopes have powers that no number holds.
 const LEAST_SLOPE: f64 = 1e-100;
 
@@ -40,9 +40,6 @@ impl Layered {
             return None;
         }
         let mut parts = parts(prepared)?;
-        if parts.len() > MOST_PARTS {
-            return None;
-        }
         parts.sort_by_key(|part| part.strength);
         let measure = (low + 0.5 * (high - low), unit(high - low));
         let mut bases = Bases::default();
@@ -57,6 +54,9 @@ impl Layered {
                 }
                 layers.push(four);
             }
+        }
+        if bases.bases.len() > MOST_PARTS {
+            return None;
         }
         Some(Layered {
             bases: bases.bases,
@@ -74,7 +74,7 @@ impl Layered {
     }
 }
 
-/// The parts of all terms: those of the sections, joined where nothing changes.
+/// The parts of all terms: those of the sections, joined where nothing changes; `None` where there are too many.
 fn parts(prepared: &Prepared) -> Option<Vec<Part>> {
     let mut parts: Vec<Part> = Vec::new();
     for section in &prepared.sections {
@@ -100,6 +100,9 @@ fn parts(prepared: &Prepared) -> Option<Vec<Part>> {
             if let Err(place) = above.binary_search(&strand.strength) {
                 above.insert(place, strand.strength);
             }
+        }
+        if parts.len() > MOST_PARTS {
+            return None;
         }
     }
     Some(parts)
@@ -137,8 +140,8 @@ impl Part {
 /// The bases of sets of firing strengths.
 #[derive(Default)]
 struct Bases {
-    /// The set of each base, ascending.
-    sets: Vec<Vec<u32>>,
+    /// One more than the index of the base of each set, which is ascending.
+    known: BTreeMap<Vec<u32>, u32>,
     bases: Vec<Base>,
 }
 
@@ -147,8 +150,7 @@ impl Bases {
         if set.is_empty() {
             return Some(0);
         }
-        let base = self.sets.iter().position(|known| known == set)?;
-        Some(base as u32 + 1)
+        self.known.get(set).copied()
     }
 
     /// The base of a set, added where it is not there.
@@ -165,9 +167,10 @@ impl Bases {
         let near = (0..set.len()).find(|index| self.known(&without(*index).0).is_some());
         let (others, strength) = without(near.unwrap_or(0));
         let others = self.of(&others);
-        self.sets.push(set.to_vec());
         self.bases.push(Base { others, strength });
-        self.bases.len() as u32
+        let base = self.bases.len() as u32;
+        self.known.insert(set.to_vec(), base);
+        base
     }
 }
 

@@ -57,7 +57,7 @@ fn layers_have_the_centroid_of_the_set() {
     for round in 0..2000 {
         let (low, high) = [(0.0, 100.0), (-3e-6, 1e-6), (1e9, 3e9)][round % 3];
         let at = |share: f64| low + share * (high - low);
-        let terms: Vec<([f64; 3], f64)> = (0..1 + round % 7)
+        let terms: Vec<([f64; 3], f64)> = (0..1 + round % 14)
             .map(|_| {
                 let peak = 1.4 * random() - 0.2;
                 let corners = [peak - 0.25 - random(), peak, peak + 0.25 + random()];
