@@ -121,9 +121,9 @@ fn problem(line: u64, problem: impl Into<String>, help: &str) -> ReadError {
 /// Bytes of a row, with the comments above it. Longer header lines are not taken for a flight CSV.
 const LONGEST_ROW: usize = 1_000_000;
 const MOST_COLUMNS: usize = 4096;
-/// About 300 years, on either side of 0: clocks that count from 1970 are within it. One damaged time beyond it would make all
-/// later ones go back.
-const FURTHEST_S: f64 = 1e10;
+/// On either side of 0. Logs that count microseconds in 64 bits are within it, and so is what they are converted to. One damaged
+/// time beyond it would make all later ones go back.
+const FURTHEST_S: f64 = 1e14;
 /// ArduPilot's frames have up to 12 motors, its outputs 32.
 const MOST_MOTORS: usize = 32;
 
