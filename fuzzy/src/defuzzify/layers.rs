@@ -3,7 +3,6 @@
 use alloc::{collections::BTreeMap, vec::Vec};
 
 use super::Prepared;
-use super::piece::unit;
 use crate::table::{Base, Kind, Layers, Strand};
 
 /// The closed form of the centroid of the maximum of straight terms that are cut.
@@ -11,14 +10,12 @@ use crate::table::{Base, Kind, Layers, Strand};
 pub(crate) struct Layered {
     pub(crate) bases: Vec<Base>,
     pub(crate) layers: Vec<Layers>,
-    /// Whether each term is 0 all over the range.
-    empty: Vec<bool>,
 }
 
-/// More, and more bases, take more memory than they are worth: a base is a number in each row.
+/// The most parts of an output, and the most bases. A base takes a number for each row, so more would take much memory.
 const MOST_PARTS: usize = 1024;
-/// Flatter slopes have powers that no number holds.
-const LEAST_SLOPE: f64 = 1e-100;
+/// Between smaller differences of degrees, the coefficients are too large for numbers.
+const LEAST_DIFFERENCE: f64 = 1e-100;
 
 /// A part of the range on which a term is straight and the same terms are above it.
 struct Part {
@@ -32,16 +29,15 @@ struct Part {
 }
 
 impl Layered {
-    /// The layers of a set whose sections are those of the minimum, with moments about the middle of the range; `None` where a
-    /// term is curved, or there would be too many.
-    pub(super) fn new(prepared: &Prepared, (low, high): (f64, f64)) -> Option<Self> {
+    /// The layers of a set whose sections are those of the minimum, with moments `about` this origin in this unit of length;
+    /// `None` where a term is curved, or there would be too many.
+    pub(super) fn new(prepared: &Prepared, about: (f64, f64)) -> Option<Self> {
         let is_straight = prepared.flanks.iter().all(|f| f.kind == Kind::PIECEWISE);
         if !is_straight {
             return None;
         }
         let mut parts = parts(prepared)?;
         parts.sort_by_key(|part| part.strength);
-        let measure = (low + 0.5 * (high - low), unit(high - low));
         let mut bases = Bases::default();
         let mut layers: Vec<Layers> = Vec::new();
         for of_term in parts.chunk_by(|a, b| a.strength == b.strength) {
@@ -50,7 +46,7 @@ impl Layered {
                 for (index, part) in parts.iter().enumerate() {
                     four.strength = part.strength;
                     four.bases[index] = bases.of(&part.above);
-                    part.write(measure, index, &mut four)?;
+                    part.write(about, index, &mut four)?;
                 }
                 layers.push(four);
             }
@@ -61,16 +57,13 @@ impl Layered {
         Some(Layered {
             bases: bases.bases,
             layers,
-            empty: prepared
-                .terms
-                .iter()
-                .map(|term| term.highest <= 0.0)
-                .collect(),
         })
     }
 
-    pub(crate) fn is_empty(&self, term: usize) -> bool {
-        self.empty.get(term).is_none_or(|empty| *empty)
+    /// Whether a term is 0 all over the range.
+    pub(super) fn is_empty(&self, term: usize) -> bool {
+        let mut layers = self.layers.iter();
+        !layers.any(|four| four.strength as usize == term)
     }
 }
 
@@ -118,9 +111,9 @@ impl Part {
         (four.low[index], four.high[index]) = (low, high);
         four.area[0][index] = width;
         four.moment[0][index] = width * (from + 0.5 * length - origin);
-        let slope = high - low;
-        if slope > 0.0 {
-            if slope < LEAST_SLOPE {
+        let difference = high - low;
+        if difference > 0.0 {
+            if difference < LEAST_DIFFERENCE {
                 return None;
             }
             let (lower_end, sign) = if left < right {
@@ -128,10 +121,10 @@ impl Part {
             } else {
                 (to, 1.0)
             };
-            let half = 0.5 * width / slope;
+            let half = 0.5 * width / difference;
             four.area[1][index] = -half;
             four.moment[1][index] = -half * (lower_end - origin);
-            four.moment[2][index] = sign * half * (length / slope) / 3.0;
+            four.moment[2][index] = sign * half * (length / difference) / 3.0;
         }
         Some(())
     }

@@ -138,37 +138,28 @@ impl Method {
             return Method::Sampled(sampling, Curves::new(terms, low, high));
         }
         let lines = Polylines::new(terms, low, high).filter(|_| Polylines::can(joint));
-        let scales = joint.implication == Implication::Product;
-        if output.defuzzifier == Defuzzifier::Centroid
-            && (scales || joint.implication == Implication::Minimum)
-            && joint.aggregation == Aggregation::Maximum
+        let about = (low + 0.5 * (high - low), unit(high - low));
+        let is_centroid_of = |implication: Implication, aggregation: Aggregation| {
+            output.defuzzifier == Defuzzifier::Centroid
+                && (joint.implication, joint.aggregation) == (implication, aggregation)
+        };
+        let cuts = is_centroid_of(Implication::Minimum, Aggregation::Maximum);
+        let scales = is_centroid_of(Implication::Product, Aggregation::Maximum);
+        if (cuts || scales)
             && let Some(lines) = &lines
+            && let Some(partition) = Partition::new(lines, terms.len(), about, scales)
         {
-            let about = (low + 0.5 * (high - low), unit(high - low));
-            let partition = Partition::new(lines, terms.len(), about, scales);
-            if let Some(partition) = partition {
-                return Method::Partition(partition);
-            }
+            return Method::Partition(partition);
         }
         let prepared = Prepared::new(terms, (low, high), joint, output.defuzzifier);
         match (prepared, lines) {
-            (Some(prepared), _)
-                if output.defuzzifier == Defuzzifier::Centroid
-                    && joint.implication == Implication::Product
-                    && joint.aggregation == Aggregation::Sum =>
-            {
-                Method::Moments(prepared.moments(unit(high - low)))
+            (Some(prepared), _) if is_centroid_of(Implication::Product, Aggregation::Sum) => {
+                Method::Moments(prepared.moments(about.1))
             }
-            (Some(prepared), Some(_))
-                if output.defuzzifier == Defuzzifier::Centroid
-                    && joint.implication == Implication::Minimum
-                    && joint.aggregation == Aggregation::Maximum =>
-            {
-                match Layered::new(&prepared, (low, high)) {
-                    Some(layered) => Method::Layered(layered),
-                    None => Method::Prepared(prepared),
-                }
-            }
+            (Some(prepared), Some(_)) if cuts => match Layered::new(&prepared, about) {
+                Some(layered) => Method::Layered(layered),
+                None => Method::Prepared(prepared),
+            },
             (Some(prepared), _) => Method::Prepared(prepared),
             (None, Some(lines)) => Method::Lines(lines),
             (None, None) => Method::Curves(Curves::new(terms, low, high)),

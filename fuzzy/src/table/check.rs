@@ -1,7 +1,5 @@
 //! Verifies the indices of a table.
 
-use core::ops::Range;
-
 use super::{ClosedForm, Conjunctions, Dimension, FuzzySet, Input, LayeredSet, Op, Table};
 
 /// The array of a damaged table or plan that has an index out of bounds.
@@ -311,7 +309,7 @@ impl Table<'_> {
     }
 
     /// Whether a program neither joins fewer than two degrees nor pushes beyond the size of the stack.
-    fn fits_stack(&self, steps: Range<usize>) -> bool {
+    fn fits_stack(&self, steps: core::ops::Range<usize>) -> bool {
         let mut depth = 0usize;
         let steps = self.steps.get(steps).unwrap_or_default();
         steps.iter().all(|step| {

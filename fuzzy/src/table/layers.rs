@@ -46,7 +46,7 @@ pub struct Base {
 ///
 /// and the layer is the difference between two degrees. For a part of width w with its middle at m, from the middle of the range,
 /// the coefficients are `w, -w / 2d` and `w m, -w l / 2d, s w^2 / 6d^2`, with `d = high - low`, l the place of the lower end,
-/// and s = 1 where the term falls, -1 where it rises.
+/// and s = 1 where the term falls, -1 where it rises. Where it is level, those of the powers of v are 0.
 #[doc(hidden)] // Exported data.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(C)]
