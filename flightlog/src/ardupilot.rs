@@ -218,6 +218,12 @@ pub(crate) fn effective_doubt(parameters: &Parameters) -> Option<String> {
         .then(|| format!("MOT_SPIN_MIN/MAX, {low} and {high}, are no limits"))
 }
 
+/// Whether parameters name limits of the commands, even if these are implausible.
+pub(crate) fn has_limits(parameters: &Parameters) -> bool {
+    let is_known = |name: &str| parameters.get(name).is_some();
+    is_known("MOT_SPIN_MIN") && is_known("MOT_SPIN_MAX") || is_known("THR_MIN")
+}
+
 /// The part of the range that is used in flight: MOT_SPIN_MIN to MOT_SPIN_MAX. Before firmware
 /// 3.4 it begins at THR_MIN per mille; firmware 3.3 goes up to the share MOT_THST_MAX of what
 /// is left, and 3.1 and 3.2 to MOT_TCRV_MAXPCT percent of all, if that curve is in use.

@@ -254,6 +254,9 @@ pub struct Flight {
     /// Why the used part counts as the whole range although the log tells limits.
     #[cfg_attr(feature = "serde", serde(rename = "effective_range_doubt"))]
     pub effective_doubt: Option<String>,
+    /// What is assumed of motors and ranges because a telemetry log does not report it, in words; `flagred watch` assumes
+    /// the same of the vehicle. Empty where nothing is.
+    pub assumed: Vec<String>,
     /// Parameters of the autopilot that motors and ranges rest on, and gains, as far as the log has them.
     pub parameters: Vec<Parameter>,
     /// The motor commands.
@@ -289,6 +292,7 @@ impl Flight {
             range: None,
             effective: whole_range("the log names no tighter limits"),
             effective_doubt: None,
+            assumed: Vec::new(),
             parameters: Vec::new(),
             commands: Commands::default(),
             series: Vec::new(),

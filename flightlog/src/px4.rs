@@ -3,7 +3,7 @@
 
 use crate::mav_type::{MavType, mav_type};
 use crate::parameters::Parameters;
-use crate::{Motor, Range, Vehicle, identity};
+use crate::{Motor, Range, Vehicle, VehicleKind, identity};
 
 /// Raw commands above this are counts of a bus, not pulse widths in us.
 const LONGEST_PULSE_US: f64 = 2200.0;
@@ -39,6 +39,7 @@ pub(crate) fn vehicle(
         Some(airframe) => format!("{name}, airframe {airframe}"),
         None => name.into(),
     });
+    count_rotors(&mut vehicle, parameters);
     vehicle
 }
 
@@ -55,13 +56,28 @@ pub(crate) fn firmware(release: u32) -> String {
     format!("PX4 v{major}.{minor}.{patch}{kind}")
 }
 
+/// The number of rotors by CA_ROTOR_COUNT (1.13 and later), which the type of the vehicle may contradict.
+pub(crate) fn rotor_count(parameters: &Parameters) -> Option<u16> {
+    let count = parameters.get("CA_ROTOR_COUNT")?;
+    (1.0..=12.0).contains(&count).then_some(count as u16)
+}
+
+/// Replaces number of motors and type by CA_ROTOR_COUNT, where that contradicts them.
+pub(crate) fn count_rotors(vehicle: &mut Vehicle, parameters: &Parameters) {
+    let Some(count) = rotor_count(parameters) else {
+        return;
+    };
+    if vehicle.kind == VehicleKind::Multirotor && vehicle.motors.is_some_and(|told| told != count) {
+        vehicle.motors = Some(count);
+        vehicle.frame = Some(format!("multirotor with {count} rotors"));
+    }
+}
+
 /// The motors of `actuator_motors`, and the range of its commands.
 pub(crate) fn actuator_motors(parameters: &Parameters, used: u16) -> (Vec<Motor>, Range) {
-    let (count, source) = match parameters.get("CA_ROTOR_COUNT") {
-        Some(count) if (1.0..=12.0).contains(&count) => {
-            (count as u16, format!("CA_ROTOR_COUNT = {count}"))
-        }
-        _ => (
+    let (count, source) = match rotor_count(parameters) {
+        Some(count) => (count, format!("CA_ROTOR_COUNT = {count}")),
+        None => (
             used,
             "controls in use (the log has no CA_ROTOR_COUNT)".into(),
         ),

@@ -48,6 +48,7 @@ struct Vehicle<'a> {
     range: Option<&'a Range>,
     effective_range: &'a Range,
     effective_range_doubt: Option<&'a str>,
+    assumed: &'a [String],
     parameters: &'a [Parameter],
 }
 
@@ -130,6 +131,7 @@ pub fn document<'a>(
             range: flight.range.as_ref(),
             effective_range: &flight.effective,
             effective_range_doubt: flight.effective_doubt.as_deref(),
+            assumed: &flight.assumed,
             parameters: &flight.parameters,
         },
         read: &flight.report,

@@ -154,6 +154,12 @@ pub fn notes(flight: &Flight, assessed: &Assessment) -> Vec<String> {
     if let Some(doubt) = &flight.effective_doubt {
         notes.push(format!("the effective range is the whole range: {doubt}"));
     }
+    if !flight.assumed.is_empty() {
+        let assumed = flight.assumed.join("; ");
+        notes.push(format!(
+            "the log does not report everything, assumed: {assumed}"
+        ));
+    }
     let left_out = &flight.report.left_out;
     if !left_out.is_empty() {
         notes.push(format!(

@@ -5,7 +5,7 @@ use std::path::Path;
 use flagred_tests::{
     Folder, STEADY, reference_data,
     vehicle::flight,
-    watch::{assess, compare, fly_udp, refused},
+    watch::{Watch, assess, compare, fly_udp, refused},
     wire::{Link, Speed},
 };
 use serde_json::Value;
@@ -62,6 +62,28 @@ fn a_recording_gives_assess_what_watch_said(log: &Path) {
 #[test]
 fn the_recording_of_the_shipped_flight_gives_assess_what_watch_said() {
     a_recording_gives_assess_what_watch_said(Path::new(STEADY));
+}
+
+/// Nobody asks for a parameter: both assume the same limits, and say so.
+#[test]
+fn a_recording_without_parameters_gives_assess_what_watch_said() {
+    let flight = flight(Path::new(STEADY));
+    let folder = Folder::new();
+    let path = folder.path().join("flight.tlog");
+    let watch = Watch::udp(&["--no-send", "--record", path.to_str().unwrap()]);
+    let mut vehicle = watch.vehicle(&flight, Link::default());
+    vehicle.answers = false;
+    vehicle.fly(&flight, Speed::Times(30.0), 0.0, f64::INFINITY);
+    let said = watch.end();
+    let assessed = assess(&path);
+    assert_eq!(assessed["verdict"].as_str(), Some(said.verdict().as_str()));
+    assert_ne!(assessed["verdict"], "NA");
+    let ready = said.all("ready").last().unwrap();
+    assert_eq!(ready["assumed"], assessed["vehicle"]["assumed"]);
+    assert_eq!(ready["assumed"].as_array().unwrap().len(), 3, "{ready}");
+    let (share, difference) = compare(&said, &assessed);
+    // At 30 times the speed there are no lines for the second in which parameters are awaited; the verdict is of all.
+    assert!(share > 0.6 && difference < 0.1, "{share}, {difference}");
 }
 
 #[test]

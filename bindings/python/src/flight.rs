@@ -114,6 +114,7 @@ impl FlightData {
             "range": flight.range,
             "effective_range": flight.effective,
             "effective_range_doubt": flight.effective_doubt,
+            "assumed": flight.assumed,
             "parameters": flight.parameters,
             "modes": flight.modes,
             "messages": flight.messages,

@@ -19,6 +19,7 @@ pub(crate) struct Document<'a> {
     range: Option<&'a Range>,
     effective_range: &'a Range,
     effective_range_doubt: Option<&'a str>,
+    assumed: &'a [String],
     clock: Clock<'a>,
     commands: Commands,
     statistics: Option<Statistics>,
@@ -68,6 +69,7 @@ impl<'a> Document<'a> {
             range: flight.range.as_ref(),
             effective_range: &flight.effective,
             effective_range_doubt: flight.effective_doubt.as_deref(),
+            assumed: &flight.assumed,
             clock: Clock {
                 first_s: span_s.map(|span| span.0),
                 last_s: span_s.map(|span| span.1),

@@ -96,6 +96,22 @@ pub(crate) fn describe(event: &Event, session: &Session<'_>, estimator: &Estimat
             )
         }
         Event::Ready { setup, .. } => ready(setup),
+        Event::Slowed {
+            rate_hz,
+            wanted_hz,
+            system,
+            component,
+        } => {
+            let who = match (system, component) {
+                (Some(system), Some(component)) => {
+                    format!("station {system}, component {component}, asked the vehicle for less")
+                }
+                _ => "another station asked for less, or the link is too slow".to_owned(),
+            };
+            format!(
+                "motor commands come at {rate_hz:.1} Hz, {wanted_hz:.0} Hz are needed: {who}; they are requested again"
+            )
+        }
         Event::Note { text } => text.clone(),
         Event::Lost { what: Silent::Link } => {
             "LINK LOST: nothing comes from the vehicle, the risk is unknown".to_owned()
@@ -151,7 +167,7 @@ fn over(end: End, flown: &Flown) -> String {
         End::Lost(lost) => format!("{}: LOST IN THE AIR, {}", flown.verdict, cause_of(lost)),
         End::Left(Left::WatchEnded) => format!("{}: the watch ends in the air", flown.verdict),
         End::Left(Left::SetUpAnew) => format!(
-            "{}: the flight so far; motors or limits are known better, the rest is assessed anew",
+            "{}: the flight so far; motors or limits became known late, the rest is assessed as a flight of its own",
             flown.verdict
         ),
     };

@@ -5,12 +5,14 @@
 
 use flagred::{
     estimator::Estimator,
-    flight::{Reason, Verdict},
-    monitor::{Sample, Unknown},
+    flight::{Finding, Reason, Verdict},
+    monitor::{Unknown, Update},
+    verdict::Level,
 };
-use flightlog::mavlink::{News, Packet, Sender, Telemetry, Version, vehicle_of};
+use flightlog::mavlink::{MOTOR_RATE_HZ, News, Packet, Sender, Telemetry, Version, vehicle_of};
 
 mod event;
+mod history;
 mod speech;
 mod tracked;
 mod trust;
@@ -20,7 +22,7 @@ pub(crate) use event::{End, Event, Flown, Left, Lost, Silent};
 use report::document::numbered;
 use speech::Speech;
 pub(crate) use tracked::View;
-use tracked::{Tracked, tell};
+use tracked::{Tracked, Watch, tell};
 use trust::{Candidates, Proof, doubt_of, may_be_multirotor};
 pub(crate) use trust::{Doubt, Doubts, Source};
 
@@ -53,6 +55,8 @@ pub(crate) struct Session<'e> {
     heartbeat_s: Option<f64>,
     /// The worst verdict of the flights so far.
     worst: Verdict,
+    /// The verdict of a part of a flight of which no risk is known.
+    unknown_part: Option<Verdict>,
 }
 
 impl<'e> Session<'e> {
@@ -71,6 +75,7 @@ impl<'e> Session<'e> {
             others: Vec::new(),
             heartbeat_s: None,
             worst: Verdict::NotAvailable(Reason::NoFlight),
+            unknown_part: None,
         }
     }
 
@@ -82,6 +87,14 @@ impl<'e> Session<'e> {
         packet: &Packet<'_>,
         out: &mut Out,
     ) -> bool {
+        // Nothing is known of an unknown message but whom it is from: it is counted and recorded.
+        if packet.sound.is_none() {
+            let is_followed = self.is_followed(source, packet);
+            if let Some(tracked) = self.tracked.as_mut().filter(|_| is_followed) {
+                tracked.count(packet);
+            }
+            return is_followed;
+        }
         if !self.is_followed(source, packet) {
             self.doubt(now_s, source, packet, out);
             if !self.consider(now_s, source, packet, out) {
@@ -91,9 +104,8 @@ impl<'e> Session<'e> {
         let Some(tracked) = &mut self.tracked else {
             return false;
         };
-        if voice::is_risk(packet) {
-            self.speech.hear(now_s, packet, out);
-        }
+        self.speech
+            .hear(now_s, packet, echoes(&tracked.telemetry), out);
         tracked.count(packet);
         tracked.hear(now_s, out);
         let jumps = tracked.telemetry.clock_jumps();
@@ -158,7 +170,7 @@ impl<'e> Session<'e> {
             return;
         }
         if packet.component != 1 {
-            self.speech.hear(now_s, packet, out);
+            self.speech.hear(now_s, packet, false, out);
         }
         let doubt = doubt_of(packet);
         let is_other_end = doubt == Some(Doubt::SecondSender) && tracked.is_silent();
@@ -176,7 +188,28 @@ impl<'e> Session<'e> {
         let Some(tracked) = &mut self.tracked else {
             return;
         };
+        let before = tracked.level();
         let verdict = tracked.set_up(now_s, self.speech.asks(), self.estimator, out);
+        let to = tracked.address();
+        if let Some(watch) = tracked.watch.as_mut().filter(|watch| watch.is_flying)
+            && let Some(update) = watch.latest
+            && let Some(level) = update
+                .level
+                .filter(|&level| level != before.unwrap_or(Level::Good))
+        {
+            let finding = watch.assessor.open_finding();
+            tell_level(
+                now_s,
+                to,
+                &mut self.speech,
+                (watch, &update, level),
+                finding,
+                out,
+            );
+        }
+        if let Some(Verdict::NotAvailable(_)) = &verdict {
+            self.unknown_part = verdict.clone();
+        }
         self.speech.tick(now_s, tracked.telemetry.system(), out);
         tracked.listen(now_s, out);
         add(&mut self.worst, verdict);
@@ -189,7 +222,11 @@ impl<'e> Session<'e> {
             .as_mut()
             .and_then(|tracked| tracked.finish(out));
         add(&mut self.worst, verdict);
-        self.worst.clone()
+        match (&self.worst, self.unknown_part.take()) {
+            // A flight is not GOOD where a part of it is not known.
+            (Verdict::Known(Level::Good | Level::Info), Some(part)) => part,
+            _ => self.worst.clone(),
+        }
     }
 
     /// Whether the sender of a packet becomes the one to follow.
@@ -267,12 +304,26 @@ impl<'e> Session<'e> {
             && !tracked.is_silent()
         {
             let mut messages = Vec::new();
+            let lost_share = tracked.lost_share();
             tracked
                 .requests
-                .due(now_s, &tracked.telemetry, &mut messages);
+                .due(now_s, &tracked.telemetry, lost_share, &mut messages);
             let to = tracked.address();
             for message in &messages {
                 self.speech.ask(to, message, out);
+            }
+            if let Some(rate_hz) = tracked.slowed_hz(now_s) {
+                let by = tracked.telemetry.rate_asker();
+                out.events.push(Event::Slowed {
+                    rate_hz,
+                    wanted_hz: MOTOR_RATE_HZ,
+                    system: by.map(|(system, _)| system),
+                    component: by.map(|(_, component)| component),
+                });
+                if tracked.telemetry.is_in_air() {
+                    let text = voice::status(Level::Warn, &voice::slowed(rate_hz, by));
+                    self.speech.warn(now_s, to, &text, out);
+                }
             }
         }
     }
@@ -287,7 +338,7 @@ impl<'e> Session<'e> {
                 .tracked
                 .as_ref()
                 .map_or((Version::V2, voice::NOBODY), Tracked::address);
-            self.speech.say(to, &voice::heartbeat(now_s), out);
+            self.speech.say(now_s, to, &voice::heartbeat(now_s), out);
         }
     }
 
@@ -297,6 +348,12 @@ impl<'e> Session<'e> {
         };
         let to = tracked.address();
         let in_air = tracked.telemetry.is_in_air();
+        let pulses = tracked.telemetry.pulses();
+        if in_air && !tracked.is_complete {
+            tracked.history.push(t_s, pulses);
+        } else {
+            tracked.history.clear();
+        }
         let Some(watch) = &mut tracked.watch else {
             return;
         };
@@ -308,15 +365,7 @@ impl<'e> Session<'e> {
             });
         }
         watch.commands_s = now_s;
-        tracked
-            .telemetry
-            .effective_commands(&watch.setup, &mut watch.motors);
-        let update = watch.assessor.push(&Sample {
-            t_s,
-            motors: &watch.motors,
-            in_air,
-            signals: &[],
-        });
+        let update = watch.push(t_s, in_air, &pulses);
         if update.risk == Err(Unknown::OutOfOrder) {
             return;
         }
@@ -338,16 +387,14 @@ impl<'e> Session<'e> {
                 Some(_) => watch.assessor.open_finding(),
                 None => raised,
             };
-            let text = voice::say(level, &update, finding.as_ref(), &watch.setup);
-            self.speech.say(to, &voice::status(level, &text), out);
-            let finding = finding.map(|finding| numbered(&finding, &watch.setup.motors));
-            out.events.push(Event::Level {
-                t_s,
-                level,
-                text,
-                motor: finding.as_ref().and_then(|finding| finding.motor),
-                cause: finding.and_then(|finding| finding.cause),
-            });
+            tell_level(
+                now_s,
+                to,
+                &mut self.speech,
+                (watch, &update, level),
+                finding,
+                out,
+            );
         }
         let due = watch
             .risk_sent_s
@@ -362,7 +409,8 @@ impl<'e> Session<'e> {
                 (voice::RISK, estimate.risk_pct),
                 (voice::ELEVATED, elevated_pct),
             ] {
-                self.speech.say(to, &voice::value(t_s, name, value), out);
+                self.speech
+                    .say(now_s, to, &voice::value(t_s, name, value), out);
             }
         }
     }
@@ -371,6 +419,33 @@ impl<'e> Session<'e> {
     pub(crate) fn view(&self) -> Option<View<'_>> {
         self.tracked.as_ref().map(Tracked::view)
     }
+}
+
+/// Tells a level, and sends its text.
+fn tell_level(
+    now_s: f64,
+    to: (Version, u8),
+    speech: &mut Speech,
+    (watch, update, level): (&Watch, &Update, Level),
+    finding: Option<Finding>,
+    out: &mut Out,
+) {
+    let text = voice::say(level, update, finding.as_ref(), &watch.setup);
+    speech.warn(now_s, to, &voice::status(level, &text), out);
+    let finding = finding.map(|finding| numbered(&finding, &watch.setup.motors));
+    out.events.push(Event::Level {
+        t_s: update.t_s,
+        level,
+        text,
+        motor: finding.as_ref().and_then(|finding| finding.motor),
+        cause: finding.and_then(|finding| finding.cause),
+    });
+}
+
+/// Whether an autopilot sends the values of others again as its own.
+fn echoes(telemetry: &Telemetry) -> bool {
+    let firmware = telemetry.vehicle().firmware.as_deref();
+    firmware.is_some_and(|firmware| firmware.starts_with("PX4"))
 }
 
 /// A doubt as an event.

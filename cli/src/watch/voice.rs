@@ -33,6 +33,10 @@ const AGE: u32 = (1 << 24) - 1;
 /// Numbers of messages.
 const HEARTBEAT: u32 = 0;
 const NAMED_VALUE_FLOAT: u32 = 251;
+const STATUSTEXT: u32 = 253;
+
+/// What every text begins with.
+const PREFIX: &str = "FLAGRED: ";
 
 /// The heartbeat of an onboard computer that has been watching for so long.
 pub(crate) fn heartbeat(age_s: f64) -> MavMessage {
@@ -61,10 +65,42 @@ pub(crate) fn age_of(packet: &Packet<'_>) -> Option<f64> {
     is_watch.then(|| f64::from(beat.custom_mode & AGE) / 10.0)
 }
 
-/// Whether a packet is the risk that another watch, or a program on the autopilot, sends.
-pub(crate) fn is_risk(packet: &Packet<'_>) -> bool {
-    packet.id == NAMED_VALUE_FLOAT
-        && matches!(packet.message(), Some(MavMessage::NAMED_VALUE_FLOAT(value)) if value.name.to_str() == Ok(RISK))
+/// The risk that a packet of another watch, or of a program on the autopilot, reports.
+pub(crate) fn risk_of(packet: &Packet<'_>) -> Option<f32> {
+    if packet.id != NAMED_VALUE_FLOAT {
+        return None;
+    }
+    let Some(MavMessage::NAMED_VALUE_FLOAT(value)) = packet.message() else {
+        return None;
+    };
+    (value.name.to_str() == Ok(RISK)).then_some(value.value)
+}
+
+/// What a text of a watch is about: its first word, a level in most of them.
+pub(crate) fn topic_of(packet: &Packet<'_>) -> Option<String> {
+    if packet.id != STATUSTEXT {
+        return None;
+    }
+    topic(&packet.message()?)
+}
+
+/// The same of a message.
+pub(crate) fn topic(message: &MavMessage) -> Option<String> {
+    let MavMessage::STATUSTEXT(status) = message else {
+        return None;
+    };
+    let words = status.text.to_str().ok()?.strip_prefix(PREFIX)?;
+    words.split_whitespace().next().map(str::to_owned)
+}
+
+/// The text about a station that slows the motor commands down.
+pub(crate) fn slowed(rate_hz: f64, asker: Option<(u8, u8)>) -> String {
+    match asker {
+        Some((system, _)) => {
+            format!("{PREFIX}station {system} slows motor data to {rate_hz:.0} Hz")
+        }
+        None => format!("{PREFIX}station slows motor data to {rate_hz:.0} Hz"),
+    }
 }
 
 /// A value at a time of the vehicle's clock.
@@ -106,7 +142,7 @@ pub(crate) fn say(
     setup: &Setup,
 ) -> String {
     if level == Level::Good && update.risk.is_err() {
-        return "FLAGRED: risk unknown".to_owned();
+        return format!("{PREFIX}risk unknown");
     }
     let measure = finding.map_or(Measure::Risk, |finding| finding.measure);
     let (name, value) = match measure {
@@ -121,7 +157,7 @@ pub(crate) fn say(
         Some((finding, risk)) => (risk.as_str(), Some(finding.peak_pct)),
         None => (name, value),
     };
-    let mut text = format!("FLAGRED: {level}");
+    let mut text = format!("{PREFIX}{level}");
     if let Some(value) = value {
         text += &format!(" {name} {value:.0} %");
     }

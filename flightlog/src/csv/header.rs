@@ -130,6 +130,7 @@ pub(super) fn apply_header(
                 let id = entry.value.clone();
                 identity::name(&mut flight.vehicle, id, "header vehicle_id");
             }
+            "assumed" => flight.assumed = entry.value.split("; ").map(str::to_owned).collect(),
             "system_id" => flight.vehicle.system_id = entry.value.parse().ok(),
             "boot_count" => flight.vehicle.boot_count = entry.value.parse().ok(),
             "firmware" => flight.vehicle.firmware = Some(entry.value.clone()),

@@ -109,6 +109,9 @@ impl Flight {
             line(out, "pwm_low_us", &range.low.to_string())?;
             line(out, "pwm_high_us", &range.high.to_string())?;
         }
+        if !self.assumed.is_empty() {
+            line(out, "assumed", &self.assumed.join("; "))?;
+        }
         line(out, "effective_low", &self.effective.low.to_string())?;
         line(out, "effective_high", &self.effective.high.to_string())?;
         let declared = self.geometry.as_ref();

@@ -125,13 +125,14 @@ impl Declared {
 /// the thrust coefficient (<https://docs.px4.io/main/en/config/actuators.html>).
 fn rotors(parameters: &Parameters) -> Option<Vec<(u16, [f64; 3])>> {
     let count = parameters.get("CA_ROTOR_COUNT")? as u16;
+    let coefficients = thrust_coefficients(parameters, count.min(PX4_ROTORS));
     let moments: Vec<[f64; 3]> = (0..count.min(PX4_ROTORS))
         .map(|rotor| {
             let of = |name: &str| parameters.get(&format!("CA_ROTOR{rotor}_{name}"));
             let or = |name: &str, default: f64| of(name).unwrap_or(default);
             let (px, py, pz) = (of("PX")?, of("PY")?, or("PZ", 0.0));
             let (ax, ay, az) = (or("AX", 0.0), or("AY", 0.0), or("AZ", -1.0));
-            let (km, ct) = (of("KM")?, or("CT", 1.0));
+            let (km, ct) = (of("KM")?, coefficients[usize::from(rotor)]);
             let moment = [
                 py * az - pz * ay - km * ax,
                 pz * ax - px * az - km * ay,
@@ -143,6 +144,14 @@ fn rotors(parameters: &Parameters) -> Option<Vec<(u16, [f64; 3])>> {
     let turns = |axis: usize| moments.iter().any(|moment| moment[axis].abs() > 1e-9);
     // Positions that were never set are all 0.
     (turns(0) && turns(1)).then(|| (1..).zip(tables::normalised(moments)).collect())
+}
+
+/// CA_ROTORn_CT of every rotor. Unless all are known they count as equal, which they are by default: one beside a default
+/// that is not known would be a difference that the vehicle does not have.
+fn thrust_coefficients(parameters: &Parameters, count: u16) -> Vec<f64> {
+    let known = (0..count).map(|rotor| parameters.get(&format!("CA_ROTOR{rotor}_CT")));
+    let known: Option<Vec<f64>> = known.collect();
+    known.unwrap_or_else(|| vec![1.0; usize::from(count)])
 }
 
 /// The layout of a group of PX4's airframes

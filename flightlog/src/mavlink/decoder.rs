@@ -1,15 +1,16 @@
 //! The state of one vehicle by its messages: armed, in the air, parameters, outputs. Telemetry logs
 //! and live links use the same decoder.
 
+use std::collections::BTreeSet;
+
 use crate::field::{Kind, NumericField};
-use crate::geometry::Declared;
 use crate::mav_type::{MavType, mav_type};
 use crate::outputs::LONGEST_PULSE_US;
 use crate::parameters::Parameters;
-use crate::{Motor, Range, Vehicle, ardupilot, identity, px4};
+use crate::{Vehicle, identity, px4};
 
 use super::Packet;
-use super::servo::{bank, field, px4_motors};
+use super::outputs::KnownOutputs;
 
 /// The component of a system that is its autopilot.
 pub(crate) const AUTOPILOT: u8 = 1;
@@ -26,6 +27,9 @@ const SERVO_OUTPUT_RAW: u32 = 36;
 const AUTOPILOT_VERSION: u32 = 148;
 const EXTENDED_SYS_STATE: u32 = 245;
 const STATUSTEXT: u32 = 253;
+const PARAM_ERROR: u32 = 345;
+/// MAV_PARAM_ERROR of a parameter that exists but could not be read.
+const READ_FAILED: u8 = 8;
 
 /// Parameters that wait for the first heartbeat, at most: any vehicle has fewer.
 const MOST_WAITING: usize = 1 << 12;
@@ -57,7 +61,7 @@ pub(crate) enum Told {
     Nothing,
     /// Armed, in the air or the mode: [`Decoder`] has them.
     State,
-    /// A parameter became known.
+    /// A parameter became known, or known not to be readable.
     Parameter,
     Outputs(ServoOutputs),
     Text(String),
@@ -81,6 +85,8 @@ pub(crate) struct Decoder {
     version: Option<u32>,
     id: Option<(String, &'static str)>,
     pub(crate) parameters: Parameters,
+    /// Parameters that the vehicle reported not to have, or not to give away.
+    absent: BTreeSet<String>,
     /// PARAM_VALUE messages that came before the autopilot was known: name, value, type.
     waiting: Vec<(String, [u8; 4], u8)>,
     is_armed: bool,
@@ -161,6 +167,8 @@ impl Decoder {
                 Told::State
             }
             STATUSTEXT => Told::Text(text(&payload[1..51])),
+            // The index, system and component of who asked, then the name.
+            PARAM_ERROR => self.parameter_error(text(&payload[4..20]), payload[20]),
             _ => Told::Nothing,
         }
     }
@@ -198,6 +206,22 @@ impl Decoder {
             self.waiting.push((name, value, kind));
         }
         Told::Nothing
+    }
+
+    fn parameter_error(&mut self, name: String, error: u8) -> Told {
+        if matches!(error, 0 | READ_FAILED) || self.absent.len() >= MOST_WAITING {
+            return Told::Nothing;
+        }
+        match self.absent.insert(name) {
+            true => Told::Parameter,
+            false => Told::Nothing,
+        }
+    }
+
+    /// Whether the vehicle reported that it does not have a parameter, or does not give it away.
+    #[cfg(feature = "mavlink")]
+    pub(crate) fn is_absent(&self, name: &str) -> bool {
+        self.absent.contains(name)
     }
 
     fn learn(&mut self, name: String, value: [u8; 4], kind: u8) -> Told {
@@ -263,53 +287,9 @@ impl Decoder {
         vehicle
     }
 
-    /// Motors and ranges, as far as the parameters tell.
+    /// Motors and ranges by the parameters, and what is assumed without them.
     pub(crate) fn outputs(&self, vehicle: &Vehicle) -> KnownOutputs {
         KnownOutputs::of(&self.parameters, vehicle, self.is_px4())
-    }
-}
-
-/// What parameters tell of motors and of the range of their commands.
-pub(crate) struct KnownOutputs {
-    /// The motors in order of their number, and the output of each, from 1.
-    pub(crate) motors: Vec<(Motor, u16)>,
-    /// They are on the first outputs because nothing else is known.
-    #[cfg_attr(
-        not(feature = "mavlink"),
-        expect(dead_code, reason = "recordings do not assume")
-    )]
-    pub(crate) first_outputs: bool,
-    pub(crate) range: Option<Range>,
-    pub(crate) effective: Range,
-    pub(crate) declared: Declared,
-}
-
-impl KnownOutputs {
-    pub(crate) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Self {
-        if !is_px4 {
-            return Self {
-                motors: ardupilot::motors(parameters, vehicle, field),
-                first_outputs: !ardupilot::has_functions(parameters),
-                range: ardupilot::pwm_range(parameters),
-                effective: ardupilot::effective_range(parameters),
-                declared: Declared::of_ardupilot(parameters, vehicle),
-            };
-        }
-        let mut motors = px4_motors(parameters);
-        let first_outputs = motors.is_empty();
-        if first_outputs {
-            let count = vehicle.motors.unwrap_or(0);
-            let source = "MAV_TYPE, the first outputs";
-            motors = ardupilot::numbered_motors(count, field, source);
-        }
-        let (bank, index) = bank(motors.first().map_or(1, |(_, output)| *output));
-        Self {
-            motors,
-            first_outputs,
-            range: px4::output_range(parameters, bank, index, 0.0, ""),
-            effective: crate::flight::whole_range("PX4 has no tighter limits"),
-            declared: Declared::of_px4(parameters),
-        }
     }
 }
 

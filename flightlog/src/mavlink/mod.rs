@@ -7,6 +7,7 @@ mod checksum;
 pub(crate) mod decoder;
 #[cfg(feature = "mavlink")]
 mod heartbeat;
+pub(crate) mod outputs;
 pub(crate) mod packet;
 #[cfg(feature = "mavlink")]
 mod requests;
@@ -38,4 +39,4 @@ pub use setup::Setup;
 pub use signing::Key;
 pub use stream::{Skipped, Stream};
 #[cfg(feature = "mavlink")]
-pub use telemetry::{News, Telemetry};
+pub use telemetry::{News, Pulses, Telemetry};

@@ -125,6 +125,9 @@ fn start(bytes: &[u8]) -> Start<'_> {
 pub enum Next<'a> {
     /// A packet; the next one begins after [`Packet::bytes`].
     Packet(Packet<'a>),
+    /// A packet with a message that the dialect does not have, so its checksum cannot be verified; it ends where another
+    /// packet begins, or where the bytes end.
+    Unverified(Packet<'a>),
     /// This many bytes are not a packet.
     Skip(usize, Why),
     /// Perhaps the beginning of a packet; more bytes will tell.
@@ -138,13 +141,11 @@ pub enum Why {
     NoPacket,
     /// The checksum is wrong.
     Checksum,
-    /// The dialect does not have the message, so the checksum cannot be verified.
-    UnknownMessage(u32),
     /// The packet asks for a feature of the protocol that this reader does not have.
     UnknownFlags(u8),
 }
 
-/// Finds what is at the start of `bytes`: a packet of MAVLink 1 or 2, or bytes to skip.
+/// Returns what is at the start of `bytes`: a packet of MAVLink 1 or 2, or bytes to skip.
 ///
 /// ```
 /// use flightlog::mavlink::{Next, Why, next_packet};
@@ -171,13 +172,11 @@ pub fn next_packet(bytes: &[u8]) -> Next<'_> {
         Start::Whole(packet) => match packet.sound {
             Some(true) => Next::Packet(packet),
             Some(false) => Next::Skip(1, Why::Checksum),
-            None => {
-                // Its length can be believed only where another packet, or nothing, follows.
-                let length = packet.bytes.len();
-                let follows = bytes.get(length).is_none_or(|byte| MARKERS.contains(byte));
-                let skip = if follows { length } else { 1 };
-                Next::Skip(skip, Why::UnknownMessage(packet.id))
-            }
+            // Its length can be believed only where another packet, or nothing, follows.
+            None => match bytes.get(packet.bytes.len()) {
+                Some(byte) if !MARKERS.contains(byte) => Next::Skip(1, Why::NoPacket),
+                _ => Next::Unverified(packet),
+            },
         },
         Start::Part => Next::More,
         Start::Flags(flags) => Next::Skip(1, Why::UnknownFlags(flags)),
@@ -278,7 +277,7 @@ mod round_trips {
             let mut at = 0;
             loop {
                 match next_packet(&bytes[at..]) {
-                    Next::Packet(packet) => at += packet.bytes.len(),
+                    Next::Packet(packet) | Next::Unverified(packet) => at += packet.bytes.len(),
                     Next::Skip(count, _) => {
                         prop_assert!(count > 0);
                         at += count;

@@ -10,26 +10,30 @@ use super::{
         COMMAND_LONG_DATA, MavCmd, MavDataStream, MavMessage, PARAM_REQUEST_READ_DATA,
         REQUEST_DATA_STREAM_DATA,
     },
+    telemetry::RATED,
 };
 
 /// How often motor commands are asked for: what the shipped profiles are calibrated on.
 pub const MOTOR_RATE_HZ: f64 = 25.0;
 
-/// Messages by number, and how often each is asked for in Hz: motor commands, attitude and the landed state.
-const MESSAGES: [(f32, f64); 3] = [(36.0, MOTOR_RATE_HZ), (30.0, 4.0), (245.0, 4.0)];
-/// The old groups of messages they are in, and their rates.
-const STREAMS: [(MavDataStream, u16); 3] = [
-    (
-        MavDataStream::MAV_DATA_STREAM_RC_CHANNELS,
-        MOTOR_RATE_HZ as u16,
-    ),
-    (MavDataStream::MAV_DATA_STREAM_EXTRA1, 4),
-    (MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, 4),
+/// How often each message in [`RATED`] is asked for, in Hz: motor commands, attitude and the landed state.
+const RATES_HZ: [f64; RATED.len()] = [MOTOR_RATE_HZ, 4.0, 4.0];
+/// The old groups of messages they are in.
+const STREAMS: [MavDataStream; RATED.len()] = [
+    MavDataStream::MAV_DATA_STREAM_RC_CHANNELS,
+    MavDataStream::MAV_DATA_STREAM_EXTRA1,
+    MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
 ];
+/// Seconds to listen before the first request: rates are those of the link, and whoever shares it may have asked for more.
+const LISTEN_S: f64 = 1.0;
+/// The share of a wanted rate below which it is asked for again.
+const SLOW_AGAIN: f64 = 0.5;
 /// Seconds to wait for the wanted rate.
 const RATE_WAIT_S: f64 = 2.0;
 /// Seconds to wait after a few requests without effect: the link may be slow.
 const RATE_PATIENCE_S: f64 = 15.0;
+/// Of packets that get lost, at most this share is made up for in a measured rate.
+const MOST_LOST: f64 = 0.9;
 /// Seconds until a parameter is requested again, and the number of requests: on a link that loses 3 of 10 packets each
 /// way, one in a million stays unknown.
 const PARAMETER_WAIT_S: f64 = 0.5;
@@ -39,8 +43,14 @@ const PARAMETER_TRIES: u32 = 20;
 #[derive(Debug, Default)]
 pub struct Requests {
     rate_tries: u32,
-    rate_asked_s: Option<f64>,
-    commands_then: u64,
+    /// When rates were last asked for or looked at, and how many of each message had come then.
+    looked: Option<(f64, [u64; RATED.len()])>,
+    /// The messages that came too rarely at the latest look.
+    slow: [bool; RATED.len()],
+    has_old_way: bool,
+    has_been_fast: bool,
+    slow_looks: u32,
+    slowed_hz: Option<f64>,
     parameter_tries: u32,
     parameters_asked_s: Option<f64>,
     parameters_done: bool,
@@ -57,59 +67,110 @@ impl Requests {
         self.parameters_done
     }
 
-    /// Adds the messages to send now to `out`. The time is that of the receiver's clock, in seconds.
-    pub fn due(&mut self, now_s: f64, telemetry: &Telemetry, out: &mut Vec<MavMessage>) {
-        self.ask_rates(now_s, telemetry, out);
+    /// Returns the rate of the motor commands, in Hz, once each time that it falls below half of the wanted one: somebody
+    /// else asked for less, or the link became too slow.
+    pub fn take_slowed_hz(&mut self) -> Option<f64> {
+        self.slowed_hz.take()
+    }
+
+    /// Measures rates anew, after the link was silent.
+    pub fn resume(&mut self) {
+        self.looked = None;
+        self.slow_looks = 0;
+    }
+
+    /// Adds the messages to send now to `out`. The time is that of the receiver's clock, in seconds; `lost_share` is the
+    /// share of the vehicle's packets that get lost on the way, which does not count as a low rate.
+    ///
+    /// A message that comes often enough is not asked for, so that no rate of a shared link is lowered.
+    pub fn due(
+        &mut self,
+        now_s: f64,
+        telemetry: &Telemetry,
+        lost_share: f64,
+        out: &mut Vec<MavMessage>,
+    ) {
+        self.ask_rates(now_s, telemetry, lost_share, out);
         if !self.parameters_done {
             self.ask_parameters(now_s, telemetry, out);
         }
     }
 
     /// Goes by the rate of the messages received: acknowledgements get lost.
-    fn ask_rates(&mut self, now_s: f64, telemetry: &Telemetry, out: &mut Vec<MavMessage>) {
-        let wait_s = if self.rate_tries < 4 {
-            RATE_WAIT_S
-        } else {
-            RATE_PATIENCE_S
+    fn ask_rates(
+        &mut self,
+        now_s: f64,
+        telemetry: &Telemetry,
+        lost_share: f64,
+        out: &mut Vec<MavMessage>,
+    ) {
+        let seen = telemetry.seen();
+        let Some((looked_s, then)) = self.looked else {
+            self.looked = Some((now_s, seen));
+            return;
         };
-        let refused = telemetry.interval_refused() && self.rate_tries == 1;
-        let waited_s = self.rate_asked_s.map(|asked_s| now_s - asked_s);
-        if waited_s.is_some_and(|waited_s| waited_s < wait_s) && !refused {
+        let wait_s = match self.rate_tries {
+            0 => LISTEN_S,
+            1..4 => RATE_WAIT_S,
+            _ => RATE_PATIENCE_S,
+        };
+        let is_refused =
+            telemetry.interval_refused() && !self.has_old_way && self.slow.contains(&true);
+        let waited_s = now_s - looked_s;
+        if waited_s < wait_s && !is_refused {
             return;
         }
-        let came = telemetry.commands_seen() - self.commands_then;
-        let enough = waited_s.is_some_and(|waited_s| came as f64 >= waited_s * MOTOR_RATE_HZ / 2.0);
-        self.rate_asked_s = Some(now_s);
-        self.commands_then = telemetry.commands_seen();
-        if enough && !refused {
+        if !is_refused {
+            // As many more may be just outside of the time: a rate that is high enough is never taken for a low one.
+            let (share, outside) = if self.rate_tries == 0 {
+                (1.0, 1.0)
+            } else {
+                (SLOW_AGAIN, 0.0)
+            };
+            let arrives = 1.0 - lost_share.clamp(0.0, MOST_LOST);
+            let rate_hz = |i: usize| (seen[i] - then[i]) as f64 / waited_s / arrives;
+            self.slow = std::array::from_fn(|i| {
+                rate_hz(i) + outside / waited_s / arrives < share * RATES_HZ[i]
+            });
+            self.has_been_fast |= !self.slow[0];
+            self.slow_looks = if self.slow[0] { self.slow_looks + 1 } else { 0 };
+            let is_asked = telemetry.rate_asker().is_some();
+            // Without a station that is known to have asked, a short silence of the link may be the reason.
+            let looks = if is_asked { 1 } else { 2 };
+            if self.slow_looks == looks && (self.has_been_fast || is_asked && self.rate_tries > 0) {
+                self.slowed_hz = Some(rate_hz(0));
+            }
+        }
+        self.looked = Some((now_s, seen));
+        if !self.slow.contains(&true) {
+            // The next time that a rate is low is no sign of a slow link.
+            self.rate_tries = 1;
             return;
         }
         // The first two requests use the new command, the next ones alternate.
         let old_way = telemetry.interval_refused()
             || self.rate_tries >= 2 && self.rate_tries.is_multiple_of(2);
+        self.has_old_way |= old_way;
         self.rate_tries += 1;
         let system = telemetry.system();
-        if old_way {
-            out.extend(STREAMS.map(|(stream, rate_hz)| {
-                MavMessage::REQUEST_DATA_STREAM(REQUEST_DATA_STREAM_DATA {
-                    req_message_rate: rate_hz,
+        for i in (0..RATED.len()).filter(|&i| self.slow[i]) {
+            out.push(match old_way {
+                true => MavMessage::REQUEST_DATA_STREAM(REQUEST_DATA_STREAM_DATA {
+                    req_message_rate: RATES_HZ[i] as u16,
                     target_system: system,
                     target_component: 1,
-                    req_stream_id: stream,
+                    req_stream_id: STREAMS[i],
                     start_stop: 1,
-                })
-            }));
-        } else {
-            out.extend(MESSAGES.map(|(message, rate_hz)| {
-                MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-                    param1: message,
-                    param2: (1e6 / rate_hz) as f32,
+                }),
+                false => MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+                    param1: RATED[i] as f32,
+                    param2: (1e6 / RATES_HZ[i]) as f32,
                     command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
                     target_system: system,
                     target_component: 1,
                     ..COMMAND_LONG_DATA::default()
-                })
-            }));
+                }),
+            });
         }
     }
 
@@ -142,7 +203,7 @@ impl Requests {
     }
 }
 
-/// Whether everything is known that the motors and their range depend on.
+/// Whether everything is known that the motors and their range depend on, or known not to exist.
 pub fn parameters_known(telemetry: &Telemetry) -> bool {
     telemetry.missing_parameters().is_empty()
 }

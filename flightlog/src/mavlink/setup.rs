@@ -1,10 +1,14 @@
 //! Which outputs drive the motors of a live vehicle and what their limits are, from the parameters it told; and which
 //! parameters those are.
 
-use super::decoder::KnownOutputs;
+use super::outputs::KnownOutputs;
 use super::servo::{OUTPUTS_A_PORT, bank, field, px4_motors};
-use crate::{Geometry, Motor, Range, Vehicle, ardupilot, geometry, parameters::Parameters};
+use super::telemetry::Pulses;
+use crate::outputs::LONGEST_PULSE_US;
+use crate::{Geometry, Motor, Range, Vehicle, ardupilot, geometry, parameters::Parameters, px4};
 
+/// What an output that is not driven, or not known, reads.
+const NO_PULSE: [u16; 2] = [0, u16::MAX];
 /// Outputs of PX4's AUX bank that any board has.
 const AUX_OUTPUTS: usize = 8;
 
@@ -24,51 +28,71 @@ pub struct Setup {
     pub effective: Range,
     /// What is assumed because the vehicle did not report it, in words; empty where nothing is.
     pub assumed: Vec<String>,
+    /// How many motors the vehicle reported to have.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    expected: Option<usize>,
     /// The output of each motor, from 1.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) outputs: Vec<usize>,
 }
 
 impl Setup {
-    /// Motors and ranges from what is known. Without parameters that name them the motors are the
-    /// first outputs, as many as the type of vehicle has; limits are those of a vehicle on which
-    /// nobody changed them.
+    /// Motors and ranges by what is known, and what is assumed without it.
     pub(super) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Setup {
         let known = KnownOutputs::of(parameters, vehicle, is_px4);
         let (motors, outputs): (Vec<Motor>, Vec<u16>) = known.motors.into_iter().unzip();
-        let mut assumed = Vec::new();
-        if known.first_outputs && !motors.is_empty() {
-            let count = motors.len();
-            assumed.push(format!("motors 1 to {count} on outputs 1 to {count}"));
-        }
-        if let Some(expected) = vehicle.motors
-            && usize::from(expected) != motors.len()
-        {
-            assumed.push(format!(
-                "outputs are known for {} of the {expected} motors",
-                motors.len()
-            ));
-        }
-        let range = known.range.unwrap_or_else(|| {
-            assumed.push("commands from 1000 to 2000 us".to_owned());
-            assumed_range(1000.0, 2000.0, "us")
-        });
-        let limits_known = parameters.pair("MOT_SPIN_MIN", "MOT_SPIN_MAX").is_some()
-            || parameters.get("THR_MIN").is_some();
-        let effective = match is_px4 || limits_known {
-            true => known.effective,
-            false => {
-                assumed.push("effective range 0.15 to 0.95".to_owned());
-                assumed_range(0.15, 0.95, "1")
-            }
-        };
         Setup {
+            expected: known.expected.map(usize::from),
             geometry: geometry::of(&motors, &known.declared),
             outputs: outputs.iter().map(|&output| usize::from(output)).collect(),
             motors,
-            range,
-            effective,
-            assumed,
+            range: known.range,
+            effective: known.effective,
+            assumed: known.assumed,
+        }
+    }
+
+    /// The number of motors that the vehicle reported to have; outputs may be known for fewer of them.
+    pub fn motors_expected(&self) -> Option<usize> {
+        self.expected
+    }
+
+    /// Whether the same packets give the same commands and the same geometry: the setups differ in words at most.
+    pub fn is_equivalent(&self, other: &Setup) -> bool {
+        let limits = |of: &Setup| {
+            let Setup {
+                range, effective, ..
+            } = of;
+            [range.low, range.high, effective.low, effective.high]
+        };
+        let numbers = |of: &Setup| {
+            of.motors
+                .iter()
+                .map(|motor| motor.number)
+                .collect::<Vec<_>>()
+        };
+        (self.outputs == other.outputs && limits(self) == limits(other))
+            && numbers(self) == numbers(other)
+            && same_factors(self.geometry.as_ref(), other.geometry.as_ref())
+    }
+
+    /// The commands of some pulses on the effective range, 0..1, a value a motor; NaN where it is not known.
+    pub fn effective_commands(&self, pulses: &Pulses, commands: &mut [f64]) {
+        for (command, &output) in commands.iter_mut().zip(&self.outputs) {
+            let index = output.checked_sub(1);
+            let pulse = index.and_then(|index| {
+                let port = pulses.0.get(index / OUTPUTS_A_PORT)?;
+                port.get(index % OUTPUTS_A_PORT)
+            });
+            *command = match pulse {
+                Some(pulse)
+                    if !NO_PULSE.contains(pulse) && f64::from(*pulse) <= LONGEST_PULSE_US =>
+                {
+                    let fraction = self.range.fraction(f64::from(*pulse));
+                    self.effective.fraction(fraction)
+                }
+                _ => f64::NAN,
+            };
         }
     }
 
@@ -79,13 +103,13 @@ impl Setup {
     }
 }
 
-fn assumed_range(low: f64, high: f64, unit: &'static str) -> Range {
-    Range {
-        low,
-        high,
-        unit,
-        source: "assumed".to_owned(),
-    }
+/// Whether two geometries have the same factors but for rounding.
+fn same_factors(one: Option<&Geometry>, other: Option<&Geometry>) -> bool {
+    let factors = |geometry: Option<&Geometry>| {
+        geometry.map_or(Vec::new(), |geometry| geometry.factors.concat())
+    };
+    let (one, other) = (factors(one), factors(other));
+    one.len() == other.len() && one.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-6)
 }
 
 /// The parameters that motors and their range depend on, and that are not known yet.
@@ -130,10 +154,13 @@ fn wanted_of_ardupilot(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String
     names
 }
 
-/// PX4 does not answer requests for parameters that it does not have, so functions are requested until all motors are found.
+/// Before PARAM_ERROR, PX4 did not answer requests for parameters that it does not have, so functions are requested until all
+/// motors are found.
 fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
     let motors = px4_motors(parameters);
-    let all = vehicle.motors.map_or(usize::MAX, usize::from);
+    let count = "CA_ROTOR_COUNT".to_owned();
+    let expected = px4::rotor_count(parameters).or(vehicle.motors);
+    let all = expected.map_or(usize::MAX, usize::from);
     let ends = ["MIN", "MAX"];
     let Some((_, output)) = motors.first().filter(|_| motors.len() >= all) else {
         let main = (1..=OUTPUTS_A_PORT).map(|output| format!("PWM_MAIN_FUNC{output}"));
@@ -141,16 +168,16 @@ fn wanted_of_px4(parameters: &Parameters, vehicle: &Vehicle) -> Vec<String> {
         // Before 1.13 there are these instead, of one bank or of all.
         let old = ends.map(|end| format!("PWM_MAIN_{end}"));
         let older = ends.map(|end| format!("PWM_{end}"));
-        return main.chain(aux).chain(old).chain(older).collect();
+        let first = std::iter::once(count).chain(main).chain(aux);
+        return first.chain(old).chain(older).collect();
     };
     let (bank, index) = bank(*output);
     let bank = ["MAIN", "AUX"][usize::from(bank).min(1)];
     let limits = ends.map(|end| format!("PWM_{bank}_{end}{}", index + 1));
     let rotors = (0..motors.len()).flat_map(|rotor| {
-        let parts = ["PX", "PY", "PZ", "AX", "AY", "AZ", "KM"];
+        let parts = ["PX", "PY", "PZ", "AX", "AY", "AZ", "KM", "CT"];
         parts.map(|part| format!("CA_ROTOR{rotor}_{part}"))
     });
-    let count = "CA_ROTOR_COUNT".to_owned();
     limits.into_iter().chain([count]).chain(rotors).collect()
 }
 
@@ -212,7 +239,7 @@ mod tests {
                 "CA_ROTOR0_PX"
             ]
         );
-        assert_eq!(asked_for.len(), 3 + 4 * 7);
+        assert_eq!(asked_for.len(), 3 + 4 * 8);
     }
 
     #[test]

@@ -9,7 +9,8 @@ pub struct Skipped {
     pub bytes: u64,
     /// Packets whose checksum was wrong, and bytes that only looked like the beginning of one.
     pub checksums: u64,
-    /// Packets with a message or a feature that is not known here.
+    /// Packets with a message that is not known here, which are returned unverified, or with an unknown feature of the
+    /// protocol, which are skipped.
     pub unknown: u64,
     /// Signed packets, which cannot be verified without the key.
     pub signed: u64,
@@ -82,15 +83,22 @@ impl Stream {
         self.buffer.extend_from_slice(bytes);
     }
 
-    /// The next packet; `None` until more bytes arrive. Signed packets are counted and skipped, or with
-    /// a key those that are not genuine.
+    /// Returns the next packet; `None` until more bytes arrive. Signed packets are counted and skipped, or with a key those
+    /// that are not genuine.
+    ///
+    /// A packet with an unknown message is returned, too, for recording: [`Packet::sound`] is `None`, as its checksum cannot
+    /// be verified.
     pub fn packet(&mut self) -> Option<Packet<'_>> {
         let length = loop {
             match next_packet(self.buffer.get(self.taken..)?) {
-                Next::Packet(packet) => {
+                Next::Packet(packet) | Next::Unverified(packet) => {
                     let length = packet.bytes.len();
+                    let is_unverified = packet.sound.is_none();
                     match self.refusal(&packet) {
-                        None => break length,
+                        None => {
+                            self.skipped.unknown += u64::from(is_unverified);
+                            break length;
+                        }
                         Some(Refusal::Signed) => self.skipped.signed += 1,
                         #[cfg(feature = "mavlink")]
                         Some(Refusal::Unsigned) => self.skipped.unsigned += 1,
@@ -103,7 +111,7 @@ impl Stream {
                     match why {
                         Why::NoPacket => {}
                         Why::Checksum => self.skipped.checksums += 1,
-                        Why::UnknownMessage(_) | Why::UnknownFlags(_) => self.skipped.unknown += 1,
+                        Why::UnknownFlags(_) => self.skipped.unknown += 1,
                     }
                     self.skipped.bytes += count as u64;
                     self.taken += count;
@@ -114,7 +122,7 @@ impl Stream {
         let start = self.taken;
         self.taken += length;
         match next_packet(self.buffer.get(start..self.taken)?) {
-            Next::Packet(packet) => Some(packet),
+            Next::Packet(packet) | Next::Unverified(packet) => Some(packet),
             _ => None,
         }
     }

@@ -10,7 +10,6 @@ use crate::{
     Parameter, Vehicle,
     clock::{Checked, Clock, seconds_of},
     field::Kind,
-    outputs::LONGEST_PULSE_US,
 };
 
 const ATTITUDE: u32 = 30;
@@ -19,10 +18,14 @@ const COMMAND_ACK: u32 = 77;
 const SET_MESSAGE_INTERVAL: f64 = 511.0;
 const ACCEPTED: f64 = 0.0;
 
+/// Messages of which a certain rate is wanted: motor commands, attitude and the landed state.
+pub(super) const RATED: [u32; 3] = [36, ATTITUDE, 245];
+
 /// Ports of SERVO_OUTPUT_RAW: the second has ArduPilot's outputs from 17 on, and PX4's AUX outputs.
 const PORTS: usize = 2;
-/// What an output that is not driven, or not known, reads.
-const NO_PULSE: [u16; 2] = [0, u16::MAX];
+/// The pulses of all outputs at a time, in us.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pulses(pub(super) [[u16; OUTPUTS_A_PORT]; PORTS]);
 
 /// The latest pulses of each port, and whether they came since commands were last told.
 type Outputs = [([u16; OUTPUTS_A_PORT], bool); PORTS];
@@ -111,12 +114,13 @@ pub struct Telemetry {
     outputs: Outputs,
     /// The port that completes the commands of all motors.
     last_port: usize,
-    commands_seen: u64,
+    seen: [u64; RATED.len()],
     interval_refused: bool,
+    rate_asker: Option<(u8, u8)>,
 }
 
 impl Telemetry {
-    /// Starts with the heartbeat that [`vehicle_of`](super::vehicle_of) told the vehicle from.
+    /// Starts from the heartbeat that [`vehicle_of`](super::vehicle_of) identified the vehicle by.
     pub fn new(heartbeat: &Packet<'_>, vehicle: Vehicle) -> Telemetry {
         let mut decoder = Decoder::default();
         decoder.message(heartbeat.component, heartbeat.id, &filled(heartbeat));
@@ -131,8 +135,9 @@ impl Telemetry {
             clock_jumps: 0,
             outputs: NO_OUTPUTS,
             last_port: 0,
-            commands_seen: 0,
+            seen: [0; RATED.len()],
             interval_refused: false,
+            rate_asker: None,
         }
     }
 
@@ -162,9 +167,14 @@ impl Telemetry {
         self.decoder.is_in_air().unwrap_or(self.is_armed())
     }
 
-    /// How many SERVO_OUTPUT_RAW came so far.
-    pub(super) fn commands_seen(&self) -> u64 {
-        self.commands_seen
+    /// How many of each message in [`RATED`] came so far.
+    pub(super) fn seen(&self) -> [u64; RATED.len()] {
+        self.seen
+    }
+
+    /// The system and component of the latest other station whose MAV_CMD_SET_MESSAGE_INTERVAL the vehicle accepted.
+    pub fn rate_asker(&self) -> Option<(u8, u8)> {
+        self.rate_asker
     }
 
     /// Whether it refused MAV_CMD_SET_MESSAGE_INTERVAL.
@@ -195,7 +205,14 @@ impl Telemetry {
         if packet.system != self.system {
             return News::Nothing;
         }
+        // The checksum of an unknown message cannot be verified: nothing may rest on its content.
+        if packet.sound.is_none() {
+            return News::Nothing;
+        }
         let payload = filled(packet);
+        if packet.component == AUTOPILOT {
+            self.count(packet.id, &payload);
+        }
         match self.decoder.message(packet.component, packet.id, &payload) {
             Told::Parameter => {
                 self.parameters_changed = true;
@@ -212,6 +229,15 @@ impl Telemetry {
         News::Nothing
     }
 
+    fn count(&mut self, id: u32, payload: &Payload) {
+        // The two ports of one row of commands are one.
+        let is_other_port = id == RATED[0] && usize::from(payload[20]) != self.last_port;
+        let index = RATED.iter().position(|&rated| rated == id);
+        if let Some(index) = index.filter(|_| !is_other_port) {
+            self.seen[index] += 1;
+        }
+    }
+
     fn other(&mut self, id: u32, payload: &Payload, now_s: f64) -> News {
         let number = |offset, kind| number(payload, offset, kind);
         match id {
@@ -220,7 +246,14 @@ impl Telemetry {
                 return self.check_boot(boot_ms as u32, now_s);
             }
             COMMAND_ACK if number(0, Kind::U16) == Some(SET_MESSAGE_INTERVAL) => {
-                self.interval_refused |= number(2, Kind::U8) != Some(ACCEPTED);
+                let is_accepted = number(2, Kind::U8) == Some(ACCEPTED);
+                // To whom it is: 0 in version 1, and by vehicles that do not tell.
+                let (system, component) = (payload[8], payload[9]);
+                if system == 0 || system == self.system {
+                    self.interval_refused |= !is_accepted;
+                } else if is_accepted {
+                    self.rate_asker = Some((system, component));
+                }
             }
             _ => {}
         }
@@ -250,7 +283,6 @@ impl Telemetry {
             self.outputs[port] = (outputs.pulses_us, true);
             return News::Nothing;
         }
-        self.commands_seen += 1;
         let clock = &mut self.clock;
         if clock.stamp.replace(outputs.time_us) == Some(outputs.time_us) {
             return News::Nothing;
@@ -278,6 +310,7 @@ impl Telemetry {
         self.boot_clock = LiveClock::default();
         self.outputs = NO_OUTPUTS;
         self.interval_refused = false;
+        self.rate_asker = None;
         self.last_port = 0;
         News::Rebooted
     }
@@ -296,33 +329,27 @@ impl Telemetry {
         self.decoder.parameters.of_motors("PARAM_VALUE")
     }
 
-    /// The parameters that motors and their range depend on, and that are not known yet.
+    /// The parameters that motors and their range depend on, that are not known yet, and that the vehicle did not report not
+    /// to have.
     pub(super) fn missing_parameters(&self) -> Vec<String> {
-        missing(
+        let mut names = missing(
             &self.decoder.parameters,
             &self.vehicle,
             self.decoder.is_px4(),
-        )
+        );
+        names.retain(|name| !self.decoder.is_absent(name));
+        names
+    }
+
+    /// The latest pulses of all outputs, for [`Setup::effective_commands`].
+    pub fn pulses(&self) -> Pulses {
+        let [(first, _), (second, _)] = self.outputs;
+        Pulses([first, second])
     }
 
     /// The latest commands on the effective range, 0..1, a value a motor; NaN where it is not known.
     pub fn effective_commands(&self, setup: &Setup, commands: &mut [f64]) {
-        for (command, &output) in commands.iter_mut().zip(&setup.outputs) {
-            let index = output.checked_sub(1);
-            let pulse = index.and_then(|index| {
-                let (pulses, _) = self.outputs.get(index / OUTPUTS_A_PORT)?;
-                pulses.get(index % OUTPUTS_A_PORT)
-            });
-            *command = match pulse {
-                Some(pulse)
-                    if !NO_PULSE.contains(pulse) && f64::from(*pulse) <= LONGEST_PULSE_US =>
-                {
-                    let fraction = setup.range.fraction(f64::from(*pulse));
-                    setup.effective.fraction(fraction)
-                }
-                _ => f64::NAN,
-            };
-        }
+        setup.effective_commands(&self.pulses(), commands);
     }
 }
 

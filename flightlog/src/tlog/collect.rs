@@ -214,7 +214,10 @@ impl Heard {
         let known = self.decoder.outputs(&flight.vehicle);
         let outputs: Vec<u16>;
         (flight.motors, outputs) = known.motors.into_iter().unzip();
-        flight.range = known.range;
+        if !flight.motors.is_empty() {
+            flight.range = Some(known.range);
+            flight.assumed = known.assumed;
+        }
         flight.commands = self.outputs.commands(&outputs);
         self.series.sort_by_key(|(index, _)| *index);
         flight.series = preferred(self.series.into_iter().map(|(_, series)| series).collect());
@@ -240,7 +243,7 @@ impl Heard {
         }
         flight.parameters = self.decoder.parameters.of_motors("PARAM_VALUE");
         let parameters = &self.decoder.parameters;
-        (flight.effective, flight.effective_doubt) = match is_px4 {
+        (flight.effective, flight.effective_doubt) = match is_px4 || known.is_effective_assumed {
             true => (known.effective, None),
             false => (
                 ardupilot::range_in_force(parameters, flight),
@@ -274,6 +277,9 @@ impl Heard {
         }
         vehicle.frame = vehicle.frame.take().or(told.frame);
         vehicle.motors = vehicle.motors.or(told.motors);
+        if self.decoder.is_px4() {
+            px4::count_rotors(vehicle, &self.decoder.parameters);
+        }
     }
 }
 

@@ -143,6 +143,11 @@ class Flight(FlightData):
         doubt: str | None = self._data["effective_range_doubt"]
         return doubt
 
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """What is assumed of motors and ranges because a telemetry log does not report it."""
+        return tuple(self._data["assumed"])
+
     @cached_property
     def parameters(self) -> dict[str, Parameter]:
         """Parameters of the autopilot about motors and gains, by their names."""

@@ -67,6 +67,14 @@ pub(crate) enum Event {
         /// The parameters that they rest on, and gains, as far as they are known.
         parameters: Vec<Parameter>,
     },
+    /// Motor commands come too rarely since somebody else asked for less, or the link became too slow; with the station
+    /// that asked, where the vehicle told it.
+    Slowed {
+        rate_hz: f64,
+        wanted_hz: f64,
+        system: Option<u8>,
+        component: Option<u8>,
+    },
     /// Something in words.
     Note { text: String },
     /// Nothing comes any more.
@@ -132,7 +140,7 @@ pub(crate) enum Lost {
 pub(crate) enum Left {
     /// The watch ended.
     WatchEnded,
-    /// Motors or limits became known better: the rest is assessed as a flight of its own.
+    /// Motors or limits became known too late to assess the flight so far anew: the rest is a flight of its own.
     SetUpAnew,
 }
 

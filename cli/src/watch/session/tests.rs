@@ -13,6 +13,8 @@ use super::*;
 
 mod flood;
 mod outputs;
+mod px4;
+mod rates;
 mod trust;
 
 /// A session, the vehicle's side of the link, and the clock of both.
@@ -379,46 +381,6 @@ fn silence_takes_the_risk_away_and_is_told_once() {
     assert!(
         now.risk.is_err(),
         "what was before the silence is forgotten"
-    );
-}
-
-#[test]
-fn rates_are_asked_for_until_they_come_in_the_old_way_too() {
-    let estimator = estimator();
-    let mut bench = Bench::new(&estimator, Some(191));
-    let new_way = |message: &MavMessage| matches!(message, MavMessage::COMMAND_LONG(_));
-    #[expect(deprecated, reason = "what old vehicles understand")]
-    let old_way = |message: &MavMessage| matches!(message, MavMessage::REQUEST_DATA_STREAM(_));
-    bench.wait_beating(3, false);
-    assert_eq!(
-        (bench.count_sent(new_way), bench.count_sent(old_way)),
-        (6, 0)
-    );
-    bench.wait_beating(2, false);
-    assert_eq!(
-        (bench.count_sent(new_way), bench.count_sent(old_way)),
-        (6, 3)
-    );
-    // They come: nothing more is asked for.
-    bench.all_parameters();
-    bench.hover(10.0, 8.0, 1500);
-    let asked = bench.count_sent(new_way) + bench.count_sent(old_way);
-    bench.hover(18.0, 20.0, 1500);
-    assert_eq!(bench.count_sent(new_way) + bench.count_sent(old_way), asked);
-
-    // A vehicle that refuses is asked in the old way at once.
-    let mut bench = Bench::new(&estimator, Some(191));
-    bench.beat(false);
-    bench.wait(0.1);
-    bench.hear(&MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
-        command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
-        result: MavResult::MAV_RESULT_UNSUPPORTED,
-        ..COMMAND_ACK_DATA::default()
-    }));
-    bench.wait(0.1);
-    assert_eq!(
-        (bench.count_sent(new_way), bench.count_sent(old_way)),
-        (3, 3)
     );
 }
 

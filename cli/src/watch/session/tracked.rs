@@ -3,20 +3,24 @@
 use flagred::{
     estimator::Estimator,
     flight::{Assessor, Finding, Verdict},
-    monitor::{Craft, Update},
-    verdict::Measure,
+    monitor::{Craft, Sample, Update},
+    verdict::{Level, Measure},
 };
 use flightlog::{
     Vehicle,
-    mavlink::{Packet, Requests, Setup, Telemetry, Version, parameters_known},
+    mavlink::{Packet, Pulses, Requests, Setup, Telemetry, Version, parameters_known},
 };
 
-use super::{End, Event, Flown, Left, Lost, Out, Silent, Source};
+use super::{End, Event, Flown, Left, Lost, Out, Silent, Source, history::History};
 
 /// A link, or the motor commands on it, that are silent for this long are lost.
 const SILENT_S: f64 = 2.0;
 /// Listening without asking, this long until what is not known is assumed.
 const LISTEN_S: f64 = 10.0;
+/// A vehicle in the air is not waited for longer than this: estimates begin with what is assumed.
+const HURRY_S: f64 = 1.0;
+/// A station that slows the motor commands down is told at most this often.
+const TELL_SLOWED_S: f64 = 60.0;
 
 /// A vehicle that is followed.
 pub(super) struct Tracked {
@@ -32,6 +36,11 @@ pub(super) struct Tracked {
     pub(super) heard_s: f64,
     pub(super) link_lost: bool,
     pub(super) set_up_tried: bool,
+    /// Whether nothing about motors and limits can become known any more.
+    pub(super) is_complete: bool,
+    /// The flight so far, until that is the case.
+    pub(super) history: History,
+    slowed_told_s: Option<f64>,
     pub(super) watch: Option<Watch>,
     pub(super) received: u64,
     pub(super) missed: u64,
@@ -83,6 +92,9 @@ impl Tracked {
             heard_s: now_s,
             link_lost: false,
             set_up_tried: false,
+            is_complete: false,
+            history: History::default(),
+            slowed_told_s: None,
             watch: None,
             received: 0,
             missed: 0,
@@ -101,7 +113,7 @@ impl Tracked {
             is_in_air: self.telemetry.is_in_air(),
             link_lost: self.link_lost,
             motors_lost: watch.is_some_and(|watch| watch.commands_lost),
-            lost_share: self.missed as f64 / (self.missed + self.received).max(1) as f64,
+            lost_share: self.lost_share(),
             setup: watch.map(|watch| &watch.setup),
             motors: fresh.map_or(&[], |watch| &watch.motors),
             margin: fresh.and_then(|watch| watch.assessor.monitor().margin()),
@@ -134,6 +146,26 @@ impl Tracked {
         }
     }
 
+    /// The share of its packets that did not arrive.
+    pub(super) fn lost_share(&self) -> f64 {
+        self.missed as f64 / (self.missed + self.received).max(1) as f64
+    }
+
+    /// The rate of the motor commands where it is time to tell that somebody slows them down.
+    pub(super) fn slowed_hz(&mut self, now_s: f64) -> Option<f64> {
+        let rate_hz = self.requests.take_slowed_hz()?;
+        let is_due = (self.slowed_told_s).is_none_or(|told_s| now_s - told_s >= TELL_SLOWED_S);
+        is_due.then(|| {
+            self.slowed_told_s = Some(now_s);
+            rate_hz
+        })
+    }
+
+    /// The level of the flight.
+    pub(super) fn level(&self) -> Option<Level> {
+        self.watch.as_ref()?.latest?.level
+    }
+
     /// Whether nothing comes from it any more.
     pub(super) fn is_silent(&self) -> bool {
         self.link_lost || self.is_gone
@@ -144,6 +176,7 @@ impl Tracked {
         if self.link_lost {
             self.link_lost = false;
             self.sequence = None;
+            self.requests.resume();
             if let Some(watch) = &mut self.watch {
                 // Their silence was the link's.
                 watch.commands_s = now_s;
@@ -156,8 +189,8 @@ impl Tracked {
         self.heard_s = now_s;
     }
 
-    /// Makes a monitor as soon as the motors are known, and a new one where they become known better.
-    /// Gives the verdict of the flight that the old one was on.
+    /// Makes a monitor as soon as the motors are known, and a new one where they become known better: that one gets the flight
+    /// so far. Gives the verdict of that part where it is too long.
     pub(super) fn set_up(
         &mut self,
         now_s: f64,
@@ -165,54 +198,73 @@ impl Tracked {
         estimator: &Estimator,
         out: &mut Out,
     ) -> Option<Verdict> {
+        let waited_s = now_s - self.found_s;
         let done = if asks {
             self.requests.parameters_done()
         } else {
-            parameters_known(&self.telemetry) || now_s - self.found_s >= LISTEN_S
+            parameters_known(&self.telemetry) || waited_s >= LISTEN_S
         };
+        let hurries =
+            !done && self.watch.is_none() && !self.history.is_empty() && waited_s >= HURRY_S;
         // Parameters that came late are not waited for, but looked at.
-        if !done || !self.telemetry.take_parameters_changed() && self.set_up_tried {
+        let is_due = done && (self.telemetry.take_parameters_changed() || !self.set_up_tried);
+        if !is_due && !hurries {
             return None;
         }
-        self.set_up_tried = true;
         let setup = self.telemetry.setup();
-        if self
-            .watch
-            .as_ref()
-            .is_some_and(|watch| watch.setup == setup)
+        let found = setup.motors.len();
+        if hurries && setup.motors_expected() != Some(found) {
+            return None;
+        }
+        if done {
+            self.set_up_tried = true;
+            self.is_complete = parameters_known(&self.telemetry);
+        }
+        if let Some(watch) = &mut self.watch
+            && watch.setup.is_equivalent(&setup)
         {
+            if watch.setup != setup {
+                watch.setup = setup;
+                out.events.push(ready(&watch.setup, &self.telemetry));
+            }
+            return None;
+        }
+        if let Some(expected) = setup.motors_expected().filter(|&expected| expected > found) {
+            let text = format!(
+                "the risk cannot be assessed: outputs are known for {found} of the {expected} motors only"
+            );
+            out.events.push(Event::Note { text });
             return None;
         }
         let geometry = setup.geometry.as_ref();
-        let craft = Craft::new(setup.motors.len())
-            .with_geometry(geometry.map_or(&[], |geometry| &geometry.factors));
-        match Assessor::new(estimator, craft, None) {
-            Ok(assessor) => {
-                let verdict = self.end_flight(End::Left(Left::SetUpAnew), out);
-                out.events.push(Event::Ready {
-                    setup: setup.clone(),
-                    parameters: self.telemetry.parameters(),
-                });
-                self.watch = Some(Watch {
-                    motors: vec![f64::NAN; setup.motors.len()],
-                    setup,
-                    assessor,
-                    commands_s: now_s,
-                    commands_lost: false,
-                    risk_sent_s: None,
-                    is_flying: false,
-                    noticed: None,
-                    latest: None,
-                });
-                // A part of a flight too short for a verdict is no flight without one.
-                verdict.filter(|verdict| matches!(verdict, Verdict::Known(_)))
-            }
+        let craft =
+            Craft::new(found).with_geometry(geometry.map_or(&[], |geometry| &geometry.factors));
+        let assessor = match Assessor::new(estimator, craft, None) {
+            Ok(assessor) => assessor,
             Err(error) => {
                 let text = format!("the risk cannot be assessed: {error}");
                 out.events.push(Event::Note { text });
-                None
+                return None;
+            }
+        };
+        out.events.push(ready(&setup, &self.telemetry));
+        let mut watch = Watch::new(setup, assessor, now_s);
+        let Some(flown) = self.history.whole() else {
+            let verdict = self.end_flight(End::Left(Left::SetUpAnew), out);
+            self.watch = Some(watch);
+            return verdict;
+        };
+        let before = self.watch.take();
+        watch.replay(flown, out);
+        match before {
+            Some(before) => watch.risk_sent_s = before.risk_sent_s,
+            None => {
+                let first = flown.first().map(|(t_s, _)| Event::TookOff { t_s: *t_s });
+                out.events.extend(first);
             }
         }
+        self.watch = Some(watch);
+        None
     }
 
     /// Notices silence.
@@ -237,6 +289,8 @@ impl Tracked {
         let verdict = self.end_flight(End::Lost(Lost::Reboot), out);
         out.events.push(Event::Rebooted);
         self.watch = None;
+        self.history.clear();
+        self.is_complete = false;
         self.set_up_tried = false;
         self.requests = Requests::new();
         self.found_s = now_s;
@@ -261,7 +315,49 @@ impl Tracked {
     }
 }
 
+fn ready(setup: &Setup, telemetry: &Telemetry) -> Event {
+    Event::Ready {
+        setup: setup.clone(),
+        parameters: telemetry.parameters(),
+    }
+}
+
 impl Watch {
+    fn new(setup: Setup, assessor: Assessor, now_s: f64) -> Watch {
+        Watch {
+            motors: vec![f64::NAN; setup.motors.len()],
+            setup,
+            assessor,
+            commands_s: now_s,
+            commands_lost: false,
+            risk_sent_s: None,
+            is_flying: false,
+            noticed: None,
+            latest: None,
+        }
+    }
+
+    /// Takes in a sample.
+    pub(super) fn push(&mut self, t_s: f64, in_air: bool, pulses: &Pulses) -> Update {
+        self.setup.effective_commands(pulses, &mut self.motors);
+        self.assessor.push(&Sample {
+            t_s,
+            motors: &self.motors,
+            in_air,
+            signals: &[],
+        })
+    }
+
+    /// Takes in a flight up to now; its findings are told anew, its levels are not.
+    fn replay(&mut self, flown: &[(f64, Pulses)], out: &mut Out) {
+        for (t_s, pulses) in flown {
+            self.latest = Some(self.push(*t_s, true, pulses));
+            tell(self.assessor.ended(), out);
+        }
+        self.is_flying = !flown.is_empty();
+        self.raised_notice();
+    }
+
     /// The notice that the latest sample raised.
     pub(super) fn raised_notice(&mut self) -> Option<Finding> {
         let open = self.assessor.open_notice();

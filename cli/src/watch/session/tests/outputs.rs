@@ -131,6 +131,7 @@ fn a_px4_vehicle_is_asked_for_the_functions_and_limits_of_its_outputs() {
             ("AY", 0.0),
             ("AZ", -1.0),
             ("KM", km),
+            ("CT", 6.5),
         ] {
             bench.parameter(&format!("CA_ROTOR{rotor}_{part}"), value);
         }

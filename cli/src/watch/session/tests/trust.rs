@@ -261,11 +261,15 @@ fn risk() -> MavMessage {
     })
 }
 
+fn warned(bench: &Bench<'_>) -> usize {
+    bench.count_sent(|message| matches!(message, MavMessage::STATUSTEXT(_)))
+}
+
 fn said_by(bench: &Bench<'_>) -> usize {
     bench.count_sent(|message| {
         matches!(
             message,
-            MavMessage::NAMED_VALUE_FLOAT(_) | MavMessage::STATUSTEXT(_) | MavMessage::HEARTBEAT(_)
+            MavMessage::NAMED_VALUE_FLOAT(_) | MavMessage::HEARTBEAT(_)
         )
     })
 }
@@ -286,7 +290,8 @@ fn of_two_watches_the_older_speaks_and_the_younger_again_when_that_is_gone() {
         bench.hover(10.0 + f64::from(i), 1.0, 1950);
     }
     assert!(bench.count(|event| matches!(event, Event::Level { .. })) > 0);
-    assert_eq!(said_by(&bench), before, "it says nothing");
+    assert_eq!(said_by(&bench), before, "it sends no values");
+    assert!(warned(&bench) > 0, "the older one did not warn");
     let told = |component: Option<u8>, speaks: bool| move |event: &Event| matches!(event, Event::AnotherWatch { component: c, speaks: s, .. } if (*c, *s) == (component, speaks));
     assert_eq!(bench.count(told(Some(191), false)), 1);
     bench.hover(20.0, 10.0, 1950);
@@ -313,6 +318,7 @@ fn a_risk_from_the_autopilot_itself_is_not_told_twice_unless_asked_for() {
             bench.hover(10.0 + f64::from(i), 1.0, 1950);
         }
         assert_eq!(said_by(&bench) > 0, insists);
+        assert!(warned(&bench) > 0, "a warning is sent in any case");
         assert_eq!(bench.count(|event| matches!(event, Event::AnotherWatch { component: Some(1), speaks, .. } if *speaks == insists)), 1);
     }
 }

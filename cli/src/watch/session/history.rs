@@ -1,0 +1,42 @@
+//! The motor commands of a flight so far, kept while motors or limits are not known for sure: with those that become known
+//! later the flight is assessed again from its beginning.
+
+use flightlog::mavlink::Pulses;
+
+/// Samples that are kept: 20 minutes at 25 Hz, in 2 MB.
+const MOST: usize = 30_000;
+
+/// The samples of a flight.
+#[derive(Debug, Default)]
+pub(super) struct History {
+    samples: Vec<(f64, Pulses)>,
+    is_cut: bool,
+}
+
+impl History {
+    /// Adds a sample. Of a flight that is too long nothing is kept.
+    pub(super) fn push(&mut self, t_s: f64, pulses: Pulses) {
+        self.is_cut |= self.samples.len() >= MOST;
+        match self.is_cut {
+            true => self.samples = Vec::new(),
+            false => self.samples.push((t_s, pulses)),
+        }
+    }
+
+    /// Whether nothing was added.
+    pub(super) fn is_empty(&self) -> bool {
+        self.samples.is_empty() && !self.is_cut
+    }
+
+    /// Forgets the flight.
+    pub(super) fn clear(&mut self) {
+        if !self.is_empty() {
+            *self = History::default();
+        }
+    }
+
+    /// The samples since take-off; `None` where not all are kept.
+    pub(super) fn whole(&self) -> Option<&[(f64, Pulses)]> {
+        (!self.is_cut).then_some(&self.samples[..])
+    }
+}

@@ -1,0 +1,100 @@
+//! Motors, ranges and geometry by the parameters of a vehicle, and what is assumed where it reported none. Live links and
+//! telemetry logs use the same rules, so that a recording is assessed on the same assumptions as the flight was watched.
+
+use super::servo::{bank, field, px4_motors};
+use crate::geometry::Declared;
+use crate::parameters::Parameters;
+use crate::{Motor, Range, Vehicle, ardupilot, px4};
+
+/// What parameters tell of motors and of the range of their commands.
+pub(crate) struct KnownOutputs {
+    /// The motors in order of their number, and the output of each, from 1.
+    pub(crate) motors: Vec<(Motor, u16)>,
+    /// How many motors the vehicle has, where it reported that.
+    pub(crate) expected: Option<u16>,
+    pub(crate) range: Range,
+    pub(crate) effective: Range,
+    /// Whether `effective` is assumed.
+    pub(crate) is_effective_assumed: bool,
+    pub(crate) declared: Declared,
+    /// What is assumed because the vehicle did not report it, in words.
+    pub(crate) assumed: Vec<String>,
+}
+
+impl KnownOutputs {
+    /// Without parameters that name them the motors are the first outputs, as many as the type of vehicle has. Limits that
+    /// are not known are those of a vehicle on which nobody changed them.
+    pub(crate) fn of(parameters: &Parameters, vehicle: &Vehicle, is_px4: bool) -> Self {
+        let expected = match is_px4 {
+            true => px4::rotor_count(parameters).or(vehicle.motors),
+            false => vehicle.motors,
+        };
+        let (motors, first_outputs) = match is_px4 {
+            true => motors_of_px4(parameters, expected),
+            false => (
+                ardupilot::motors(parameters, vehicle, field),
+                !ardupilot::has_functions(parameters),
+            ),
+        };
+        let known_range = match is_px4 {
+            true => {
+                let (bank, index) = bank(motors.first().map_or(1, |(_, output)| *output));
+                px4::output_range(parameters, bank, index, 0.0, "")
+            }
+            false => ardupilot::pwm_range(parameters),
+        };
+        let mut assumed = Vec::new();
+        if first_outputs && !motors.is_empty() {
+            let count = motors.len();
+            assumed.push(format!("motors 1 to {count} on outputs 1 to {count}"));
+        }
+        let range = known_range.unwrap_or_else(|| {
+            assumed.push("commands from 1000 to 2000 us".to_owned());
+            assumed_range(1000.0, 2000.0, "us")
+        });
+        let is_effective_assumed = !is_px4 && !ardupilot::has_limits(parameters);
+        let effective = match (is_px4, is_effective_assumed) {
+            (true, _) => crate::flight::whole_range("PX4 has no tighter limits"),
+            (false, false) => ardupilot::effective_range(parameters),
+            (false, true) => {
+                assumed.push("effective range 0.15 to 0.95".to_owned());
+                assumed_range(0.15, 0.95, "1")
+            }
+        };
+        Self {
+            motors,
+            expected,
+            range,
+            effective,
+            is_effective_assumed,
+            declared: match is_px4 {
+                true => Declared::of_px4(parameters),
+                false => Declared::of_ardupilot(parameters, vehicle),
+            },
+            assumed,
+        }
+    }
+}
+
+/// The motors, and whether they are on the first outputs only because no parameter names them.
+fn motors_of_px4(parameters: &Parameters, expected: Option<u16>) -> (Vec<(Motor, u16)>, bool) {
+    let named = px4_motors(parameters);
+    if !named.is_empty() {
+        return (named, false);
+    }
+    let source = match px4::rotor_count(parameters) {
+        Some(count) => format!("CA_ROTOR_COUNT = {count}, the first outputs"),
+        None => "MAV_TYPE, the first outputs".to_owned(),
+    };
+    let first = ardupilot::numbered_motors(expected.unwrap_or(0), field, &source);
+    (first, true)
+}
+
+fn assumed_range(low: f64, high: f64, unit: &'static str) -> Range {
+    Range {
+        low,
+        high,
+        unit,
+        source: "assumed".to_owned(),
+    }
+}
