@@ -154,7 +154,7 @@ fn garbage_and_wild_values_are_counted_and_raise_no_alarm() {
     );
     assert_eq!(said.verdict(), "GOOD");
     assert_eq!(vehicle.heard.texts(), []);
-    assert!(said.has_note("no MAVLink packets"));
+    assert!(said.has_note("not MAVLink packets"));
     for event in said.all("risk") {
         let risk = event["risk"].as_f64();
         assert!(risk.is_none_or(|risk| risk.is_finite()));
@@ -259,13 +259,13 @@ fn ports_that_cannot_be_had_are_told_with_what_to_do() {
         "{told}"
     );
     drop(taken);
-    let (code, told) = refused(&format!("tcp:{address}"), &[]);
+    let (code, told) = refused(&format!("tcp:{address}"), &["--no-wait"]);
     assert!(
         code == Some(3) && told.contains("start the vehicle"),
         "{told}"
     );
 
-    let (code, told) = refused("/dev/flagred-no-such-port:57600", &[]);
+    let (code, told) = refused("/dev/flagred-no-such-port:57600", &["--no-wait"]);
     assert!(
         code == Some(3) && told.contains("is the cable plugged in?"),
         "{told}"
@@ -308,6 +308,36 @@ fn a_serial_port_without_permission_is_told_with_what_to_do() {
         told.contains("cannot be opened") && told.contains("`dialout`"),
         "{told}"
     );
+}
+
+/// A watch is often started before the vehicle, its network and its cable.
+#[test]
+fn an_endpoint_that_is_not_there_yet_is_waited_for() {
+    let flight = flight(Path::new(STEADY));
+    let free = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = free.local_addr().unwrap();
+    drop(free);
+    let watch = Watch::start(&format!("tcp:{address}"), &[]);
+    std::thread::sleep(Duration::from_millis(300));
+    let listener = TcpListener::bind(address).unwrap();
+    let wire = Wire::tcp(listener.accept().unwrap().0);
+    let mut vehicle = watch.vehicle_on(&flight, wire, Link::default(), Version::V2);
+    vehicle.meet();
+    let said = watch.end();
+    assert!(said.has_note("cannot be opened yet") && said.has_note("--no-wait"));
+    assert!(said.has_note("the link is open"));
+    said.one("found");
+
+    for endpoint in [
+        "/dev/flagred-no-such-port:57600",
+        "udpout:no-such-host.invalid:14550",
+    ] {
+        let watch = Watch::start(endpoint, &[]);
+        std::thread::sleep(Duration::from_millis(500));
+        let said = watch.end();
+        assert!(said.has_note("cannot be opened yet"), "{endpoint}");
+        assert_eq!(said.code, Some(3), "{endpoint}");
+    }
 }
 
 #[test]

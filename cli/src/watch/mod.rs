@@ -72,9 +72,13 @@ pub(crate) struct Arguments {
     #[arg(long)]
     no_send: bool,
 
-    /// Send warnings although another watch of the vehicle does
+    /// Send warnings even if another `flagred watch` sends them
     #[arg(long, conflicts_with = "no_send")]
     send_anyway: bool,
+
+    /// End at once if the endpoint does not open, instead of trying it every second
+    #[arg(long)]
+    no_wait: bool,
 
     /// The MAVLink component id to send as
     #[arg(long, value_name = "NUMBER", default_value_t = COMPONENT, value_parser = clap::value_parser!(u8).range(2..))]
@@ -105,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let flag = Arc::clone(&stop);
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
         .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
-    let mut port = Port::open(&arguments.endpoint)?;
+    let mut port = Port::open(&arguments.endpoint, !arguments.no_wait)?;
     let mut recording = match &arguments.record {
         Some(path) => Some(tlog::Recording::create(path)?),
         None => None,
@@ -141,6 +145,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 stream.push(buffer.get(..count).unwrap_or_default());
             }
             Received::Nothing => {}
+            Received::Waiting(why) => {
+                let endpoint = &arguments.endpoint;
+                let text = format!(
+                    "`{endpoint}` cannot be opened yet: {why}; trying again every second (`--no-wait` ends instead)"
+                );
+                out.events.push(Event::Note { text });
+            }
             Received::Opened => {
                 stream.end();
                 let text = "the link is open".to_owned();
@@ -328,12 +339,12 @@ impl Display {
             (
                 told.unknown,
                 now.unknown,
-                "some messages are not known here and are left out",
+                "some messages are not known here: they are recorded, but not evaluated",
             ),
             (
                 told.bytes,
                 now.bytes,
-                "some bytes are no MAVLink packets and are left out",
+                "some bytes are not MAVLink packets: they are skipped",
             ),
         ];
         for (before, after, text) in kinds {

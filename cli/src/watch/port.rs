@@ -19,11 +19,15 @@ const RETRY: Duration = Duration::from_secs(1);
 /// An open endpoint.
 pub(crate) struct Port {
     kind: Kind,
+    /// Why it could not be opened at first, until that is told.
+    closed_because: Option<String>,
     /// Packets that could not be sent.
     unsent: u64,
 }
 
 enum Kind {
+    /// It could not be opened yet.
+    Closed { endpoint: Endpoint, tried: Instant },
     Udp {
         socket: UdpSocket,
         /// Where the latest datagram came from, and where answers go.
@@ -69,6 +73,8 @@ pub(crate) enum Received {
     Datagram(usize),
     /// Nothing in this time.
     Nothing,
+    /// It could not be opened for this reason; it is tried again.
+    Waiting(String),
     /// The other side is there.
     Opened,
     /// The other side is gone; it is waited for.
@@ -76,56 +82,28 @@ pub(crate) enum Received {
 }
 
 impl Port {
-    /// Opens it.
+    /// Opens it. Where nobody answers there yet it is tried again, unless `waits` is false.
     ///
     /// # Errors
     ///
-    /// Where the address does not resolve, the port is taken or not ours to open, or nobody answers.
-    pub(crate) fn open(endpoint: &Endpoint) -> Result<Port, Failure> {
-        let failed = |error: io::Error| refusal(endpoint, &error);
-        let kind = match endpoint {
-            Endpoint::UdpIn(address) => {
-                let socket = UdpSocket::bind(address).map_err(failed)?;
-                socket.set_read_timeout(Some(WAIT)).map_err(failed)?;
-                Kind::Udp {
-                    socket,
-                    from: None,
-                    to: None,
-                }
+    /// When another program has the port, or it is not ours to open; without waiting whenever it does not open.
+    pub(crate) fn open(endpoint: &Endpoint, waits: bool) -> Result<Port, Failure> {
+        let (kind, closed_because) = match open(endpoint) {
+            Ok(kind) => (kind, None),
+            Err(error) if waits && is_temporary(&error) => {
+                let closed = Kind::Closed {
+                    endpoint: endpoint.clone(),
+                    tried: Instant::now(),
+                };
+                (closed, Some(error.to_string()))
             }
-            Endpoint::UdpOut(address) => {
-                let to = resolve(address).map_err(failed)?;
-                let any = if to.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
-                let socket = UdpSocket::bind(any).map_err(failed)?;
-                socket.set_read_timeout(Some(WAIT)).map_err(failed)?;
-                Kind::Udp {
-                    socket,
-                    from: None,
-                    to: Some(to),
-                }
-            }
-            Endpoint::Tcp(address) => Kind::Tcp {
-                address: address.clone(),
-                stream: Some(connect(address).map_err(failed)?),
-                tried: Instant::now(),
-            },
-            Endpoint::TcpIn(address) => {
-                let listener = TcpListener::bind(address).map_err(failed)?;
-                listener.set_nonblocking(true).map_err(failed)?;
-                Kind::TcpIn {
-                    listener,
-                    client: None,
-                    waiting: Vec::new(),
-                }
-            }
-            Endpoint::Serial { path, baud } => Kind::Serial {
-                path: path.clone(),
-                baud: *baud,
-                port: Some(open_serial(path, *baud).map_err(failed)?),
-                tried: Instant::now(),
-            },
+            Err(error) => return Err(refusal(endpoint, &error)),
         };
-        Ok(Port { kind, unsent: 0 })
+        Ok(Port {
+            kind,
+            closed_because,
+            unsent: 0,
+        })
     }
 
     /// The address that is listened at, where there is one: a port of 0 has become a real one.
@@ -133,13 +111,30 @@ impl Port {
         match &self.kind {
             Kind::Udp { socket, .. } => socket.local_addr().ok(),
             Kind::TcpIn { listener, .. } => listener.local_addr().ok(),
-            Kind::Tcp { .. } | Kind::Serial { .. } => None,
+            Kind::Closed { .. } | Kind::Tcp { .. } | Kind::Serial { .. } => None,
         }
     }
 
     /// Waits a moment for bytes.
     pub(crate) fn receive(&mut self, buffer: &mut [u8]) -> Received {
+        if let Some(why) = self.closed_because.take() {
+            return Received::Waiting(why);
+        }
         match &mut self.kind {
+            Kind::Closed { endpoint, tried } => {
+                if tried.elapsed() < RETRY {
+                    thread::sleep(WAIT);
+                    return Received::Nothing;
+                }
+                *tried = Instant::now();
+                match open(endpoint) {
+                    Ok(kind) => {
+                        self.kind = kind;
+                        Received::Opened
+                    }
+                    Err(_) => Received::Nothing,
+                }
+            }
             Kind::Udp { socket, from, .. } => match socket.recv_from(buffer) {
                 Ok((count, address)) => {
                     *from = Some(address);
@@ -187,7 +182,7 @@ impl Port {
             Kind::Udp { from, .. } => *from,
             Kind::Tcp { stream, .. } => stream.as_ref()?.peer_addr().ok(),
             Kind::TcpIn { client, .. } => Some(client.as_ref()?.address),
-            Kind::Serial { .. } => None,
+            Kind::Closed { .. } | Kind::Serial { .. } => None,
         }
     }
 
@@ -226,6 +221,54 @@ impl Port {
     pub(crate) fn unsent(&self) -> u64 {
         self.unsent
     }
+}
+
+fn open(endpoint: &Endpoint) -> io::Result<Kind> {
+    let udp = |socket: UdpSocket, to: Option<SocketAddr>| {
+        socket.set_read_timeout(Some(WAIT))?;
+        Ok(Kind::Udp {
+            socket,
+            from: None,
+            to,
+        })
+    };
+    match endpoint {
+        Endpoint::UdpIn(address) => udp(UdpSocket::bind(address)?, None),
+        Endpoint::UdpOut(address) => {
+            let to = resolve(address)?;
+            let any = if to.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
+            udp(UdpSocket::bind(any)?, Some(to))
+        }
+        Endpoint::Tcp(address) => Ok(Kind::Tcp {
+            address: address.clone(),
+            stream: Some(connect(address)?),
+            tried: Instant::now(),
+        }),
+        Endpoint::TcpIn(address) => {
+            let listener = TcpListener::bind(address)?;
+            listener.set_nonblocking(true)?;
+            Ok(Kind::TcpIn {
+                listener,
+                client: None,
+                waiting: Vec::new(),
+            })
+        }
+        Endpoint::Serial { path, baud } => Ok(Kind::Serial {
+            path: path.clone(),
+            baud: *baud,
+            port: Some(open_serial(path, *baud)?),
+            tried: Instant::now(),
+        }),
+    }
+}
+
+/// Whether an endpoint that does not open may do so later without anybody acting here: the vehicle, its cable, the network or
+/// the name are not there yet.
+fn is_temporary(error: &io::Error) -> bool {
+    !matches!(
+        error.kind(),
+        io::ErrorKind::AddrInUse | io::ErrorKind::PermissionDenied | io::ErrorKind::InvalidInput
+    )
 }
 
 /// Serves one client at a time: the next one where it closes, and one that speaks where it is silent.
@@ -375,7 +418,7 @@ fn refusal(endpoint: &Endpoint, error: &io::Error) -> Failure {
             failure.help("is the cable plugged in? `ls /dev/tty*` lists the serial ports")
         }
         (io::ErrorKind::ConnectionRefused, _) => {
-            failure.help("nobody listens there: start the vehicle or the simulator first")
+            failure.help("nobody listens there: start the vehicle or the simulator, or leave out `--no-wait`")
         }
         _ => failure,
     }
@@ -394,7 +437,8 @@ mod tests {
         unlockpt(&other).unwrap();
         let path = ptsname(&other, Vec::new()).unwrap().into_string().unwrap();
         let endpoint = format!("{path}:57600").parse().unwrap();
-        let mut port = Port::open(&endpoint).unwrap_or_else(|_| panic!("{path} does not open"));
+        let mut port =
+            Port::open(&endpoint, true).unwrap_or_else(|_| panic!("{path} does not open"));
         let mut buffer = [0; 16];
         assert!(matches!(port.receive(&mut buffer), Received::Nothing));
         // Bytes are bytes: no line ends are waited for or made, and nothing is echoed.
