@@ -1,75 +1,113 @@
 -- The profile `flagred-battery` with the rule set `flagred-battery-rules.yaml`, written by `flagred export --lua` 0.1.0. Do not edit.
 --
--- Put it into APM/scripts on the card. It reads the motor outputs and says how close the vehicle is to losing control:
--- FR_RISK and FR_ELEV in %, and a text when the level changes. It changes nothing on the vehicle. How to install it, what it
--- costs and how it was tested: docs/on-ardupilot.md of FLAGRED.
+-- Copy it to APM/scripts on the card. It reads the motor outputs and reports how close the vehicle is to losing control:
+-- FR_RISK and FR_ELEV in %, and a text when the level changes. It changes nothing on the vehicle. Installation, cost and
+-- tests: docs/on-ardupilot.md of FLAGRED.
+--
+-- An error while ArduPilot loads a script blocks arming. So ArduPilot compiles only this loader; the rest of the file is a
+-- comment to it. The loader reads the file again and compiles it part by part, which takes less memory than all at once, and
+-- where that fails, it sends a text and ends. Parts end at a form feed; this table is their environment.
 
-local CALL_MS = 30 -- between two calls
-local SEND_US = 500000 -- between two values for the ground station
-local BIN_US = 100000 -- of commands that are averaged before their noise is taken out
-local SLOTS = 128 -- of a window
-local LONG_US = 1000000000 -- longer times are this long
-local CRITICAL, ERROR, WARNING, INFO = 2, 3, 4, 6 -- severities of MAVLink
-local GOOD, WARN, FAIL = 0, 2, 3 -- levels
-local LEVELS = {[GOOD] = "GOOD", [WARN] = "WARN", [FAIL] = "FAIL"}
-local floor, sqrt, exp, huge, min, max = math.floor, math.sqrt, math.exp, math.huge, math.min, math.max
+local shared = {
+  floor = math.floor, sqrt = math.sqrt, exp = math.exp, abs = math.abs, huge = math.huge, min = math.min, max = math.max,
+  format = string.format, sub = string.sub, match = string.match, gmatch = string.gmatch, rep = string.rep,
+  unpack = table.unpack, ipairs = ipairs, error = error, pcall = pcall, tonumber = tonumber, tostring = tostring,
+  gcs = gcs, param = param, micros = micros, vehicle = vehicle, logger = logger, SRV_Channels = SRV_Channels,
+  battery = battery,
+}
+local PARTS = {"motors", "setup", "start", "windows", "rules", "inputs", "levels", "flight", "calls", "elevated", "words", "texts"}
+local number, chunk = 1, nil -- of the next part; what is compiled of it
+local file, text, is_over = nil, "", false -- what is read but not compiled, and whether the part has ended
 
--- The profile.
-local MIN_SAMPLES = 5
-local LEAST_STRENGTH = 1e-12
-local WARM_UP_US = 1000000
-local LONGEST_GAP_US = 2000000
-local TAKE_OFF_US = 0
-local ELEVATED_WINDOW_S = 10.0
-local ELEVATED_HIGH, ELEVATED_LOW = 50.0, 20.0
-local RISE, FALL = 1.5, 2.0 -- of the elevated risk, in % per second
-local WARN_RISK, WARN_ELEVATED = 67.0, 50.0
-local WARN_AFTER_US = 200000
-local WARN_UNTIL_RISK, WARN_UNTIL_ELEVATED = 25.0, 30.0
-local FAIL_RISK, FAIL_ELEVATED = 85.0, 90.0
-local FAIL_AFTER_US = 400000
-local FAIL_UNTIL_RISK, FAIL_UNTIL_ELEVATED = 67.0, 70.0
-local CLEAR_AFTER_US = 10000000
-local QUIET_US = 5000000
-local IDLE_BELOW = 0.1
-local COVERAGE_BELOW = 0.5
-local PARAMETER_TABLE = 157
-
----------------------------------------------------------------------------------------------------------------------------
--- The parameters of this script. FRISK_ENABLE = 0 silences it.
-
-local is_enabled = true
-
-local function read_parameters()
-  local enable = param:get("FRISK_ENABLE")
-  is_enabled = enable == nil or enable > 0
-  WARN_RISK = param:get("FRISK_WARN") or WARN_RISK
-  WARN_UNTIL_RISK = WARN_UNTIL_RISK and min(WARN_UNTIL_RISK, WARN_RISK)
-  FAIL_RISK = param:get("FRISK_FAIL") or FAIL_RISK
-  FAIL_UNTIL_RISK = FAIL_UNTIL_RISK and min(FAIL_UNTIL_RISK, FAIL_RISK)
+local function open()
+  if not load then
+    error("needs ArduPilot 4.4 or newer", 0)
+  end
+  local _, place = pcall(function()
+    error("")
+  end)
+  local path = string.match(place, "^(.*):%d+:")
+  file = path and io.open(path, "r")
+  if not file then
+    error("cannot read its own file", 0)
+  end
 end
 
----------------------------------------------------------------------------------------------------------------------------
--- Time. Whole microseconds that wrap after 71 min; only differences of under 35 min are used.
-
-local last_call -- the autopilot's clock
-local clock_us = 0
-local held_us, held_s = 0, 0.0 -- since the last call
-local bin, bin_us = 0, 0 -- the bin of commands, and the time into it
-local has_moved = false -- whether this call has done one of the longer works
-
-local function later(us, by_us)
-  return us < LONG_US and us + by_us or us
+-- The next piece of a part; nil or empty at its end.
+local function piece()
+  if is_over then
+    return nil
+  end
+  if text == "" then
+    text = file:read(400) or error("its file is cut off", 0)
+  end
+  local found = text
+  local mark = string.find(text, "\f", 1, true)
+  if mark then
+    found, is_over = string.sub(text, 1, mark - 1), true
+  end
+  text = string.sub(text, #found + 2)
+  return found
 end
 
----------------------------------------------------------------------------------------------------------------------------
+-- Compiles the next part, or runs what is compiled. Returns whether there is more to do.
+local function go_on()
+  if chunk then
+    local part = chunk
+    chunk, number = nil, number + 1
+    part()
+    return number <= #PARTS
+  end
+  is_over = false
+  if not file then
+    open()
+    while (piece() or "") ~= "" do
+    end
+    return true
+  end
+  local why
+  chunk, why = load(piece, "=" .. PARTS[number], "t", shared)
+  if not chunk then
+    error(why, 0)
+  end
+  return true
+end
+
+local function load_all()
+  local is_well, continues = pcall(go_on)
+  if is_well and continues then
+    return load_all, 10
+  end
+  if file then
+    file:close()
+  end
+  if is_well then
+    return shared.begin, 30
+  end
+  local why = string.find(continues, "not enough mem", 1, true) and "increase SCR_HEAP_SIZE" or continues
+  gcs:send_text(3, string.sub("FLAGRED is off: " .. why, 1, 50))
+end
+
+return load_all, 1000
+
+--[==[
+-- Time. Whole microseconds that wrap after 71 min; only differences of under 35 min are used.
+
+clock_us = 0
+held_us, held_s = 0, 0.0 -- since the last call
+bin, bin_us = 0, 0 -- the bin of commands, and the time into it
+has_moved = false -- whether this call has done one of the longer works
+
+function later(us, by_us)
+  return us < 1000000000 and us + by_us or us
+end
+
 -- Motors. A command is 0 at the lower limit of the range that is used in flight, 1 at the upper one.
 
-local motors = 0
-local functions, numbers = {}, {} -- of the outputs
+motors, functions, numbers = 0, {}, {} -- how many; function and number of each output
+command = {}
 local low_us, scale = 1000.0, 0.001
-local command, sum = {}, nil -- the sum is nil where the commands are unknown
-local margin = {} -- how far each motor is from its nearer limit
+margin = {} -- how far each motor is from its nearer limit
 
 local function pair(low, high, least, most, width)
   low, high = low and param:get(low), high and param:get(high)
@@ -78,27 +116,30 @@ local function pair(low, high, least, most, width)
   end
 end
 
--- MOT_PWM_MIN and MAX, or the range of the throttle's channel, and of it MOT_SPIN_MIN to MAX. False where they are no limits.
-local function read_limits()
+-- Reads MOT_PWM_MIN and MAX, or the range of the throttle's channel, and the part of it from MOT_SPIN_MIN to MAX. Returns the
+-- limits in us; nil where they are not valid.
+function read_limits()
   local own = param:get("MOT_PWM_MIN")
   local low, high
   if own and own > 0 then
     low, high = pair("MOT_PWM_MIN", "MOT_PWM_MAX", 500, 2500, 100)
   else
-    local channel = string.format("RC%.0f_", param:get("RCMAP_THROTTLE") or 3)
+    local channel = format("RC%.0f_", param:get("RCMAP_THROTTLE") or 3)
     low, high = pair(channel .. "MIN", channel .. "MAX", 500, 2500, 100)
   end
   if not low then
-    return false
+    return nil
   end
   local spin_low, spin_high = pair("MOT_SPIN_MIN", "MOT_SPIN_MAX", 0, 1, 0.1)
   spin_low, spin_high = spin_low or 0, spin_high or 1
   low_us = low + spin_low * (high - low)
   scale = 1 / ((spin_high - spin_low) * (high - low))
-  return true
+  return low_us, low_us + 1 / scale
 end
 
-local function read_commands()
+-- The sum is nil where the commands are unknown.
+function read_commands()
+  local low_us, scale, command = low_us, scale, command
   local total = 0.0
   for i = 1, motors do
     local pwm = SRV_Channels:get_output_pwm(functions[i])
@@ -119,7 +160,7 @@ local function read_commands()
   sum = total
 end
 
-local function deviation_of(list)
+function deviation_of(list)
   local mean, square = 0.0, 0.0
   for i = 1, motors do
     mean = mean + list[i]
@@ -132,43 +173,76 @@ local function deviation_of(list)
   return sqrt(square / motors)
 end
 
-local function mean_of(list)
+function mean_of(list)
   local total = 0.0
   for i = 1, motors do
     total = total + list[i]
   end
   return total / motors
 end
+-- Parameters and motors, found once.
 
----------------------------------------------------------------------------------------------------------------------------
--- Windows: sums over the last seconds, in slots of time in which samples are merged. The slots lie in a ring, in three runs: the
--- front, of whose slots each holds the sum of itself and the later ones of the front; the middle, which is made the same, two
--- slots a call; and the back, to which slots are added. So a call costs the same whatever the length, and as nothing is
--- subtracted from a sum that stays, nothing drifts.
+local PARAMETERS = {
+  {"ENABLE", 1.0},
+  {"WARN", 67.0},
+  {"FAIL", 85.0},
+}
 
-local windows = {}
-
-local FREE = {}
-for slot = 1, SLOTS + 2 do
-  FREE[slot] = 0
+local function add_parameters()
+  local added = param:add_table(157, "FRISK_", #PARAMETERS)
+  for i, parameter in ipairs(PARAMETERS) do
+    added = added and param:add_param(157, i, parameter[1], parameter[2])
+  end
+  if not added then
+    gcs:send_text(4, "FLAGRED: no parameters, the defaults hold")
+  end
 end
 
--- A list of numbers, one for each slot, of which `pick` gives the smaller or larger; without it they add up.
-local function new_list(window, pick, none)
-  local list = {table.unpack(FREE, 1, window.capacity)}
-  list.pick, list.none, list.middle, list.back = pick, none, none, none
+local function output(motor_function)
+  -- Older firmware has fewer functions, and refuses the others.
+  local is_known, pwm = pcall(SRV_Channels.get_output_pwm, SRV_Channels, motor_function)
+  return is_known and pwm
+end
+
+local function find_motors()
+  local is_tri = param:get("FRAME_CLASS") == 7
+  for number = 1, 32 do
+    local motor_function = number <= 8 and number + 32 or number <= 12 and number + 73 or number + 147
+    -- Motor 7 of a tricopter is a servo.
+    if output(motor_function) and not (is_tri and number == 7) then
+      motors = motors + 1
+      functions[motors], numbers[motors] = motor_function, number
+    end
+  end
+end
+
+add_parameters()
+find_motors()
+if motors == 0 or not read_limits() then
+  error("no motors or no limits", 0)
+end
+-- The windows, made once.
+
+windows, inputs = {}, {} -- the inputs are rows
+
+local NOTHING = {}
+
+-- A list of numbers, one for each slot, which add up. Its constructor has room for all, since a table that grows takes twice the
+-- memory; a slot that was never used is nil.
+local function new_list(window)
+  local list = {middle = 0.0, back = 0.0, unpack(NOTHING, 1, window.capacity)}
   window.lists[#window.lists + 1] = list
   return list
 end
 
 -- `capacity` is the most slots in use at once.
-local function new_window(length_s, capacity, in_bins)
+local function new_window(length_s, capacity)
   local window = {
-    length_us = floor(length_s * 1000000), needed_s = 0.99 * min(WARM_UP_US * 1e-6, length_s), capacity = capacity,
+    length_us = floor(length_s * 1000000), needed_s = 0.99 * min(1000000 * 1e-6, length_s), capacity = capacity,
     number = 0, phase = 0, -- the slot of the present, and 128 times the time into it
     oldest = 1, newest = 0, newest_number = nil, slots = 0, front = 0, middle = 0, back = 0, turning = 0, unturned = 0,
     samples = 0, start_us = 0, back_since_us = 0, is_full = false,
-    end_us = {table.unpack(FREE, 1, capacity)}, lists = {}, rows = {},
+    end_us = {unpack(NOTHING, 1, capacity)}, lists = {}, rows = {},
     bin = 0, bin_samples = 0, bin_held = 0.0, bin_end_us = 0, bin_number = 0, -- the latest bin, not in a slot yet
   }
   window.weight = new_list(window, nil, 0.0)
@@ -176,28 +250,32 @@ local function new_window(length_s, capacity, in_bins)
   return window
 end
 
--- Something to know of a window: a "mean", a "spread" about the mean, the "lowest" or the "highest" value. `x` is the value
+-- A statistic of a window: the "mean", the "spread" about the mean, the "lowest" or the "highest" value. `x` is the value
 -- of a sample, nil where it is unknown, and `within` the variance that one sample has in itself.
 local function new_row(window, kind)
-  local row = {window = window, kind = kind, x = nil, within = 0.0, shift = nil, bin_sum = 0.0, before = nil}
-  if kind == "lowest" then
-    row.sum = new_list(window, min, huge)
-  elseif kind == "highest" then
-    row.sum = new_list(window, max, -huge)
-  else
-    row.sum = new_list(window, nil, 0.0)
-    row.square = kind == "spread" and new_list(window, nil, 0.0) or nil
-  end
+  local row = {kind = kind, x = nil, within = 0.0, shift = nil, bin_sum = 0.0, before = nil, sum = nil, square = nil}
+  row.square = kind == "spread" and new_list(window, nil, 0.0) or nil
+  row.sum = row.sum or new_list(window, nil, 0.0)
   window.rows[#window.rows + 1] = row
   return row
 end
 
-local function clear(window)
+new_window(2.0, 70)
+inputs[1] = new_row(windows[1], "mean") -- margin
+inputs[2] = new_row(windows[1], "spread") -- spread
+risks = new_window(10.0, 130)
+new_row(risks, "spread")
+-- Windows: sums over the last seconds, in slots of time in which samples are merged. The slots lie in a ring, in three runs: the
+-- front, of whose slots each holds the sum of itself and the later ones of the front; the middle, which is made the same, two
+-- slots a call; and the back, to which slots are added. So a call costs the same whatever the length, and as nothing is
+-- subtracted from a sum that stays, nothing drifts.
+
+function clear(window)
   window.slots, window.front, window.middle, window.back, window.unturned = 0, 0, 0, 0, 0
   window.oldest, window.newest, window.samples, window.is_full = 1, 0, 0, false
   window.bin_samples, window.bin_held = 0, 0.0
   for _, list in ipairs(window.lists) do
-    list.middle, list.back = list.none, list.none
+    list.middle, list.back = 0.0, 0.0
   end
   for _, row in ipairs(window.rows) do
     row.bin_sum, row.before, row.shift = 0.0, nil, nil
@@ -209,7 +287,7 @@ local function turn(window)
   window.middle, window.back, window.unturned = window.back, 0, window.back - 1
   window.turning = window.newest
   for _, list in ipairs(window.lists) do
-    list.middle, list.back = list.back, list.none
+    list.middle, list.back = list.back, 0.0
   end
 end
 
@@ -219,8 +297,7 @@ local function sum_middle(window, count)
     local later_slot = window.turning
     local slot = (later_slot - 2) % window.capacity + 1
     for _, list in ipairs(window.lists) do
-      local pick = list.pick
-      list[slot] = pick and pick(list[slot], list[later_slot]) or list[slot] + list[later_slot]
+      list[slot] = list[slot] + list[later_slot]
     end
     window.turning, window.unturned, count = slot, window.unturned - 1, count - 1
   end
@@ -235,15 +312,15 @@ local function keep_a_front(window)
     turn(window)
     window.newest_number = nil
   end
-  sum_middle(window, SLOTS + 2)
+  sum_middle(window, 128 + 2)
   window.front, window.middle = window.middle, 0
   for _, list in ipairs(window.lists) do
-    list.middle = list.none
+    list.middle = 0.0
   end
 end
 
 -- Drops what ended so long ago or longer.
-local function drop_older(window, us)
+function drop_older(window, us)
   while window.slots > 0 and clock_us - window.end_us[window.oldest] >= us do
     keep_a_front(window)
     window.oldest = window.oldest % window.capacity + 1
@@ -268,7 +345,7 @@ local function slot_of(window, number, end_us)
     end
     window.slots, window.back = window.slots + 1, window.back + 1
     for _, list in ipairs(window.lists) do
-      list[window.newest] = list.none
+      list[window.newest] = 0.0
     end
   end
   sum_middle(window, 2)
@@ -278,25 +355,18 @@ local function slot_of(window, number, end_us)
 end
 
 local function put(list, slot, x)
-  local pick = list.pick
-  if pick then
-    list[slot], list.back = pick(list[slot], x), pick(list.back, x)
-  else
-    list[slot], list.back = list[slot] + x, list.back + x
-  end
+  list[slot], list.back = list[slot] + x, list.back + x
 end
 
 -- Puts a value into a slot. Spreads are sums about a value near the mean, which keeps their digits.
 local function merge(row, slot, held, x, rest)
   if row.kind == "mean" then
     put(row.sum, slot, held * x)
-  elseif row.kind == "spread" then
+  else
     row.shift = row.shift or x
     local d = x - row.shift
     put(row.sum, slot, held * d)
     put(row.square, slot, held * (d * d + rest))
-  else
-    put(row.sum, slot, x)
   end
 end
 
@@ -311,7 +381,7 @@ local function of_bin(window, row)
   return x, -0.5 * step * step
 end
 
-local function take_bin(window)
+function take_bin(window)
   if window.bin_samples > 0 and window.bin ~= bin then
     local held = window.bin_held
     local slot = held > 0 and slot_of(window, window.bin_number, window.bin_end_us)
@@ -338,7 +408,7 @@ local function take_bin(window)
   end
 end
 
-local function take_sample(window, held)
+function take_sample(window, held)
   drop_older(window, window.length_us - 1)
   if window.rows[1].x and held > 0 then
     local slot = slot_of(window, window.number, clock_us)
@@ -350,7 +420,7 @@ local function take_sample(window, held)
 end
 
 -- The numbers of a list together, without a share of the oldest slot.
-local function total_of(window, list, out)
+function total_of(window, list, out)
   local sum = list.middle + list.back
   if window.front > 0 then
     local first = list[window.oldest]
@@ -363,8 +433,8 @@ local function total_of(window, list, out)
 end
 
 -- The share of the oldest slot that has left the window.
-local function outside(window)
-  if not window.is_full and clock_us - window.start_us < window.length_us - BIN_US or window.slots == 0 then
+function outside(window)
+  if not window.is_full and clock_us - window.start_us < window.length_us - 100000 or window.slots == 0 then
     return 0.0
   end
   window.is_full = true
@@ -380,8 +450,10 @@ end
 local function move_shift(row, window, by)
   local sum, square, weight = row.sum, row.square, window.weight
   for slot = 1, window.capacity do
-    square[slot] = square[slot] + by * (by * weight[slot] - 2 * sum[slot])
-    sum[slot] = sum[slot] - by * weight[slot]
+    if sum[slot] then
+      square[slot] = square[slot] + by * (by * weight[slot] - 2 * sum[slot])
+      sum[slot] = sum[slot] - by * weight[slot]
+    end
   end
   for _, run in ipairs({"middle", "back"}) do
     square[run] = square[run] + by * (by * weight[run] - 2 * sum[run])
@@ -391,14 +463,8 @@ local function move_shift(row, window, by)
 end
 
 -- The mean, the lowest or the highest value; for a spread the mean and the variance.
-local function read_row(row, total, out)
-  local window, kind = row.window, row.kind
-  local held = window.bin_held
-  if kind == "lowest" or kind == "highest" then
-    local list = row.sum
-    local found = list.pick(list.middle, list.back)
-    return window.front > 0 and list.pick(found, list[window.oldest]) or found
-  end
+function read_row(window, row, total, out)
+  local kind, held = row.kind, window.bin_held
   local sum = total_of(window, row.sum, out)
   if kind == "mean" then
     if held > 0 then
@@ -424,63 +490,16 @@ local function read_row(row, total, out)
   return shift + off, max(variance, 0.0)
 end
 
----------------------------------------------------------------------------------------------------------------------------
--- The inputs of the rules.
-
-local inputs, value = {}, {} -- their rows; their values, nil where one is unknown
-new_window(2.0, 70, false)
-inputs[1] = new_row(windows[1], "mean") -- margin
-inputs[2] = new_row(windows[1], "spread") -- spread
-
--- Takes in a sample of flight.
-local function observe()
-  local mean_of_margin = sum and mean_of(margin) or nil
-  local deviation_of_command = sum and deviation_of(command) or nil
-  local mean_of_command = sum and mean_of(command) or nil
-  local signal_1 = battery:capacity_remaining_pct(0)
-  inputs[1].x = mean_of_margin -- margin
-  inputs[2].x = mean_of_command -- spread
-  inputs[2].within = sum and deviation_of_command * deviation_of_command or 0.0
-  value[3] = signal_1 -- battery
-  take_sample(windows[1], held_s)
-end
-
--- The seconds that are known of a window and the share of its oldest slot that has left it; nil where too little is known.
-local function enough(window)
-  local out = outside(window)
-  local total = total_of(window, window.weight, out) + window.bin_held
-  local samples = window.samples + (window.bin_held > 0 and 1 or 0)
-  if total < window.needed_s or total <= 0 or samples < MIN_SAMPLES then
-    return nil
-  end
-  return total, out
-end
-
-local function deviation(row, total, out)
-  local _, variance = read_row(row, total, out)
+function deviation(window, row, total, out)
+  local _, variance = read_row(window, row, total, out)
   return sqrt(variance)
 end
+-- The rules.
 
--- The inputs' values; false where one is not known.
-local function read_inputs()
-  local all, total, out = true, nil, nil
-  total, out = enough(windows[1])
-  value[1] = total and read_row(inputs[1], total, out) -- margin
-  all = all and value[1]
-  value[2] = total and deviation(inputs[2], total, out) -- spread
-  all = all and value[2]
-  all = all and value[3]
-  return all
-end
-
----------------------------------------------------------------------------------------------------------------------------
--- The rules.
-
-local fired, coverage = {}, 0.0 -- the firing strengths of rules, and the largest
-local by_rules -- the risk by the rules in %; nil where none fires
-do
-
+fired = {} -- the firing strengths of rules
+local coverage = 0.0 -- the largest firing strength
 local strengths, degrees = {}, {} -- of output terms, and of terms of inputs
+is_filled = false
 
 -- Along the corners x1, degree 1, x2, degree 2 and so on.
 local function along(corners, x)
@@ -498,7 +517,7 @@ local function along(corners, x)
 end
 
 local function fire(rule, term, strength)
-  if strength < LEAST_STRENGTH then
+  if strength < 1e-12 then
     strength = 0.0
   end
   fired[rule] = strength
@@ -535,7 +554,8 @@ local PARTS = {
   {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0},
 }
 
-by_rules = function(x)
+-- The risk by the rules in %; nil where none fires.
+local function by_rules(x)
   coverage = 0.0
   for term = 1, OUTPUT_TERMS do
     strengths[term] = 0.0
@@ -589,12 +609,7 @@ by_rules = function(x)
   return nil -- no rule fires
 end
 
-end
-
 -- Where the rules leave a gap: values at knots, the last input running fastest; linear between them.
-local filled
-do
-
 local KNOTS = {
   {0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5},
   {0.0, 0.05, 0.1, 0.15, 0.2, 0.5},
@@ -626,7 +641,7 @@ local FILLED = {
   8.33, 91.67, 91.67, 50.0, 8.33, 8.33, 8.33, 8.33,
 }
 
-filled = function(x, axis, knot)
+local function filled(x, axis, knot)
   local places = KNOTS[axis]
   if not places then
     return FILLED[knot + 1]
@@ -648,79 +663,67 @@ filled = function(x, axis, knot)
   return (1 - share) * low + share * filled(x, axis + 1, first + behind)
 end
 
-end
-
 local point = {} -- the inputs of the rules, in their order
-local is_filled = false
 
-local function estimate()
+function estimate()
   point[1] = max(0.0, min(0.5, value[1]))
   point[2] = max(0.0, min(0.5, value[2]))
   point[3] = max(0.0, min(100.0, value[3]))
   local risk = by_rules(point)
   -- A coverage a hair below the limit is rounding.
-  is_filled = coverage < COVERAGE_BELOW * (1 - 1e-5)
+  is_filled = coverage < 0.5 * (1 - 1e-5)
   if is_filled then
     risk = filled(point, 1, 0)
   end
   return risk and max(0.0, min(100.0, risk))
 end
+-- The inputs of the rules.
 
----------------------------------------------------------------------------------------------------------------------------
--- The elevated risk: what the risks of the last seconds add up to.
+value = {} -- of the inputs; nil where one is unknown
 
-local risks = new_window(ELEVATED_WINDOW_S, min(SLOTS + 2, floor(ELEVATED_WINDOW_S * 1000 / CALL_MS) + 4), false)
-local elevated, last_risk, last_rate = 0.0, nil, nil
-
-local function clear_elevated()
-  clear(risks)
-  elevated, last_risk, last_rate = 0.0, nil, nil
+-- Takes in a sample of flight.
+function observe()
+  local inputs, value, windows = inputs, value, windows
+  local mean_of_margin = sum and mean_of(margin) or nil
+  local deviation_of_command = sum and deviation_of(command) or nil
+  local mean_of_command = sum and mean_of(command) or nil
+  local signal_1 = battery:capacity_remaining_pct(0)
+  inputs[1].x = mean_of_margin -- margin
+  inputs[2].x = mean_of_command -- spread
+  inputs[2].within = sum and deviation_of_command * deviation_of_command or 0.0
+  value[3] = signal_1 -- battery
+  take_sample(windows[1], held_s)
 end
 
-local add_up
-do
-
-local risk_row = new_row(risks, "spread")
-
--- Abramowitz and Stegun 7.1.26, right to 1.5e-7.
-local function erf(x)
-  local t = 1 / (1 + 0.3275911 * math.abs(x))
-  local y = 1 - ((((1.061405429 * t - 1.453152027) * t + 1.421413741) * t - 0.284496736) * t + 0.254829592) * t * exp(-x * x)
-  return x < 0 and -y or y
-end
-
--- The share of a normal distribution below x.
-local function share_below(x, mean, deviation)
-  local distance = x - mean
-  if deviation > 0 then
-    return 0.5 * (1 + erf(distance / deviation * 0.70710678))
+-- The seconds that are known of a window and the share of its oldest slot that has left it; nil where too little is known.
+local function enough(window)
+  local out = outside(window)
+  local total = total_of(window, window.weight, out) + window.bin_held
+  local samples = window.samples + (window.bin_held > 0 and 1 or 0)
+  if total < window.needed_s or total <= 0 or samples < 5 then
+    return nil
   end
-  return distance == 0 and 0.5 or distance > 0 and 1.0 or 0.0
+  return total, out
 end
 
-add_up = function(risk)
-  local before = last_risk or risk
-  risk_row.x, risk_row.within = 0.5 * (before + risk), (risk - before) * (risk - before) / 12
-  take_sample(risks, held_s)
-  local out = outside(risks)
-  local total = total_of(risks, risks.weight, out)
-  if total > 0 then
-    local mean, variance = read_row(risk_row, total, out)
-    local deviation = sqrt(variance)
-    local rate = RISE * (1 - share_below(ELEVATED_HIGH, mean, deviation)) - FALL * share_below(ELEVATED_LOW, mean, deviation)
-    elevated = elevated + 0.5 * (rate + (last_rate or rate)) * held_s
-    elevated = max(0.0, min(100.0, elevated))
-    last_risk, last_rate = risk, rate
-  end
+-- The inputs' values; false where one is not known.
+function read_inputs()
+  local inputs, value, windows = inputs, value, windows
+  local all, total, out = true, nil, nil
+  local window
+  window = windows[1]
+  total, out = enough(window)
+  value[1] = total and read_row(window, inputs[1], total, out) -- margin
+  all = all and value[1]
+  value[2] = total and deviation(window, inputs[2], total, out) -- spread
+  all = all and value[2]
+  all = all and value[3]
+  return all
 end
-
-end
-
----------------------------------------------------------------------------------------------------------------------------
--- Levels: raised after a while, held, lowered after a while.
+-- Levels: raised after a while, held, lowered after a while.
 
 -- What each rule is about: the area and the centre of its consequent, an input and a term, whether motors are at a limit.
-local CAUSES = {
+CAUSES = {
   {12.75, 8.166667, "margin", "high", true}, -- 1
   {12.75, 8.166667, "spread", "low", false}, -- 2
   {12.75, 8.166667, "margin", "high", true}, -- 3
@@ -734,12 +737,14 @@ local CAUSES = {
   {25.0, 50.0, "battery", "low", false}, -- 11
   {12.75, 91.833336, "battery", "empty", false}, -- 12
 }
-local risk_level = GOOD -- of the risk alone
+warn_risk, fail_risk = 67.0, 85.0 -- parameters may change them
+risk_level = 0 -- of the risk alone
 local reached_at = {} -- since when the thresholds of each level are reached
 local held_at = 0 -- when something last held the level
-local is_open, open_level, by_elevated, cause = false, GOOD, false, nil -- the time of trouble
-local seen, mean_margin, least_margin, is_upper = 0, {}, {}, {} -- the motors while a level is being reached
-local limit_motor = nil -- the motor that is nearest to a limit, where that is the cause
+is_open, by_elevated = false, false -- the time of trouble
+local open_level = 0
+local seen, mean_margin, least_margin = 0, {}, {} -- the motors while a level is being reached
+is_upper = {} -- whether the limit that each motor was nearest to is the upper one
 
 -- The rule that raises the risk most: the largest share of it, above half of its value.
 local function find_cause(risk)
@@ -809,12 +814,12 @@ end
 
 -- Keeps what the motors do while a level is being reached, from its beginning.
 local function watch_motors(risk, takes_off)
-  local warns = not takes_off and is_reached(risk, WARN_RISK, WARN_ELEVATED)
-  local fails = is_reached(risk, FAIL_RISK, FAIL_ELEVATED)
+  local warns = not takes_off and is_reached(risk, warn_risk, 50.0)
+  local fails = is_reached(risk, fail_risk, 90.0)
   if not warns and not fails then
     return
   end
-  if warns and not reached_at[WARN] or fails and not reached_at[FAIL] then
+  if warns and not reached_at[2] or fails and not reached_at[3] then
     seen, mean_margin, least_margin = 0, {}, {}
   end
   seen = seen + 1
@@ -829,76 +834,39 @@ local function watch_motors(risk, takes_off)
   end
 end
 
-local function judge(risk, takes_off)
+-- The lower of a risk that ends a level and the one that raises it.
+local function lower(until_risk, risk)
+  return until_risk and risk and min(until_risk, risk) or until_risk
+end
+
+function judge(risk, takes_off)
   watch_motors(risk, takes_off)
-  local held = GOOD
-  held = follow(WARN, held, risk, not takes_off, WARN_RISK, WARN_ELEVATED, WARN_AFTER_US, WARN_UNTIL_RISK, WARN_UNTIL_ELEVATED)
-  held = follow(FAIL, held, risk, true, FAIL_RISK, FAIL_ELEVATED, FAIL_AFTER_US, FAIL_UNTIL_RISK, FAIL_UNTIL_ELEVATED)
+  local held = 0
+  local warn_until, fail_until = lower(25.0, warn_risk), lower(67.0, fail_risk)
+  held = follow(2, held, risk, not takes_off, warn_risk, 50.0, 200000, warn_until, 30.0)
+  held = follow(3, held, risk, true, fail_risk, 90.0, 400000, fail_until, 70.0)
   if held >= risk_level then
     held_at = clock_us
-  elseif clock_us - held_at >= CLEAR_AFTER_US then
+  elseif clock_us - held_at >= 10000000 then
     risk_level, held_at = held, clock_us
-    is_open = held > GOOD
+    is_open = held > 0
   end
 end
 
-local function stop_judging()
+function stop_judging()
   clear_elevated()
-  risk_level, is_open = GOOD, false
-  reached_at[WARN], reached_at[FAIL] = nil, nil
+  risk_level, is_open = 0, false
+  reached_at[2], reached_at[3] = nil, nil
 end
+-- A flight.
 
----------------------------------------------------------------------------------------------------------------------------
--- What the pilot reads, in at most 50 characters.
-
-local function level_now()
-  local level = risk_level
-  return level
-end
-
--- A cause in two parts; where there is no room for the last one, the first one is true alone.
-local function cause_in_words()
-  local about = cause and CAUSES[cause]
-  if not about then
-    return ", interpolated", ""
-  end
-  if limit_motor then
-    local side = is_upper[limit_motor] and "upper" or "lower"
-    return ", " .. side .. " limit", string.format(", motor %d", numbers[limit_motor])
-  end
-  return ", " .. about[3], " " .. about[4]
-end
-
-local function say(level, risk, of_notice)
-  if level == GOOD and not risk then
-    gcs:send_text(INFO, "FLAGRED: risk unknown")
-    return
-  end
-  local severity = level == FAIL and CRITICAL or level == WARN and WARNING or INFO
-  local text = "FLAGRED: " .. LEVELS[level]
-  if is_open and by_elevated then
-    text = string.format("%s elevated %.0f %%", text, elevated)
-  elseif risk then
-    text = string.format("%s risk %.0f %%", text, risk)
-  end
-  if is_open then
-    local first, second = cause_in_words()
-    text = #text + #first <= 50 and text .. first or text
-    text = #text + #second <= 50 and text .. second or text
-  end
-  gcs:send_text(severity, text)
-end
-
----------------------------------------------------------------------------------------------------------------------------
--- A flight.
-
-local flown_us -- since take-off; nil on the ground
-local down_us -- for how long it seems to be on the ground
+flown_us = nil -- since take-off; nil on the ground
+down_us = nil -- for how long it seems to be on the ground
 local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
 local idle -- "landing" or "trouble"
 local since_high_us, unknown_us -- since a high risk, and since a risk was known
 
-local function forget()
+function forget()
   for _, window in ipairs(windows) do
     clear(window)
   end
@@ -909,7 +877,7 @@ end
 
 -- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end.
 local function rests()
-  if not sum or sum >= IDLE_BELOW * motors then
+  if not sum or sum >= 0.1 * motors then
     idle = nil
     return false
   end
@@ -921,34 +889,34 @@ end
 
 -- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
 local function settle()
-  if not settled and flown_us >= TAKE_OFF_US + WARM_UP_US then
+  if not settled and flown_us >= 0 + 1000000 then
     settled, settling = true, 1
-    if TAKE_OFF_US > 0 then
+    if 0 > 0 then
       clear_elevated()
     end
   end
-  while TAKE_OFF_US > 0 and settling <= #windows do
+  while 0 > 0 and settling <= #windows do
     local window = windows[settling]
     settling = settling + 1
-    if window.length_us > TAKE_OFF_US then
-      drop_older(window, flown_us - TAKE_OFF_US - 1)
+    if window.length_us > 0 then
+      drop_older(window, flown_us - 0 - 1)
       return
     end
   end
 end
 
 -- Takes in the time and the motors; gives the risk in %, nil where it is unknown.
-local function fly()
+function fly()
   has_moved = false
   clock_us = clock_us + held_us
   bin_us = bin_us + held_us
-  bin, bin_us = bin + bin_us // BIN_US, bin_us % BIN_US
-  if held_us > LONGEST_GAP_US then
+  bin, bin_us = bin + bin_us // 100000, bin_us % 100000
+  if held_us > 2000000 then
     forget()
     held_us, held_s = 0, 0.0
   end
   for _, window in ipairs(windows) do
-    local phase = window.phase + SLOTS * held_us
+    local phase = window.phase + 128 * held_us
     window.number = window.number + phase // window.length_us
     window.phase = phase % window.length_us
   end
@@ -972,97 +940,47 @@ local function fly()
   settle()
   local risk = read_inputs() and estimate()
   if not risk then
-    if unknown_us and unknown_us > LONGEST_GAP_US then
+    if unknown_us and unknown_us > 2000000 then
       stop_judging()
       unknown_us = nil
     end
     return nil
   end
   unknown_us = 0
-  if WARN_RISK and risk >= WARN_RISK then
+  if warn_risk and risk >= warn_risk then
     since_high_us = 0
   end
   add_up(risk)
-  judge(risk, flown_us < QUIET_US)
+  judge(risk, flown_us < 5000000)
   return risk
 end
+-- The calls.
 
----------------------------------------------------------------------------------------------------------------------------
--- The calls.
-
-local sent_us, logged_bin, settings_us = LONG_US, -1, 0
+local is_enabled = true
+local last_call -- the autopilot's clock
+local sent_us, logged_bin, settings_us = 1000000000, -1, 0
 local has_failed = false
 
-local set_up -- runs once; then its memory is free
-do
-
-local PARAMETERS = {
-  {"ENABLE", 1.0},
-  {"WARN", 67.0},
-  {"FAIL", 85.0},
-}
-
-local function add_parameters()
-  local added = param:add_table(PARAMETER_TABLE, "FRISK_", #PARAMETERS)
-  for i, parameter in ipairs(PARAMETERS) do
-    added = added and param:add_param(PARAMETER_TABLE, i, parameter[1], parameter[2])
-  end
-  if not added then
-    gcs:send_text(WARNING, "FLAGRED: no parameters, the defaults hold")
-  end
-end
-
-local function output(motor_function)
-  -- Older firmware has fewer functions, and refuses the others.
-  local is_known, pwm = pcall(SRV_Channels.get_output_pwm, SRV_Channels, motor_function)
-  return is_known and pwm
-end
-
-local function find_motors()
-  local is_tri = param:get("FRAME_CLASS") == 7
-  for number = 1, 32 do
-    local motor_function = number <= 8 and number + 32 or number <= 12 and number + 73 or number + 147
-    -- Motor 7 of a tricopter is a servo.
-    if output(motor_function) and not (is_tri and number == 7) then
-      motors = motors + 1
-      functions[motors], numbers[motors] = motor_function, number
-    end
-  end
-end
-
-set_up = function()
-  add_parameters()
-  find_motors()
-  if not read_limits() then
-    motors = 0
-  end
-  if motors == 0 then
-    gcs:send_text(ERROR, "FLAGRED: no motors or no limits, no risk")
-    return
-  end
-  gcs:send_text(INFO, string.format("FLAGRED: %d motors, %.0f to %.0f us", motors, low_us, low_us + 1 / scale))
-end
-
+-- FRISK_ENABLE = 0 silences the script.
+local function read_parameters()
+  local enable = param:get("FRISK_ENABLE")
+  is_enabled = enable == nil or enable > 0
+  warn_risk = param:get("FRISK_WARN") or 67.0
+  fail_risk = param:get("FRISK_FAIL") or 85.0
 end
 
 local function update()
-  if set_up then
-    local once = set_up
-    set_up = nil
-    once()
-    read_parameters()
-    return
-  end
   local now = micros()
   held_us = last_call and (now - last_call):toint() or 0
-  if held_us < 0 or held_us > LONG_US then
-    held_us = LONG_US
+  if held_us < 0 or held_us > 1000000000 then
+    held_us = 1000000000
   end
-  local is_repeated = last_call and held_us == 0
-  last_call = now
-  if motors == 0 or is_repeated then
+  if not last_call then
+    read_parameters()
+  elseif held_us == 0 then
     return
   end
+  last_call = now
   held_s = held_us * 1e-6
   -- Limits and parameters may change on the ground.
   settings_us = later(settings_us, held_us)
@@ -1081,7 +999,7 @@ local function update()
     say(level, risk, false)
   end
   sent_us = later(sent_us, held_us)
-  if risk and sent_us >= SEND_US then
+  if risk and sent_us >= 500000 then
     sent_us = 0
     gcs:send_named_float("FR_RISK", risk)
     gcs:send_named_float("FR_ELEV", elevated)
@@ -1093,17 +1011,110 @@ local function update()
 end
 
 -- An error that leaves a script stops it and blocks arming.
-local function protected()
+function protected()
   local is_well, told = pcall(update)
   if is_well then
-    return protected, CALL_MS
+    return protected, 30
   end
   if not has_failed then
     has_failed = true
-    gcs:send_text(ERROR, string.sub("FLAGRED failed: " .. tostring(told), 1, 50))
+    gcs:send_text(3, sub("FLAGRED failed: " .. tostring(told), 1, 50))
   end
   pcall(forget)
   return protected, 1000
 end
 
-return protected, 1000
+-- The first call, when the memory of the loader is free again. What calls take for a moment must be left.
+function begin()
+  begin = nil
+  if not pcall(rep, " ", 3000) then
+    gcs:send_text(3, "FLAGRED is off: increase SCR_HEAP_SIZE")
+    return
+  end
+  gcs:send_text(6, format("FLAGRED: %d motors, %.0f to %.0f us", motors, read_limits()))
+  return protected, 30
+end
+-- The elevated risk: what the risks of the last seconds add up to. Its window is `risks`, with one row.
+
+elevated = 0.0
+local last_risk, last_rate
+
+function clear_elevated()
+  clear(risks)
+  elevated, last_risk, last_rate = 0.0, nil, nil
+end
+
+-- Abramowitz and Stegun 7.1.26, right to 1.5e-7.
+local function erf(x)
+  local t = 1 / (1 + 0.3275911 * abs(x))
+  local y = 1 - ((((1.061405429 * t - 1.453152027) * t + 1.421413741) * t - 0.284496736) * t + 0.254829592) * t * exp(-x * x)
+  return x < 0 and -y or y
+end
+
+-- The share of a normal distribution below x.
+local function share_below(x, mean, deviation)
+  local distance = x - mean
+  if deviation > 0 then
+    return 0.5 * (1 + erf(distance / deviation * 0.70710678))
+  end
+  return distance == 0 and 0.5 or distance > 0 and 1.0 or 0.0
+end
+
+function add_up(risk)
+  local before, row = last_risk or risk, risks.rows[1]
+  row.x, row.within = 0.5 * (before + risk), (risk - before) * (risk - before) / 12
+  take_sample(risks, held_s)
+  local out = outside(risks)
+  local total = total_of(risks, risks.weight, out)
+  if total > 0 then
+    local mean, variance = read_row(risks, row, total, out)
+    local deviation = sqrt(variance)
+    local rate = 1.5 * (1 - share_below(50.0, mean, deviation)) - 2.0 * share_below(20.0, mean, deviation)
+    elevated = elevated + 0.5 * (rate + (last_rate or rate)) * held_s
+    elevated = max(0.0, min(100.0, elevated))
+    last_risk, last_rate = risk, rate
+  end
+end
+-- What the pilot reads, in at most 50 characters.
+
+function level_now()
+  local level = risk_level
+  return level
+end
+
+-- A cause in two parts; where there is no room for the last one, the first one is true alone.
+function cause_in_words()
+  local about = cause and CAUSES[cause]
+  if not about then
+    return ", interpolated", ""
+  end
+  if limit_motor then
+    local side = is_upper[limit_motor] and "upper" or "lower"
+    return ", " .. side .. " limit", format(", motor %d", numbers[limit_motor])
+  end
+  return ", " .. about[3], " " .. about[4]
+end
+
+local LEVELS = {[0] = "GOOD", [2] = "WARN", [3] = "FAIL"}
+
+function say(level, risk, of_notice)
+  if level == 0 and not risk then
+    gcs:send_text(6, "FLAGRED: risk unknown")
+    return
+  end
+  local severity = level == 3 and 2 or level == 2 and 4 or 6
+  local text = "FLAGRED: " .. LEVELS[level]
+  if is_open and by_elevated then
+    text = format("%s elevated %.0f %%", text, elevated)
+  elseif risk then
+    text = format("%s risk %.0f %%", text, risk)
+  end
+  if is_open then
+    local first, second = cause_in_words()
+    text = #text + #first <= 50 and text .. first or text
+    text = #text + #second <= 50 and text .. second or text
+  end
+  gcs:send_text(severity, text)
+end
+
+]==]

@@ -1,15 +1,18 @@
 /* Runs a script as ArduPilot does, over a flight from standard input.
  *
- * Lua is built with LUA_32BITS, as on the autopilot: floats and integers of 32 bits. The script has ArduPilot's globals and no
- * others. Each call has the autopilot's budget of instructions, and a full collection follows it.
+ * Lua is built with LUA_32BITS, as on the autopilot: floats and integers of 32 bits, and with the autopilot's limits of local
+ * variables and upvalues. The script has ArduPilot's globals and no others. Each call has the autopilot's budget of
+ * instructions, and a full collection follows it.
  *
  *     autopilot SCRIPT MOTORS FIRST_US NAME=VALUE...
  *
  * FIRST_US is the clock at the first record; the parameters follow. A record of the flight is doubles: the time in us since the
  * first record, whether flying, the output of each motor in us (NaN: none), and what is left in the battery in % (NaN: not
- * monitored). The parameter BROKEN=1 makes a binding fail. Written are lines: `log RECORD RISK ELEVATED LEVEL`, `float RECORD NAME VALUE`, `text RECORD SEVERITY TEXT`,
- * `stopped RECORD WHY`, and at the end the measures: `calls`, `instructions` (the first call, the second, the most of others,
- * their mean), `heap` (the bytes of a pointer; the bytes in use before the script, with it after a collection, and ever). */
+ * monitored). The parameter BROKEN=1 makes a binding fail, and SCR_HEAP_SIZE limits the heap. Written are lines: `log RECORD RISK
+ * ELEVATED LEVEL`, `float RECORD NAME VALUE`, `text RECORD SEVERITY TEXT`, `blocks RECORD WHY` where the autopilot could not be
+ * armed, `ended RECORD` where the script gives no function to call, and at the end the measures: `calls`, `instructions` (the
+ * most of a call at the start, the most of others, their mean), `heap` (the bytes of a pointer; the bytes in use before the
+ * script, with it after a collection, the most ever at the start and in flight). */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -25,7 +28,9 @@
 
 _Static_assert(sizeof(lua_Number) == 4 && sizeof(lua_Integer) == 4, "build it with LUA_32BITS");
 
-static size_t used, most_used;
+#define STARTING_CALLS 40 /* before the flight */
+
+static size_t used, most_used, heap_size = SIZE_MAX;
 static long instructions;
 static long record = -1;
 static int motors;
@@ -38,17 +43,31 @@ static struct {
 } added[8];
 static int tables;
 
+/* As ArduPilot's heap: memory is never resized in place, and shrinking never fails. */
 static void *allocate(void *nothing, void *memory, size_t before, size_t size) {
     (void)nothing;
-    used += size - (memory ? before : 0);
-    if (used > most_used) {
-        most_used = used;
+    if (!memory) {
+        before = 0;
     }
     if (size == 0) {
+        used -= before;
         free(memory);
         return NULL;
     }
-    return realloc(memory, size);
+    void *found = used + size > heap_size ? NULL : malloc(size);
+    if (!found) {
+        return memory && before >= size ? memory : NULL;
+    }
+    used += size;
+    if (used > most_used) {
+        most_used = used;
+    }
+    if (memory) {
+        memcpy(found, memory, before < size ? before : size);
+        used -= before;
+        free(memory);
+    }
+    return found;
 }
 
 static void count(lua_State *L, lua_Debug *where) {
@@ -186,8 +205,8 @@ static const luaL_Reg GCS[] = {{"send_text", send_text}, {"send_named_float", se
 static const luaL_Reg LOGGER[] = {{"write", log_write}, {NULL, NULL}};
 
 static void open_autopilot(lua_State *L) {
-    static const char *const ABSENT[] = {"collectgarbage", "dofile", "load",         "loadfile", "rawequal", "rawlen",
-                                         "rawget",         "rawset", "setmetatable", "print",    "require",  "getmetatable"};
+    static const char *const ABSENT[] = {"collectgarbage", "dofile", "loadfile", "getmetatable", "print", "rawequal", "rawlen",
+                                         "rawget",         "rawset", "select",   "xpcall",       "_G",    "_VERSION"};
     const struct {
         const char *name;
         const luaL_Reg *functions;
@@ -196,6 +215,7 @@ static void open_autopilot(lua_State *L) {
     luaL_requiref(L, "math", luaopen_math, 1);
     luaL_requiref(L, "table", luaopen_table, 1);
     luaL_requiref(L, "string", luaopen_string, 1);
+    luaL_requiref(L, "io", luaopen_io, 1);
     lua_settop(L, 0);
     for (size_t i = 0; i < sizeof ABSENT / sizeof *ABSENT; i++) {
         lua_pushnil(L);
@@ -214,14 +234,20 @@ static void open_autopilot(lua_State *L) {
     lua_register(L, "micros", get_micros);
 }
 
-/* Calls the function on the stack, which is replaced by the next one. */
+/* Calls the function on the stack, which is replaced by the next one. An error, and a result that is neither nothing nor a
+ * function and a time, block arming. */
 static int call(lua_State *L) {
     instructions = 0;
     lua_sethook(L, count, LUA_MASKCOUNT, 1);
-    int failed = lua_pcall(L, 0, 2, 0);
+    int failed = lua_pcall(L, 0, LUA_MULTRET, 0);
     lua_sethook(L, NULL, 0, 0);
-    if (failed || !lua_isfunction(L, 1) || !lua_isnumber(L, 2)) {
-        printf("stopped %ld %s\n", record, failed ? lua_tostring(L, -1) : "no function and no time to call it");
+    int results = lua_gettop(L);
+    if (!failed && results == 0) {
+        printf("ended %ld\n", record);
+        return 0;
+    }
+    if (failed || results != 2 || !lua_isfunction(L, 1) || !lua_isnumber(L, 2)) {
+        printf("blocks %ld %s\n", record, failed ? lua_tostring(L, -1) : "no function and no time to call it");
         return 0;
     }
     lua_settop(L, 1);
@@ -243,6 +269,9 @@ int main(int arguments, char **argument) {
     if (motors < 0 || motors > MOTORS) {
         return 2;
     }
+    for (int i = 0; i < parameters; i++) {
+        sscanf(parameter[i], "SCR_HEAP_SIZE=%zu", &heap_size);
+    }
     lua_State *L = lua_newstate(allocate, NULL);
     if (!L) {
         return 2;
@@ -251,22 +280,24 @@ int main(int arguments, char **argument) {
     lua_gc(L, LUA_GCCOLLECT, 0);
     size_t before = used;
     most_used = used;
-    if (luaL_loadfile(L, argument[1])) {
-        printf("stopped -1 %s\n", lua_tostring(L, -1));
-        return 1;
-    }
     now[0] = 0;
     now[1] = 0;
     for (int i = 0; i < motors; i++) {
         now[2 + i] = 1000;
     }
-    long of_call[2] = {0, 0}, most = 0, calls = 0;
+    int runs = !luaL_loadfile(L, argument[1]);
+    if (!runs) {
+        printf("blocks -1 %s\n", lua_tostring(L, -1));
+    }
+    long at_start = 0, most = 0, calls = 0;
     double sum = 0;
     size_t kept = 0;
-    int runs = call(L);
-    of_call[0] = instructions;
-    runs = runs && call(L);
-    of_call[1] = instructions;
+    for (int i = 0; runs && i < STARTING_CALLS; i++) {
+        runs = call(L);
+        at_start = instructions > at_start ? instructions : at_start;
+    }
+    size_t most_at_start = most_used;
+    most_used = used;
     while (runs && fread(now, sizeof(double), 3 + (size_t)motors, stdin) == 3 + (size_t)motors) {
         record++;
         runs = call(L);
@@ -275,8 +306,8 @@ int main(int arguments, char **argument) {
         most = instructions > most ? instructions : most;
         kept = used > kept ? used : kept;
     }
-    printf("calls %ld\ninstructions %ld %ld %ld %.1f\n", calls, of_call[0], of_call[1], most, calls ? sum / calls : 0.0);
-    printf("heap %zu %zu %zu %zu\n", sizeof(void *), before, kept, most_used);
+    printf("calls %ld\ninstructions %ld %ld %.1f\n", calls, at_start, most, calls ? sum / calls : 0.0);
+    printf("heap %zu %zu %zu %zu %zu\n", sizeof(void *), before, kept, most_at_start, most_used);
     lua_close(L);
     return 0;
 }

@@ -75,6 +75,42 @@ fn what_is_tried_against_the_simulator_holds_with_a_stand_in() {
     drop((watch, stand_in));
 }
 
+/// Every check of scripts/try-against-sitl holds with ArduCopter's simulator, with the script on board and without. `SITL_BIN`
+/// names the simulator and `SITL_PARAMS` the folder of its default parameters; without them nothing is flown.
+#[test]
+#[ignore = "flies ArduCopter's simulator for half an hour: docs/live.md"]
+fn what_is_tried_against_the_simulator_holds() {
+    if std::env::var_os("SITL_BIN").is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let script = folder.at("flagred.lua");
+    let exported = flagred()
+        .args(["export", "--lua", "--output", &script])
+        .status();
+    assert!(exported.unwrap().success());
+    for frame in ["quad", "octaquad", "y6"] {
+        for on_board in [&["--script", &script][..], &[]] {
+            let output = python()
+                .arg(concat!(
+                    env!("CARGO_MANIFEST_DIR"),
+                    "/../scripts/try-against-sitl"
+                ))
+                .args(["--frame", frame])
+                .args(on_board)
+                .env("FLAGRED", flagred().get_program())
+                .output()
+                .unwrap();
+            let told = String::from_utf8_lossy(&output.stdout);
+            let failed = String::from_utf8_lossy(&output.stderr);
+            assert!(
+                output.status.success(),
+                "{frame} {on_board:?}\n{told}{failed}"
+            );
+        }
+    }
+}
+
 #[test]
 #[ignore = "needs Python with pymavlink: tests/peer/run.sh"]
 fn pymavlink_and_watch_understand_each_other() {

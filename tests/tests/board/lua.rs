@@ -302,7 +302,66 @@ fn the_script_obeys_its_parameters_and_survives_an_error() {
         "{}",
         none.texts
     );
-    assert_eq!(none.logged.len(), 0);
+    assert_eq!((none.logged.len(), none.blocks), (0, None));
+}
+
+/// Whatever the size of the heap, the script flies or sends one text and ends, and the vehicle can be armed.
+#[test]
+fn a_heap_that_is_too_small_does_not_block_arming() {
+    const ENOUGH: u64 = 143_360;
+    let folder = Folder::new();
+    let script = script("flagred", &folder);
+    let vehicle = Vehicle::named("OCTAQUAD/X");
+    let records = &eventful(&vehicle)[..1500];
+    let (mut off, mut flew) = (0, 0);
+    for heap in (30_000..=160_000).step_by(2_000).chain([ENOUGH]) {
+        let size = format!("SCR_HEAP_SIZE={heap}");
+        let run = run(&script, &vehicle, records, &[&size]);
+        assert_eq!(run.blocks, None, "{heap}");
+        let texts: Vec<&str> = run.texts.lines().collect();
+        if run.logged.is_empty() {
+            assert_eq!(
+                texts,
+                ["start, 3: FLAGRED is off: increase SCR_HEAP_SIZE"],
+                "{heap}"
+            );
+            assert!(heap < ENOUGH, "{heap}");
+            off += 1;
+        } else {
+            assert!(!run.texts.contains("failed"), "{heap}: {}", run.texts);
+            assert!(run.logged.len() > 400, "{heap}: {}", run.logged.len());
+            flew += 1;
+        }
+    }
+    assert!(off > 30 && flew > 5, "{off} {flew}");
+}
+
+/// A file that was cut off or edited is told, and does not block arming.
+#[test]
+fn a_damaged_script_does_not_block_arming() {
+    let folder = Folder::new();
+    let text = std::fs::read_to_string(script("flagred", &folder)).unwrap();
+    let vehicle = Vehicle::named("QUAD/X");
+    let records = &eventful(&vehicle)[..100];
+    let parts = text.match_indices('\x0c').map(|(at, _)| at);
+    let whole = text.len();
+    let [cut, misspelled] = [
+        format!("{}\n]==]\n", &text[..whole / 2]),
+        text.replacen("function judge(", "function judge((", 1),
+    ];
+    let lost = parts
+        .clone()
+        .zip(parts.skip(1))
+        .map(|(from, to)| format!("{}{}", &text[..from], &text[to..]));
+    for damaged in [cut, misspelled].into_iter().chain(lost) {
+        let run = run(&folder.file("damaged.lua", damaged), &vehicle, records, &[]);
+        assert_eq!(run.blocks, None);
+        assert!(
+            run.texts.contains("3: FLAGRED is off: ") || run.texts.contains("3: FLAGRED failed: "),
+            "{}",
+            run.texts
+        );
+    }
 }
 
 #[test]
@@ -408,4 +467,47 @@ fn what_a_script_cannot_do_is_refused_with_what_it_can() {
         assert_eq!(output.status.code(), Some(3), "{text}");
         assert!(text.contains(told) && text.contains("help: "), "{text}");
     }
+}
+
+#[test]
+fn a_profile_that_exceeds_a_limit_of_the_autopilot_is_refused() {
+    let folder = Folder::new();
+    let thresholds =
+        |count: u32| (1..=count).map(|i| format!("{{share_below: 0.{i:03}, of: motor_margin}}"));
+    let windows = |count: u32, what: &'static str| {
+        (1..=count).map(move |i| format!("{{{what}, window_s: {}}}", 10 + i))
+    };
+    let of = |sources: Vec<String>| {
+        let sources: Vec<&str> = sources.iter().map(String::as_str).collect();
+        super::profile_of(&folder, &sources).1
+    };
+    let refused = |file: &str, told: &str| {
+        let output = flagred().args(["export", "--lua", file]).output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(3), "{text}");
+        assert!(text.contains(told) && text.contains("help: "), "{text}");
+        assert!(output.stdout.is_empty());
+    };
+    refused(
+        &of(thresholds(95).collect()),
+        "98 local variables in a function, and ArduPilot's Lua allows 90",
+    );
+    refused(
+        &of(windows(25, "mean: motor_command").collect()),
+        "(`SCR_VM_I_COUNT`)",
+    );
+    refused(
+        &of(windows(10, "std: motor_command").collect()),
+        "(`SCR_HEAP_SIZE`)",
+    );
+    let file = of(thresholds(51).collect());
+    let rules = std::fs::read_to_string(folder.path().join("every-signal.yaml")).unwrap();
+    let all: Vec<String> = (0..51)
+        .map(|i| format!("x{i} IS low OR x{i} IS high"))
+        .collect();
+    folder.file(
+        "every-signal.yaml",
+        format!("{rules}  - IF {} THEN risk IS low\n", all.join(" OR ")),
+    );
+    refused(&file, "a rule has 102 conditions");
 }

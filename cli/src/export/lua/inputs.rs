@@ -6,7 +6,7 @@ use flagred::{
     estimator::Estimator,
 };
 
-use super::{Refused, comment, number, observed::Script, template::Filling};
+use super::{Refused, comment, limits::Size, number, observed::Script, template::Filling};
 
 /// The signals that a script can read, by the names of logs.
 const SIGNALS: [(&str, &str); 4] = [
@@ -15,6 +15,10 @@ const SIGNALS: [(&str, &str); 4] = [
     ("battery_used_mah", "battery:consumed_mah(0)"),
     ("battery_remaining_pct", "battery:capacity_remaining_pct(0)"),
 ];
+
+/// Between two calls of the script, and the length of a bin of commands.
+const CALL_S: f64 = 0.03;
+const BIN_S: f64 = 0.1;
 
 /// What brings its values at the same times, so that a window of it has one weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,10 +44,12 @@ pub(super) fn fill(
     estimator: &Estimator,
     plan: &Plan<'_>,
     filling: &mut Filling,
+    size: &mut Size,
 ) -> Result<(), Refused> {
     let names = estimator.profile().inputs.iter();
     let names: Vec<String> = names.map(|input| comment(&input.name)).collect();
     let signals = signals(&estimator.profile().signals())?;
+    filling.set("battery", !signals.is_empty());
     let mut windows: Vec<Window> = Vec::new();
     let mut script = Script::default();
     for (input, flagred::channel::Input { channel, statistic }) in plan.inputs.iter().enumerate() {
@@ -85,8 +91,10 @@ pub(super) fn fill(
         let Window {
             window_s, in_bins, ..
         } = window;
+        size.windows += 1;
+        size.numbers += 2 * window.capacity() as usize;
         made.push(format!(
-            "new_window({}, {}, {in_bins})",
+            "new_window({}, {})",
             number(*window_s),
             window.capacity()
         ));
@@ -94,17 +102,18 @@ pub(super) fn fill(
             (true, _) => format!("  take_bin(windows[{i}])"),
             // A noise is known once in a bin, and stands for all of it.
             (_, Source::Noise) => {
-                format!("  take_sample(windows[{i}], max(held_s, BIN_US * 1e-6))")
+                format!("  take_sample(windows[{i}], max(held_s, 0.1))")
             }
             _ => format!("  take_sample(windows[{i}], held_s)"),
         });
-        script
-            .read
-            .push(format!("  total, out = enough(windows[{i}])"));
+        script.read.push(format!("  window = windows[{i}]"));
+        script.read.push("  total, out = enough(window)".into());
         for input in &window.inputs {
             let statistic = plan.inputs.get(*input).map(|input| input.statistic);
             let (kind, read) = row(statistic.unwrap_or(Statistic::Mean), input + 1);
             let name = names.get(*input).map_or("", String::as_str);
+            size.rows += 1;
+            size.numbers += window.capacity() as usize * (1 + usize::from(kind == "spread"));
             made.push(format!(
                 "inputs[{0}] = new_row(windows[{i}], \"{kind}\") -- {name}",
                 input + 1
@@ -118,6 +127,14 @@ pub(super) fn fill(
                 .push(format!("  all = all and value[{}]", input + 1));
         }
     }
+    let extremes = made.iter().any(|line| line.contains("est\")"));
+    filling.set("extremes", extremes);
+    filling.constant("NONE", if extremes { "list.none" } else { "0.0" }.into());
+    // The window of the elevated risk.
+    size.windows += 1;
+    size.rows += 1;
+    size.numbers += 4 * elevated_capacity(plan) as usize;
+    size.locals = script.locals();
     script.read.append(&mut script.read_last);
     script.finish(plan, filling);
     filling.put("inputs", made);
@@ -126,11 +143,12 @@ pub(super) fn fill(
 
 /// The kind of a row, and how its value is read.
 fn row(statistic: Statistic, input: usize) -> (&'static str, String) {
-    let read = format!("read_row(inputs[{input}], total, out)");
+    let read = format!("read_row(window, inputs[{input}], total, out)");
     match statistic {
-        Statistic::Std | Statistic::StdLessNoise => {
-            ("spread", format!("deviation(inputs[{input}], total, out)"))
-        }
+        Statistic::Std | Statistic::StdLessNoise => (
+            "spread",
+            format!("deviation(window, inputs[{input}], total, out)"),
+        ),
         Statistic::Rms => ("mean", format!("sqrt({read})")),
         Statistic::Noise => ("mean", format!("sqrt({read} / 2)")),
         Statistic::Min => ("lowest", read),
@@ -196,15 +214,22 @@ impl Window {
         (self.window_s, self.in_bins, self.source) == (other.window_s, other.in_bins, other.source)
     }
 
-    /// The most slots in use at once: one for each call or bin, and at most as many as the monitor has.
     fn capacity(&self) -> u32 {
-        const MOST: f64 = 130.0;
-        const CALL_S: f64 = 0.03;
-        const BIN_S: f64 = 0.1;
         let step_s = match self.in_bins || self.source == Source::Noise {
             true => BIN_S,
             false => CALL_S,
         };
-        ((self.window_s / step_s).floor() + 4.0).min(MOST) as u32
+        capacity(self.window_s, step_s)
     }
+}
+
+/// The most slots in use at once: one for each call or bin, and at most as many as the monitor has.
+fn capacity(window_s: f64, step_s: f64) -> u32 {
+    const MOST: f64 = 130.0;
+    ((window_s / step_s).floor() + 4.0).min(MOST) as u32
+}
+
+/// The slots of the window of the elevated risk.
+pub(super) fn elevated_capacity(plan: &Plan<'_>) -> u32 {
+    capacity(plan.settings.elevated_risk.window_s, CALL_S)
 }

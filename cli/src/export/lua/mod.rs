@@ -1,25 +1,66 @@
 //! A profile and its rule set as a script for ArduPilot.
 //!
-//! `script.lua` is the script, with places for what the profile says. Numbers are rounded to the 32 bits that the autopilot's
-//! Lua has.
+//! `script/` has the parts of the script, with places for what the profile says. `loader.lua` is what ArduPilot compiles; the
+//! other parts are a comment behind it, which the loader compiles one by one. Numbers are rounded to the 32 bits that the
+//! autopilot's Lua has.
 
 mod frames;
 mod inputs;
+mod limits;
 mod observed;
 mod rules;
 mod template;
 
-use flagred::{
-    board::Plan,
-    estimator::Estimator,
-    follower::Settings,
-    verdict::{LevelSettings, Threshold},
-};
+use flagred::{board::Plan, estimator::Estimator, follower::Settings, verdict::LevelSettings};
 
+use limits::Size;
 use template::Filling;
 
 /// The number of the table of script parameters; no script that comes with ArduPilot has it.
 const PARAMETER_TABLE: u8 = 157;
+
+/// The parts in the order in which they are compiled. What runs only once comes first and is gone before the rest comes; what
+/// takes least to compile comes last, when most memory is taken.
+const PARTS: [(&str, &str); 14] = [
+    ("motors", include_str!("script/motors.lua")),
+    ("setup", include_str!("script/setup.lua")),
+    ("geometry", include_str!("script/geometry.lua")),
+    ("start", include_str!("script/start.lua")),
+    ("windows", include_str!("script/windows.lua")),
+    ("rules", include_str!("script/rules.lua")),
+    ("inputs", include_str!("script/inputs.lua")),
+    ("levels", include_str!("script/levels.lua")),
+    ("notices", include_str!("script/notices.lua")),
+    ("flight", include_str!("script/flight.lua")),
+    ("calls", include_str!("script/calls.lua")),
+    ("elevated", include_str!("script/elevated.lua")),
+    ("words", include_str!("script/words.lua")),
+    ("texts", include_str!("script/texts.lua")),
+];
+
+/// What the script itself fixes.
+const SCRIPT: [(&str, &str); 13] = [
+    // Between two calls, and between two values for the ground station.
+    ("CALL_MS", "30"),
+    ("SEND_US", "500000"),
+    // Commands are averaged over a bin before their noise is taken out.
+    ("BIN_US", "100000"),
+    // Of a window.
+    ("SLOTS", "128"),
+    // Longer times are this long.
+    ("LONG_US", "1000000000"),
+    // Half of the heap that must be left for what calls take for a moment.
+    ("RESERVE_BYTES", "3000"),
+    // Severities of MAVLink.
+    ("CRITICAL", "2"),
+    ("ERROR", "3"),
+    ("WARNING", "4"),
+    ("INFO", "6"),
+    // Levels.
+    ("GOOD", "0"),
+    ("WARN", "2"),
+    ("FAIL", "3"),
+];
 
 /// Why a profile cannot be a script, and what can.
 pub(super) struct Refused {
@@ -44,8 +85,8 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Ref
     let mut filling = Filling::default();
     let origin = super::origin(plan, &estimator.profile().rules, "--lua");
     filling.put("heading", vec![format!("-- {}", comment(&origin))]);
+    constants(plan, &mut filling);
     let settings = &plan.settings;
-    filling.put("settings", constants(plan));
     let risk = |level: &LevelSettings| level.raise.risk_pct;
     let levels = [
         ("WARN", risk(&settings.verdict.warn)),
@@ -68,20 +109,54 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Ref
     filling.set("reserve", told[0]);
     filling.set("imbalance", told[1]);
     filling.set("notices", told.contains(&true));
-    inputs::fill(estimator, plan, &mut filling)?;
-    rules::fill(estimator, plan, &mut filling)?;
-    Ok(filling.fill(include_str!("script.lua")))
+    let mut size = Size::default();
+    inputs::fill(estimator, plan, &mut filling, &mut size)?;
+    rules::fill(estimator, plan, &mut filling, &mut size)?;
+    let parts = PARTS.iter().filter(|(name, _)| match *name {
+        "notices" => told.contains(&true),
+        "geometry" => filling.holds("geometry"),
+        _ => true,
+    });
+    let parts: Vec<(&str, String)> = parts
+        .map(|(name, template)| (*name, filling.fill(template)))
+        .collect();
+    let stays = |name: &str| !["setup", "geometry", "start"].contains(&name);
+    for (_, part) in parts.iter().filter(|(name, _)| stays(name)) {
+        size.add_code(part);
+    }
+    size.check()?;
+    let names: Vec<String> = parts.iter().map(|(name, _)| quoted(name)).collect();
+    filling.put(
+        "parts",
+        vec![format!("local PARTS = {{{}}}", names.join(", "))],
+    );
+    let mut file = filling.fill(include_str!("script/loader.lua"));
+    let texts: Vec<&str> = parts.iter().map(|(_, text)| text.as_str()).collect();
+    file.push_str(&commented(&texts));
+    Ok(file)
 }
 
-/// The settings of the profile as constants.
-fn constants(plan: &Plan<'_>) -> Vec<String> {
+/// Parts as a comment of Lua, each after a form feed, and one at the end.
+fn commented(parts: &[&str]) -> String {
+    let text = parts.join("\x0c");
+    let mut fence = "==".to_owned();
+    while text.contains(&format!("]{fence}]")) {
+        fence.push('=');
+    }
+    format!("\n--[{fence}[\n\x0c{text}\x0c\n]{fence}]\n")
+}
+
+/// The settings of the profile and what the script itself fixes, by the names that they have in its parts.
+fn constants(plan: &Plan<'_>, filling: &mut Filling) {
     let Settings {
         sampling,
         elevated_risk,
         verdict,
     } = &plan.settings;
-    let mut lines = Vec::new();
-    let mut set = |name: &str, value: String| lines.push(format!("local {name} = {value}"));
+    let mut set = |name: &'static str, value: String| filling.constant(name, value);
+    for (name, value) in SCRIPT {
+        set(name, value.to_owned());
+    }
     set("MIN_SAMPLES", sampling.min_samples.to_string());
     set("LEAST_STRENGTH", number(plan.rules.table.least_strength));
     set("WARM_UP_US", microseconds(sampling.warm_up_s));
@@ -89,34 +164,34 @@ fn constants(plan: &Plan<'_>) -> Vec<String> {
     set("TAKE_OFF_US", microseconds(sampling.take_off_s));
     set("ELEVATED_WINDOW_S", number(elevated_risk.window_s));
     set(
-        "ELEVATED_HIGH, ELEVATED_LOW",
-        format!(
-            "{}, {}",
-            number(elevated_risk.high_pct),
-            number(elevated_risk.low_pct)
-        ),
+        "ELEVATED_CAPACITY",
+        inputs::elevated_capacity(plan).to_string(),
     );
-    set(
-        "RISE, FALL",
-        format!(
-            "{}, {} -- of the elevated risk, in % per second",
-            number(elevated_risk.rise_pct_per_s),
-            number(elevated_risk.fall_pct_per_s)
-        ),
-    );
-    for (name, level) in [("WARN", &verdict.warn), ("FAIL", &verdict.fail)] {
-        let LevelSettings {
-            raise,
-            after_s,
-            until,
-        } = level;
-        set(&format!("{name}_RISK, {name}_ELEVATED"), threshold(raise));
-        set(&format!("{name}_AFTER_US"), microseconds(*after_s));
-        set(
-            &format!("{name}_UNTIL_RISK, {name}_UNTIL_ELEVATED"),
-            threshold(until),
-        );
-    }
+    set("ELEVATED_HIGH", number(elevated_risk.high_pct));
+    set("ELEVATED_LOW", number(elevated_risk.low_pct));
+    set("RISE", number(elevated_risk.rise_pct_per_s));
+    set("FALL", number(elevated_risk.fall_pct_per_s));
+    let known = |limit: Option<f64>| limit.map_or("nil".to_owned(), number);
+    let LevelSettings {
+        raise,
+        after_s,
+        until,
+    } = &verdict.warn;
+    set("WARN_RISK", known(raise.risk_pct));
+    set("WARN_ELEVATED", known(raise.elevated_risk_pct));
+    set("WARN_AFTER_US", microseconds(*after_s));
+    set("WARN_UNTIL_RISK", known(until.risk_pct));
+    set("WARN_UNTIL_ELEVATED", known(until.elevated_risk_pct));
+    let LevelSettings {
+        raise,
+        after_s,
+        until,
+    } = &verdict.fail;
+    set("FAIL_RISK", known(raise.risk_pct));
+    set("FAIL_ELEVATED", known(raise.elevated_risk_pct));
+    set("FAIL_AFTER_US", microseconds(*after_s));
+    set("FAIL_UNTIL_RISK", known(until.risk_pct));
+    set("FAIL_UNTIL_ELEVATED", known(until.elevated_risk_pct));
     set("CLEAR_AFTER_US", microseconds(verdict.clear_after_s));
     set("QUIET_US", microseconds(verdict.quiet_after_take_off_s));
     set("IDLE_BELOW", number(verdict.idle_below));
@@ -128,20 +203,8 @@ fn constants(plan: &Plan<'_>) -> Vec<String> {
         set("IMBALANCE_ABOVE", number(limit.value));
         set("IMBALANCE_AFTER_US", microseconds(limit.after_s));
     }
-    if plan.filled.is_some() {
-        set("COVERAGE_BELOW", number(plan.coverage_below));
-    }
+    set("COVERAGE_BELOW", number(plan.coverage_below));
     set("PARAMETER_TABLE", PARAMETER_TABLE.to_string());
-    lines
-}
-
-fn threshold(threshold: &Threshold) -> String {
-    let known = |limit: Option<f64>| limit.map_or("nil".to_owned(), number);
-    format!(
-        "{}, {}",
-        known(threshold.risk_pct),
-        known(threshold.elevated_risk_pct)
-    )
 }
 
 /// A time in whole microseconds; over a quarter of an hour is as good as for ever.

@@ -143,6 +143,11 @@ impl Script {
         name
     }
 
+    /// The local variables of the function that takes in a sample: three of its own and the values.
+    pub(super) fn locals(&self) -> usize {
+        3 + self.values.len()
+    }
+
     pub(super) fn finish(mut self, plan: &Plan<'_>, filling: &mut Filling) {
         let uses_yaw =
             self.lists.contains(&"less_yaw") || plan.settings.verdict.notices.imbalance.is_some();
@@ -163,12 +168,6 @@ impl Script {
         let each = |lines: &dyn Fn(&str) -> String| {
             axes.iter().map(|axis| lines(axis)).collect::<Vec<String>>()
         };
-        filling.put(
-            "efforts",
-            each(&|axis| {
-                format!("local {axis}_share, {axis}_effort -- of each motor, and of all together")
-            }),
-        );
         let of_axis =
             |(i, name): (&usize, &&str)| format!("  {name}_share = shares_of(factors, {})", i + 1);
         filling.put(

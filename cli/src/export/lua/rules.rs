@@ -14,13 +14,14 @@ use fuzzy::{
     rule::{Condition, Hedge, Proposition},
 };
 
-use super::{Refused, comment, number, quoted, template::Filling};
+use super::{Refused, comment, limits::Size, number, quoted, template::Filling};
 
 /// Writes the rules into the places of the script.
 pub(super) fn fill(
     estimator: &Estimator,
     plan: &Plan<'_>,
     filling: &mut Filling,
+    size: &mut Size,
 ) -> Result<(), Refused> {
     let model = estimator.model();
     let output_name = &estimator.profile().output;
@@ -82,6 +83,9 @@ pub(super) fn fill(
                 hedges => script.hedged(hedges, format!("({weighted})")),
             };
             lines.push(format!("  fire({i}, {term_index}, {weighted})"));
+            let conditions = propositions(&rule.rule.condition).len();
+            size.conditions = size.conditions.max(conditions);
+            size.rules += 1;
             let (told, is_motor) = about(estimator, &rule.rule.condition);
             motor_cause |= is_motor;
             let (area, centre) = area_and_centre(&variable.variable, term);
@@ -94,6 +98,8 @@ pub(super) fn fill(
         causes.push(format!("  {cause}, -- {i}"));
     }
     filling.set("motor_cause", motor_cause);
+    size.terms = script.used.len();
+    size.filled = plan.filled.map_or(0, |knots| knots.values.len());
     let mut degrees = Vec::new();
     let mut terms = vec![
         "-- The corners of the terms of inputs: value, degree, value, degree and so on.".to_owned(),

@@ -6,6 +6,7 @@
 pub(super) struct Filling {
     holds: Vec<(&'static str, bool)>,
     lines: Vec<(&'static str, Vec<String>)>,
+    constants: Vec<(&'static str, String)>,
 }
 
 impl Filling {
@@ -17,6 +18,11 @@ impl Filling {
     /// The lines of a place.
     pub(super) fn put(&mut self, name: &'static str, lines: Vec<String>) {
         self.lines.push((name, lines));
+    }
+
+    /// The value that replaces a name in capitals, outside of strings and comments.
+    pub(super) fn constant(&mut self, name: &'static str, value: String) {
+        self.constants.push((name, value));
     }
 
     /// The script. A name that is not known is kept as it is, and counts as not holding.
@@ -43,7 +49,7 @@ impl Filling {
                     }
                 }
                 _ => {
-                    out.push_str(line);
+                    self.line(line, &mut out);
                     out.push('\n');
                 }
             }
@@ -51,7 +57,38 @@ impl Filling {
         out
     }
 
-    fn holds(&self, name: &str) -> bool {
+    /// A line of the template with values for constants.
+    fn line(&self, line: &str, out: &mut String) {
+        let code = line.find("--").unwrap_or(line.len());
+        let (code, comment) = line.split_at(code);
+        for (i, part) in code.split('"').enumerate() {
+            if i > 0 {
+                out.push('"');
+            }
+            match i % 2 {
+                0 => self.code(part, out),
+                _ => out.push_str(part),
+            }
+        }
+        out.push_str(comment);
+    }
+
+    fn code(&self, code: &str, out: &mut String) {
+        let is_of_a_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let mut rest = code;
+        while let Some(start) = rest.find(is_of_a_name) {
+            let (before, from) = rest.split_at(start);
+            let end = from.find(|c| !is_of_a_name(c)).unwrap_or(from.len());
+            let (word, after) = from.split_at(end);
+            let known = self.constants.iter().find(|(name, _)| *name == word);
+            out.push_str(before);
+            out.push_str(known.map_or(word, |(_, value)| value));
+            rest = after;
+        }
+        out.push_str(rest);
+    }
+
+    pub(super) fn holds(&self, name: &str) -> bool {
         self.holds
             .iter()
             .any(|(known, holds)| *known == name && *holds)

@@ -1,0 +1,102 @@
+//! Limits of ArduPilot that a large profile would exceed: refused before a script is written, since the vehicle would find out
+//! last. What is constant in the script is held to them by the tests.
+
+use super::Refused;
+
+/// Local variables of a function. ArduPilot's Lua allows 100.
+const LOCALS: usize = 90;
+/// Conditions of a rule: a call may take a register for each, and a function has 250.
+const CONDITIONS: usize = 100;
+/// `SCR_VM_I_COUNT` is 10,000 by default.
+const INSTRUCTIONS: usize = 9_900;
+/// `SCR_HEAP_SIZE` is 204,800 by default on boards with much memory. With pointers of 64 bits, as in the simulator, ArduPilot
+/// itself takes 25,000 of it, and loading a script takes 15,000 more than it keeps.
+const HEAP_BYTES: usize = 160_000;
+
+/// How large the parts of a script are that depend on the profile.
+#[derive(Debug, Default)]
+pub(super) struct Size {
+    /// Local variables of the function that takes in a sample.
+    pub(super) locals: usize,
+    /// The most conditions of a rule.
+    pub(super) conditions: usize,
+    pub(super) windows: usize,
+    /// Statistics of windows.
+    pub(super) rows: usize,
+    /// Numbers that windows keep.
+    pub(super) numbers: usize,
+    pub(super) rules: usize,
+    /// Terms of inputs.
+    pub(super) terms: usize,
+    /// Values at knots.
+    pub(super) filled: usize,
+    /// Characters of code that stays, without comments and the spaces around.
+    pub(super) code: usize,
+}
+
+impl Size {
+    /// Adds the code of a part.
+    pub(super) fn add_code(&mut self, part: &str) {
+        let code = part
+            .lines()
+            .map(|line| line.split("--").next().unwrap_or_default().trim());
+        self.code += code.map(|code| code.len() + 1).sum::<usize>();
+    }
+
+    /// The most instructions of a call, about.
+    fn instructions(&self) -> usize {
+        2_600 + 330 * self.windows + 250 * self.rows + 28 * self.rules + 25 * self.terms
+    }
+
+    /// The bytes that the script keeps where pointers have 64 bits, about.
+    fn bytes(&self) -> usize {
+        let (code, number, window, row) = (3.2, 16, 1_600, 420);
+        (self.code as f64 * code) as usize
+            + number * (self.numbers + self.filled)
+            + window * self.windows
+            + row * self.rows
+    }
+
+    /// Refuses what exceeds a limit.
+    pub(super) fn check(&self) -> Result<(), Refused> {
+        let Size {
+            locals, conditions, ..
+        } = self;
+        let (instructions, bytes) = (self.instructions(), self.bytes());
+        let too_many = |what: String, help| Err(Refused::new(what, help));
+        if *locals > LOCALS {
+            return too_many(
+                format!(
+                    "the script would have {locals} local variables in a function, and ArduPilot's Lua allows {LOCALS}"
+                ),
+                "use fewer inputs with different signals",
+            );
+        }
+        if *conditions > CONDITIONS {
+            return too_many(
+                format!(
+                    "a rule has {conditions} conditions, and ArduPilot's Lua has registers for {CONDITIONS}"
+                ),
+                "split the rule into rules with the same consequent",
+            );
+        }
+        if instructions > INSTRUCTIONS {
+            return too_many(
+                format!(
+                    "the script would take about {instructions} instructions a call, and ArduPilot allows {INSTRUCTIONS} \
+                     (`SCR_VM_I_COUNT`)"
+                ),
+                "use fewer inputs, or inputs with the same window",
+            );
+        }
+        if bytes > HEAP_BYTES {
+            return too_many(
+                format!(
+                    "the script would take about {bytes} bytes, and ArduPilot has {HEAP_BYTES} for it (`SCR_HEAP_SIZE`)"
+                ),
+                "use fewer inputs or rules, or shorter windows",
+            );
+        }
+        Ok(())
+    }
+}

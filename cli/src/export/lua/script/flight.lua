@@ -1,0 +1,110 @@
+-- A flight.
+
+flown_us = nil -- since take-off; nil on the ground
+down_us = nil -- for how long it seems to be on the ground
+local settled, settling = false, huge -- whether the take-off is dropped, and the window to drop it from next
+local idle -- "landing" or "trouble"
+local since_high_us, unknown_us -- since a high risk, and since a risk was known
+
+function forget()
+  for _, window in ipairs(windows) do
+    clear(window)
+  end
+  flown_us, down_us, settled, settling, idle, since_high_us, unknown_us = nil, nil, false, huge, nil, nil, nil
+  value = {}
+-- @if notices
+  forget_notices()
+-- @end
+-- @if noise
+  forget_noise()
+-- @end
+  stop_judging()
+end
+
+-- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end.
+local function rests()
+  if not sum or sum >= IDLE_BELOW * motors then
+    idle = nil
+    return false
+  end
+  if not idle then
+    idle = since_high_us and since_high_us <= 2000000 and "trouble" or "landing"
+  end
+  return idle == "landing"
+end
+
+-- Some time after take-off, drops it from the long windows, one a call, and from the elevated risk.
+local function settle()
+  if not settled and flown_us >= TAKE_OFF_US + WARM_UP_US then
+    settled, settling = true, 1
+    if TAKE_OFF_US > 0 then
+      clear_elevated()
+    end
+  end
+  while TAKE_OFF_US > 0 and settling <= #windows do
+    local window = windows[settling]
+    settling = settling + 1
+    if window.length_us > TAKE_OFF_US then
+      drop_older(window, flown_us - TAKE_OFF_US - 1)
+      return
+    end
+  end
+end
+
+-- Takes in the time and the motors; gives the risk in %, nil where it is unknown.
+function fly()
+  has_moved = false
+  clock_us = clock_us + held_us
+  bin_us = bin_us + held_us
+  bin, bin_us = bin + bin_us // BIN_US, bin_us % BIN_US
+  if held_us > LONGEST_GAP_US then
+    forget()
+    held_us, held_s = 0, 0.0
+  end
+  for _, window in ipairs(windows) do
+    local phase = window.phase + SLOTS * held_us
+    window.number = window.number + phase // window.length_us
+    window.phase = phase % window.length_us
+  end
+  since_high_us = since_high_us and later(since_high_us, held_us)
+  unknown_us = unknown_us and later(unknown_us, held_us)
+  flown_us = flown_us and later(flown_us, held_us)
+  read_commands()
+-- @if noise
+  take_noise()
+-- @end
+  if not vehicle:get_likely_flying() or rests() then
+    value = {}
+    if flown_us then
+      down_us = down_us and later(down_us, held_us) or 0
+      if down_us >= 1000000 then
+        forget()
+      end
+    end
+    return nil
+  end
+  down_us = nil
+  flown_us = flown_us or 0
+  observe()
+  settle()
+-- @if notices
+  if settled then
+    notice()
+  end
+-- @end
+  local risk = read_inputs() and estimate()
+  if not risk then
+    if unknown_us and unknown_us > LONGEST_GAP_US then
+      stop_judging()
+      unknown_us = nil
+    end
+    return nil
+  end
+  unknown_us = 0
+  if warn_risk and risk >= warn_risk then
+    since_high_us = 0
+  end
+  add_up(risk)
+  judge(risk, flown_us < QUIET_US)
+  return risk
+end

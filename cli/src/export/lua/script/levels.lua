@@ -1,0 +1,137 @@
+-- Levels: raised after a while, held, lowered after a while.
+
+-- What each rule is about: the area and the centre of its consequent, an input and a term, whether motors are at a limit.
+CAUSES = {
+-- @put causes
+}
+warn_risk, fail_risk = WARN_RISK, FAIL_RISK -- parameters may change them
+risk_level = GOOD -- of the risk alone
+local reached_at = {} -- since when the thresholds of each level are reached
+local held_at = 0 -- when something last held the level
+is_open, by_elevated = false, false -- the time of trouble
+local open_level = GOOD
+-- @if motor_cause
+local seen, mean_margin, least_margin = 0, {}, {} -- the motors while a level is being reached
+is_upper = {} -- whether the limit that each motor was nearest to is the upper one
+-- @end
+
+-- The rule that raises the risk most: the largest share of it, above half of its value.
+local function find_cause(risk)
+  if is_filled then
+    return nil
+  end
+  local most, rule = -huge, nil
+  for i = 1, #CAUSES do
+    local raises = (fired[i] or 0.0) * CAUSES[i][1] * (CAUSES[i][2] - risk / 2)
+    if (fired[i] or 0.0) > 0 and raises > most then
+      most, rule = raises, i
+    end
+  end
+  return rule
+end
+
+local function is_reached(risk, risk_limit, elevated_limit)
+  if risk_limit and risk >= risk_limit then
+    return true, false
+  elseif elevated_limit and elevated >= elevated_limit then
+    return true, true
+  end
+  return false, false
+end
+
+-- @if motor_cause
+-- The motor with the least mean margin, where it is near a limit.
+local function weakest()
+  local found
+  for i = 1, motors do
+    if mean_margin[i] and (not found or mean_margin[i] < mean_margin[found]) then
+      found = i
+    end
+  end
+  return found and least_margin[found] < 0.1 and found or nil
+end
+
+-- @end
+local function raise(level, of_elevated, risk)
+  risk_level = level
+  if not is_open or open_level ~= level then
+    by_elevated = of_elevated
+  end
+  if not is_open or level > open_level then
+    cause, open_level = find_cause(risk), level
+-- @if motor_cause
+    limit_motor = cause and CAUSES[cause][5] and weakest()
+-- @end
+  end
+  is_open = true
+end
+
+-- A level reached now; gives what holds it.
+local function follow(level, held, risk, can_raise, risk_limit, elevated_limit, after_us, until_risk, until_elevated)
+  local reached, of_elevated = is_reached(risk, risk_limit, elevated_limit)
+  reached = reached and can_raise
+  if reached or is_reached(risk, until_risk, until_elevated) then
+    held = min(level, risk_level)
+  end
+  if not reached then
+    reached_at[level] = nil
+    return held
+  end
+  reached_at[level] = reached_at[level] or clock_us
+  if level > risk_level and clock_us - reached_at[level] >= after_us then
+    raise(level, of_elevated, risk)
+    held = level
+  end
+  return held
+end
+-- @if motor_cause
+
+-- Keeps what the motors do while a level is being reached, from its beginning.
+local function watch_motors(risk, takes_off)
+  local warns = not takes_off and is_reached(risk, warn_risk, WARN_ELEVATED)
+  local fails = is_reached(risk, fail_risk, FAIL_ELEVATED)
+  if not warns and not fails then
+    return
+  end
+  if warns and not reached_at[WARN] or fails and not reached_at[FAIL] then
+    seen, mean_margin, least_margin = 0, {}, {}
+  end
+  seen = seen + 1
+  for i = 1, motors do
+    local e = command[i]
+    local near = e < 0.5 and e or 1 - e
+    local mean = mean_margin[i] or 0.0
+    mean_margin[i] = mean + (near - mean) / seen
+    if near < (least_margin[i] or huge) then
+      least_margin[i], is_upper[i] = near, e >= 0.5
+    end
+  end
+end
+-- @end
+
+-- The lower of a risk that ends a level and the one that raises it.
+local function lower(until_risk, risk)
+  return until_risk and risk and min(until_risk, risk) or until_risk
+end
+
+function judge(risk, takes_off)
+-- @if motor_cause
+  watch_motors(risk, takes_off)
+-- @end
+  local held = GOOD
+  local warn_until, fail_until = lower(WARN_UNTIL_RISK, warn_risk), lower(FAIL_UNTIL_RISK, fail_risk)
+  held = follow(WARN, held, risk, not takes_off, warn_risk, WARN_ELEVATED, WARN_AFTER_US, warn_until, WARN_UNTIL_ELEVATED)
+  held = follow(FAIL, held, risk, true, fail_risk, FAIL_ELEVATED, FAIL_AFTER_US, fail_until, FAIL_UNTIL_ELEVATED)
+  if held >= risk_level then
+    held_at = clock_us
+  elseif clock_us - held_at >= CLEAR_AFTER_US then
+    risk_level, held_at = held, clock_us
+    is_open = held > GOOD
+  end
+end
+
+function stop_judging()
+  clear_elevated()
+  risk_level, is_open = GOOD, false
+  reached_at[WARN], reached_at[FAIL] = nil, nil
+end

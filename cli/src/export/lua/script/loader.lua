@@ -1,0 +1,93 @@
+-- @put heading
+--
+-- Copy it to APM/scripts on the card. It reads the motor outputs and reports how close the vehicle is to losing control:
+-- FR_RISK and FR_ELEV in %, and a text when the level changes. It changes nothing on the vehicle. Installation, cost and
+-- tests: docs/on-ardupilot.md of FLAGRED.
+--
+-- An error while ArduPilot loads a script blocks arming. So ArduPilot compiles only this loader; the rest of the file is a
+-- comment to it. The loader reads the file again and compiles it part by part, which takes less memory than all at once, and
+-- where that fails, it sends a text and ends. Parts end at a form feed; this table is their environment.
+
+local shared = {
+  floor = math.floor, sqrt = math.sqrt, exp = math.exp, abs = math.abs, huge = math.huge, min = math.min, max = math.max,
+  format = string.format, sub = string.sub, match = string.match, gmatch = string.gmatch, rep = string.rep,
+  unpack = table.unpack, ipairs = ipairs, error = error, pcall = pcall, tonumber = tonumber, tostring = tostring,
+  gcs = gcs, param = param, micros = micros, vehicle = vehicle, logger = logger, SRV_Channels = SRV_Channels,
+-- @if battery
+  battery = battery,
+-- @end
+}
+-- @put parts
+local number, chunk = 1, nil -- of the next part; what is compiled of it
+local file, text, is_over = nil, "", false -- what is read but not compiled, and whether the part has ended
+
+local function open()
+  if not load then
+    error("needs ArduPilot 4.4 or newer", 0)
+  end
+  local _, place = pcall(function()
+    error("")
+  end)
+  local path = string.match(place, "^(.*):%d+:")
+  file = path and io.open(path, "r")
+  if not file then
+    error("cannot read its own file", 0)
+  end
+end
+
+-- The next piece of a part; nil or empty at its end.
+local function piece()
+  if is_over then
+    return nil
+  end
+  if text == "" then
+    text = file:read(400) or error("its file is cut off", 0)
+  end
+  local found = text
+  local mark = string.find(text, "\f", 1, true)
+  if mark then
+    found, is_over = string.sub(text, 1, mark - 1), true
+  end
+  text = string.sub(text, #found + 2)
+  return found
+end
+
+-- Compiles the next part, or runs what is compiled. Returns whether there is more to do.
+local function go_on()
+  if chunk then
+    local part = chunk
+    chunk, number = nil, number + 1
+    part()
+    return number <= #PARTS
+  end
+  is_over = false
+  if not file then
+    open()
+    while (piece() or "") ~= "" do
+    end
+    return true
+  end
+  local why
+  chunk, why = load(piece, "=" .. PARTS[number], "t", shared)
+  if not chunk then
+    error(why, 0)
+  end
+  return true
+end
+
+local function load_all()
+  local is_well, continues = pcall(go_on)
+  if is_well and continues then
+    return load_all, 10
+  end
+  if file then
+    file:close()
+  end
+  if is_well then
+    return shared.begin, 30
+  end
+  local why = string.find(continues, "not enough mem", 1, true) and "increase SCR_HEAP_SIZE" or continues
+  gcs:send_text(3, string.sub("FLAGRED is off: " .. why, 1, 50))
+end
+
+return load_all, 1000

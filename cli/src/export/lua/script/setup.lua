@@ -1,0 +1,39 @@
+-- Parameters and motors, found once.
+
+local PARAMETERS = {
+-- @put parameters
+}
+
+local function add_parameters()
+  local added = param:add_table(PARAMETER_TABLE, "FRISK_", #PARAMETERS)
+  for i, parameter in ipairs(PARAMETERS) do
+    added = added and param:add_param(PARAMETER_TABLE, i, parameter[1], parameter[2])
+  end
+  if not added then
+    gcs:send_text(WARNING, "FLAGRED: no parameters, the defaults hold")
+  end
+end
+
+local function output(motor_function)
+  -- Older firmware has fewer functions, and refuses the others.
+  local is_known, pwm = pcall(SRV_Channels.get_output_pwm, SRV_Channels, motor_function)
+  return is_known and pwm
+end
+
+local function find_motors()
+  local is_tri = param:get("FRAME_CLASS") == 7
+  for number = 1, 32 do
+    local motor_function = number <= 8 and number + 32 or number <= 12 and number + 73 or number + 147
+    -- Motor 7 of a tricopter is a servo.
+    if output(motor_function) and not (is_tri and number == 7) then
+      motors = motors + 1
+      functions[motors], numbers[motors] = motor_function, number
+    end
+  end
+end
+
+add_parameters()
+find_motors()
+if motors == 0 or not read_limits() then
+  error("no motors or no limits", 0)
+end

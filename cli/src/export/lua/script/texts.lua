@@ -1,0 +1,34 @@
+local LEVELS = {[GOOD] = "GOOD", [WARN] = "WARN", [FAIL] = "FAIL"}
+
+function say(level, risk, of_notice)
+  if level == GOOD and not risk then
+    gcs:send_text(INFO, "FLAGRED: risk unknown")
+    return
+  end
+  local severity = level == FAIL and CRITICAL or level == WARN and WARNING or INFO
+  local text = "FLAGRED: " .. LEVELS[level]
+-- @if imbalance
+  if (of_notice or not is_open) and imbalance then
+    local kind = of_pair and "pair imbalance" or "imbalance"
+    gcs:send_text(severity, format("%s %s %.0f %%, motor %d", text, kind, imbalance, numbers[unbalanced]))
+    return
+  end
+-- @end
+-- @if reserve
+  if (of_notice or not is_open) and little_reserve then
+    gcs:send_text(severity, format("%s reserve %.0f %%", text, little_reserve))
+    return
+  end
+-- @end
+  if is_open and by_elevated then
+    text = format("%s elevated %.0f %%", text, elevated)
+  elseif risk then
+    text = format("%s risk %.0f %%", text, risk)
+  end
+  if is_open then
+    local first, second = cause_in_words()
+    text = #text + #first <= 50 and text .. first or text
+    text = #text + #second <= 50 and text .. second or text
+  end
+  gcs:send_text(severity, text)
+end
