@@ -497,7 +497,7 @@ fn a_profile_that_exceeds_a_limit_of_the_autopilot_is_refused() {
         "(`SCR_VM_I_COUNT`)",
     );
     refused(
-        &of(windows(10, "std: motor_command").collect()),
+        &of(windows(9, "std: motor_command").collect()),
         "(`SCR_HEAP_SIZE`)",
     );
     let file = of(thresholds(51).collect());
