@@ -1,6 +1,8 @@
 //! `flagred watch`: the risk of a flight while it is flown.
 
+mod all;
 mod endpoint;
+mod fleet;
 pub(crate) mod jsonl;
 pub(crate) mod lines;
 mod port;
@@ -53,8 +55,12 @@ const LINES: usize = 50_000;
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Address of the vehicle: udpin:0.0.0.0:14550, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:0.0.0.0:PORT or /dev/ttyACM0:57600
-    #[arg(value_name = "ENDPOINT")]
-    endpoint: Endpoint,
+    #[arg(value_name = "ENDPOINT", required = true)]
+    endpoints: Vec<Endpoint>,
+
+    /// Follow every vehicle that is heard on these endpoints, a line each, and only listen
+    #[arg(long, conflicts_with_all = ["record", "send_anyway", "component"])]
+    all: bool,
 
     /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
@@ -99,22 +105,42 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         ))
         .help("watch takes profiles whose inputs come from the motors alone"));
     }
-    if arguments.no_send && matches!(arguments.endpoint, Endpoint::UdpOut(_)) {
-        return Err(Failure::usage(
-            "`udpout:` sends first and waits for answers, which `--no-send` rules out",
-        )
+    let (endpoint, others) = match arguments.endpoints.split_first() {
+        Some(split) => split,
+        None => return Err(Failure::usage("no endpoint is given")),
+    };
+    if let (Some(other), false) = (others.first(), arguments.all) {
+        return Err(Failure::usage(format!("`{other}` is a second endpoint"))
+            .help("`--all` follows the vehicles of several endpoints"));
+    }
+    let silent = match (arguments.no_send, arguments.all) {
+        (_, true) => Some("--all"),
+        (true, _) => Some("--no-send"),
+        _ => None,
+    };
+    let sends_first = |endpoint: &Endpoint| matches!(endpoint, Endpoint::UdpOut(_));
+    if let Some(option) = silent
+        && arguments.endpoints.iter().any(sends_first)
+    {
+        return Err(Failure::usage(format!(
+            "`udpout:` sends first and waits for answers, which `{option}` rules out",
+        ))
         .help("have the packets sent here, and listen with `udpin:`"));
     }
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
         .map_err(|error| Failure::unreadable(format!("interrupts cannot be caught: {error}")))?;
-    let mut port = Port::open(&arguments.endpoint, !arguments.no_wait)?;
+    let key = arguments.key.as_deref().map(read_key).transpose()?;
+    if arguments.all {
+        let how = (arguments.jsonl, !arguments.no_wait);
+        return all::run(&arguments.endpoints, how, key.as_ref(), &estimator, &stop);
+    }
+    let mut port = Port::open(endpoint, !arguments.no_wait)?;
     let mut recording = match &arguments.record {
         Some(path) => Some(tlog::Recording::create(path)?),
         None => None,
     };
-    let key = arguments.key.as_deref().map(read_key).transpose()?;
     let sender = (!arguments.no_send).then(|| {
         let sender = Sender::new(arguments.component);
         match &key {
@@ -124,10 +150,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     });
     let mut session = Session::new(&estimator, sender, arguments.send_anyway);
     let title = match port.listens_at() {
-        Some(address) if matches!(arguments.endpoint, Endpoint::UdpIn(_) | Endpoint::TcpIn(_)) => {
+        Some(address) if matches!(endpoint, Endpoint::UdpIn(_) | Endpoint::TcpIn(_)) => {
             format!("listening at {address}")
         }
-        _ => arguments.endpoint.to_string(),
+        _ => endpoint.to_string(),
     };
     let mut display = Display::new(arguments.jsonl, &title, &estimator)?;
     let mut stream = key.map_or_else(Stream::new, Stream::with_key);
@@ -146,7 +172,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             }
             Received::Nothing => {}
             Received::Waiting(why) => {
-                let endpoint = &arguments.endpoint;
                 let text = format!(
                     "`{endpoint}` cannot be opened yet: {why}; trying again every second (`--no-wait` ends instead)"
                 );

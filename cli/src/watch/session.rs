@@ -23,8 +23,8 @@ use report::document::numbered;
 use speech::Speech;
 pub(crate) use tracked::View;
 use tracked::{Tracked, Watch, tell};
-use trust::{Candidates, Proof, doubt_of, may_be_multirotor};
-pub(crate) use trust::{Doubt, Doubts, Source};
+use trust::{Candidates, Proof, doubt_of};
+pub(crate) use trust::{Doubt, Doubts, Source, may_be_multirotor};
 
 /// Seconds between two heartbeats, and between two risks sent.
 const HEARTBEAT_S: f64 = 1.0;
@@ -57,6 +57,8 @@ pub(crate) struct Session<'e> {
     worst: Verdict,
     /// The verdict of a part of a flight of which no risk is known.
     unknown_part: Option<Verdict>,
+    /// Samples of a flight that are kept at most.
+    history: usize,
 }
 
 impl<'e> Session<'e> {
@@ -76,7 +78,13 @@ impl<'e> Session<'e> {
             heartbeat_s: None,
             worst: Verdict::NotAvailable(Reason::NoFlight),
             unknown_part: None,
+            history: history::MOST,
         }
+    }
+
+    /// The same, keeping at most so many samples of a flight while motors and limits are not known for sure.
+    pub(crate) fn keeping(self, history: usize) -> Session<'e> {
+        Session { history, ..self }
     }
 
     /// Takes in a packet that came from `source` at `now_s` of the receiver's clock; says whether it is the vehicle's.
@@ -282,7 +290,7 @@ impl<'e> Session<'e> {
             out.events.push(Event::GivenUp { system });
         }
         let telemetry = Telemetry::new(packet, vehicle.clone());
-        self.tracked = Some(Tracked::new(telemetry, source, now_s));
+        self.tracked = Some(Tracked::new(telemetry, source, now_s, self.history));
         self.candidates.clear();
         self.speech.forget();
         self.heartbeat_s = None;

@@ -4,19 +4,29 @@
 use flightlog::mavlink::Pulses;
 
 /// Samples that are kept: 20 minutes at 25 Hz, in 2 MB.
-const MOST: usize = 30_000;
+pub(super) const MOST: usize = 30_000;
 
 /// The samples of a flight.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct History {
+    most: usize,
     samples: Vec<(f64, Pulses)>,
     is_cut: bool,
 }
 
 impl History {
+    /// An empty one for so many samples.
+    pub(super) fn new(most: usize) -> History {
+        History {
+            most,
+            samples: Vec::new(),
+            is_cut: false,
+        }
+    }
+
     /// Adds a sample. Of a flight that is too long nothing is kept.
     pub(super) fn push(&mut self, t_s: f64, pulses: Pulses) {
-        self.is_cut |= self.samples.len() >= MOST;
+        self.is_cut |= self.samples.len() >= self.most;
         match self.is_cut {
             true => self.samples = Vec::new(),
             false => self.samples.push((t_s, pulses)),
@@ -31,7 +41,7 @@ impl History {
     /// Forgets the flight.
     pub(super) fn clear(&mut self) {
         if !self.is_empty() {
-            *self = History::default();
+            *self = History::new(self.most);
         }
     }
 

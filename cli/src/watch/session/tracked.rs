@@ -81,7 +81,7 @@ pub(crate) struct View<'a> {
 
 impl Tracked {
     /// Starts to follow the vehicle that a heartbeat told of.
-    pub(super) fn new(telemetry: Telemetry, source: Source, now_s: f64) -> Tracked {
+    pub(super) fn new(telemetry: Telemetry, source: Source, now_s: f64, history: usize) -> Tracked {
         Tracked {
             telemetry,
             source,
@@ -93,7 +93,7 @@ impl Tracked {
             link_lost: false,
             set_up_tried: false,
             is_complete: false,
-            history: History::default(),
+            history: History::new(history),
             slowed_told_s: None,
             watch: None,
             received: 0,

@@ -67,7 +67,7 @@ pub(super) fn doubt_of(packet: &Packet<'_>) -> Option<Doubt> {
 }
 
 /// Whether a vehicle is a multirotor, or does not say what it is.
-pub(super) fn may_be_multirotor(vehicle: &Vehicle) -> bool {
+pub(crate) fn may_be_multirotor(vehicle: &Vehicle) -> bool {
     matches!(vehicle.kind, VehicleKind::Multirotor | VehicleKind::Unknown)
 }
 
