@@ -358,6 +358,22 @@ impl MembershipFunction {
         }
     }
 
+    /// The number of a constant; of a linear function or a formula, only where it reads no variable.
+    pub(crate) fn number(&self) -> Option<f64> {
+        match self {
+            MembershipFunction::Constant { value } => Some(*value),
+            MembershipFunction::Linear {
+                coefficients,
+                constant,
+            } if coefficients.is_empty() => Some(*constant),
+            MembershipFunction::Function { formula } if formula.variables().next().is_none() => {
+                let value = formula.evaluate(|_| f64::NAN);
+                value.is_finite().then_some(value)
+            }
+            _ => None,
+        }
+    }
+
     /// The names of the variables whose values it reads: those of a linear function or a formula.
     pub(crate) fn reads(&self) -> Vec<&str> {
         match self {

@@ -229,7 +229,7 @@ fn integrals_by_hand() {
     near(drastic, moment / (1.0 + 0.5 - left - right + 1.0));
     // The ramp m and its 0.75 everywhere: the larger up to m = 0.25, 1 beyond.
     let nilpotent = centroid(
-        "a: {right_shoulder: [0, 10]}, b: {constant: 1}",
+        "a: {right_shoulder: [0, 10]}, b: {rectangle: [0, 10]}",
         "IF x IS high THEN y IS a, IF x IS high THEN y IS b WITH 0.75",
         "aggregation: nilpotent_maximum",
     );

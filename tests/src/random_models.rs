@@ -211,6 +211,17 @@ fn model(seed: u64) -> Option<Model> {
         .collect();
     let terms = rng.usize(1..7);
     let mut output = Output::new(variable(rng, "out", terms));
+    let Variable { low, high, .. } = output.variable;
+    for term in &mut output.variable.terms {
+        if let MembershipFunction::Constant { value } = term.membership_function {
+            // A fuzzy output has no constants; this is the same set.
+            term.height *= value;
+            term.membership_function = MembershipFunction::Rectangle {
+                left: low,
+                right: high,
+            };
+        }
+    }
     output.defuzzifier = DEFUZZIFIER[rng.usize(0..DEFUZZIFIER.len())];
     if let Defuzzifier::WeightedAverage | Defuzzifier::WeightedSum = output.defuzzifier {
         for term in &mut output.variable.terms {

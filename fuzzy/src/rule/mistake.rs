@@ -207,8 +207,12 @@ fn is_missing(kind: &str, name: &str, rest: &str, start: usize, text: &str) -> O
         && let Some(value) = rest.trim_start_matches('=').split_whitespace().next()
         && value.parse::<f64>().is_ok()
     {
+        let shape = match kind {
+            "output" => "constant",
+            _ => "singleton",
+        };
         return Some(format!(
-            "write `IS` and a term; for the number {value} give the {kind} a term, such as `{{constant: {value}}}`"
+            "write `IS` and a term; for the number {value} give the {kind} a term, such as `{{{shape}: {value}}}`"
         ));
     }
     let behind = rest.get(found.len()..).unwrap_or("");

@@ -72,7 +72,7 @@ impl Validator<'_> {
         }
     }
 
-    /// Terms of an input are no linear functions, and formulas over the input alone.
+    /// Terms of an input are not linear functions, their constants are degrees, and their formulas are over the input alone.
     pub(super) fn terms_are_sets(&mut self, input: &Variable, spans: &VariableSpans) {
         for (i, term) in input.terms.iter().enumerate() {
             let no_spans = TermSpans::default();
@@ -83,11 +83,23 @@ impl Validator<'_> {
                     let message = format!("{what} is a linear function");
                     let help = "only outputs may have one; an input needs a membership function such as `triangle`";
                     self.error("wrong-term", &spans.name, message, help);
+                    continue;
                 }
                 MembershipFunction::Function { formula } => {
                     self.own_formula(&what, input, formula, spans);
                 }
                 _ => {}
+            }
+            if let Some(number) = term.membership_function.number()
+                && !(0.0..=1.0).contains(&number)
+                && !spans.unread
+            {
+                let here = spans.parameters.first().unwrap_or(&spans.name);
+                let message = format!("the degree {number} of {what} is outside [0, 1]");
+                let help = format!(
+                    "a `constant` of an input is its degree everywhere; for values near {number} write a set such as `triangle`, for that value alone `singleton: {number}`"
+                );
+                self.error("wrong-parameter", here, message, &help);
             }
         }
     }
@@ -158,6 +170,9 @@ impl Validator<'_> {
         let weighted = output.defuzzifier.takes_numbers();
         let tsukamoto = output.defuzzifier == Defuzzifier::Tsukamoto;
         let no_spans = TermSpans::default();
+        if !output.defuzzifier.is_weighted() {
+            self.terms_are_not_numbers(what, output, spans);
+        }
         for (i, term) in output.variable.terms.iter().enumerate() {
             let spans = spans.terms.get(i).unwrap_or(&no_spans);
             let here = &spans.name;
@@ -212,6 +227,39 @@ impl Validator<'_> {
                 _ => {}
             }
         }
+    }
+
+    /// One error for all constants of a fuzzy output. As fuzzy sets they would be flat, and the output the middle of its range
+    /// whichever rule fires.
+    fn terms_are_not_numbers(&mut self, what: &str, output: &Output, spans: &VariableSpans) {
+        let terms = &output.variable.terms;
+        let is_linear = |f: &MembershipFunction| matches!(f, MembershipFunction::Linear { .. });
+        if terms
+            .iter()
+            .any(|term| is_linear(&term.membership_function))
+        {
+            // An error of its own, with the same help.
+            return;
+        }
+        let no_spans = TermSpans::default();
+        let of = |i: usize| spans.terms.get(i).unwrap_or(&no_spans);
+        let numbers = terms.iter().enumerate().filter(|(i, _)| !of(*i).unread);
+        let numbers =
+            numbers.filter_map(|(i, term)| Some((i, term, term.membership_function.number()?)));
+        let Some((first, term, number)) = numbers.clone().next() else {
+            return;
+        };
+        let message = format!(
+            "term `{}` of {what} is the number {number}, but the output is defuzzified as fuzzy sets",
+            term.name
+        );
+        let help = if numbers.count() == terms.len() {
+            "add `defuzzifier: weighted_average`"
+        } else {
+            "write a fuzzy set such as `triangle` for it, or numbers for all terms and `defuzzifier: weighted_average`"
+        };
+        let here = of(first).name.clone();
+        self.error("wrong-term", &here, message, help);
     }
 
     /// The inputs that a linear function names.
