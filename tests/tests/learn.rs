@@ -334,3 +334,62 @@ fn an_error_on_no_rows_is_unknown_and_not_nought() {
     let figures: Vec<&str> = nearest.split_whitespace().skip(1).collect();
     assert_eq!(figures, ["NA"; 4], "{text}");
 }
+
+/// Rows of the fan that `flagred new` writes: it turns faster the hotter and damper it is.
+fn fan_rows() -> String {
+    let mut rows = String::from("temperature,humidity,fan\n");
+    for i in 0..400 {
+        let (temperature, humidity) = (
+            f64::from(i % 20) * 40.0 / 19.0,
+            f64::from(i / 20) * 100.0 / 19.0,
+        );
+        let fan = (temperature * 2.5 * (0.5 + humidity / 200.0)).min(100.0);
+        rows += &format!("{temperature},{humidity},{fan}\n");
+    }
+    rows
+}
+
+/// Its output is of constants. With each way to resolve the rules are those for the same terms as triangles.
+#[test]
+fn rules_are_learned_for_the_constants_of_the_template() {
+    let folder = Folder::new();
+    let fan = folder.at("fan.yaml");
+    let new = flagred().args(["new", "fan", "-o", &fan]).output().unwrap();
+    assert!(new.status.success());
+    let text = fs::read_to_string(&fan).unwrap();
+    let constants = "slow: {constant: 0}\n      medium: {constant: 50}\n      fast: {constant: 100}\n    defuzzifier: weighted_average";
+    assert!(text.contains(constants));
+    let sets = "slow: {triangle: [-50, 0, 50]}\n      medium: {triangle: [0, 50, 100]}\n      fast: {triangle: [50, 100, 150]}\n    defuzzifier: centroid";
+    let of_sets = folder.file("sets.yaml", text.replace(constants, sets));
+    let singletons = "slow: {singleton: 0}\n      medium: {singleton: 50}\n      fast: {singleton: 100}\n    defuzzifier: centroid";
+    let of_singletons = folder.file("singletons.yaml", text.replace(constants, singletons));
+    let rows = folder.file("rows.csv", fan_rows());
+    for resolve in ["strongest", "heaviest", "mean"] {
+        for direction in [&[][..], &["--complete"]] {
+            let learned = |model: &str| {
+                let out = folder.at("learned.yaml");
+                let mut arguments = vec![model, &rows, "-o", &out, "--force", "--resolve", resolve];
+                arguments.extend(direction);
+                let output = learn(&arguments);
+                let told = String::from_utf8_lossy(&output.stderr);
+                assert_eq!(output.status.code(), Some(0), "{resolve}: {told}");
+                let text = fs::read_to_string(&out).unwrap();
+                let model = fuzzy::yaml::parse(&text).unwrap().model;
+                let rules = model.rules.iter().map(|rule| rule.rule.to_string());
+                rules.collect::<Vec<String>>()
+            };
+            let rules = learned(&fan);
+            assert_eq!(rules, learned(&of_sets), "{resolve} {direction:?}");
+            assert_eq!(rules, learned(&of_singletons), "{resolve} {direction:?}");
+            assert_eq!(rules.len(), 6);
+            for (antecedent, fan) in [
+                ("temperature IS cold AND humidity IS dry", "slow"),
+                ("temperature IS mild AND humidity IS damp", "medium"),
+                ("temperature IS hot AND humidity IS damp", "fast"),
+            ] {
+                let rule = format!("IF {antecedent} THEN fan IS {fan}");
+                assert!(rules.contains(&rule), "{resolve} {direction:?}: {rules:?}");
+            }
+        }
+    }
+}

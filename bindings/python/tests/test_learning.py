@@ -233,3 +233,25 @@ def test_identifying_refuses_what_it_cannot_use():
         flagred.identify(cars(), "mpg", antecedents="grid")
     with pytest.raises(flagred.DataError, match="no input tells more"):
         flagred.identify({"a": np.arange(50.0) % 2, "b": np.zeros(50)}, "b")
+
+
+@pytest.mark.parametrize("resolve", ["strongest", "heaviest", "mean"])
+@pytest.mark.parametrize(
+    "terms",
+    [
+        "{slow: {constant: 0}, medium: {constant: 50}, fast: {constant: 100}}, defuzzifier: weighted_average",
+        "{slow: {singleton: 0}, medium: {singleton: 50}, fast: {singleton: 100}}",
+    ],
+)
+def test_learning_for_numbers(resolve, terms):
+    variables = flagred.loads(
+        "{fuzzy: 1, name: fan, inputs: {heat: {range: [0, 40], partition: {cold: 10, mild: 20, hot: 30}}}, "
+        f"outputs: {{speed: {{range: [0, 100], terms: {terms}}}}}, rules: []}}"
+    )
+    rows = {"heat": HEAT, "speed": np.clip(5 * (HEAT - 10), 0, 100)}
+    learned = flagred.learn(variables, rows, resolve=resolve)
+    assert [rule.text for rule in learned.model.rules] == [
+        "IF heat IS cold THEN speed IS slow",
+        "IF heat IS mild THEN speed IS medium",
+        "IF heat IS hot THEN speed IS fast",
+    ]

@@ -2,7 +2,9 @@
 //!
 //! 1. Each value of a sample is given to the term with its highest membership (the first of equal ones). The terms of
 //!    the inputs are the antecedent, the term of the output the consequent, and the degree of the vote is the product
-//!    of all memberships, times the sample's weight.
+//!    of all memberships, times the sample's weight. Where all terms of the output are constants or singletons, a value
+//!    belongs to the two neighbouring ones by its distance: 30 belongs to 0 with 0.4 and to 50 with 0.6. Beyond the outer
+//!    ones it belongs to these with 1.
 //! 2. Where the samples of an antecedent disagree, [`Resolution`] decides.
 //! 3. The rule keeps the consequents that lost, the number of its samples (support) and its confidence.
 //!
@@ -11,16 +13,18 @@
 use alloc::{boxed::Box, collections::BTreeMap, vec, vec::Vec};
 
 use crate::{
-    model::{MembershipFunction, Model, Variable},
+    model::{Model, Variable},
     rule::{Condition, Name},
 };
 
+mod consequents;
 mod monotone;
 mod resolve;
 mod settings;
 #[cfg(test)]
 mod tests;
 
+use consequents::{Consequents, highest};
 pub use settings::{Direction, LearnError, Refusal, Resolution, Settings};
 
 /// Collects samples and derives rules from them.
@@ -55,8 +59,7 @@ pub use settings::{Direction, LearnError, Refusal, Resolution, Settings};
 pub struct Learner {
     model: Model,
     settings: Settings,
-    /// The peak of each term of the output.
-    peaks: Vec<f64>,
+    consequents: Consequents,
     samples: u64,
     cells: BTreeMap<Box<[u16]>, Cell>,
 }
@@ -159,12 +162,7 @@ impl Learner {
         Ok(Learner {
             model: model.clone(),
             settings,
-            peaks: output
-                .variable
-                .terms
-                .iter()
-                .map(|term| peak(&output.variable, &term.membership_function))
-                .collect(),
+            consequents: Consequents::of(&output.variable),
             samples: 0,
             cells: BTreeMap::new(),
         })
@@ -204,11 +202,13 @@ impl Learner {
             *index = term;
             degree *= membership;
         }
-        let vote = match (highest(consequent, *output), self.settings.resolution) {
-            (Some(vote), Resolution::Mean) => (vote.0, 1.0),
-            (Some(vote), _) => vote,
+        let vote = match (
+            self.consequents.highest(consequent, *output),
+            self.settings.resolution,
+        ) {
             // In a gap between terms, the nearest one.
-            (None, Resolution::Mean) => (resolve::nearest_peak(&self.peaks, *output), 1.0),
+            (_, Resolution::Mean) => (self.consequents.nearest(consequent, *output), 1.0),
+            (Some(vote), _) => vote,
             (None, _) => {
                 return Err(Refusal::NoTerm {
                     variable: consequent.name.clone(),
@@ -259,44 +259,6 @@ fn check(variable: &Variable, value: f64) -> Result<(), Refusal> {
         });
     }
     Ok(())
-}
-
-/// The index of the term with the highest membership, the first of equal ones, and that membership; `None` where every
-/// membership is 0.
-fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
-    let mut best: Option<(u16, f64)> = None;
-    for (i, term) in (0..=u16::MAX).zip(&variable.terms) {
-        let membership = term.height * term.membership_function.membership(value);
-        if membership > best.map_or(0.0, |(_, highest)| highest) {
-            best = Some((i, membership));
-        }
-    }
-    best
-}
-
-/// The middle of the interval where a term is highest.
-fn peak(variable: &Variable, shape: &MembershipFunction) -> f64 {
-    // Sampling would miss what is narrower than its steps.
-    if let MembershipFunction::Singleton { at: x } | MembershipFunction::Triangle { peak: x, .. } =
-        shape
-    {
-        return x.clamp(variable.low, variable.high);
-    }
-    // By sampling, which is fine enough: the peaks of other terms differ by far more than a thousandth of the range.
-    const STEPS: u32 = 2000;
-    let at =
-        |i: u32| variable.low + (variable.high - variable.low) * f64::from(i) / f64::from(STEPS);
-    let mut highest = f64::NEG_INFINITY;
-    let (mut first, mut last) = (variable.low, variable.low);
-    for x in (0..=STEPS).map(at) {
-        let membership = shape.membership(x);
-        if membership > highest + 1e-12 {
-            (highest, first, last) = (membership, x, x);
-        } else if membership >= highest - 1e-12 {
-            last = x;
-        }
-    }
-    (first + last) / 2.0
 }
 
 /// `a IS x AND b IS y` for a term of each input.

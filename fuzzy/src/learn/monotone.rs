@@ -3,8 +3,9 @@
 use alloc::{boxed::Box, collections::BTreeMap, string::String, vec, vec::Vec};
 
 use super::{
-    Direction, Learner, peak,
-    resolve::{Decision, degree, nearest_term},
+    Direction, Learner,
+    consequents::peak,
+    resolve::{Decision, degree},
 };
 use crate::model::Variable;
 
@@ -59,7 +60,7 @@ pub(super) fn enforce(
         }
     }
 
-    let term_of_rank = ascending(&learner.peaks);
+    let term_of_rank = ascending(&learner.consequents.peaks);
     let rank_of_term = inverse(&term_of_rank);
     let mut ranks: Vec<Option<usize>> = vec![None; cells];
     for (terms, decision) in &*decisions {
@@ -71,7 +72,7 @@ pub(super) fn enforce(
             .flatten()
             .map_or(decision.value, |v| v.value);
         let term = decision.term.filter(|_| !moved);
-        let term = term.unwrap_or_else(|| nearest_term(output, &learner.peaks, value));
+        let term = term.unwrap_or_else(|| learner.consequents.nearest(output, value));
         if let Some(rank) = ranks.get_mut(place) {
             *rank = rank_of_term.get(usize::from(term)).copied();
         }
@@ -91,7 +92,7 @@ pub(super) fn enforce(
         let term = u16::try_from(term).unwrap_or(u16::MAX);
         let old = decision
             .term
-            .unwrap_or_else(|| nearest_term(output, &learner.peaks, decision.value));
+            .unwrap_or_else(|| learner.consequents.nearest(output, decision.value));
         if term == old {
             continue;
         }

@@ -2,7 +2,7 @@
 
 use alloc::{boxed::Box, collections::BTreeMap, format, string::String, vec, vec::Vec};
 
-use super::{Cell, Learned, Learner, Resolution, Votes, antecedent, highest, monotone};
+use super::{Cell, Learned, Learner, Resolution, Votes, antecedent, monotone};
 use crate::{
     model::{Beaten, Rule, Variable},
     rule::Consequent,
@@ -45,11 +45,10 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
     let antecedents = shape
         .iter()
         .fold(1u64, |n, terms| n.saturating_mul(u64::from(*terms)));
-    let peaks = &learner.peaks;
     let mut decisions: BTreeMap<Box<[u16]>, Decision> = BTreeMap::new();
     for (terms, cell) in &learner.cells {
         learned.conflicts += u64::from(cell.votes.len() > 1);
-        let decision = decide(learner, output, peaks, cell);
+        let decision = decide(learner, output, cell);
         let sure = decision.confidence.unwrap_or(0.0) >= learner.settings.min_degree;
         if cell.samples >= learner.settings.min_support && sure {
             decisions.insert(terms.clone(), decision);
@@ -78,12 +77,13 @@ pub(super) fn resolve(learner: &Learner) -> Learned {
         learned
             .model
             .rules
-            .extend(rule(learner, output, peaks, &terms, decision, cell));
+            .extend(rule(learner, output, &terms, decision, cell));
     }
     learned
 }
 
-fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> Decision {
+fn decide(learner: &Learner, output: &Variable, cell: &Cell) -> Decision {
+    let consequents = &learner.consequents;
     // Of equal ones, the one with more samples, then the first.
     let winner = |weigh: fn(&Votes) -> f64| {
         let mut votes = cell.votes.iter();
@@ -101,7 +101,7 @@ fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> D
         Resolution::Mean => {
             let share = cell.values.value() / cell.degrees.value();
             let value = output.low + share * (output.high - output.low);
-            let term = nearest_term(output, peaks, value);
+            let term = consequents.nearest(output, value);
             return Decision {
                 value,
                 term: None,
@@ -112,7 +112,11 @@ fn decide(learner: &Learner, output: &Variable, peaks: &[f64], cell: &Cell) -> D
     };
     let term = best.map_or(0, |(term, _)| *term);
     Decision {
-        value: peaks.get(usize::from(term)).copied().unwrap_or(output.low),
+        value: consequents
+            .peaks
+            .get(usize::from(term))
+            .copied()
+            .unwrap_or(output.low),
         term: Some(term),
         confidence: best.map(|(_, votes)| degree(learner, cell, Some(votes))),
         note: None,
@@ -140,36 +144,16 @@ pub(super) fn degree(learner: &Learner, cell: &Cell, votes: Option<&Votes>) -> f
     }
 }
 
-/// The index of the term with the highest membership, or with the nearest peak where every membership is 0.
-pub(super) fn nearest_term(output: &Variable, peaks: &[f64], value: f64) -> u16 {
-    if let Some((term, _)) = highest(output, value) {
-        return term;
-    }
-    nearest_peak(peaks, value)
-}
-
-pub(super) fn nearest_peak(peaks: &[f64], value: f64) -> u16 {
-    let mut nearest = (0, f64::INFINITY);
-    for (term, peak) in (0..=u16::MAX).zip(peaks) {
-        let distance = (peak - value).abs();
-        if distance < nearest.1 {
-            nearest = (term, distance);
-        }
-    }
-    nearest.0
-}
-
 fn rule(
     learner: &Learner,
     output: &Variable,
-    peaks: &[f64],
     terms: &[u16],
     decision: Decision,
     cell: Option<&Cell>,
 ) -> Option<Rule> {
     let term = decision
         .term
-        .unwrap_or_else(|| nearest_term(output, peaks, decision.value));
+        .unwrap_or_else(|| learner.consequents.nearest(output, decision.value));
     let word = &output.terms.get(usize::from(term))?.name;
     let against = cell.into_iter().flat_map(|cell| &cell.votes);
     Some(Rule {

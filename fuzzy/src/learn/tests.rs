@@ -402,3 +402,133 @@ fn the_mean_chooses_the_nearest_singleton_wherever_it_lies() {
         ["IF x IS a THEN y IS odd", "IF x IS b THEN y IS high"]
     );
 }
+
+const RESOLUTIONS: [Resolution; 3] = [
+    Resolution::Strongest,
+    Resolution::Heaviest,
+    Resolution::Mean,
+];
+
+/// A fan whose speed rises with the heat, with these terms and this defuzzifier.
+fn fan(terms: &str, defuzzifier: &str) -> Model {
+    let text = format!(
+        "{{fuzzy: 1, name: fan, inputs: {{heat: {{range: [0, 40], partition: {{cold: 10, mild: 20, hot: 30}}}}}}, \
+         outputs: {{speed: {{range: [0, 100], terms: {{{terms}}}, defuzzifier: {defuzzifier}}}}}, rules: []}}"
+    );
+    crate::yaml::parse(&text).unwrap().model
+}
+
+#[test]
+fn numbers_are_learned_whatever_they_are_written_as() {
+    let numbers = [
+        (
+            "slow: {constant: 0}, medium: {constant: 50}, fast: {constant: 100}",
+            "weighted_average",
+        ),
+        (
+            "slow: {constant: 0}, medium: {constant: 50}, fast: {constant: 100}",
+            "weighted_sum",
+        ),
+        (
+            "slow: {singleton: 0}, medium: {singleton: 50}, fast: {singleton: 100}",
+            "weighted_average",
+        ),
+        (
+            "slow: {singleton: 0}, medium: {singleton: 50}, fast: {singleton: 100}",
+            "centroid",
+        ),
+        (
+            "slow: {function: 0}, medium: {linear: {constant: 50}}, fast: {function: 10^2}",
+            "weighted_average",
+        ),
+        (
+            "fast: {constant: 100}, slow: {constant: 0}, medium: {constant: 50}",
+            "weighted_average",
+        ),
+    ];
+    for (terms, defuzzifier) in numbers {
+        for resolution in RESOLUTIONS {
+            let settings = Settings {
+                resolution,
+                ..Settings::default()
+            };
+            let mut learner = Learner::new(&fan(terms, defuzzifier), settings).unwrap();
+            for i in 0..=80 {
+                let heat = f64::from(i) / 2.0;
+                let speed = (5.0 * (heat - 10.0)).clamp(0.0, 100.0);
+                learner.add(&[heat, speed], 1.0).unwrap();
+            }
+            let learned = learner.finish();
+            assert_eq!(
+                words(&learned),
+                [
+                    "IF heat IS cold THEN speed IS slow",
+                    "IF heat IS mild THEN speed IS medium",
+                    "IF heat IS hot THEN speed IS fast"
+                ],
+                "{terms} {defuzzifier} {resolution:?}"
+            );
+            let engine = Engine::new(&learned.model).unwrap();
+            let value = engine.evaluate(&[15.0]).unwrap()[0].value().unwrap();
+            assert!((value - 25.0).abs() < 1e-9, "{value}");
+        }
+    }
+}
+
+#[test]
+fn a_value_between_two_numbers_belongs_to_both_by_its_distance() {
+    let model = fan(
+        "fast: {constant: 100}, slow: {constant: 10}, medium: {constant: 50}",
+        "weighted_average",
+    );
+    let output = &model.outputs[0].variable;
+    let consequents = Consequents::of(output);
+    for (value, term, degree) in [
+        (0.0, 1, 1.0),
+        (10.0, 1, 1.0),
+        (26.0, 1, 0.6),
+        // Of equal ones the first.
+        (30.0, 1, 0.5),
+        (34.0, 2, 0.6),
+        (70.0, 2, 0.6),
+        (100.0, 0, 1.0),
+    ] {
+        let (found, of) = consequents.highest(output, value).unwrap();
+        assert_eq!(found, term, "{value}");
+        approx::assert_abs_diff_eq!(of, degree, epsilon = 1e-12);
+    }
+    // The confidence of the strongest vote: 0.6 of it.
+    let mut learner = Learner::new(&model, Settings::default()).unwrap();
+    learner.add(&[10.0, 26.0], 1.0).unwrap();
+    let rule = &learner.finish().model.rules[0];
+    approx::assert_abs_diff_eq!(rule.confidence.unwrap(), 0.6, epsilon = 1e-12);
+}
+
+#[test]
+fn rules_for_numbers_are_made_monotone() {
+    let model = fan(
+        "slow: {constant: 0}, medium: {constant: 50}, fast: {constant: 100}",
+        "weighted_average",
+    );
+    let settings = Settings {
+        monotone: vec![("heat".into(), Direction::Rising)],
+        complete: true,
+        ..Settings::default()
+    };
+    let mut learner = Learner::new(&model, settings).unwrap();
+    learner.add(&[10.0, 90.0], 1.0).unwrap();
+    for _ in 0..9 {
+        learner.add(&[20.0, 10.0], 1.0).unwrap();
+    }
+    let learned = learner.finish();
+    assert_eq!((learned.moved, learned.completed), (1, 1));
+    assert_eq!(
+        words(&learned),
+        [
+            "IF heat IS cold THEN speed IS slow",
+            "IF heat IS mild THEN speed IS slow",
+            // As its nearest rule.
+            "IF heat IS hot THEN speed IS slow"
+        ]
+    );
+}

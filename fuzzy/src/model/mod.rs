@@ -9,6 +9,8 @@ mod builder;
 pub(crate) mod chain;
 pub(crate) mod document;
 mod partition;
+#[cfg(any(feature = "check", feature = "learn"))]
+mod plateau;
 mod provenance;
 pub use crate::formula::Formula;
 pub(crate) use crate::shape::{Form, Parts};

@@ -1,0 +1,84 @@
+//! Which term of the output a value belongs to.
+
+use alloc::vec::Vec;
+
+use crate::model::{MembershipFunction, Variable};
+
+/// The terms of the output.
+#[derive(Debug, Clone)]
+pub(super) struct Consequents {
+    /// The number of each term that is one, the peak of each fuzzy set.
+    pub(super) peaks: Vec<f64>,
+    /// Whether all terms are numbers, constants or singletons, which have no memberships between them.
+    are_numbers: bool,
+}
+
+impl Consequents {
+    pub(super) fn of(output: &Variable) -> Consequents {
+        let shapes = || output.terms.iter().map(|term| &term.membership_function);
+        Consequents {
+            peaks: shapes()
+                .map(|shape| number(shape).unwrap_or_else(|| peak(output, shape)))
+                .collect(),
+            are_numbers: shapes().all(|shape| number(shape).is_some()),
+        }
+    }
+
+    /// The index of the term to which a value belongs most, the first of equal ones, and its degree; `None` where every
+    /// degree is 0.
+    pub(super) fn highest(&self, output: &Variable, value: f64) -> Option<(u16, f64)> {
+        if !self.are_numbers {
+            return highest(output, value);
+        }
+        let term = self.nearest_peak(value);
+        let at = *self.peaks.get(usize::from(term))?;
+        // The neighbour on the other side of the value.
+        let others = self.peaks.iter().filter(|other| match value < at {
+            true => **other < at,
+            false => **other > at,
+        });
+        let gap = others.map(|other| (other - at).abs()).reduce(f64::min);
+        let degree = gap.map_or(1.0, |gap| 1.0 - (value - at).abs() / gap);
+        Some((term, degree))
+    }
+
+    /// As [`Consequents::highest`], and the term with the nearest peak where every degree is 0.
+    pub(super) fn nearest(&self, output: &Variable, value: f64) -> u16 {
+        let highest = self.highest(output, value);
+        highest.map_or_else(|| self.nearest_peak(value), |(term, _)| term)
+    }
+
+    fn nearest_peak(&self, value: f64) -> u16 {
+        let mut nearest = (0, f64::INFINITY);
+        for (term, peak) in (0..=u16::MAX).zip(&self.peaks) {
+            let distance = (peak - value).abs();
+            if distance < nearest.1 {
+                nearest = (term, distance);
+            }
+        }
+        nearest.0
+    }
+}
+
+fn number(shape: &MembershipFunction) -> Option<f64> {
+    shape.number().or_else(|| shape.at())
+}
+
+/// The index of the term with the highest membership, the first of equal ones, and that membership; `None` where every
+/// membership is 0.
+pub(super) fn highest(variable: &Variable, value: f64) -> Option<(u16, f64)> {
+    let mut best: Option<(u16, f64)> = None;
+    for (i, term) in (0..=u16::MAX).zip(&variable.terms) {
+        let membership = term.height * term.membership_function.membership(value);
+        if membership > best.map_or(0.0, |(_, highest)| highest) {
+            best = Some((i, membership));
+        }
+    }
+    best
+}
+
+/// The middle of the interval where a term is highest.
+pub(super) fn peak(variable: &Variable, shape: &MembershipFunction) -> f64 {
+    let (first, last) = variable.plateau(shape);
+    (first + last) / 2.0
+}
