@@ -12,7 +12,7 @@ use super::{
     AgainstTrend, Contradiction, Coordinate, Counterexample, Direction, EqualTerms, Hole, Jump,
     Reach, Report, TermOf, Uncovered,
     gaps::{Gap, gaps, is_missing},
-    shown,
+    outer, shown,
     terms::is_outside,
 };
 use crate::{
@@ -364,28 +364,48 @@ impl At<'_> {
 
     /// Reported only if the output leaves its range or stays away from an end of it.
     fn reach(&self, one: &Reach) -> Option<Diagnostic> {
-        const NEAR: f64 = 0.01;
         const BEYOND: f64 = 1e-9;
         let [low, high] = one.range;
         let beyond = BEYOND * (high - low);
         if one.low < low - beyond || one.high > high + beyond {
             return Some(self.outside(one));
         }
-        let near = NEAR * (high - low);
-        if one.low - low <= near && high - one.high <= near {
+        let mut outputs = self.model.outputs.iter();
+        let output = outputs.find(|output| output.variable.name == one.output)?;
+        let here = self.name(&one.output);
+        let stays = format!("[{}, {}]", shown(one.low), shown(one.high));
+        let name = &one.output;
+        if !one.unreached.is_empty() {
+            let names: Vec<&str> = one.unreached.iter().map(|u| u.term.as_str()).collect();
+            let peaks: Vec<String> = one.unreached.iter().map(|u| shown(u.peak)).collect();
+            let peaks = match peaks.as_slice() {
+                [peak] => format!("its peak is at {peak}"),
+                peaks => format!("their peaks are at {}", peaks.join(" and ")),
+            };
+            let message = format!(
+                "`{name}` never reaches {}: {peaks}, and it stays within {stays}",
+                listed(&names)
+            );
+            let help = outer::remedies(self.model, output, &one.unreached);
+            return Some(Diagnostic::warning("narrow-reach", here, message).help(help));
+        }
+        if outer::is_all(output, (one.low, one.high)) {
             return None;
         }
         let message = format!(
-            "`{}` stays within [{}, {}] of its range [{}, {}]",
-            one.output,
-            shown(one.low),
-            shown(one.high),
+            "`{name}` stays within {stays} of its range [{}, {}]",
             shown(low),
             shown(high)
         );
-        let help = "the centroid of a term lies inside the term, and a term ends with the range; make the range wider than the \
-                    values you need, or use another defuzzifier";
-        Some(Diagnostic::note("narrow-reach", self.name(&one.output), message).help(help))
+        let help = match output.defuzzifier.is_weighted() {
+            true => format!(
+                "its rules conclude no other values: write `range: {stays}`, or add terms and rules for the others"
+            ),
+            false => String::from(
+                "its rules conclude no other values; if you need them, move the outer terms outwards or add rules",
+            ),
+        };
+        Some(Diagnostic::note("narrow-reach", here, message).help(help))
     }
 
     /// A Takagi-Sugeno output that takes values outside its range.

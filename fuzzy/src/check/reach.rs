@@ -2,7 +2,10 @@
 
 use alloc::{string::String, vec::Vec};
 
-use super::probe::{Coordinate, Probe};
+use super::{
+    outer::{Unreached, unreached},
+    probe::{Coordinate, Probe},
+};
 
 /// The values an output takes.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +24,8 @@ pub struct Reach {
     pub high_at: Vec<Coordinate>,
     /// The range that the author gave it.
     pub range: [f64; 2],
+    /// Its outer terms whose peak it never takes.
+    pub unreached: Vec<Unreached>,
 }
 
 impl Probe<'_> {
@@ -50,9 +55,10 @@ impl Probe<'_> {
             };
             let (low, low_at) = self.climb(low, output, -1.0, budget);
             let (high, high_at) = self.climb(high, output, 1.0, budget);
-            let Some(variable) = self.model.outputs.get(output).map(|o| &o.variable) else {
+            let Some(written) = self.model.outputs.get(output) else {
                 continue;
             };
+            let variable = &written.variable;
             found.push(Reach {
                 output: variable.name.clone(),
                 low,
@@ -60,6 +66,7 @@ impl Probe<'_> {
                 high,
                 high_at: self.named(&high_at),
                 range: [variable.low, variable.high],
+                unreached: unreached(self.model, written, (low, high)),
             });
         }
         found

@@ -423,3 +423,54 @@ fn a_single_value_without_a_term_is_told_in_few_digits() {
         ("1e-300".into(), "0.333333".into())
     );
 }
+
+/// The findings about the reach of an output, with its help, and its severity.
+fn reach_of(output: &str) -> Vec<String> {
+    let text = format!(
+        "fuzzy: 1\nname: valve\ninputs: {{soil: {{range: [0, 100], partition: [dry, moist, damp, soaked]}}}}\n\
+         outputs: {{water: {output}}}\nrules:\n  - IF soil IS dry THEN water IS long\n  - IF soil IS moist THEN water IS medium\n  \
+         - IF soil IS damp THEN water IS short\n  - IF soil IS soaked THEN water IS off\n"
+    );
+    let (_, findings) = report_of(&text, &Options::default());
+    let found = findings.iter().filter(|one| one.code.ends_with("-reach"));
+    let told = found.map(|one| {
+        let help = one.help.as_deref().unwrap_or_default();
+        format!("{:?}: {}\n{help}", one.severity, one.message)
+    });
+    told.collect()
+}
+
+#[test]
+fn an_outer_term_that_is_never_reached_is_a_warning_with_both_remedies() {
+    let told = reach_of("{range: [0, 40], partition: [off, short, medium, long]}");
+    insta::assert_snapshot!(told.join("\n"));
+    // What the help says is what helps.
+    for remedy in [
+        "{range: [-7.69, 47.69], partition: {off: 0, short: 13.3333, medium: 26.6667, long: 40}}",
+        "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 13.3333}, medium: {constant: 26.6667}, long: {constant: 40}}, \
+         defuzzifier: weighted_average}",
+    ] {
+        assert_eq!(reach_of(remedy), [] as [&str; 0], "{remedy}");
+    }
+}
+
+#[test]
+fn an_outer_term_is_never_reached_for_what_it_is() {
+    let outputs = [
+        // One end alone.
+        "{range: [0, 40], partition: {off: 0, short: 10, medium: 20, long: 24}}",
+        // A wider range does not help a set that ends at the old one.
+        "{range: [0, 40], terms: {off: {triangle: [0, 0, 10]}, short: {triangle: [5, 10, 15]}, medium: {triangle: [15, 20, 25]}, long: {triangle: [25, 30, 35]}}}",
+        "{range: [0, 40], terms: {off: {gaussian: {mean: 0, sd: 4}}, short: {gaussian: {mean: 10, sd: 4}}, medium: {gaussian: {mean: 25, sd: 4}}, long: {gaussian: {mean: 40, sd: 4}}}, defuzzifier: bisector}",
+        // Inside the range, whose ends are never reached: a note.
+        "{range: [0, 40], terms: {off: {triangle: [0, 5, 10]}, short: {triangle: [10, 15, 20]}, medium: {triangle: [20, 25, 30]}, long: {triangle: [30, 35, 40]}}}",
+        // Numbers have a text of their own.
+        "{range: [0, 40], terms: {off: {constant: 0}, short: {constant: 10}, medium: {constant: 20}, long: {constant: 30}}, defuzzifier: weighted_average}",
+        // Nothing to tell: a plateau, the maxima, singletons.
+        "{range: [0, 40], partition: {off: 6, short: 12, medium: 24, long: 34}}",
+        "{range: [0, 40], partition: [off, short, medium, long], defuzzifier: mean_of_maxima}",
+        "{range: [0, 40], terms: {off: {singleton: 0}, short: {singleton: 10}, medium: {singleton: 20}, long: {singleton: 40}}}",
+    ];
+    let told = outputs.map(|output| format!("# {output}\n{}\n", reach_of(output).join("\n")));
+    insta::assert_snapshot!(told.join("\n"));
+}

@@ -169,7 +169,7 @@ impl FromStr for Rule {
 }
 
 /// Whether a name can stand in a rule without quotes.
-fn is_plain_name(name: &str) -> bool {
+pub(crate) fn is_plain_name(name: &str) -> bool {
     !name.is_empty()
         && name
             .chars()

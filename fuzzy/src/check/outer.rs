@@ -1,0 +1,213 @@
+//! Outer terms of an output whose peak it never takes, and how it would.
+//!
+//! The centroid of a term lies inside the term. A term that ends with the range is then never reached: the `off` of a valve
+//! whose range begins at 0 leaves it open.
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+
+use super::shown;
+use crate::{
+    Engine,
+    model::{MembershipFunction, Model, Output, Term, Variable},
+    rule::{Condition, Rule, is_plain_name},
+};
+
+/// The least distance from a peak, as a share of the range, that counts.
+pub(super) const NEAR: f64 = 0.01;
+
+/// An outer term of an output whose peak the output never takes.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Unreached {
+    /// The term.
+    pub term: String,
+    /// Its peak; of a plateau the end that is nearer to the values of the output.
+    pub peak: f64,
+    /// The value of the output where only rules for this term fire.
+    pub alone: f64,
+}
+
+/// The outer terms that end with the range, that some rule concludes and that not even this rule alone reaches, in the order of
+/// their peaks. A term that falls to 0 within the range is only as lopsided as its author made it.
+pub(super) fn unreached(model: &Model, output: &Output, (low, high): (f64, f64)) -> Vec<Unreached> {
+    let variable = &output.variable;
+    if output.defuzzifier.is_weighted() {
+        return Vec::new();
+    }
+    let near = NEAR * (variable.high - variable.low);
+    let [first, last] = outer(variable);
+    let below =
+        first.filter(|(term, (_, peak))| *peak < low - near && term.membership(variable.low) > 0.0);
+    let above = last
+        .filter(|(term, (peak, _))| *peak > high + near && term.membership(variable.high) > 0.0);
+    let found = [
+        below.map(|(term, (_, peak))| (term, peak)),
+        above.map(|(term, (peak, _))| (term, peak)),
+    ];
+    let found = found.into_iter().flatten().filter_map(|(term, peak)| {
+        let is_concluded = model.rules.iter().any(|rule| {
+            let mut consequents = rule.rule.consequents.iter();
+            model.is_enabled(rule)
+                && consequents.any(|c| c.output.text == variable.name && c.term.text == term.name)
+        });
+        let alone = alone(model, output, term).filter(|_| is_concluded)?;
+        ((alone - peak).abs() > near).then(|| Unreached {
+            term: term.name.clone(),
+            peak,
+            alone,
+        })
+    });
+    found.collect()
+}
+
+/// Whether the values beyond `[low, high]` all belong to the outer terms as much as these ends do.
+pub(super) fn is_all(output: &Output, (low, high): (f64, f64)) -> bool {
+    let variable = &output.variable;
+    let near = NEAR * (variable.high - variable.low);
+    let [first, last] = outer(variable);
+    let is_set = !output.defuzzifier.is_weighted();
+    let holds = |plateau: Option<(&Term, (f64, f64))>, from: f64, to: f64| {
+        let plateau = plateau.filter(|_| is_set);
+        to - from <= near
+            || plateau.is_some_and(|(_, (left, right))| left <= from + near && right >= to - near)
+    };
+    holds(first, variable.low, low) && holds(last, high, variable.high)
+}
+
+/// The first and the last term by their peaks, with their plateaus.
+fn outer(variable: &Variable) -> [Option<(&Term, (f64, f64))>; 2] {
+    let terms = || {
+        let terms = variable.terms.iter();
+        terms.map(|term| (term, variable.plateau(&term.membership_function)))
+    };
+    let middle = |(_, (left, right)): &(&Term, (f64, f64))| left + right;
+    [
+        terms().min_by(|a, b| middle(a).total_cmp(&middle(b))),
+        terms().max_by(|a, b| middle(a).total_cmp(&middle(b))),
+    ]
+}
+
+/// The value of an output where only rules for one of its terms fire.
+fn alone(model: &Model, output: &Output, term: &Term) -> Option<f64> {
+    let always = MembershipFunction::Constant { value: 1.0 };
+    let mut only = output.clone();
+    only.variable.terms = Vec::from([term.clone()]);
+    let name = &output.variable.name;
+    let model = Model::builder("alone")
+        .operators(model.operators_of_output(output))
+        .input(Variable::new("a condition", 0.0, 1.0).term("that holds", always))
+        .output(only)
+        .rule(Rule::new(
+            Condition::is("a condition", "that holds"),
+            name,
+            &term.name,
+        ))
+        .build();
+    let outcomes = Engine::new(&model).ok()?.evaluate(&[0.5]).ok()?;
+    outcomes.first()?.value()
+}
+
+/// What to write so that an output reaches these terms.
+pub(super) fn remedies(model: &Model, output: &Output, unreached: &[Unreached]) -> String {
+    let Output {
+        variable,
+        defuzzifier,
+        ..
+    } = output;
+    let method = match defuzzifier {
+        crate::model::Defuzzifier::Bisector => "bisector",
+        _ => "centroid",
+    };
+    let range = widened(model, output, unreached).map(|[low, high]| {
+        let range = format!("range: [{}, {}]", shown(low), shown(high));
+        match variable.partition_peaks() {
+            // As a list, the terms would move with the range.
+            Some(peaks) => {
+                let peaks = listed(variable, &peaks, |peak| shown(peak));
+                format!("`{range}` with `partition: {peaks}`, or ")
+            }
+            None => format!("`{range}`, or "),
+        }
+    });
+    let peaks: Vec<f64> = variable
+        .terms
+        .iter()
+        .map(|term| {
+            let (first, last) = variable.plateau(&term.membership_function);
+            let told = unreached.iter().find(|one| one.term == term.name);
+            told.map_or((first + last) / 2.0, |one| one.peak)
+        })
+        .collect();
+    let numbers = listed(variable, &peaks, |peak| {
+        format!("{{constant: {}}}", shown(peak))
+    });
+    format!(
+        "the {method} of a term lies inside the term: write {}numbers, `terms: {numbers}` with `defuzzifier: weighted_average`",
+        range.as_deref().unwrap_or_default()
+    )
+}
+
+/// The terms of a variable with something written for each.
+fn listed(variable: &Variable, numbers: &[f64], write: impl Fn(f64) -> String) -> String {
+    /// More than this is not read in a message.
+    const MOST: usize = 10;
+    let terms = variable.terms.iter().zip(numbers).take(MOST);
+    let terms = terms.map(|(term, number)| {
+        let name = match is_plain_name(&term.name) {
+            true => term.name.clone(),
+            false => format!("{:?}", term.name),
+        };
+        format!("{name}: {}", write(*number))
+    });
+    let mut terms: Vec<String> = terms.collect();
+    if variable.terms.len() > MOST {
+        terms.push("...".to_string());
+    }
+    format!("{{{}}}", terms.join(", "))
+}
+
+/// A range in which each of the terms alone gives its peak; `None` where no range up to three times as wide does.
+fn widened(model: &Model, output: &Output, unreached: &[Unreached]) -> Option<[f64; 2]> {
+    let [low, high] = [output.variable.low, output.variable.high];
+    let mut range = [low, high];
+    for one in unreached {
+        let term = output.variable.terms.iter().find(|t| t.name == one.term)?;
+        let is_below = one.peak < one.alone;
+        let by = |more: f64| match is_below {
+            true => [low - more, high],
+            false => [low, high + more],
+        };
+        // How far the value is still inside of the peak.
+        let short = |more: f64| {
+            let mut wider = output.clone();
+            [wider.variable.low, wider.variable.high] = by(more);
+            let value = alone(model, &wider, term)?;
+            Some(if is_below {
+                value - one.peak
+            } else {
+                one.peak - value
+            })
+        };
+        let (mut less, mut more) = (0.0, high - low);
+        if short(more)? > NEAR * 0.1 * (high - low) {
+            return None;
+        }
+        for _ in 0..40 {
+            let middle = (less + more) / 2.0;
+            match short(middle)? > 0.0 {
+                true => less = middle,
+                false => more = middle,
+            }
+        }
+        // Rounded down: a value beyond the peak is beyond what the author wanted.
+        let digits = libm::pow(10.0, libm::floor(libm::log10(less)) - 2.0);
+        let [left, right] = by(libm::floor(less / digits) * digits);
+        range = [range[0].min(left), range[1].max(right)];
+    }
+    Some(range)
+}
