@@ -1,5 +1,6 @@
 //! What is told of a rule set, as documents for programs.
 
+use flagred::check::Alone;
 use fuzzy::{check, diagnostic::Diagnostic, engine, model::Step};
 use serde::Serialize;
 
@@ -20,6 +21,9 @@ pub struct Checked<'a> {
     provenance: &'a [Step],
     findings: &'a [Diagnostic],
     report: Option<&'a check::Report>,
+    /// What each input of a profile reaches alone; absent of a rule set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    alone: Option<&'a [Alone]>,
 }
 
 impl<'a> Checked<'a> {
@@ -33,7 +37,8 @@ impl<'a> Checked<'a> {
             model: model.map(|model| model.name.as_str()),
             provenance: model.map_or(&[], |model| &model.provenance),
             report: examined.analysed.as_ref().map(|(_, report)| report),
-            ..Checked::profile(file, None, &examined.findings.0)
+            alone: None,
+            ..Checked::profile(file, None, &examined.findings.0, &[])
         }
     }
 
@@ -42,6 +47,7 @@ impl<'a> Checked<'a> {
         file: &'a str,
         name: Option<&'a str>,
         findings: &'a [Diagnostic],
+        alone: &'a [Alone],
     ) -> Checked<'a> {
         Checked {
             schema: "flagred.check/1",
@@ -51,6 +57,7 @@ impl<'a> Checked<'a> {
             provenance: &[],
             findings,
             report: None,
+            alone: Some(alone),
         }
     }
 }

@@ -2,7 +2,11 @@
 
 use std::cell::OnceCell;
 
-use flagred::{loaded, profile::Profile};
+use flagred::{
+    check::{Alone, alone},
+    loaded,
+    profile::Profile,
+};
 use fuzzy::{
     Model, check,
     diagnostic::{Diagnostic, Findings},
@@ -69,6 +73,14 @@ impl Document {
                 |examined| examined.findings,
             ),
         })
+    }
+
+    /// What each input of a profile reaches alone; nothing of a rule set and of a profile with errors.
+    pub fn alone(&self) -> Vec<Alone> {
+        let rules = self.profile.as_ref().and_then(|p| p.rules_text.as_deref());
+        let rules = rules.and_then(|text| fuzzy::yaml::parse(text).ok());
+        let estimator = rules.and_then(|rules| loaded::fit(&self.text, &rules.model).1);
+        estimator.as_ref().map(alone).unwrap_or_default()
     }
 
     /// Whether it is a profile.

@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-battery`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 

@@ -8,11 +8,15 @@ use std::{
 };
 
 use authoring::{Examined, answers::Checked, is_profile, provenance};
-use flagred::profile::Profile;
+use flagred::{
+    check::{Alone, alone},
+    profile::Profile,
+    verdict::Level,
+};
 use fuzzy::{
     check,
     diagnostic::{Findings, Severity},
-    drawing::visible,
+    drawing::{number, visible},
 };
 
 use self::format::{Format, Sarif, write_github};
@@ -83,9 +87,9 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
         let text = read_text(path)?;
         let file = path.display().to_string();
         let (profile, examined) = if is_profile(&text) {
-            let (name, findings) = examine_profile(path, &text)?;
+            let (name, findings, alone) = examine_profile(path, &text)?;
             let analysed = None;
-            (Some(name), Examined { findings, analysed })
+            (Some((name, alone)), Examined { findings, analysed })
         } else {
             (None, examine(&text, arguments)?)
         };
@@ -106,11 +110,16 @@ fn check_all(arguments: &Arguments, worst_allowed: Option<Severity>) -> Result<E
                     let made = visible(&provenance::words(step)).to_string();
                     writeln!(out, "{}: made by {made}", visible(&file))?;
                 }
+                if let Some((_, alone)) = &profile {
+                    write_alone(&mut out, &file, alone)?;
+                }
                 writeln!(out, "{}: {}", visible(&file), summary(findings))?;
             }
             Format::Json => {
                 let json = match &profile {
-                    Some(name) => Checked::profile(&file, name.as_deref(), &findings.0),
+                    Some((name, alone)) => {
+                        Checked::profile(&file, name.as_deref(), &findings.0, alone)
+                    }
                     None => Checked::rules(&file, &examined),
                 };
                 serde_json::to_writer_pretty(&mut out, &json).map_err(std::io::Error::from)?;
@@ -143,17 +152,56 @@ fn examine(text: &str, arguments: &Arguments) -> Result<Examined, Failure> {
     })
 }
 
-/// The name of a profile, and all findings about it and the rule set that it names. A rule set with errors is refused:
-/// they are in another file.
-fn examine_profile(path: &Path, text: &str) -> Result<(Option<String>, Findings), Failure> {
+/// The name of a profile, all findings about it and the rule set that it names, and what its inputs reach alone. A rule set with
+/// errors is refused: they are in another file.
+fn examine_profile(
+    path: &Path,
+    text: &str,
+) -> Result<(Option<String>, Findings, Vec<Alone>), Failure> {
     let profile = match text.parse::<Profile>() {
         Ok(profile) => profile,
-        Err(findings) => return Ok((None, findings)),
+        Err(findings) => return Ok((None, findings, Vec::new())),
     };
     let folder = (path != Path::new("-")).then(|| path.parent()).flatten();
     let (model, _) = profile::model(&profile, folder)?;
-    let (findings, _) = profile::examine(text, &model);
-    Ok((Some(profile.name), findings))
+    let (findings, estimator) = profile::examine(text, &model);
+    let alone = estimator.as_ref().map(alone).unwrap_or_default();
+    Ok((Some(profile.name), findings, alone))
+}
+
+/// A line for each input: `battery  0 (empty)  battery_risk 95 %, FAIL`.
+fn write_alone(out: &mut impl Write, file: &str, alone: &[Alone]) -> Result<(), Failure> {
+    if alone.is_empty() {
+        return Ok(());
+    }
+    let file = visible(file);
+    writeln!(
+        out,
+        "{file}: the highest risk of each input while all others are calm:"
+    )?;
+    let rows: Vec<[String; 3]> = alone.iter().map(row).collect();
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        cells.max().unwrap_or(0)
+    };
+    let (first, second) = (width(0), width(1));
+    for [input, value, risk] in &rows {
+        writeln!(out, "  {input:<first$}  {value:<second$}  {risk}")?;
+    }
+    Ok(())
+}
+
+fn row(one: &Alone) -> [String; 3] {
+    let value = number(one.value, 4);
+    let value = match &one.term {
+        Some(term) => format!("{value} ({})", visible(term)),
+        None => value,
+    };
+    let mut risk = format!("{} {:.0} %", visible(&one.risk), one.risk_pct);
+    if one.level > Level::Good {
+        risk += &format!(", {}", one.level);
+    }
+    [visible(&one.input).to_string(), value, risk]
 }
 
 fn summary(findings: &Findings) -> String {

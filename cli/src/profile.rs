@@ -62,7 +62,7 @@ fn read_profile(profile: &str, path: &Path) -> Result<String, Failure> {
 /// The text of a file that may be the misspelt name of a shipped profile.
 pub(crate) fn file_text(path: &Path) -> Result<String, Failure> {
     read_text(path).map_err(|failure| {
-        let names = shipped::profile_names().join(" and ");
+        let names = shipped::profile_names().join(", ");
         failure.help(format!("shipped profiles are {names}"))
     })
 }

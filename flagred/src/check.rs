@@ -22,6 +22,10 @@ use crate::{
     verdict::{LevelSettings, Threshold},
 };
 
+mod alone;
+
+pub use alone::{Alone, alone};
+
 /// The least share of an input's range that the values of its signal have to cover.
 const LEAST_SHARE: f64 = 0.02;
 
@@ -71,6 +75,35 @@ pub fn profile(
     let is_usable = found.iter().all(|one| one.severity < Severity::Error);
     let estimator = estimator.filter(|_| is_usable);
     (Findings::locate(found, text), estimator)
+}
+
+/// Warnings about the inputs of signals beside the motors that raise no level alone: what rules say about them is outvoted by the
+/// other inputs, however bad their values are.
+///
+/// These are for the author of a profile; [`profile`] has those for everybody who uses it.
+///
+/// # Example: a battery as one more vote
+/// ```
+/// use flagred::{check, profile::Profile, shipped};
+///
+/// let rules = shipped::RULE_SETS[0].text;
+/// let rules = rules
+///     .replace("inputs:", "inputs:\n  battery: {range: [0, 100], partition: {empty: 20, ok: 35}}")
+///     .replace("rules:\n", "rules:\n  - IF battery IS empty THEN risk IS very_high\n");
+/// let text = shipped::PROFILES[0].text;
+/// let text = text.replace("inputs:", "inputs:\n  battery: {last: battery_remaining_pct}");
+/// let (fits, estimator) = check::profile(&text, &rules.parse()?, &[]);
+/// assert!(fits.0.is_empty());
+/// let found = check::outvoted(&text, &estimator.ok_or("errors")?);
+/// assert!(found.0[0].message.starts_with("`battery` cannot raise a warning alone"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn outvoted(text: &str, estimator: &Estimator) -> Findings {
+    let found = match yaml::read(text) {
+        Ok(tree) => alone::outvoted(estimator, &Places(&tree)),
+        Err(_) => Vec::new(),
+    };
+    Findings::locate(found, text)
 }
 
 /// The values of a document by their keys.

@@ -139,7 +139,7 @@ fn finish<E>(
     (profile_text, folder): (String, Option<&Path>),
     (model, rules_text): (Model, String),
 ) -> Result<Loaded, LoadError<E>> {
-    let (findings, estimator) = examine(&profile_text, &model);
+    let (findings, estimator) = fit(&profile_text, &model);
     let Some(estimator) = estimator else {
         return Err(LoadError::Findings {
             file: name.to_owned(),
@@ -157,8 +157,19 @@ fn finish<E>(
     })
 }
 
-/// The findings about the text of a profile and the rule set that it names.
+/// The findings about the text of a profile and the rule set that it names, for the author: [`fit`] and
+/// [`check::outvoted`].
 pub fn examine(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
+    let (mut findings, estimator) = fit(profile_text, model);
+    if let Some(estimator) = &estimator {
+        let outvoted = check::outvoted(profile_text, estimator);
+        findings.0.extend(outvoted.0);
+    }
+    (findings, estimator)
+}
+
+/// The findings of [`check::profile`] with the signals that logs carry.
+pub fn fit(profile_text: &str, model: &Model) -> (Findings, Option<Estimator>) {
     let known = flightlog::known_signals();
     let signals: Vec<(&str, &str)> = known.iter().map(|s| (s.name, s.unit)).collect();
     check::profile(profile_text, model, &signals)

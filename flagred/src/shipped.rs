@@ -20,7 +20,7 @@ pub struct Shipped {
 }
 
 /// The rule sets.
-pub const RULE_SETS: [Shipped; 2] = [
+pub const RULE_SETS: [Shipped; 3] = [
     Shipped {
         name: "flagred",
         file: "flagred.yaml",
@@ -31,10 +31,15 @@ pub const RULE_SETS: [Shipped; 2] = [
         file: "flagred-paper.yaml",
         text: include_str!("../rules/flagred-paper.yaml"),
     },
+    Shipped {
+        name: "flagred-battery",
+        file: "flagred-battery.yaml",
+        text: include_str!("../rules/flagred-battery.yaml"),
+    },
 ];
 
 /// The profiles; the first is the default.
-pub const PROFILES: [Shipped; 2] = [
+pub const PROFILES: [Shipped; 3] = [
     Shipped {
         name: "flagred",
         file: "profiles/multirotor.yaml",
@@ -44,6 +49,11 @@ pub const PROFILES: [Shipped; 2] = [
         name: "flagred-paper",
         file: "profiles/flagred-paper.yaml",
         text: include_str!("../rules/profiles/flagred-paper.yaml"),
+    },
+    Shipped {
+        name: "flagred-battery",
+        file: "profiles/flagred-battery.yaml",
+        text: include_str!("../rules/profiles/flagred-battery.yaml"),
     },
 ];
 
@@ -63,6 +73,17 @@ pub fn flagred_paper() -> Estimator {
     valid(Estimator::new(&profile(1), &flagred_paper_rules()))
 }
 
+/// The default profile with the battery level as a risk of its own, compiled.
+///
+/// # Example
+/// ```
+/// let estimator = flagred::shipped::flagred_battery();
+/// assert_eq!(estimator.others()[0].profile().output, "battery_risk");
+/// ```
+pub fn flagred_battery() -> Estimator {
+    valid(Estimator::new(&profile(2), &flagred_battery_rules()))
+}
+
 /// The rule set of [`flagred`].
 pub fn flagred_rules() -> Model {
     rule_set(0)
@@ -76,6 +97,11 @@ pub fn flagred_rules() -> Model {
 /// ```
 pub fn flagred_paper_rules() -> Model {
     rule_set(1)
+}
+
+/// The rule set of [`flagred_battery`].
+pub fn flagred_battery_rules() -> Model {
+    rule_set(2)
 }
 
 /// The names of the shipped profiles, for messages.
@@ -102,17 +128,60 @@ mod tests {
 
     #[test]
     fn every_shipped_file_is_valid_and_goes_by_its_name() {
-        for (shipped, estimator) in PROFILES.iter().zip([flagred(), flagred_paper()]) {
+        for (shipped, estimator) in
+            PROFILES
+                .iter()
+                .zip([flagred(), flagred_paper(), flagred_battery()])
+        {
             assert_eq!(estimator.profile().name, shipped.name);
         }
-        for (shipped, model) in RULE_SETS
-            .iter()
-            .zip([flagred_rules(), flagred_paper_rules()])
-        {
+        for (shipped, model) in RULE_SETS.iter().zip([
+            flagred_rules(),
+            flagred_paper_rules(),
+            flagred_battery_rules(),
+        ]) {
             assert_eq!(model.name, shipped.name);
         }
         for (i, shipped) in PROFILES.iter().enumerate() {
             assert_eq!(profile(i).rules, shipped.name);
         }
+    }
+
+    /// What `scripts/learn-flagred` learns anew has to be taken over.
+    #[test]
+    fn the_battery_adds_to_the_default_and_changes_nothing_of_it() {
+        let mut rules = flagred_battery_rules();
+        let default = flagred_rules();
+        rules.inputs.retain(|input| input.name != "battery");
+        rules
+            .outputs
+            .retain(|output| output.variable.name != "battery_risk");
+        rules
+            .rules
+            .retain(|rule| rule.rule.consequents[0].output.text != "battery_risk");
+        assert_eq!(rules.inputs, default.inputs);
+        assert_eq!(rules.outputs, default.outputs);
+        assert_eq!(rules.operators, default.operators);
+        let written = |model: &Model| -> Vec<_> {
+            let rules = model.rules.iter();
+            rules
+                .map(|rule| (rule.rule.to_string(), rule.support))
+                .collect()
+        };
+        assert_eq!(written(&rules), written(&default));
+
+        let mut profile = profile(2);
+        profile.inputs.retain(|input| input.name != "battery");
+        profile.other_risks.clear();
+        let default = self::profile(0);
+        assert_eq!(
+            profile,
+            Profile {
+                name: profile.name.clone(),
+                description: profile.description.clone(),
+                rules: profile.rules.clone(),
+                ..default
+            }
+        );
     }
 }

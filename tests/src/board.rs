@@ -13,14 +13,11 @@ use flightlog::{Flight, Options};
 
 use crate::shared_data;
 
-/// The command-line arguments of the project's profiles.
+/// The command-line arguments of profiles that fly on board: the shipped ones of one risk, and one with a signal.
 pub const PROFILES: [&str; 3] = [
     "flagred",
     "flagred-paper",
-    concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../rules/profiles/flagred-battery.yaml"
-    ),
+    concat!(env!("CARGO_MANIFEST_DIR"), "/battery/flagred-battery.yaml"),
 ];
 
 /// The estimator of one of [`PROFILES`].
@@ -37,8 +34,15 @@ pub fn estimator(profile: &str) -> Estimator {
     let (profile, rules) = match profile {
         "flagred" => ("profiles/multirotor.yaml", "flagred.yaml"),
         "flagred-paper" => ("profiles/flagred-paper.yaml", "flagred-paper.yaml"),
-        _ => ("profiles/flagred-battery.yaml", "flagred-battery.yaml"),
+        _ => (
+            concat!(env!("CARGO_MANIFEST_DIR"), "/battery/flagred-battery.yaml"),
+            concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/battery/flagred-battery-rules.yaml"
+            ),
+        ),
     };
+    // An absolute path stands for itself.
     let read = |file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
     let profile = read(profile).parse::<Profile>().unwrap();
     let rules = read(rules);

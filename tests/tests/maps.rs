@@ -27,20 +27,21 @@ fn a_picture_of_every_rule_set() {
         // A picture has two axes; the other inputs are held.
         // The rules to fly with are decided near the lower ends of their inputs.
         let (points, held): (usize, &[(&str, f64)]) = match model.name.as_str() {
-            "flagred" => (
+            "flagred" | "flagred-battery" => (
                 201,
                 &[
                     ("load", 0.5),
                     ("at_limit", 0.0),
                     ("throttle_activity", 0.25),
                     ("spread", 0.25),
+                    ("battery", 50.0),
                 ],
             ),
-            "flagred-battery" => (51, &[("battery", 50.0)]),
             _ => (51, &[]),
         };
         let mut grid = Grid::new(&engine, 2).unwrap();
-        for (name, value) in held {
+        let is_input = |name: &str| model.inputs.iter().any(|input| input.name == name);
+        for (name, value) in held.iter().filter(|(name, _)| is_input(name)) {
             grid = grid.fix(name, *value).unwrap();
         }
         for input in &model.inputs {

@@ -56,7 +56,11 @@ fn the_shipped_profiles_and_the_template_have_no_findings() {
     let mine = folder.file("mine.yaml", template());
     for profile in shipped().iter().chain([&mine]) {
         let (code, told, _) = run(&["check", "--deny", "notes", profile]);
-        assert_eq!((code, told), (Some(0), format!("{profile}: no findings\n")));
+        assert_eq!(code, Some(0), "{told}");
+        assert!(
+            told.ends_with(&format!("{profile}: no findings\n")),
+            "{told}"
+        );
     }
     let (_, text, _) = run(&["check", "--json", &mine]);
     let document: Value = serde_json::from_str(&text).unwrap();
@@ -200,4 +204,135 @@ fn the_page_lists_every_signal() {
         );
         assert!(page.contains(&line), "{line}");
     }
+}
+
+/// A hover of 60 s at 25 Hz, with what is left in the battery at each time.
+fn hover(battery: impl Fn(f64) -> Option<f64>) -> String {
+    let mut rows = String::from("t_s,motor1,motor2,motor3,motor4,in_air,battery_remaining_pct\n");
+    for i in 0..1500 {
+        let t_s = f64::from(i) * 0.04;
+        let swing = 0.001 * (7.0 * t_s).sin();
+        let [a, b] = [0.5 + swing, 0.5 - swing];
+        let battery = battery(t_s).map_or(String::new(), |level| level.to_string());
+        rows += &format!("{t_s:.2},{a:.4},{b:.4},{a:.4},{b:.4},1,{battery}\n");
+    }
+    rows
+}
+
+#[test]
+fn an_empty_battery_decides_with_the_shipped_profile() {
+    let folder = Folder::new();
+    let assess = |battery: &dyn Fn(f64) -> Option<f64>| {
+        let log = folder.file("hover.csv", hover(battery));
+        let (code, told, errors) = run(&["assess", "--profile", "flagred-battery", &log]);
+        assert_eq!(errors, "");
+        (code, told)
+    };
+    for (level, code, verdict) in [
+        (100.0, 0, "GOOD"),
+        (25.0, 0, "GOOD"),
+        (15.5, 1, "WARN"),
+        (10.0, 1, "FAIL"),
+        (0.0, 1, "FAIL"),
+    ] {
+        let (found, told) = assess(&|_| Some(level));
+        assert_eq!(found, Some(code), "{level}: {told}");
+        assert!(told.starts_with(verdict), "{level}: {told}");
+        if verdict != "GOOD" {
+            assert!(told.contains("battery_risk"), "{told}");
+        }
+    }
+    // It runs out on the way.
+    let (_, told) = assess(&|t_s| Some((80.0 - 2.0 * t_s).max(0.0)));
+    assert!(
+        told.starts_with("FAIL") && told.contains("battery low"),
+        "{told}"
+    );
+    // Unknown is never GOOD.
+    for known_s in [0.0, 20.0] {
+        let (code, told) = assess(&|t_s| (t_s < known_s).then_some(80.0));
+        assert_eq!(code, Some(3), "{told}");
+        assert!(told.starts_with("NA"), "{told}");
+    }
+    let log = folder.file(
+        "without.csv",
+        hover(|_| Some(1.0)).replace("battery_remaining_pct", "x"),
+    );
+    let (code, told, _) = run(&["assess", "--profile", "flagred-battery", &log]);
+    assert_eq!(code, Some(3));
+    assert!(
+        told.contains("needs the signal `battery_remaining_pct`"),
+        "{told}"
+    );
+    // On board there is one risk.
+    for language in ["--rust", "--c", "--lua"] {
+        let (code, out, told) = run(&["export", language, "flagred-battery"]);
+        assert_eq!((code, out.as_str()), (Some(3), ""), "{language}");
+        assert!(told.contains("`risk` and `battery_risk`"), "{told}");
+        assert!(told.contains("write a profile for each risk"), "{told}");
+    }
+}
+
+/// A battery as one more vote of the default rules.
+fn voting(folder: &Folder, rule: &str) -> String {
+    let read = |file: &str| fs::read_to_string(format!("{ROOT}/rules/{file}")).unwrap();
+    let input =
+        "inputs:\n  battery: {unit: \"%\", range: [0, 100], partition: {empty: 20, ok: 35}}\n";
+    let rules = read("flagred.yaml").replacen("inputs:\n", input, 1);
+    let rules = rules.replacen("\nrules:\n", &format!("\nrules:\n  - {rule}\n"), 1);
+    folder.file("rules.yaml", rules);
+    let profile = read("profiles/multirotor.yaml");
+    let profile = profile.replacen("rules: flagred ", "rules: rules.yaml ", 1);
+    let input = "inputs:\n  battery: {last: battery_remaining_pct}\n";
+    folder.file("mine.yaml", profile.replacen("inputs:\n", input, 1))
+}
+
+#[test]
+fn an_input_that_is_outvoted_is_a_warning_of_check() {
+    let folder = Folder::new();
+    let profile = voting(&folder, "IF battery IS empty THEN risk IS very_high");
+    let (code, told, _) = run(&["check", &profile]);
+    assert_eq!(code, Some(0));
+    let told = told.replace(&profile, "mine.yaml");
+    insta::assert_snapshot!(told);
+    let (code, text, _) = run(&["check", "--deny", "warnings", "--json", &profile]);
+    assert_eq!(code, Some(1));
+    let document: Value = serde_json::from_str(&text).unwrap();
+    let errors = schema::errors(&schema::schema("check"), &document);
+    assert_eq!(errors, Vec::<String>::new());
+    let battery = &document["alone"][0];
+    assert_eq!(
+        (&battery["input"], &battery["term"]),
+        (&"battery".into(), &"empty".into())
+    );
+    // It is true: an empty battery is GOOD.
+    let log = folder.file("hover.csv", hover(|_| Some(0.0)));
+    let (code, told, errors) = run(&["assess", "--profile", &profile, &log]);
+    assert_eq!((code, errors.as_str()), (Some(0), ""), "{told}");
+    assert!(told.starts_with("GOOD"), "{told}");
+    let highest = battery["risk_pct"].as_f64().unwrap();
+    let said = told
+        .split("highest ")
+        .nth(1)
+        .unwrap()
+        .split(' ')
+        .next()
+        .unwrap();
+    assert!(
+        (highest - said.parse::<f64>().unwrap()).abs() < 2.0,
+        "{highest} {said}"
+    );
+
+    // A rule that every other one gives way to decides: `check` does not warn, and the flight fails.
+    let rules = fs::read_to_string(folder.at("rules.yaml")).unwrap();
+    let guarded = rules.replace(
+        "at_limit IS none THEN",
+        "at_limit IS none AND battery IS NOT empty THEN",
+    );
+    folder.file("rules.yaml", guarded);
+    let (code, told, _) = run(&["check", "--deny", "warnings", &profile]);
+    assert_eq!(code, Some(0), "{told}");
+    let (code, told, _) = run(&["assess", "--profile", &profile, &log]);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.starts_with("FAIL"), "{told}");
 }

@@ -55,7 +55,7 @@ impl Profile {
         match loaded {
             Ok(loaded) => Ok(Profile::new(name, loaded)),
             Err(LoadError::Read(error)) => {
-                let names = shipped::profile_names().join(" and ");
+                let names = shipped::profile_names().join(", ");
                 let help = format!("shipped profiles are {names}");
                 Err(os_error(py, &error, name, Some(&help))?)
             }
@@ -73,7 +73,7 @@ impl Profile {
     fn _of_texts(py: Python<'_>, file: &str, profile: String, rules: String) -> PyResult<Self> {
         let model: Result<Model, Findings> = rules.parse();
         let model = model.map_err(|findings| rule_set_error(py, &findings, file, &rules))?;
-        let (findings, estimator) = loaded::examine(&profile, &model);
+        let (findings, estimator) = loaded::fit(&profile, &model);
         let Some(estimator) = estimator else {
             return Err(rule_set_error(py, &findings, file, &profile));
         };

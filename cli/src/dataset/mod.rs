@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<String>,
 
-    /// Add the inputs of this profile: `flagred`, `flagred-paper`, or a file
+    /// Add the inputs of this profile: `flagred`, `flagred-battery`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE")]
     profile: Option<String>,
 

@@ -57,7 +57,7 @@ pub(crate) struct Arguments {
     /// Leave out what the format cannot say, and `samples` in Rust and C: values may be others
     #[arg(long, conflicts_with = "lua")]
     lossy: bool,
-    /// Profile: `flagred`, `flagred-paper`, or a file; but for Lua also a rule set in any format
+    /// Profile: `flagred`, `flagred-battery`, `flagred-paper`, or a file; but for Lua also a rule set in any format
     #[arg(value_name = "FILE", default_value = profile::DEFAULT)]
     file: String,
     /// The file to write; `-` is standard output

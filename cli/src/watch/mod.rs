@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["record", "send_anyway", "component"])]
     all: bool,
 
-    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-paper`, or a file
+    /// Profile (inputs, rule set, thresholds): `flagred`, `flagred-battery`, `flagred-paper`, or a file
     #[arg(long, value_name = "NAME|FILE", default_value = profile::DEFAULT)]
     profile: String,
 

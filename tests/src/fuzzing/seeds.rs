@@ -116,8 +116,8 @@ pub fn profiles() -> Vec<Vec<u8>> {
             rules_file!("flagred-paper.yaml"),
         ),
         pair(
-            rules_file!("profiles/flagred-battery.yaml"),
-            rules_file!("flagred-battery.yaml"),
+            include_str!("../../battery/flagred-battery.yaml"),
+            include_str!("../../battery/flagred-battery-rules.yaml"),
         ),
     ]
 }

@@ -105,7 +105,7 @@ impl Profile {
 fn shipped_text(name: &str) -> Result<String, JsError> {
     let found = PROFILES.iter().find(|known| known.name == name);
     found.map(|known| known.text.to_owned()).ok_or_else(|| {
-        let names = shipped::profile_names().join(" and ");
+        let names = shipped::profile_names().join(", ");
         let help = format!("shipped profiles are {names}");
         failure(format!("`{name}` is no shipped profile"), Some(&help))
     })

@@ -21,7 +21,13 @@ pub fn check_rules(text: &str, file: &str) -> Result<String, JsError> {
     if authoring::is_profile(text) {
         let document = text::document(text);
         let name = document.profile().map(|profile| profile.name.as_str());
-        return json(&Checked::profile(file, name, &document.findings().0));
+        let alone = document.alone();
+        return json(&Checked::profile(
+            file,
+            name,
+            &document.findings().0,
+            &alone,
+        ));
     }
     let examined = authoring::examine(text, &check::Options::default());
     let examined =
@@ -45,8 +51,8 @@ pub fn starting_points() -> Result<String, JsError> {
         about,
         text: text.to_owned(),
     };
-    let [rules, paper_rules] = &shipped::RULE_SETS;
-    let [profile, paper_profile] = &shipped::PROFILES;
+    let [rules, paper_rules, battery_rules] = &shipped::RULE_SETS;
+    let [profile, paper_profile, battery_profile] = &shipped::PROFILES;
     // A profile has the name of its rule set.
     let profile_name = |known: &shipped::Shipped| format!("profile-{}", known.name);
     json(&[
@@ -67,9 +73,9 @@ pub fn starting_points() -> Result<String, JsError> {
             paper_rules.text,
         ),
         start(
-            "flagred-battery".into(),
-            "the paper's rules and the battery",
-            include_str!("../../../../rules/flagred-battery.yaml"),
+            battery_rules.name.into(),
+            "the rule set to fly with, and the battery",
+            battery_rules.text,
         ),
         start(
             "my-profile".into(),
@@ -85,6 +91,11 @@ pub fn starting_points() -> Result<String, JsError> {
             profile_name(paper_profile),
             "the profile of the paper",
             paper_profile.text,
+        ),
+        start(
+            profile_name(battery_profile),
+            "the profile to fly with, and the battery",
+            battery_profile.text,
         ),
     ])
 }

@@ -1,0 +1,314 @@
+//! What each input of a profile reaches alone: the highest risk at its worst value, while all other inputs are calm.
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+
+use fuzzy::{
+    diagnostic::Diagnostic,
+    model::{MembershipFunction, Role, Variable},
+};
+
+use super::{Places, is_above, shown};
+use crate::{
+    estimator::{Estimator, Memory},
+    profile::{Profile, ProfileInput},
+    source::Signal,
+    verdict::{Level, Threshold},
+};
+
+/// The work of a search, in rules and terms evaluated: some tens of milliseconds.
+const MOST_STEPS: usize = 3_000_000;
+/// Even steps of an input's range, beside the places of its terms.
+const STEPS: u32 = 32;
+
+/// The highest risk that an input reaches alone.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Alone {
+    /// The input.
+    pub input: String,
+    /// The value at which the risk is highest.
+    pub value: f64,
+    /// The term that this value belongs to most; `None` where it belongs to none.
+    pub term: Option<String>,
+    /// The output that is the risk: of several, the one that raises the highest level.
+    pub risk: String,
+    /// That risk in %.
+    pub risk_pct: f64,
+    /// The level that the risk reaches if it stays.
+    pub level: Level,
+}
+
+/// The highest risk that each input reaches alone, in the order of the profile.
+///
+/// All inputs are calm where the risk is lowest. From there one input after the other takes the value with the highest risk, and
+/// the others those that lower this risk most. Inputs of which no value gives a risk are left out.
+///
+/// # Example
+/// ```
+/// use flagred::{check, shipped, verdict::Level};
+///
+/// let alone = check::alone(&shipped::flagred());
+/// let at_limit = alone.iter().find(|one| one.input == "at_limit").ok_or("no such input")?;
+/// assert_eq!((at_limit.term.as_deref(), at_limit.level), (Some("much"), Level::Fail));
+/// # Ok::<(), &str>(())
+/// ```
+pub fn alone(estimator: &Estimator) -> Vec<Alone> {
+    let mut worst: Vec<Option<Alone>> = Vec::new();
+    for risk in core::iter::once(estimator).chain(estimator.others()) {
+        let found = of_risk(risk);
+        worst.resize(found.len(), None);
+        for (worst, found) in worst.iter_mut().zip(found) {
+            let is_worse = |one: &Alone, known: &Alone| {
+                (one.level, one.risk_pct) > (known.level, known.risk_pct)
+            };
+            let (one, known) = (found.as_ref(), worst.as_ref());
+            if one.is_some_and(|one| known.is_none_or(|known| is_worse(one, known))) {
+                *worst = found;
+            }
+        }
+    }
+    worst.into_iter().flatten().collect()
+}
+
+/// A warning for each input of a signal beside the motors that raises no level alone.
+///
+/// The inputs from motor commands are symptoms of one cause and rise together, so that each of them may be one vote of many.
+/// Of what another signal measures, the motors need not show anything.
+pub(super) fn outvoted(estimator: &Estimator, at: &Places) -> Vec<Diagnostic> {
+    let profile = estimator.profile();
+    let alone = alone(estimator);
+    let is_other = |input: &&ProfileInput| {
+        matches!(
+            input.source.signal,
+            Signal::Named(_) | Signal::Difference { .. }
+        )
+    };
+    let others = profile.inputs.iter().filter(is_other);
+    let found = others.filter_map(|input| {
+        let one = alone.iter().find(|one| one.input == input.name)?;
+        (one.level < Level::Warn).then(|| {
+            let place = at.of(&["inputs", &input.name]);
+            Diagnostic::warning("outvoted", place, message(one, profile)).help(help(one))
+        })
+    });
+    found.collect()
+}
+
+fn message(one: &Alone, profile: &Profile) -> String {
+    let mut others = profile.other_risks.iter();
+    let other = others.find(|risk| risk.output == one.risk);
+    let warn = other.map_or(profile.verdict.warn, |risk| risk.warn);
+    let below = match warn.raise.risk_pct {
+        Some(limit) => format!("below `warn` at {limit}"),
+        None => "and raises no level".to_string(),
+    };
+    format!(
+        "`{}` cannot raise a warning alone: {} gives `{}` {} % while all other inputs are calm, {below}",
+        one.input,
+        at(one),
+        one.risk,
+        shown(one.risk_pct)
+    )
+}
+
+/// `0 (empty)`
+fn at(one: &Alone) -> String {
+    let value = shown_value(one.value);
+    match &one.term {
+        Some(term) => format!("{value} (`{term}`)"),
+        None => value,
+    }
+}
+
+fn help(one: &Alone) -> String {
+    let term = one.term.as_deref().unwrap_or("TERM");
+    format!(
+        "rules are votes, and the other inputs outvote it: let rules with `{input} IS {term}` conclude an output of its own, such as `{input}_risk`, and name that output in `other_risks`",
+        input = one.input
+    )
+}
+
+/// At most four digits.
+fn shown_value(x: f64) -> String {
+    let digits: f64 = format!("{x:.3e}").parse().unwrap_or(x);
+    format!("{digits}")
+}
+
+/// Of one risk: for each input of the profile the highest.
+fn of_risk(estimator: &Estimator) -> Vec<Option<Alone>> {
+    let profile = estimator.profile();
+    let model = estimator.model();
+    let variables = profile.inputs.iter().map(|input| {
+        let mut known = model.inputs.iter();
+        known.find(|variable| variable.name == input.name)
+    });
+    let variables: Vec<Option<&Variable>> = variables.collect();
+    let values: Vec<Vec<f64>> = variables
+        .iter()
+        .map(|variable| variable.map_or(Vec::new(), values))
+        .collect();
+    let mut search = Search::of(estimator);
+    let starts: [fn(&Variable) -> f64; 3] = [
+        |variable| variable.low,
+        |variable| variable.low / 2.0 + variable.high / 2.0,
+        |variable| variable.high,
+    ];
+    let start = |place: fn(&Variable) -> f64| -> Vec<f64> {
+        let places = variables.iter().map(|variable| variable.map_or(0.0, place));
+        places.collect()
+    };
+    let calm = starts.map(|place| search.lowest(start(place), &values, None));
+    let calm = calm
+        .into_iter()
+        .flatten()
+        .reduce(|a, b| if b.0 < a.0 { b } else { a });
+    let Some((_, calm)) = calm else {
+        return profile.inputs.iter().map(|_| None).collect();
+    };
+    let all = &values;
+    let inputs = values.iter().zip(&variables).enumerate();
+    let found = inputs.map(|(index, (values, variable))| {
+        let mut point = calm.clone();
+        let mut highest: Option<(f64, f64)> = None;
+        for &value in values {
+            *point.get_mut(index)? = value;
+            if let Some(risk) = search.risk(&point)
+                && highest.is_none_or(|(_, known)| risk > known)
+            {
+                highest = Some((value, risk));
+            }
+        }
+        let (value, _) = highest?;
+        *point.get_mut(index)? = value;
+        let (risk_pct, _) = search.lowest(point, all, Some(index))?;
+        Some(Alone {
+            input: profile.inputs.get(index)?.name.clone(),
+            value,
+            term: term(variable.as_ref()?, value),
+            risk: profile.output.clone(),
+            risk_pct,
+            level: level(profile, risk_pct),
+        })
+    });
+    found.collect()
+}
+
+struct Search<'e> {
+    estimator: &'e Estimator,
+    memory: Memory,
+    /// How many evaluations are left.
+    left: usize,
+}
+
+impl<'e> Search<'e> {
+    fn of(estimator: &'e Estimator) -> Search<'e> {
+        let model = estimator.model();
+        let terms: usize = model.inputs.iter().map(|input| input.terms.len()).sum();
+        let work = model.rules.len() + terms;
+        Search {
+            estimator,
+            memory: Memory::of(estimator),
+            left: (MOST_STEPS / work.max(1)).max(1000),
+        }
+    }
+
+    fn risk(&mut self, point: &[f64]) -> Option<f64> {
+        let estimate = self.estimator.estimate(point, &mut self.memory)?;
+        Some(estimate.risk_pct)
+    }
+
+    /// The lowest risk that is found by improving one input at a time, but for a fixed one, and where.
+    fn lowest(
+        &mut self,
+        start: Vec<f64>,
+        values: &[Vec<f64>],
+        fixed: Option<usize>,
+    ) -> Option<(f64, Vec<f64>)> {
+        let mut point = start;
+        let mut lowest = self.risk(&point);
+        loop {
+            let before = lowest;
+            let free = values.iter().enumerate();
+            for (index, values) in free.filter(|(index, _)| Some(*index) != fixed) {
+                let mut best = *point.get(index)?;
+                for &value in values {
+                    self.left = self.left.saturating_sub(1);
+                    if self.left == 0 {
+                        break;
+                    }
+                    *point.get_mut(index)? = value;
+                    if let Some(risk) = self.risk(&point)
+                        && lowest.is_none_or(|known| risk < known)
+                    {
+                        (lowest, best) = (Some(risk), value);
+                    }
+                }
+                *point.get_mut(index)? = best;
+            }
+            if lowest == before || self.left == 0 {
+                return Some((lowest?, point));
+            }
+        }
+    }
+}
+
+/// The values of an input that are tried: even steps of its range, and the places of its terms in it.
+fn values(variable: &Variable) -> Vec<f64> {
+    /// More places are thinned.
+    const MOST: usize = 200;
+    let (low, high) = (variable.low, variable.high);
+    let even = (0..=STEPS).map(|i| {
+        let part = f64::from(i) / f64::from(STEPS);
+        low * (1.0 - part) + high * part
+    });
+    let mut places: Vec<f64> = Vec::new();
+    for term in &variable.terms {
+        match &term.membership_function {
+            MembershipFunction::Piecewise { points } => {
+                places.extend(points.iter().map(|point| point.0));
+            }
+            shape => {
+                let parameters = shape.parameters().into_iter();
+                let positions = parameters.filter(|(_, role, _)| *role != Role::Positive);
+                places.extend(positions.map(|(_, _, x)| x));
+            }
+        }
+    }
+    places.retain(|x| (low..=high).contains(x));
+    let step = places.len().div_ceil(MOST).max(1);
+    let mut values: Vec<f64> = places.into_iter().step_by(step).chain(even).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
+/// The term to which a value belongs most.
+fn term(variable: &Variable, value: f64) -> Option<String> {
+    let terms = variable.terms.iter();
+    let degrees = terms.map(|term| (term.membership(value), &term.name));
+    let degrees = degrees.filter(|(degree, _)| *degree > 0.0);
+    let highest = degrees.reduce(|a, b| if b.0 > a.0 { b } else { a });
+    highest.map(|(_, name)| name.clone())
+}
+
+/// The level that a constant risk reaches: by itself, or because the elevated risk rises.
+fn level(profile: &Profile, risk_pct: f64) -> Level {
+    let elevated = &profile.elevated_risk;
+    let rises = elevated.rise_pct_per_s > 0.0 && risk_pct >= elevated.high_pct;
+    let is_reached = |threshold: &Threshold| {
+        let by_risk = threshold
+            .risk_pct
+            .is_some_and(|limit| !is_above(limit, risk_pct));
+        by_risk || (rises && threshold.elevated_risk_pct.is_some())
+    };
+    match &profile.verdict {
+        verdict if is_reached(&verdict.fail.raise) => Level::Fail,
+        verdict if is_reached(&verdict.warn.raise) => Level::Warn,
+        _ => Level::Good,
+    }
+}
