@@ -1,6 +1,7 @@
 use fuzzy::Model;
 
 use super::*;
+use crate::verdict::Level;
 
 const RULES: &str = "
 fuzzy: 1
@@ -53,7 +54,7 @@ fn a_profile_that_fits_its_rule_set_has_no_finding() {
     let (findings, estimator) = profile(PROFILE, &rules(RULES), &SIGNALS);
     assert_eq!(findings.0, []);
     assert!(estimator.is_some());
-    for (shipped, rules) in crate::shipped::PROFILES.iter().zip([0, 1]) {
+    for (shipped, rules) in crate::shipped::PROFILES.iter().zip([0, 1, 2]) {
         let model = self::rules(crate::shipped::RULE_SETS[rules].text);
         let (findings, estimator) = profile(shipped.text, &model, &SIGNALS);
         assert_eq!(findings.0, [], "{}", shipped.name);
@@ -154,4 +155,55 @@ fn the_levels_of_another_risk_are_checked_at_their_place() {
         ("out-of-reach", "95")
     );
     assert_eq!(estimator.unwrap().others().len(), 1);
+}
+
+/// The battery is one more vote of the default rules, or a risk of its own.
+#[test]
+fn an_input_beside_the_motors_that_raises_no_level_alone_is_outvoted() {
+    let rules = crate::shipped::RULE_SETS[0].text;
+    let input = "inputs:\n  battery: {range: [0, 100], partition: {empty: 20, ok: 35}}\n";
+    let rules = rules.replacen("inputs:\n", input, 1);
+    let text = crate::shipped::PROFILES[0].text;
+    let with =
+        |signal: &str| text.replacen("inputs:\n", &format!("inputs:\n  battery: {signal}\n"), 1);
+    let found = |rule: &str, signal: &str| {
+        let rules = rules.replacen("\nrules:\n", &format!("\nrules:\n  - {rule}\n"), 1);
+        let text = with(signal);
+        let (_, estimator) = profile(&text, &self::rules(&rules), &SIGNALS);
+        let estimator = estimator.unwrap();
+        let reached = alone(&estimator)
+            .into_iter()
+            .find(|one| one.input == "battery");
+        let told = outvoted(&text, &estimator).0;
+        (
+            reached.unwrap(),
+            told.iter()
+                .map(|one| text[one.span.clone()].to_string())
+                .collect::<Vec<_>>(),
+        )
+    };
+    let vote = "IF battery IS empty THEN risk IS very_high";
+    let (reached, told) = found(vote, "{last: battery_remaining_pct}");
+    // By hand: 95 against 0.5 * 5, 0.2 * 5, 0.35 * 5 and 0.7 * 25.
+    let expected = (95.0 + 22.75) / (1.0 + 1.75);
+    assert!((reached.risk_pct - expected).abs() < 1e-9, "{reached:?}");
+    assert_eq!(
+        (reached.value, reached.term.as_deref()),
+        (0.0, Some("empty"))
+    );
+    assert_eq!(
+        (reached.level, told),
+        (Level::Good, Vec::from(["battery".to_string()]))
+    );
+    // An input from the motors may be one vote of many.
+    assert_eq!(found(vote, "{mean: motor_command}").1, [] as [&str; 0]);
+
+    let shipped = crate::shipped::flagred_battery();
+    assert_eq!(outvoted(crate::shipped::PROFILES[2].text, &shipped).0, []);
+    let reached = alone(&shipped);
+    let battery = reached.iter().find(|one| one.input == "battery").unwrap();
+    assert_eq!(
+        (battery.risk.as_str(), battery.level, battery.risk_pct),
+        ("battery_risk", Level::Fail, 100.0)
+    );
 }
