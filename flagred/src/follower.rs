@@ -6,7 +6,7 @@ use crate::{
     channel::{self, Channel, Input, Seen, push, value},
     motor::{self, Bin, Motor},
     sample::{Estimate, Sample, Sampling, Unknown, Update},
-    verdict::{self, Alert, Ended, Finding, Level, Notices, VerdictSettings},
+    verdict::{self, Alert, Ended, Finding, Level, Notices, ROUNDING_S, VerdictSettings},
     window::Window,
 };
 
@@ -39,6 +39,8 @@ pub(crate) struct Follower {
     idle: Option<Idle>,
     last_high_s: Option<f64>,
     last_known_s: Option<f64>,
+    /// Since an alarm: when it was last unknown whether the motors work as before.
+    in_doubt_s: Option<f64>,
 }
 
 /// For less than this, in seconds, neither a land detector nor idle motors are a landing.
@@ -46,6 +48,16 @@ const TOUCH_S: f64 = 1.0;
 
 /// Motors that idle within this time after a high risk, in seconds, are no landing.
 const TROUBLE_S: f64 = 2.0;
+
+/// How a flight, or what is known of it, ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    Landing,
+    /// Samples are missing in the air.
+    Gap,
+    /// The clock goes back, or no more samples follow.
+    Restart,
+}
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Idle {
@@ -78,6 +90,7 @@ impl Follower {
             idle: None,
             last_high_s: None,
             last_known_s: None,
+            in_doubt_s: None,
         }
     }
 
@@ -96,8 +109,7 @@ impl Follower {
     ) -> Update {
         let before = self.level();
         let mut update = self.take(plan, room, sample, estimate);
-        let level = self.level();
-        update.change = (level != before).then_some(level);
+        update.change = update.level.filter(|level| *level != before);
         update
     }
 
@@ -119,7 +131,9 @@ impl Follower {
             }
             // A jump, forward (a lost link) or back (a restarted vehicle), resets the state.
             Some(last_s) if !(0.0..=longest_gap_s).contains(&(t_s - last_s)) => {
-                ended = self.forget(last_s, false, room);
+                let end = if t_s > last_s { End::Gap } else { End::Restart };
+                ended = self.forget(last_s, end, room);
+                self.in_doubt_s = self.in_doubt_s.map(|_| t_s);
                 0.0
             }
             Some(last_s) => t_s - last_s,
@@ -131,8 +145,12 @@ impl Follower {
             if self.in_air_since_s.is_some() {
                 let down_since_s = *self.down_since_s.get_or_insert(t_s);
                 if t_s - down_since_s >= TOUCH_S {
-                    ended = self.forget(down_since_s, true, room);
+                    ended = self.forget(down_since_s, End::Landing, room);
                 }
+            } else {
+                // It landed in a gap.
+                self.in_doubt_s = None;
+                motor::forget_trims(room.motors);
             }
             return self.unknown(t_s, Unknown::OnGround, ended);
         }
@@ -146,15 +164,16 @@ impl Follower {
         push(plan.0, room.seen, (t_s, held_s), &now);
         self.settle(t_s, in_air_since_s, room);
         if self.settled {
+            let is_calm = self.alert.level() == Level::Good && self.in_doubt_s.is_none();
             self.notices
-                .push((t_s, held_s), together.noise, room.motors);
+                .push((t_s, held_s), together.noise, room.motors, is_calm);
         }
         let said = match self.estimate(plan, room, estimate) {
             Ok(said) => said,
             Err(reason) => {
                 let known_s = self.last_known_s.unwrap_or(t_s);
                 if t_s - known_s > longest_gap_s {
-                    ended = self.stop_judging(known_s, false, room);
+                    ended = self.stop_judging(known_s, End::Gap, room);
                 }
                 return self.unknown(t_s, reason, ended);
             }
@@ -176,8 +195,10 @@ impl Follower {
             risk_pct: said.risk_pct,
             elevated_pct: elevated,
             takes_off,
+            sinks: self.notices.sinks(),
         };
         let step = self.alert.push(now, room.motors);
+        self.doubt(t_s);
         // Both at once cannot be: what was just forgotten takes a while to be raised again.
         ended[0] = step.ended.or(ended[0]);
         Update {
@@ -224,17 +245,29 @@ impl Follower {
         let Some(last_s) = self.last_s else {
             return Ended::default();
         };
-        let (end_s, landed) = match self.down_since_s {
-            Some(down_s) => (down_s, true),
-            None => (last_s, false),
-        };
-        self.forget(end_s, landed, room)
+        match self.down_since_s {
+            Some(down_s) => self.forget(down_s, End::Landing, room),
+            None => self.forget(last_s, End::Restart, room),
+        }
     }
 
-    /// The level of the risk, and of what is told beside it.
+    /// The level of the risk, and of the findings beside it. After an alarm it is WARN until the motors work as before.
     pub(crate) fn level(&self) -> Level {
         let noticed = self.notices.open().map_or(Level::Good, |f| f.level);
-        self.alert.level().max(noticed)
+        let doubted = self.in_doubt_s.map_or(Level::Good, |_| Level::Warn);
+        self.alert.level().max(noticed).max(doubted)
+    }
+
+    /// After an alarm the level is GOOD again when the motors have worked as before for as long as a level is held.
+    fn doubt(&mut self, t_s: f64) {
+        let is_alarm = self.alert.level() > Level::Good;
+        let clear_after_s = self.settings.verdict.clear_after_s;
+        let was_in_doubt = |doubt_s: f64| t_s - doubt_s < clear_after_s - ROUNDING_S;
+        if (is_alarm || self.in_doubt_s.is_some()) && !self.notices.is_back() {
+            self.in_doubt_s = Some(t_s);
+        } else if !is_alarm {
+            self.in_doubt_s = self.in_doubt_s.filter(|doubt_s| was_in_doubt(*doubt_s));
+        }
     }
 
     /// Whether the motors idle as they do on the ground: before take-off, and after a flight that was calm to its end.
@@ -247,7 +280,8 @@ impl Follower {
             return false;
         }
         let was_high = |high_s: f64| t_s - high_s <= TROUBLE_S;
-        let in_trouble = self.last_high_s.is_some_and(was_high);
+        let in_trouble =
+            self.last_high_s.is_some_and(was_high) || !self.notices.is_together(motors);
         let idle = *self.idle.get_or_insert(match in_trouble {
             true => Idle::InTrouble,
             false => Idle::Landing,
@@ -294,22 +328,23 @@ impl Follower {
         }
     }
 
-    /// What is known where the risk is not.
+    /// What is known where the risk is not: an alarm that stands, and never that all is good.
     fn unknown(&self, t_s: f64, reason: Unknown, ended: Ended) -> Update {
         let judging = self.in_air_since_s.is_some() && self.last_known_s.is_some();
+        let level = judging.then(|| self.level());
         Update {
             t_s,
             risk: Err(reason),
             elevated_risk_pct: None,
-            level: judging.then(|| self.level()),
+            level: level.filter(|level| *level > Level::Good),
             change: None,
             judged: false,
             ended,
         }
     }
 
-    /// Resets the state after a flight or a gap.
-    fn forget(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Ended {
+    /// Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
+    fn forget(&mut self, t_s: f64, end: End, room: &mut Room<'_>) -> Ended {
         for seen in room.seen.iter_mut() {
             seen.clear();
         }
@@ -320,16 +355,17 @@ impl Follower {
         self.down_since_s = None;
         self.idle = None;
         self.last_high_s = None;
-        let [noise, reserve, imbalance] = self.notices.end();
-        let [risk, ..] = self.stop_judging(t_s, landed, room);
-        motor::clear(room.motors);
-        [risk, noise, reserve, imbalance]
+        let [risk, ..] = self.stop_judging(t_s, end, room);
+        let [noise, reserve, balance] = self.notices.end();
+        motor::clear(room.motors, end == End::Gap);
+        [risk, noise, reserve, balance]
     }
 
-    fn stop_judging(&mut self, t_s: f64, landed: bool, room: &mut Room<'_>) -> Ended {
+    fn stop_judging(&mut self, t_s: f64, end: End, room: &mut Room<'_>) -> Ended {
+        self.in_doubt_s = (end == End::Gap && self.level() > Level::Good).then_some(t_s);
         self.sum.clear(room.risks);
         self.last_known_s = None;
-        let step = self.alert.end(t_s, landed);
+        let step = self.alert.end(t_s, end == End::Landing);
         [step.ended, None, None, None]
     }
 }

@@ -207,8 +207,10 @@ impl Monitor {
             self.ended_elsewhere
                 .extend(found.map(|found| OfRisk { risk, found }));
         }
-        let level = self.level();
-        update.change = (level != before).then_some(level);
+        if self.unknown_elsewhere.is_some() || update.risk.is_err() {
+            update.level = update.level.filter(|level| *level > Level::Good);
+        }
+        update.change = update.level.filter(|level| *level != before);
         update
     }
 

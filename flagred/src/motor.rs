@@ -34,9 +34,11 @@ pub struct Motor {
     /// The sum of its commands in this bin, and their mean in the bin before; NaN is unknown.
     bin_sum: f64,
     bin_before: f64,
-    /// How far it is from the mean of all motors, lately and as a trim.
+    /// How far its command is above the mean of all motors, lately and as a trim.
     pub(crate) difference: Average,
     pub(crate) trim: Average,
+    /// For how long its command has been 0, in seconds.
+    pub(crate) at_zero_s: f64,
     /// Its margins while a level was reached, since it was first.
     pub(crate) record: MotorRecord,
 }
@@ -77,6 +79,7 @@ impl Motor {
         bin_before: 0.0,
         difference: Average::NONE,
         trim: Average::NONE,
+        at_zero_s: 0.0,
         record: MotorRecord {
             samples: 0,
             mean_margin: 0.0,
@@ -94,6 +97,11 @@ impl Motor {
         record: MotorRecord::NONE,
         ..Motor::IDLE
     };
+
+    /// How far its command has moved from its trim, relative to the mean of all motors.
+    pub(crate) fn shift(&self) -> f64 {
+        self.difference.value - self.trim.value
+    }
 
     /// A motor at an effective command.
     #[cfg(test)]
@@ -160,22 +168,43 @@ fn opposite(factors: &[Factors], motor: usize) -> Option<usize> {
     nearest.map(|(opposite, _)| opposite)
 }
 
-/// Forgets the commands, and keeps the geometry.
-pub(crate) fn clear(motors: &mut [Motor]) {
+/// Values of the motors without the part that turns the nose.
+pub(crate) fn less_yaw(
+    motors: &[Motor],
+    value: impl Fn(&Motor) -> f64 + Copy,
+) -> impl Iterator<Item = f64> {
+    let yaw: f64 = motors.iter().map(|m| m.share[2] * value(m)).sum();
+    motors
+        .iter()
+        .map(move |motor| value(motor) - motor.yaw * yaw)
+}
+
+/// Forgets the commands, and keeps the geometry; within a flight also the trims.
+pub(crate) fn clear(motors: &mut [Motor], keeps_trims: bool) {
     for motor in motors {
         let Motor {
             yaw,
             share,
             opposite,
+            trim,
+            record,
             ..
         } = *motor;
         *motor = Motor {
             yaw,
             share,
             opposite,
-            record: motor.record,
+            trim: if keeps_trims { trim } else { Average::NONE },
+            record,
             ..Motor::UNKNOWN
         };
+    }
+}
+
+/// Forgets the trims: a new flight may begin.
+pub(crate) fn forget_trims(motors: &mut [Motor]) {
+    for motor in motors {
+        motor.trim = Average::NONE;
     }
 }
 

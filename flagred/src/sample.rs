@@ -24,9 +24,9 @@ pub struct Update {
     pub risk: Result<Estimate, Unknown>,
     /// The elevated risk in %; `None` where the risk is unknown.
     pub elevated_risk_pct: Option<f64>,
-    /// The level; `None` on the ground and where the risk has been unknown for long.
+    /// The level. Where the risk is unknown it is an alarm that stands, or `None`: never [`Level::Good`].
     pub level: Option<Level>,
-    /// The new level where this sample changed it.
+    /// The new level where this sample changed it and it is known.
     pub change: Option<Level>,
     /// Whether the risk counts for levels, findings and the summary of a flight: in the first seconds after take-off it
     /// does not. A landing takes back the last seconds before it.

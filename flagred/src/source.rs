@@ -197,7 +197,7 @@ impl Observer {
         for seen in &mut self.seen {
             seen.clear();
         }
-        clear(&mut self.motors);
+        clear(&mut self.motors, false);
         self.bin = Bin::NONE;
     }
 

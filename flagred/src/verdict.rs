@@ -6,10 +6,11 @@
 use crate::margin::Side;
 
 mod alert;
+mod balance;
 mod notices;
 
 pub use crate::{cause::Cause, motor::Motor};
-pub(crate) use alert::{Alert, Now};
+pub(crate) use alert::{Alert, Now, ROUNDING_S};
 pub(crate) use notices::Notices;
 
 /// How risky it is, or was.
@@ -59,10 +60,13 @@ pub enum Measure {
     CommandNoise,
     /// What the mean command leaves below the upper limit, in % of the range.
     Reserve,
-    /// How far a motor is from its own part of the thrust earlier in the flight, in % of the range.
+    /// How far motors are from their own part of the thrust earlier in the flight, in % of the range.
     Imbalance,
     /// How far a motor is from the one opposite, in % of the range.
     PairImbalance,
+    /// How far one motor alone is above its own part of the thrust earlier in the flight, in % of the range: it gives less
+    /// thrust than it is commanded.
+    WeakMotor,
 }
 
 impl core::fmt::Display for Measure {
@@ -74,6 +78,7 @@ impl core::fmt::Display for Measure {
             Measure::Reserve => "reserve",
             Measure::Imbalance => "imbalance",
             Measure::PairImbalance => "pair imbalance",
+            Measure::WeakMotor => "weak motor",
         })
     }
 }
@@ -170,8 +175,8 @@ pub struct NoticeSettings {
     pub noise: Option<Limit>,
     /// A mean command that leaves less than this below the upper limit.
     pub reserve: Option<Limit>,
-    /// A motor that moved farther than this from its own part of the thrust earlier in the flight, or is farther than twice
-    /// this from the motor opposite.
+    /// Motors that moved farther than this from their own part of the thrust earlier in the flight, or are farther than twice
+    /// this from the motor opposite; half of it where one motor alone moved up.
     pub imbalance: Option<Limit>,
 }
 
@@ -254,7 +259,13 @@ pub struct MotorFinding {
         serde(rename = "number", serialize_with = "from_one")
     )]
     pub motor: usize,
-    /// The limit it was nearest to.
+    /// The other one that it may be as well, where the commands do not tell which of the two.
+    #[cfg_attr(
+        feature = "serde",
+        serde(rename = "or_number", serialize_with = "optional_from_one")
+    )]
+    pub or: Option<usize>,
+    /// The limit it was nearest to. Out of balance: below or above its part.
     pub side: Side,
     /// Its mean margin.
     #[cfg_attr(feature = "serde", serde(rename = "margin_mean"))]
@@ -273,6 +284,14 @@ pub(crate) fn from_one<S: serde::Serializer>(
     serde::Serialize::serialize(&(index + 1), serializer)
 }
 
+#[cfg(feature = "serde")]
+fn optional_from_one<S: serde::Serializer>(
+    index: &Option<usize>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serde::Serialize::serialize(&index.map(|index| index + 1), serializer)
+}
+
 impl Finding {
     pub(crate) const NONE: Finding = Finding {
         level: Level::Good,
@@ -288,5 +307,5 @@ impl Finding {
     };
 }
 
-/// The findings that end at one time: of the risk, the noise, the reserve and the imbalance.
+/// The findings that end at one time: of the risk, the noise, the reserve and the balance.
 pub type Ended = [Option<Finding>; 4];

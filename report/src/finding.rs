@@ -122,7 +122,10 @@ impl<'a> Teller<'a> {
 
     /// What is wrong, its cause in the words of [`cause`], and what stands behind it.
     fn what(&self, finding: &Finding) -> String {
-        let mut text = format!("{} {:.0} %", quantity(finding), finding.peak_pct);
+        let mut text = match finding.measure {
+            Measure::WeakMotor => weak(finding, self.motors),
+            _ => format!("{} {:.0} %", quantity(finding), finding.peak_pct),
+        };
         // Its numbers are small: without the threshold 3 % reads like nothing.
         if finding.measure == Measure::ElevatedRisk {
             text += &format!(" (threshold {} %)", number(finding.threshold_pct, 2));
@@ -146,6 +149,10 @@ impl<'a> Teller<'a> {
                 finding.threshold_pct
             )),
             Measure::Imbalance => Some(format!("{side} its part earlier in the flight")),
+            Measure::WeakMotor => Some(
+                "above its part earlier in the flight: it gives less thrust than it is commanded"
+                    .to_owned(),
+            ),
             Measure::PairImbalance => Some(format!("{side} the motor opposite")),
         };
         let parts = [output.map(str::to_owned), behind];
@@ -181,15 +188,27 @@ impl<'a> Teller<'a> {
 /// Texts to ground stations, lines and reports all have these words. Where there is no room for the last part, the first one
 /// is true alone.
 pub fn cause(finding: &Finding, motors: &[Motor]) -> [String; 2] {
-    let motor = finding.motor.and_then(|named| motors.get(named.motor));
-    let motor = motor.map(|motor| format!(", motor {}", motor.number));
+    let motor = finding.motor.and_then(|named| {
+        let motor = motors.get(named.motor)?;
+        let or = named.or.and_then(|or| motors.get(or));
+        let or = or.map_or(String::new(), |or| format!(" or {}", or.number));
+        Some(format!(", motor {}{or}", motor.number))
+    });
     let motor = motor.unwrap_or_default();
     match (&finding.cause, finding.motor) {
+        _ if finding.measure == Measure::WeakMotor => [String::new(), String::new()],
         _ if !is_of_risk(finding) => [motor, String::new()],
         (None, _) => [", interpolated".to_owned(), String::new()],
         (Some(_), Some(named)) => [format!(", {} limit", limit(named.side)), motor],
         (Some(Cause { input, term, .. }), None) => [format!(", {input}"), format!(" {term}")],
     }
+}
+
+/// A motor that is weak, and by how much it is commanded more: `motor 3 weak: +24 %`.
+pub fn weak(finding: &Finding, motors: &[Motor]) -> String {
+    let motor = finding.motor.and_then(|named| motors.get(named.motor));
+    let number = motor.map_or(String::new(), |motor| format!(" {}", motor.number));
+    format!("motor{number} weak: +{:.0} %", finding.peak_pct)
 }
 
 /// What a finding is about, before its value.

@@ -14,7 +14,7 @@ local shared = {
   unpack = table.unpack, ipairs = ipairs, error = error, pcall = pcall, tonumber = tonumber, tostring = tostring,
   gcs = gcs, param = param, micros = micros, vehicle = vehicle, logger = logger, SRV_Channels = SRV_Channels,
 }
-local PARTS = {"motors", "setup", "geometry", "start", "windows", "rules", "inputs", "levels", "notices", "flight", "calls", "elevated", "words", "texts"}
+local PARTS = {"motors", "setup", "geometry", "start", "windows", "rules", "inputs", "levels", "notices", "balance", "flight", "calls", "elevated", "words", "texts"}
 local number, chunk = 1, nil -- of the next part; what is compiled of it
 local file, text, is_over = nil, "", false -- what is read but not compiled, and whether the part has ended
 
@@ -981,6 +981,7 @@ end
 local function watch_motors(risk, takes_off)
   local warns = not takes_off and is_reached(risk, warn_risk, 2.0)
   local fails = is_reached(risk, fail_risk, nil)
+  fails = fails and not sinks
   if not warns and not fails then
     return
   end
@@ -1004,18 +1005,33 @@ local function lower(until_risk, risk)
   return until_risk and risk and min(until_risk, risk) or until_risk
 end
 
+doubt_us = nil -- since an alarm: for how long the motors have worked as before
+
+-- After an alarm the level is GOOD again when the motors have worked as before for as long as a level is held.
+local function doubt()
+  local is_back = true
+  is_back = works_as_before()
+  if (risk_level > 0 or doubt_us) and not is_back then
+    doubt_us = 0
+  elseif risk_level == 0 and doubt_us and doubt_us >= 10000000 then
+    doubt_us = nil
+  end
+end
+
 function judge(risk, takes_off)
   watch_motors(risk, takes_off)
-  local held = 0
+  local held, can_fail = 0, true
+  can_fail = not sinks
   local warn_until, fail_until = lower(45.0, warn_risk), lower(65.0, fail_risk)
   held = follow(2, held, risk, not takes_off, warn_risk, 2.0, 200000, warn_until, 1.0)
-  held = follow(3, held, risk, true, fail_risk, nil, 300000, fail_until, nil)
+  held = follow(3, held, risk, can_fail, fail_risk, nil, 300000, fail_until, nil)
   if held >= risk_level then
     held_at = clock_us
   elseif clock_us - held_at >= 10000000 then
     risk_level, held_at = held, clock_us
     is_open = held > 0
   end
+  doubt()
 end
 
 function stop_judging()
@@ -1058,74 +1074,197 @@ local function watch_reserve(mean)
   end
 end
 
-local difference, trim = {}, {} -- of each motor from the mean of all, lately and as a trim
-local settled_us, imbalance_us
-imbalance, unbalanced, of_pair = nil, nil, false -- in %, the motor, and whether it is against the one opposite
-
--- How far a motor is above the one opposite at most, and that motor: a fault from before the trim was learned shows only here.
-local function at_odds()
-  local most, motor = 0.0, nil
-  for i = 1, motors do
-    local other = difference[opposite[i]]
-    if other and difference[i].known >= 5.0 then
-      local above = difference[i].value - other.value
-      if not motor or above >= most then
-        most, motor = above, i
-      end
-    end
-  end
-  return most, motor
-end
-
-local function watch_balance(mean)
-  settled_us = settled_us and later(settled_us, held_us) or 0
-  local most, motor = 0.0, nil
-  for i = 1, motors do
-    local now, usual = difference[i], trim[i]
-    if not now then
-      now, usual = new_average(), new_average()
-      difference[i], trim[i] = now, usual
-    end
-    local x = less_yaw[i] - mean
-    average(now, x, 5.0)
-    local from_trim = now.value - usual.value
-    if usual.known < 10.0 or abs(from_trim) < 0.15 / 2 then
-      average(usual, x, 30.0)
-    end
-    if not motor or abs(from_trim) > most then
-      most, motor = abs(from_trim), i
-    end
-  end
-  local limit, is_pair = 0.15, false
-  if most <= limit or settled_us < 10000000 then
-    most, motor = at_odds()
-    limit, is_pair = 2 * 0.15, true
-  end
-  if most <= limit then
-    imbalance_us = nil
-    return
-  end
-  imbalance_us = imbalance_us and later(imbalance_us, held_us) or 0
-  if imbalance then
-    imbalance = is_pair == of_pair and max(imbalance, 100 * most) or imbalance
-  elseif imbalance_us >= 3000000 then
-    imbalance, unbalanced, of_pair, raised = 100 * most, motor, is_pair, true
-  end
-end
-
 function notice()
   raised = false
   if not sum then
     return
   end
   watch_reserve(sum / motors)
-  watch_balance(sum / motors)
+  watch_balance()
 end
 
 function forget_notices()
   reserve, reserve_us, little_reserve = new_average(), nil, nil
-  difference, trim = {}, {}
-  settled_us, imbalance_us, imbalance, unbalanced, of_pair = nil, nil, nil, nil, false
+  forget_balance()
+end
+-- The balance of the motors: a motor that works harder than before, and whether all work as before.
+
+local lately, trims, shifts, at_zero = {}, {}, {}, {} -- of each motor
+local lately_s, trim_s, load, load_s = 0.0, 0.0, 0.0, 0.0
+local imbalance_us, weak_us -- for how long the limits have been passed
+imbalance, imbalance_words = nil, nil -- in %, and what it is
+unbalanced, or_unbalanced = nil, nil -- the motor that is named, and the one that it may be as well
+weak, weak_motor = nil, nil -- in %
+sinks = false
+local is_back = false
+
+-- The weight of this call in an average.
+local function weight(known_s, constant_s)
+  return held_s / max(min(known_s, constant_s), held_s)
+end
+
+-- Whether the motors are no farther apart than in the last seconds. In a fall they are.
+function is_together()
+  if lately_s < 5.0 or not sum then
+    return true
+  end
+  local now, before, mean = 0.0, 0.0, sum / motors
+  for i = 1, motors do
+    local d = command[i] - mean
+    now, before = now + d * d, before + lately[i] * lately[i]
+  end
+  return sqrt(now / motors) < sqrt(before / motors) + 0.05
+end
+
+-- The indices of the largest and the second largest number.
+local function two_highest(list)
+  local first, second
+  for i = 1, motors do
+    if not first or list[i] > list[first] then
+      first, second = i, first
+    elseif not second or list[i] > list[second] then
+      second = i
+    end
+  end
+  return first, second
+end
+
+-- The motor to name, and the other one that it may be: the highest one, where it is alone up there; otherwise the one that stopped
+-- first; otherwise the highest one.
+local function culprit(list)
+  local first, second = two_highest(list)
+  local ahead = second and list[first] - list[second] or huge
+  if ahead < list[first] / 3 then
+    local stopped, next_one = two_highest(at_zero)
+    if at_zero[stopped] > 0 then
+      return stopped, next_one and at_zero[next_one] >= at_zero[stopped] and next_one or nil
+    end
+  end
+  return first, ahead < 0.02 and second or nil
+end
+
+local function is_near(list, usual, limit)
+  for i = 1, motors do
+    if abs(list[i] - (usual and usual[i] or 0.0)) >= limit then
+      return false
+    end
+  end
+  return true
+end
+
+-- The yaw effort that numbers of the motors amount to.
+local function yaw_of(list)
+  local yaw = 0.0
+  if has_geometry then
+    for i = 1, motors do
+      yaw = yaw + yaw_share[i] * list[i]
+    end
+  end
+  return yaw
+end
+
+-- How far a motor is at most above the one opposite.
+local function at_odds()
+  local yaw, most = yaw_of(lately), 0.0
+  for i = 1, motors do
+    local other = opposite[i]
+    if other then
+      most = max(most, lately[i] - lately[other] - (yaw_factor[i] - yaw_factor[other]) * yaw)
+    end
+  end
+  return most
+end
+
+local function learn(mean)
+  lately_s, load_s = lately_s + held_s, load_s + held_s
+  load = load + (mean - load) * weight(load_s, 3.0)
+  local share = weight(lately_s, 5.0)
+  for i = 1, motors do
+    local before = lately[i] or 0.0
+    lately[i] = before + (command[i] - mean - before) * share
+    at_zero[i] = command[i] > 0 and 0.0 or (at_zero[i] or 0.0) + held_s
+    trims[i] = trims[i] or 0.0
+  end
+end
+
+local function learn_trims(mean)
+  trim_s = trim_s + held_s
+  local share = weight(trim_s, 30.0)
+  for i = 1, motors do
+    trims[i] = trims[i] + (command[i] - mean - trims[i]) * share
+  end
+end
+
+function watch_balance()
+  local mean = sum / motors
+  sinks = load_s >= 3.0 and mean < load / 2 and is_together()
+  if held_s <= 0 then
+    return
+  end
+  learn(mean)
+  local settled, learned = lately_s >= 5.0, trim_s >= 10.0
+  if risk_level == 0 and not doubt_us and (not learned or settled and is_near(lately, trims, 0.15 / 2)) then
+    learn_trims(mean)
+  end
+  is_back = settled and (learned and is_near(lately, trims, 0.15 / 2) or not learned and is_near(lately, nil, 0.15))
+  local squares = 0.0
+  for i = 1, motors do
+    shifts[i] = lately[i] - trims[i]
+    squares = squares + shifts[i] * shifts[i]
+  end
+  local first = two_highest(shifts)
+  local shift = shifts[first]
+  local is_known = learned and settled
+  if is_known and shift > 0.15 / 2 and shift * shift >= 0.75 * (min(motors - 1.0, 3.0) / motors) * squares then
+    imbalance_us = nil
+    weak_us = weak_us and later(weak_us, held_us) or 0
+    if weak then
+      weak = max(weak, 100 * shift)
+    elseif weak_us >= 3000000 then
+      weak, weak_motor, raised = 100 * shift, first, true
+    end
+    return
+  end
+  weak_us = nil
+  local yaw, most = yaw_of(shifts), 0.0
+  for i = 1, motors do
+    most = max(most, abs(shifts[i] - (has_geometry and yaw_factor[i] * yaw or 0.0)))
+  end
+  local words, list = "imbalance", shifts
+  if most <= 0.15 or not is_known then
+    words, list, most = "pair imbalance", lately, settled and at_odds() / 2 or 0.0
+  end
+  if most <= 0.15 or weak then
+    imbalance_us = nil
+    return
+  end
+  if list == lately then
+    most = 2 * most
+  end
+  imbalance_us = imbalance_us and later(imbalance_us, held_us) or 0
+  if imbalance then
+    imbalance = words == imbalance_words and max(imbalance, 100 * most) or imbalance
+  elseif imbalance_us >= 3000000 then
+    imbalance, imbalance_words, raised = 100 * most, words, true
+    unbalanced, or_unbalanced = culprit(list)
+  end
+end
+
+-- Whether all motors work as before the alarm; without a trim from before it, whether they work alike.
+function works_as_before()
+  return is_back
+end
+
+-- A new flight may begin.
+function forget_trims()
+  if trim_s > 0 then
+    trims, trim_s = {}, 0.0
+  end
+end
+
+function forget_balance()
+  lately, at_zero, lately_s, load, load_s = {}, {}, 0.0, 0.0, 0.0
+  imbalance_us, weak_us, imbalance, weak, sinks, is_back = nil, nil, nil, nil, false, false
 end
 -- A flight.
 
@@ -1135,7 +1274,9 @@ local settled, settling = false, huge -- whether the take-off is dropped, and th
 local idle -- "landing" or "trouble"
 local since_high_us, unknown_us -- since a high risk, and since a risk was known
 
-function forget()
+-- Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
+function forget(is_gap)
+  local was_alarm = is_gap and level_now() > 0
   for _, window in ipairs(windows) do
     clear(window)
   end
@@ -1143,6 +1284,10 @@ function forget()
   value = {}
   forget_notices()
   stop_judging()
+  doubt_us = was_alarm and 0 or nil
+  if not is_gap then
+    forget_trims()
+  end
 end
 
 -- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end.
@@ -1152,7 +1297,9 @@ local function rests()
     return false
   end
   if not idle then
-    idle = since_high_us and since_high_us <= 2000000 and "trouble" or "landing"
+    local is_trouble = since_high_us and since_high_us <= 2000000
+    is_trouble = is_trouble or not is_together()
+    idle = is_trouble and "trouble" or "landing"
   end
   return idle == "landing"
 end
@@ -1182,7 +1329,7 @@ function fly()
   bin_us = bin_us + held_us
   bin, bin_us = bin + bin_us // 100000, bin_us % 100000
   if held_us > 2000000 then
-    forget()
+    forget(true)
     held_us, held_s = 0, 0.0
   end
   for _, window in ipairs(windows) do
@@ -1192,6 +1339,7 @@ function fly()
   end
   since_high_us = since_high_us and later(since_high_us, held_us)
   unknown_us = unknown_us and later(unknown_us, held_us)
+  doubt_us = doubt_us and later(doubt_us, held_us)
   flown_us = flown_us and later(flown_us, held_us)
   read_commands()
   if not vehicle:get_likely_flying() or rests() then
@@ -1199,8 +1347,12 @@ function fly()
     if flown_us then
       down_us = down_us and later(down_us, held_us) or 0
       if down_us >= 1000000 then
-        forget()
+        forget(false)
       end
+    else
+      -- It landed in a gap.
+      doubt_us = nil
+      forget_trims()
     end
     return nil
   end
@@ -1214,6 +1366,7 @@ function fly()
   local risk = read_inputs() and estimate()
   if not risk then
     if unknown_us and unknown_us > 2000000 then
+      doubt_us = level_now() > 0 and unknown_us or nil
       stop_judging()
       unknown_us = nil
     end
@@ -1358,8 +1511,8 @@ end
 function level_now()
   local level = risk_level
   level = little_reserve and max(level, 2) or level
-  level = imbalance and max(level, 2) or level
-  return level
+  level = (imbalance or weak) and max(level, 2) or level
+  return doubt_us and max(level, 2) or level
 end
 
 -- A cause in two parts; where there is no room for the last one, the first one is true alone.
@@ -1378,19 +1531,23 @@ end
 local LEVELS = {[0] = "GOOD", [2] = "WARN", [3] = "FAIL"}
 
 function say(level, risk, of_notice)
-  if level == 0 and not risk then
-    gcs:send_text(6, "FLAGRED: risk unknown")
-    return
-  end
   local severity = level == 3 and 2 or level == 2 and 4 or 6
   local text = "FLAGRED: " .. LEVELS[level]
+  if (of_notice or not is_open) and weak then
+    gcs:send_text(severity, format("%s motor %d weak: +%.0f %%", text, numbers[weak_motor], weak))
+    return
+  end
   if (of_notice or not is_open) and imbalance then
-    local kind = of_pair and "pair imbalance" or "imbalance"
-    gcs:send_text(severity, format("%s %s %.0f %%, motor %d", text, kind, imbalance, numbers[unbalanced]))
+    text = format("%s %s %.0f %%, motor %d", text, imbalance_words, imbalance, numbers[unbalanced])
+    gcs:send_text(severity, text .. (or_unbalanced and format(" or %d", numbers[or_unbalanced]) or ""))
     return
   end
   if (of_notice or not is_open) and little_reserve then
     gcs:send_text(severity, format("%s reserve %.0f %%", text, little_reserve))
+    return
+  end
+  if not is_open and level > 0 then
+    gcs:send_text(severity, text .. " stands: motors not as before")
     return
   end
   if is_open and by_elevated then

@@ -839,18 +839,31 @@ local function lower(until_risk, risk)
   return until_risk and risk and min(until_risk, risk) or until_risk
 end
 
+doubt_us = nil -- since an alarm: for how long the motors have worked as before
+
+-- After an alarm the level is GOOD again when the motors have worked as before for as long as a level is held.
+local function doubt()
+  local is_back = true
+  if (risk_level > 0 or doubt_us) and not is_back then
+    doubt_us = 0
+  elseif risk_level == 0 and doubt_us and doubt_us >= 10000000 then
+    doubt_us = nil
+  end
+end
+
 function judge(risk, takes_off)
   watch_motors(risk, takes_off)
-  local held = 0
+  local held, can_fail = 0, true
   local warn_until, fail_until = lower(25.0, warn_risk), lower(67.0, fail_risk)
   held = follow(2, held, risk, not takes_off, warn_risk, 50.0, 200000, warn_until, 30.0)
-  held = follow(3, held, risk, true, fail_risk, 90.0, 400000, fail_until, 70.0)
+  held = follow(3, held, risk, can_fail, fail_risk, 90.0, 400000, fail_until, 70.0)
   if held >= risk_level then
     held_at = clock_us
   elseif clock_us - held_at >= 10000000 then
     risk_level, held_at = held, clock_us
     is_open = held > 0
   end
+  doubt()
 end
 
 function stop_judging()
@@ -866,13 +879,16 @@ local settled, settling = false, huge -- whether the take-off is dropped, and th
 local idle -- "landing" or "trouble"
 local since_high_us, unknown_us -- since a high risk, and since a risk was known
 
-function forget()
+-- Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
+function forget(is_gap)
+  local was_alarm = is_gap and level_now() > 0
   for _, window in ipairs(windows) do
     clear(window)
   end
   flown_us, down_us, settled, settling, idle, since_high_us, unknown_us = nil, nil, false, huge, nil, nil, nil
   value = {}
   stop_judging()
+  doubt_us = was_alarm and 0 or nil
 end
 
 -- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end.
@@ -882,7 +898,8 @@ local function rests()
     return false
   end
   if not idle then
-    idle = since_high_us and since_high_us <= 2000000 and "trouble" or "landing"
+    local is_trouble = since_high_us and since_high_us <= 2000000
+    idle = is_trouble and "trouble" or "landing"
   end
   return idle == "landing"
 end
@@ -912,7 +929,7 @@ function fly()
   bin_us = bin_us + held_us
   bin, bin_us = bin + bin_us // 100000, bin_us % 100000
   if held_us > 2000000 then
-    forget()
+    forget(true)
     held_us, held_s = 0, 0.0
   end
   for _, window in ipairs(windows) do
@@ -922,6 +939,7 @@ function fly()
   end
   since_high_us = since_high_us and later(since_high_us, held_us)
   unknown_us = unknown_us and later(unknown_us, held_us)
+  doubt_us = doubt_us and later(doubt_us, held_us)
   flown_us = flown_us and later(flown_us, held_us)
   read_commands()
   if not vehicle:get_likely_flying() or rests() then
@@ -929,8 +947,11 @@ function fly()
     if flown_us then
       down_us = down_us and later(down_us, held_us) or 0
       if down_us >= 1000000 then
-        forget()
+        forget(false)
       end
+    else
+      -- It landed in a gap.
+      doubt_us = nil
     end
     return nil
   end
@@ -941,6 +962,7 @@ function fly()
   local risk = read_inputs() and estimate()
   if not risk then
     if unknown_us and unknown_us > 2000000 then
+      doubt_us = level_now() > 0 and unknown_us or nil
       stop_judging()
       unknown_us = nil
     end
@@ -1079,7 +1101,7 @@ end
 
 function level_now()
   local level = risk_level
-  return level
+  return doubt_us and max(level, 2) or level
 end
 
 -- A cause in two parts; where there is no room for the last one, the first one is true alone.
@@ -1098,12 +1120,12 @@ end
 local LEVELS = {[0] = "GOOD", [2] = "WARN", [3] = "FAIL"}
 
 function say(level, risk, of_notice)
-  if level == 0 and not risk then
-    gcs:send_text(6, "FLAGRED: risk unknown")
-    return
-  end
   local severity = level == 3 and 2 or level == 2 and 4 or 6
   local text = "FLAGRED: " .. LEVELS[level]
+  if not is_open and level > 0 then
+    gcs:send_text(severity, text .. " stands: motors not as before")
+    return
+  end
   if is_open and by_elevated then
     text = format("%s elevated %.0f %%", text, elevated)
   elseif risk then

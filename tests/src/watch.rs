@@ -242,9 +242,10 @@ pub fn check_texts(said: &Said, heard: &Heard) {
     let levels: Vec<(String, u8)> = said
         .all("level")
         .map(|event| {
-            let severity = match event["level"].as_str().unwrap() {
-                "GOOD" => 6,
-                "WARN" => 4,
+            let severity = match event["level"].as_str() {
+                Some("GOOD") => 6,
+                // Unknown since an alarm stood.
+                Some("WARN") | None => 4,
                 _ => 2,
             };
             (event["text"].as_str().unwrap().to_owned(), severity)

@@ -12,7 +12,8 @@ use flagred::{
 use flagred_tests::{
     STEADY,
     reference::{
-        flight::{Sample, follow, samples},
+        balance::Unbalanced,
+        flight::{Followed, Sample, follow, samples},
         levels::Trouble,
     },
     reference_data,
@@ -277,7 +278,11 @@ fn compare(
     samples: &[Sample],
     factors: &[Factors],
 ) -> Vec<Trouble> {
-    let (rows, troubles) = follow(samples, factors, estimator.profile(), estimator.model());
+    let Followed {
+        rows,
+        troubles,
+        unbalanced,
+    } = follow(samples, factors, estimator.profile(), estimator.model());
     assert_eq!(assessment.steps.len(), rows.len());
     let mut known = 0;
     for (step, row) in assessment.steps.iter().zip(&rows) {
@@ -316,7 +321,27 @@ fn compare(
         rows.len()
     );
     assert_eq!(found(assessment), troubles);
+    assert_eq!(of_balance(assessment), unbalanced);
     troubles
+}
+
+/// The findings of the balance, in order of time.
+fn of_balance(assessment: &Assessment) -> Vec<Unbalanced> {
+    let of_balance = assessment.findings.iter().filter(|found| {
+        matches!(
+            found.measure,
+            Measure::Imbalance | Measure::PairImbalance | Measure::WeakMotor
+        )
+    });
+    let mut all: Vec<Unbalanced> = of_balance
+        .map(|found| Unbalanced {
+            measure: found.measure,
+            raised_s: found.raised_s,
+            motor: found.motor.map(|motor| (motor.motor, motor.or)).unwrap(),
+        })
+        .collect();
+    all.sort_by(|a, b| a.raised_s.total_cmp(&b.raised_s));
+    all
 }
 
 /// The findings of the risk, in order of time.

@@ -27,7 +27,8 @@ static const char *word(int32_t level) {
     return words[level];
 }
 
-static const char *const measures[] = {"risk", "elevated risk", "command noise", "reserve", "imbalance", "pair imbalance"};
+static const char *const measures[] = {"risk", "elevated risk", "command noise", "reserve", "imbalance", "pair imbalance",
+                                       "weak motor"};
 
 int main(void) {
     /* MOT_PWM_MIN 1000, MOT_PWM_MAX 2000, MOT_SPIN_MIN 0.15, MOT_SPIN_MAX 0.95 */

@@ -54,8 +54,9 @@ typedef enum flagred_measure {
     FLAGRED_ELEVATED_RISK = 1,
     FLAGRED_COMMAND_NOISE = 2,  /* the noise of the motor commands, in % of their range */
     FLAGRED_RESERVE = 3,        /* what the mean command leaves below the upper limit, in % of the range */
-    FLAGRED_IMBALANCE = 4,      /* how far a motor is from its own part of the thrust earlier in the flight, in % */
-    FLAGRED_PAIR_IMBALANCE = 5  /* how far a motor is from the one opposite, in % */
+    FLAGRED_IMBALANCE = 4,      /* how far motors are from their own part of the thrust earlier in the flight, in % */
+    FLAGRED_PAIR_IMBALANCE = 5, /* how far a motor is from the one opposite, in % */
+    FLAGRED_WEAK_MOTOR = 6      /* how far one motor alone is above its own part of the thrust earlier in the flight, in % */
 } flagred_measure;
 
 /* Why a risk is unknown. */
@@ -94,7 +95,7 @@ typedef struct flagred_sample {
     int32_t in_air;             /* 0 on the ground */
 } flagred_sample;
 
-/* The number of findings that can end at one time: of the risk, the noise, the reserve and the imbalance. */
+/* The number of findings that can end at one time: of the risk, the noise, the reserve and the balance. */
 #define FLAGRED_ENDED 4
 
 /* The cause of a level, or information. */
@@ -111,6 +112,7 @@ typedef struct flagred_finding {
     int32_t level;              /* flagred_level; FLAGRED_LEVEL_NONE where there is no finding */
     int32_t measure;            /* flagred_measure: what reached the threshold */
     int32_t motor;              /* the index of the motor that is the cause: near a limit, or out of balance; else -1 */
+    int32_t or_motor;           /* the other motor that it may be as well, where the commands do not tell which; else -1 */
     int32_t at_high_limit;      /* 0: nearer to the lower limit; 1: to the upper limit. Out of balance: below, above */
     int32_t cause;              /* what raised the risk, as an index of flagred_NAME_causes ("unsteady_now violent") in the
                                    exported profile; -1 where no rule did */
@@ -128,7 +130,8 @@ typedef struct flagred_update {
     flagred_finding ended[FLAGRED_ENDED]; /* the findings that ended with this sample */
     int32_t dominant_rule;      /* the index of the rule with the largest firing strength; -1 where none fired */
     int32_t clamped;            /* 1 where an input was outside its range and was clamped to it */
-    int32_t level;              /* flagred_level */
+    int32_t level;              /* flagred_level; where the risk is unknown an alarm that stands, or FLAGRED_LEVEL_NONE: never
+                                   FLAGRED_GOOD */
     int32_t change;             /* flagred_level: the new level, where this sample changed it */
     int32_t unknown;            /* flagred_unknown */
     int32_t unknown_input;      /* the index of the unknown input of the profile; else -1 */

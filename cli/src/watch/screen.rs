@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use flagred::{estimator::Estimator, verdict::Level};
+use flagred::estimator::Estimator;
 use fuzzy::drawing::{bar, visible};
 
 use super::{
@@ -162,9 +162,10 @@ fn state(view: &View<'_>, estimator: &Estimator) -> String {
                 elevated_pct / 100.0,
                 &format!("{elevated_pct:3.0} %"),
             );
-            let level = level.unwrap_or(Level::Good);
-            let style = level_style(level);
-            text += &format!("level     {style}{level}{style:#}\n");
+            if let Some(level) = level {
+                let style = level_style(level);
+                text += &format!("level     {style}{level}{style:#}\n");
+            }
         }
         None => {
             let why = match view.latest.and_then(|now| now.risk.err()) {

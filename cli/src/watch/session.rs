@@ -201,16 +201,16 @@ impl<'e> Session<'e> {
         let to = tracked.address();
         if let Some(watch) = tracked.watch.as_mut().filter(|watch| watch.is_flying)
             && let Some(update) = watch.latest
-            && let Some(level) = update
+            && update
                 .level
-                .filter(|&level| level != before.unwrap_or(Level::Good))
+                .is_some_and(|level| level != before.unwrap_or(Level::Good))
         {
             let finding = watch.assessor.open_finding();
             tell_level(
                 now_s,
                 to,
                 &mut self.speech,
-                (watch, &update, level),
+                (watch, &update, before),
                 finding,
                 out,
             );
@@ -387,19 +387,26 @@ impl<'e> Session<'e> {
             add(&mut self.worst, verdict);
         }
         out.events.push(Event::Risk { update });
+        let before = std::mem::replace(&mut watch.level, update.level);
         // Where the level stands already, but not for a notice that was raised, that is told, too.
         let raised = watch.raised_notice();
-        let level = (update.change).or_else(|| raised.as_ref().and(update.level));
-        if let Some(level) = level.filter(|_| in_air) {
-            let finding = match update.change {
-                Some(_) => watch.assessor.open_finding(),
-                None => raised,
+        let is_new = match (before, update.level) {
+            (None, Some(level)) => level > Level::Good,
+            // A landing is an event of its own.
+            (Some(before), None) => before > Level::Good && update.risk != Err(Unknown::OnGround),
+            (before, level) => before != level,
+        };
+        if in_air && (is_new || raised.is_some() && update.level.is_some()) {
+            let finding = if is_new {
+                watch.assessor.open_finding()
+            } else {
+                raised
             };
             tell_level(
                 now_s,
                 to,
                 &mut self.speech,
-                (watch, &update, level),
+                (watch, &update, before),
                 finding,
                 out,
             );
@@ -429,21 +436,28 @@ impl<'e> Session<'e> {
     }
 }
 
-/// Tells a level, and sends its text.
+/// Tells the level after the one before it, and sends its text.
 fn tell_level(
     now_s: f64,
     to: (Version, u8),
     speech: &mut Speech,
-    (watch, update, level): (&Watch, &Update, Level),
+    (watch, update, before): (&Watch, &Update, Option<Level>),
     finding: Option<Finding>,
     out: &mut Out,
 ) {
-    let text = voice::say(level, update, finding.as_ref(), &watch.setup);
-    speech.warn(now_s, to, &voice::status(level, &text), out);
+    let (severity, text) = match update.level {
+        Some(level) => {
+            let text = voice::say(level, update, finding.as_ref(), &watch.setup);
+            (level, text)
+        }
+        None => (Level::Warn, voice::unknown(before.unwrap_or(Level::Warn))),
+    };
+    speech.warn(now_s, to, &voice::status(severity, &text), out);
     let finding = finding.map(|finding| numbered(&finding, &watch.setup.motors));
     out.events.push(Event::Level {
         t_s: update.t_s,
-        level,
+        level: update.level,
+        before,
         text,
         motor: finding.as_ref().and_then(|finding| finding.motor),
         cause: finding.and_then(|finding| finding.cause),

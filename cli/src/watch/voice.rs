@@ -15,7 +15,7 @@ use flightlog::mavlink::{
 
 use fuzzy::drawing::visible;
 
-use report::finding::cause;
+use report::finding::{cause, weak};
 
 /// The names of the values that are sent.
 pub(crate) const RISK: &str = "FR_RISK";
@@ -133,16 +133,21 @@ pub(crate) fn status(level: Level, text: &str) -> MavMessage {
 }
 
 /// A change of level with its cause, in at most 50 characters: `FLAGRED: WARN risk 78 %, unsteady_now violent`, or where
-/// a motor is the cause `FLAGRED: WARN risk 78 %, upper limit, motor 3`. A level that ends because the risk became unknown is
-/// not reported as GOOD.
+/// a motor is the cause `FLAGRED: WARN risk 78 %, upper limit, motor 3`, or `FLAGRED: WARN motor 3 weak: +24 %`. Without a
+/// finding an alarm stands because the motors do not work as before it.
 pub(crate) fn say(
     level: Level,
     update: &Update,
     finding: Option<&Finding>,
     setup: &Setup,
 ) -> String {
-    if level == Level::Good && update.risk.is_err() {
-        return format!("{PREFIX}risk unknown");
+    if let Some(finding) = finding
+        && finding.measure == Measure::WeakMotor
+    {
+        return format!("{PREFIX}{level} {}", weak(finding, &setup.motors));
+    }
+    if level > Level::Good && finding.is_none() {
+        return format!("{PREFIX}{level} stands: motors not as before");
     }
     let measure = finding.map_or(Measure::Risk, |finding| finding.measure);
     let (name, value) = match measure {
@@ -152,6 +157,7 @@ pub(crate) fn say(
         Measure::Reserve => ("reserve", finding.map(|finding| finding.peak_pct)),
         Measure::Imbalance => ("imbalance", finding.map(|finding| finding.peak_pct)),
         Measure::PairImbalance => ("pair imbalance", finding.map(|finding| finding.peak_pct)),
+        Measure::WeakMotor => ("weak motor", finding.map(|finding| finding.peak_pct)),
     };
     let (name, value) = match finding.and_then(|finding| Some((finding, finding.risk.as_ref()?))) {
         Some((finding, risk)) => (risk.as_str(), Some(finding.peak_pct)),
@@ -170,6 +176,11 @@ pub(crate) fn say(
         text += &word;
     }
     text
+}
+
+/// The text where the risk becomes unknown while an alarm stands.
+pub(crate) fn unknown(last: Level) -> String {
+    format!("{PREFIX}risk unknown, last level {last}")
 }
 
 #[cfg(test)]

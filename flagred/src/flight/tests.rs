@@ -211,7 +211,7 @@ fn with_a_dead_motor(from_s: f64) -> (super::Assessment, Vec<Level>) {
     }
     let flown = assessor.finish();
     let of = |measure| flown.findings.iter().find(|f| f.measure == measure);
-    for measure in [Measure::Imbalance, Measure::PairImbalance] {
+    for measure in [Measure::WeakMotor, Measure::PairImbalance] {
         let found = ended.iter().find(|f| f.measure == measure);
         assert_eq!(found, of(measure).map(|finding| &finding.found));
     }
@@ -220,7 +220,7 @@ fn with_a_dead_motor(from_s: f64) -> (super::Assessment, Vec<Level>) {
 
 #[test]
 fn a_lasting_fault_stays_a_finding_until_landing() {
-    for (from_s, measure) in [(60.0, Measure::Imbalance), (8.0, Measure::PairImbalance)] {
+    for (from_s, measure) in [(60.0, Measure::WeakMotor), (8.0, Measure::PairImbalance)] {
         let (flown, levels) = with_a_dead_motor(from_s);
         assert!(levels.len() > 1000 && levels.iter().all(|level| *level >= Level::Warn));
         let mut found = flown.findings.iter();

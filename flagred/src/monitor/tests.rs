@@ -251,7 +251,7 @@ fn after_a_lost_link_or_a_restart_nothing_old_is_carried_on() {
             signals: &[],
         });
         assert_eq!(after.ended, open);
-        assert_eq!(after.change, Some(Level::Good));
+        assert_eq!((after.change, after.level), (None, None));
         assert!(after.risk.is_err());
         assert_eq!(after.elevated_risk_pct, None);
     }

@@ -4,7 +4,7 @@ use super::{Cause, Finding, Level, Measure, MotorFinding, VerdictSettings};
 use crate::motor::{Motor, MotorRecord};
 
 /// Time stamps are sums of steps: a duration this much shorter, in seconds, is long enough.
-pub(super) const ROUNDING_S: f64 = 1e-6;
+pub(crate) const ROUNDING_S: f64 = 1e-6;
 
 /// The level of a risk.
 #[derive(Debug, Clone)]
@@ -38,6 +38,8 @@ pub(crate) struct Now {
     pub(crate) elevated_pct: f64,
     /// Just after take-off, when only FAIL is raised.
     pub(crate) takes_off: bool,
+    /// The motors go down together, as at touch-down, when FAIL is not raised.
+    pub(crate) sinks: bool,
 }
 
 impl Alert {
@@ -81,6 +83,7 @@ impl Alert {
             risk_pct,
             elevated_pct,
             takes_off,
+            sinks,
         } = now;
         let mut step = Step::default();
         let mut held = Level::Good;
@@ -89,12 +92,16 @@ impl Alert {
             (Level::Warn, self.settings.warn),
             (Level::Fail, self.settings.fail),
         ];
-        let reached = levels.map(
-            |(level, settings)| match takes_off && level == Level::Warn {
+        let reached = levels.map(|(level, settings)| {
+            match if level == Level::Warn {
+                takes_off
+            } else {
+                sinks
+            } {
                 true => None,
                 false => settings.raise.reached(risk_pct, elevated_pct),
-            },
-        );
+            }
+        });
         self.record(&reached.map(|reached| reached.is_some()), motors);
         for (i, (level, settings)) in levels.into_iter().enumerate() {
             if reached[i].is_some() || settings.until.reached(risk_pct, elevated_pct).is_some() {
@@ -223,6 +230,7 @@ fn weakest(motors: &[Motor]) -> Option<MotorFinding> {
     let near = weakest.filter(|(_, record)| record.least_margin < NEAR_LIMIT);
     near.map(|(motor, record)| MotorFinding {
         motor,
+        or: None,
         side: record.side,
         mean_margin: record.mean_margin,
         least_margin: record.least_margin,
@@ -282,6 +290,7 @@ mod tests {
                 risk_pct,
                 elevated_pct,
                 takes_off: false,
+                sinks: false,
             };
             self.alert.push(now, &mut self.motors)
         }
@@ -373,6 +382,7 @@ mod tests {
                     risk_pct,
                     elevated_pct,
                     takes_off: true,
+                    sinks: false,
                 };
                 flown.alert.push(now, &mut flown.motors);
             }

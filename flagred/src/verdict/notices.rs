@@ -1,31 +1,27 @@
-//! What is worth telling beside the risk: noise in the commands, little reserve of thrust, a motor that changed its part.
+//! Findings beside the risk: noise in the commands, little reserve of thrust, motors out of balance.
 //!
 //! Each is a moving average with a fixed time constant, so it needs no window.
 
-use super::{Finding, Level, Limit, Measure, MotorFinding, NoticeSettings, alert::ROUNDING_S};
-use crate::{
-    average::Average,
-    margin::{Side, margin},
-    motor::Motor,
+use super::{
+    Finding, Level, Limit, Measure, MotorFinding, NoticeSettings,
+    alert::ROUNDING_S,
+    balance::{self, Balance, Unbalanced},
 };
+use crate::{average::Average, motor::Motor};
 
 /// Time constants of the averages, in seconds.
 const NOISE_S: f64 = 10.0;
 const RESERVE_S: f64 = 3.0;
-const IMBALANCE_S: f64 = 5.0;
-const TRIM_S: f64 = 30.0;
-
-/// For so long the trim is learned before anything is held against it, in seconds.
-const TRIM_KNOWN_AFTER_S: f64 = 10.0;
 
 /// Noise, reserve and imbalance of one flight.
 #[derive(Debug, Clone)]
 pub(crate) struct Notices {
     settings: NoticeSettings,
-    since_s: Option<f64>,
     noise_squared: Average,
     reserve: Average,
-    watches: [Watch; 3],
+    balance: Balance,
+    /// Of the noise, the reserve, an imbalance and a weak motor.
+    watches: [Watch; 4],
 }
 
 /// Since when a limit is passed, and the finding that is open.
@@ -48,19 +44,24 @@ impl Notices {
     pub(crate) const fn new(settings: NoticeSettings) -> Notices {
         Notices {
             settings,
-            since_s: None,
             noise_squared: Average::NONE,
             reserve: Average::NONE,
+            balance: Balance::NONE,
             watches: [Watch {
                 passed_since_s: None,
                 finding: None,
-            }; 3],
+            }; 4],
         }
     }
 
-    /// Takes in a sample of flight, of a time and the seconds before it that it stands for.
-    pub(crate) fn push(&mut self, (t_s, held_s): (f64, f64), noise: f64, motors: &mut [Motor]) {
-        let since_s = *self.since_s.get_or_insert(t_s);
+    /// Takes in a sample of flight, of a time and the seconds before it that it stands for. `is_calm` where no alarm stands.
+    pub(crate) fn push(
+        &mut self,
+        (t_s, held_s): (f64, f64),
+        noise: f64,
+        motors: &mut [Motor],
+        is_calm: bool,
+    ) {
         let commands = motors.iter().map(|motor| motor.command);
         let known = commands.filter(|e| e.is_finite());
         let (sum, count) = known.fold((0.0, 0.0), |(sum, count), e| (sum + e, count + 1.0));
@@ -86,21 +87,35 @@ impl Notices {
         let reserve = reserve.filter(|(value, limit)| *value < limit.value);
         let reserve = reserve.map(|(value, limit)| plain(Measure::Reserve, value, limit));
         self.watches[1].push(t_s, Level::Warn, settings.reserve, reserve);
-        let imbalance = settings.imbalance.and_then(|Limit { value, .. }| {
-            let from_trim = from_trim(motors, mean, held_s, value);
-            let is_known = t_s - since_s >= TRIM_KNOWN_AFTER_S;
-            from_trim
-                .filter(|_| is_known)
-                .or_else(|| at_odds(motors, 2.0 * value))
-        });
-        self.watches[2].push(t_s, Level::Warn, settings.imbalance, imbalance);
+        let limit = settings.imbalance;
+        let seen = limit.map(|limit| self.balance.push(motors, held_s, limit, is_calm));
+        let balance::Seen { weak, imbalance } = seen.unwrap_or_default();
+        // A weak motor explains what is out of balance.
+        let imbalance = imbalance.filter(|_| self.watches[3].finding.is_none());
+        self.watches[2].push(t_s, Level::Warn, limit, imbalance.map(Passed::of));
+        self.watches[3].push(t_s, Level::Warn, limit, weak.map(Passed::of));
+    }
+
+    /// Whether the motors work as before an alarm, as far as that is looked at.
+    pub(crate) fn is_back(&self) -> bool {
+        self.settings.imbalance.is_none() || self.balance.is_back()
+    }
+
+    /// Whether the motors are no farther apart than in the last seconds, as far as that is looked at.
+    pub(crate) fn is_together(&self, motors: &[Motor]) -> bool {
+        self.settings.imbalance.is_none() || balance::is_together(motors)
+    }
+
+    /// Whether the motors go down together, as far as that is looked at.
+    pub(crate) fn sinks(&self) -> bool {
+        self.balance.sinks()
     }
 
     /// Ends the flight: the open findings.
     pub(crate) fn end(&mut self) -> [Option<Finding>; 3] {
-        let ended = self.watches.map(|watch| watch.finding);
+        let [noise, reserve, imbalance, weak] = self.watches.map(|watch| watch.finding);
         *self = Notices::new(self.settings);
-        ended
+        [noise, reserve, weak.or(imbalance)]
     }
 
     /// The worst open finding but information.
@@ -110,58 +125,20 @@ impl Notices {
     }
 }
 
-/// The motor that is farthest from its own trim, where it is beyond the limit. The trim is the motor's mean difference from
-/// the mean of all; it stands still while a motor is half way to the limit.
-fn from_trim(motors: &mut [Motor], mean: f64, held_s: f64, limit: f64) -> Option<Passed> {
-    let mut farthest: Option<(usize, f64)> = None;
-    for (i, motor) in motors.iter_mut().enumerate() {
-        let difference = motor.less_yaw - mean;
-        motor.difference.add(difference, held_s, IMBALANCE_S);
-        let from_trim = motor.difference.value - motor.trim.value;
-        if motor.trim.known_s < TRIM_KNOWN_AFTER_S || from_trim.abs() < limit / 2.0 {
-            motor.trim.add(difference, held_s, TRIM_S);
-        }
-        if farthest.is_none_or(|(_, most)| from_trim.abs() > most.abs()) {
-            farthest = Some((i, from_trim));
-        }
-    }
-    let (motor, from_trim) = farthest?;
-    Passed::by(motors, Measure::Imbalance, motor, from_trim, limit)
-}
-
-/// The motor that is farthest above the one opposite, where it is beyond the limit. A fault that was there before the trim
-/// was learned shows only here.
-fn at_odds(motors: &[Motor], limit: f64) -> Option<Passed> {
-    let above = motors.iter().enumerate().filter_map(|(i, motor)| {
-        let opposite = motors.get(motor.opposite as usize)?;
-        let of = |motor: &Motor| motor.difference.known_after(IMBALANCE_S);
-        Some((i, of(motor)? - of(opposite)?))
-    });
-    let (motor, above) = above.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
-    Passed::by(motors, Measure::PairImbalance, motor, above, limit)
-}
-
 impl Passed {
-    /// A motor that is so much above or below where it should be, where that is beyond the limit.
-    fn by(
-        motors: &[Motor],
-        measure: Measure,
-        motor: usize,
-        above: f64,
-        limit: f64,
-    ) -> Option<Passed> {
-        let margin = margin(motors.get(motor)?.command);
-        (above.abs() > limit).then_some(Passed {
+    fn of(unbalanced: Unbalanced) -> Passed {
+        let Unbalanced {
             measure,
-            value: above.abs(),
+            value,
             limit,
-            motor: Some(MotorFinding {
-                motor,
-                side: if above > 0.0 { Side::High } else { Side::Low },
-                mean_margin: margin,
-                least_margin: margin,
-            }),
-        })
+            motor,
+        } = unbalanced;
+        Passed {
+            measure,
+            value,
+            limit,
+            motor: Some(motor),
+        }
     }
 }
 

@@ -1,12 +1,16 @@
 //! A whole flight, sample by sample.
 
-use flagred::profile::Profile;
+use flagred::{
+    profile::Profile,
+    verdict::{Level, VerdictSettings},
+};
 use fuzzy::Model;
 
 use super::{
+    balance::{Balance, Trims, Unbalanced},
     elevated::{self, Stretch},
     inputs::{self, Now, Observed},
-    levels::{self, Moment, Trouble},
+    levels::{Levels, Moment, Trouble},
     rules,
     yaw::less_yaw,
 };
@@ -52,17 +56,32 @@ pub fn samples(flight: &flightlog::Flight) -> Vec<Sample> {
     rows.collect()
 }
 
+/// What flights are found to be.
+pub struct Followed {
+    /// What is known after each sample that the log says is in the air.
+    pub rows: Vec<Row>,
+    /// The findings of the risk.
+    pub troubles: Vec<Trouble>,
+    /// The findings of the balance, of each time in the air the last one.
+    pub unbalanced: Vec<Unbalanced>,
+}
+
+/// What stays over a gap in the air: trims, and since when an alarm is in doubt.
+type Kept = (Trims, Option<f64>);
+
 /// Follows flights by a profile and a rule set; the factors are those of each motor, none where they are unknown.
 pub fn follow(
     samples: &[Sample],
     factors: &[[f64; 3]],
     profile: &Profile,
     model: &Model,
-) -> (Vec<Row>, Vec<Trouble>) {
+) -> Followed {
     let longest_gap_s = profile.sampling.longest_gap_s;
     let mut rows = Vec::new();
     let mut troubles = Vec::new();
+    let mut unbalanced = Vec::new();
     let mut air: Option<Air> = None;
+    let mut kept: Option<Kept> = None;
     let mut down_since_s = None;
     let mut before_s: Option<f64> = None;
     for sample in samples {
@@ -73,17 +92,22 @@ pub fn follow(
         }
         let held_s = since_s.filter(|s| (0.0..=longest_gap_s).contains(s));
         if held_s.is_none() {
-            troubles.extend(
-                air.take()
-                    .into_iter()
-                    .flat_map(|air| air.end(profile, None)),
-            );
+            if let Some(air) = air.take() {
+                let of_air = air.end(profile, None);
+                let doubt_s = of_air.level_at_end.then_some(t_s);
+                kept = Some((of_air.trims, doubt_s));
+                troubles.extend(of_air.troubles);
+                unbalanced.extend(of_air.unbalanced);
+            }
+            if since_s.is_some_and(|s| s < 0.0) {
+                kept = None;
+            }
             down_since_s = None;
         }
         before_s = Some(t_s);
         if sample.in_air && !rests(&mut air, sample, profile) {
             down_since_s = None;
-            let air = air.get_or_insert_with(|| Air::new(t_s, profile));
+            let air = air.get_or_insert_with(|| Air::new(t_s, profile, kept.take()));
             rows.push(air.take_in(sample, held_s.unwrap_or(0.0), factors, (profile, model)));
             continue;
         }
@@ -96,16 +120,27 @@ pub fn follow(
             });
         }
         let down_s = *down_since_s.get_or_insert(t_s);
-        if t_s - down_s >= TOUCH_S {
-            let ended = air.take().into_iter();
-            troubles.extend(ended.flat_map(|air| air.end(profile, Some(down_s))));
+        if air.is_none() {
+            kept = None;
+        }
+        if t_s - down_s >= TOUCH_S
+            && let Some(air) = air.take()
+        {
+            let of_air = air.end(profile, Some(down_s));
+            troubles.extend(of_air.troubles);
+            unbalanced.extend(of_air.unbalanced);
         }
     }
-    troubles.extend(
-        air.into_iter()
-            .flat_map(|air| air.end(profile, down_since_s)),
-    );
-    (rows, troubles)
+    if let Some(air) = air {
+        let of_air = air.end(profile, down_since_s);
+        troubles.extend(of_air.troubles);
+        unbalanced.extend(of_air.unbalanced);
+    }
+    Followed {
+        rows,
+        troubles,
+        unbalanced,
+    }
 }
 
 /// Whether the motors idle on the ground: before take-off, and after a flight unless a high risk came just before.
@@ -123,7 +158,11 @@ fn rests(air: &mut Option<Air>, sample: &Sample, profile: &Profile) -> bool {
         return false;
     }
     let since_high_s = sample.t_s - air.last_high_s;
-    !*air.fell.get_or_insert(since_high_s <= TROUBLE_S)
+    let is_apart =
+        profile.verdict.notices.imbalance.is_some() && !air.balance.is_together(&sample.commands);
+    !*air
+        .fell
+        .get_or_insert(since_high_s <= TROUBLE_S || is_apart)
 }
 
 /// A time in the air. The state is reset before and after it.
@@ -137,15 +176,32 @@ struct Air {
     /// The rate in % per second after the last of the risks, and the elevated risk in %.
     elevated: Option<(f64, f64)>,
     moments: Vec<Moment>,
+    levels: Levels,
     troubles: Vec<Trouble>,
+    balance: Balance,
+    /// After an alarm: when the motors were last not known to work as before.
+    in_doubt_s: Option<f64>,
     /// Whether the motors idle after a high risk, while they idle.
     fell: Option<bool>,
     last_high_s: f64,
 }
 
+/// What a time in the air was found to be.
+struct OfAir {
+    troubles: Vec<Trouble>,
+    unbalanced: Option<Unbalanced>,
+    trims: Trims,
+    /// Whether an alarm stood.
+    level_at_end: bool,
+}
+
 impl Air {
-    fn new(take_off_s: f64, profile: &Profile) -> Air {
+    fn new(take_off_s: f64, profile: &Profile, kept: Option<Kept>) -> Air {
+        let (trims, in_doubt_s) = kept.unwrap_or_default();
         Air {
+            levels: Levels::new(),
+            balance: Balance::new(trims),
+            in_doubt_s,
             take_off_s,
             since_s: f64::NEG_INFINITY,
             observed: vec![Vec::new(); profile.inputs.len()],
@@ -158,15 +214,26 @@ impl Air {
         }
     }
 
-    fn end(mut self, profile: &Profile, landed_s: Option<f64>) -> Vec<Trouble> {
+    fn end(mut self, profile: &Profile, landed_s: Option<f64>) -> OfAir {
+        let level_at_end = self.is_alarm();
         self.stop(profile, landed_s);
-        self.troubles
+        OfAir {
+            troubles: self.troubles,
+            unbalanced: self.balance.found(),
+            trims: self.balance.trims,
+            level_at_end,
+        }
+    }
+
+    /// Whether the level is over GOOD.
+    fn is_alarm(&self) -> bool {
+        self.levels.level > Level::Good || self.balance.is_open() || self.in_doubt_s.is_some()
     }
 
     /// Ends the findings; the elevated risk begins anew.
     fn stop(&mut self, profile: &Profile, landed_s: Option<f64>) {
-        let found = levels::troubles(&profile.verdict, &self.moments, landed_s);
-        self.troubles.extend(found);
+        self.troubles
+            .extend(self.levels.end(&profile.verdict, landed_s));
         self.moments.clear();
         self.begin_anew();
     }
@@ -197,11 +264,21 @@ impl Air {
             observed.push(Observed::new(profile, &input.source, span, &now));
         }
         self.settle(t_s, profile);
+        let settled_s = profile.sampling.take_off_s + profile.sampling.warm_up_s;
+        if let Some(limit) = profile.verdict.notices.imbalance
+            && t_s - self.take_off_s >= settled_s
+        {
+            let is_calm = self.levels.level == Level::Good && self.in_doubt_s.is_none();
+            let limit = (limit.value, limit.after_s);
+            let time = (t_s, held_s);
+            self.balance.push(time, commands, factors, limit, is_calm);
+        }
         let inputs = inputs::values(profile, &self.observed, t_s, self.since_s);
         let risk = risk(profile, model, &inputs);
         let elevated = risk.map(|risk| self.add(risk, span, profile));
         let known_s = self.moments.last().map_or(t_s, |moment| moment.t_s);
         if t_s - known_s > profile.sampling.longest_gap_s {
+            self.in_doubt_s = self.is_alarm().then_some(known_s);
             self.stop(profile, None);
         }
         Row {
@@ -246,8 +323,23 @@ impl Air {
             risk,
             elevated,
             takes_off: t_s - self.take_off_s < verdict.quiet_after_take_off_s,
+            sinks: self.balance.sinks,
         });
+        self.levels.push(verdict, &self.moments);
+        self.doubt(t_s, verdict);
         elevated
+    }
+
+    /// An alarm stands until the motors have worked as before for as long as a level is held.
+    fn doubt(&mut self, t_s: f64, verdict: &VerdictSettings) {
+        let is_alarm = self.levels.level > Level::Good;
+        let is_back = verdict.notices.imbalance.is_none() || self.balance.is_back;
+        if (is_alarm || self.in_doubt_s.is_some()) && !is_back {
+            self.in_doubt_s = Some(t_s);
+        } else if !is_alarm {
+            let lasts = |s: &f64| t_s - s < verdict.clear_after_s - 1e-6;
+            self.in_doubt_s = self.in_doubt_s.filter(lasts);
+        }
     }
 }
 

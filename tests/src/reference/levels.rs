@@ -16,6 +16,8 @@ pub struct Moment {
     pub elevated: f64,
     /// Just after take-off, when only FAIL is raised.
     pub takes_off: bool,
+    /// The motors go down together, when FAIL is not raised.
+    pub sinks: bool,
 }
 
 /// A time of trouble.
@@ -38,21 +40,38 @@ fn reached(threshold: &Threshold, now: &Moment) -> bool {
     over(now.risk, threshold.risk_pct) || over(now.elevated, threshold.elevated_risk_pct)
 }
 
-/// The times of trouble of one flight from take-off on, until the vehicle landed or nothing is known any more.
-pub fn troubles(
-    settings: &VerdictSettings,
-    moments: &[Moment],
-    landed_s: Option<f64>,
-) -> Vec<Trouble> {
-    let levels = [(Level::Warn, &settings.warn), (Level::Fail, &settings.fail)];
-    let raises = |level: Level, of: &LevelSettings, now: &Moment| {
-        reached(&of.raise, now) && !(now.takes_off && level == Level::Warn)
-    };
-    let mut all: Vec<Trouble> = Vec::new();
-    let mut level = Level::Good;
-    let mut held_s = f64::NAN;
-    for (i, now) in moments.iter().enumerate() {
+/// The level of one flight, and its times of trouble so far.
+#[derive(Debug, Clone)]
+pub struct Levels {
+    /// The level now.
+    pub level: Level,
+    held_s: f64,
+    all: Vec<Trouble>,
+}
+
+impl Levels {
+    /// Those of a flight that takes off.
+    pub fn new() -> Levels {
+        Levels {
+            level: Level::Good,
+            held_s: f64::NAN,
+            all: Vec::new(),
+        }
+    }
+
+    /// Takes in the last of the moments since take-off.
+    pub fn push(&mut self, settings: &VerdictSettings, moments: &[Moment]) {
+        let Some(now) = moments.last() else { return };
         let t_s = now.t_s;
+        let levels = [(Level::Warn, &settings.warn), (Level::Fail, &settings.fail)];
+        let raises = |level: Level, of: &LevelSettings, now: &Moment| {
+            let is_quiet = if level == Level::Warn {
+                now.takes_off
+            } else {
+                now.sinks
+            };
+            reached(&of.raise, now) && !is_quiet
+        };
         let is_held = |(level, of): &&(Level, &LevelSettings)| {
             raises(*level, of, now) || reached(&of.until, now)
         };
@@ -60,23 +79,20 @@ pub fn troubles(
             .iter()
             .rfind(is_held)
             .map_or(Level::Good, |(held, _)| *held);
-        if held >= level {
-            held_s = t_s;
-        } else if t_s - held_s >= settings.clear_after_s - ROUNDING_S {
-            level = held;
-            held_s = t_s;
+        if held >= self.level {
+            self.held_s = t_s;
+        } else if t_s - self.held_s >= settings.clear_after_s - ROUNDING_S {
+            self.level = held;
+            self.held_s = t_s;
         }
         for (higher, of) in levels {
-            let unbroken = moments[..=i]
-                .iter()
-                .rev()
-                .take_while(|m| raises(higher, of, m));
+            let unbroken = moments.iter().rev().take_while(|m| raises(higher, of, m));
             let Some(since_s) = unbroken.last().map(|moment| moment.t_s) else {
                 continue;
             };
-            if higher > level && t_s - since_s >= of.after_s - ROUNDING_S {
-                if level == Level::Good {
-                    all.push(Trouble {
+            if higher > self.level && t_s - since_s >= of.after_s - ROUNDING_S {
+                if self.level == Level::Good {
+                    self.all.push(Trouble {
                         level: higher,
                         from_s: since_s,
                         raised_s: t_s,
@@ -84,25 +100,36 @@ pub fn troubles(
                         to_s: t_s,
                     });
                 }
-                level = higher;
-                held_s = t_s;
+                self.level = higher;
+                self.held_s = t_s;
             }
-            if let Some(open) = all.last_mut().filter(|_| level > Level::Good) {
+            if let Some(open) = self.all.last_mut().filter(|_| self.level > Level::Good) {
                 open.to_s = t_s;
-                if level == Level::Fail {
-                    open.level = level;
+                if self.level == Level::Fail {
+                    open.level = self.level;
                     open.failed_s.get_or_insert(t_s);
                 }
             }
         }
     }
-    // A landing takes back what is open and was raised just before it.
-    let quiet_s = |trouble: &Trouble| match trouble.level {
-        Level::Fail => settings.quiet_before_landing_s / 2.0,
-        _ => settings.quiet_before_landing_s,
-    };
-    let raised_before_s = |open: &Trouble| landed_s.map(|landed_s| landed_s - open.raised_s);
-    let is_open = level > Level::Good;
-    all.pop_if(|open| is_open && raised_before_s(open).is_some_and(|s| s < quiet_s(open)));
-    all
+
+    /// Ends the flight: the vehicle landed, or nothing is known any more. Gives the times of trouble.
+    pub fn end(&mut self, settings: &VerdictSettings, landed_s: Option<f64>) -> Vec<Trouble> {
+        let Levels { level, mut all, .. } = std::mem::replace(self, Levels::new());
+        // A landing takes back what is open and was raised just before it.
+        let quiet_s = |trouble: &Trouble| match trouble.level {
+            Level::Fail => settings.quiet_before_landing_s / 2.0,
+            _ => settings.quiet_before_landing_s,
+        };
+        let raised_before_s = |open: &Trouble| landed_s.map(|landed_s| landed_s - open.raised_s);
+        let is_open = level > Level::Good;
+        all.pop_if(|open| is_open && raised_before_s(open).is_some_and(|s| s < quiet_s(open)));
+        all
+    }
+}
+
+impl Default for Levels {
+    fn default() -> Self {
+        Levels::new()
+    }
 }

@@ -3,6 +3,7 @@
 //! [`rules`] evaluates a rule set as docs/rule-sets.md defines it. [`flight`] follows a flight as docs/profiles.md defines
 //! it: it keeps every sample and computes every window from scratch.
 
+pub mod balance;
 pub mod elevated;
 pub mod flight;
 pub mod inputs;

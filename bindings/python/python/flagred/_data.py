@@ -131,12 +131,14 @@ class Gap(NamedTuple):
 
 
 class MotorFinding(NamedTuple):
-    """The motor that was at its limit, and at which."""
+    """The motor that is the cause: near a limit, or out of balance."""
 
     number: int
     """Its number, from 1."""
+    or_number: int | None
+    """The other motor that it may be as well, where the commands do not tell which."""
     side: str
-    """The limit it was nearest to: ``lower`` or ``upper``."""
+    """The limit it was nearest to: ``lower`` or ``upper``. Out of balance: below or above its part."""
     margin_mean: float | None
     margin_min: float | None
 

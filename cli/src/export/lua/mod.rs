@@ -21,7 +21,7 @@ const PARAMETER_TABLE: u8 = 157;
 
 /// The parts in the order in which they are compiled. What runs only once comes first and is gone before the rest comes; what
 /// takes least to compile comes last, when most memory is taken.
-const PARTS: [(&str, &str); 14] = [
+const PARTS: [(&str, &str); 15] = [
     ("motors", include_str!("script/motors.lua")),
     ("setup", include_str!("script/setup.lua")),
     ("geometry", include_str!("script/geometry.lua")),
@@ -31,6 +31,7 @@ const PARTS: [(&str, &str); 14] = [
     ("inputs", include_str!("script/inputs.lua")),
     ("levels", include_str!("script/levels.lua")),
     ("notices", include_str!("script/notices.lua")),
+    ("balance", include_str!("script/balance.lua")),
     ("flight", include_str!("script/flight.lua")),
     ("calls", include_str!("script/calls.lua")),
     ("elevated", include_str!("script/elevated.lua")),
@@ -114,6 +115,7 @@ pub(super) fn text(estimator: &Estimator, plan: &Plan<'_>) -> Result<String, Ref
     rules::fill(estimator, plan, &mut filling, &mut size)?;
     let parts = PARTS.iter().filter(|(name, _)| match *name {
         "notices" => told.contains(&true),
+        "balance" => told[1],
         "geometry" => filling.holds("geometry"),
         _ => true,
     });

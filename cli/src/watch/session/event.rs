@@ -85,10 +85,13 @@ pub(crate) enum Event {
     Rebooted,
     /// A flight began.
     TookOff { t_s: f64 },
-    /// The level changed in flight, with the motor and the cause of the finding that it rests on.
+    /// The level changed in flight, with the motor and the cause of the finding that it rests on. It is unknown where the
+    /// risk became unknown while an alarm stood.
     Level {
         t_s: f64,
-        level: Level,
+        level: Option<Level>,
+        /// The level before.
+        before: Option<Level>,
         text: String,
         motor: Option<MotorFinding>,
         cause: Option<Cause>,

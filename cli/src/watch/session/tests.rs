@@ -337,15 +337,40 @@ fn a_lasting_imbalance_is_told_with_its_motor_until_landing() {
         _ => None,
     });
     let (text, motor) = told.unwrap();
-    assert!(
-        text.starts_with("FLAGRED: WARN ")
-            && text.contains("imbalance ")
-            && text.ends_with(" %, motor 3"),
-        "{text}"
-    );
+    assert!(text.starts_with("FLAGRED: WARN motor 3 weak: +"), "{text}");
     assert_eq!(motor, 2);
     let mut out = Out::default();
     assert_eq!(bench.session.finish(&mut out), Verdict::Known(Level::Warn));
+}
+
+/// A motor is weak; the link is gone for 6 s; the vehicle lands.
+#[test]
+fn good_is_never_said_where_nothing_is_known() {
+    let estimator = shipped::flagred();
+    let mut bench = Bench::new(&estimator, Some(191));
+    bench.beat(false);
+    bench.all_parameters();
+    bench.hover(10.0, 40.0, 1500);
+    let weak = |i: u32| [1700 + (i % 5) as u16, 1500, 1500 - (i % 5) as u16, 1500];
+    bench.fly(50.0, 20.0, weak);
+    assert!(bench.said().contains("motor 1 weak: +"), "{}", bench.said());
+    bench.wait(6.0);
+    bench.fly(76.0, 1.0, weak);
+    assert_eq!(bench.said(), "FLAGRED: risk unknown, last level WARN");
+    bench.fly(77.0, 30.0, weak);
+    let before = bench.count(|event| matches!(event, Event::Level { .. }));
+    // On the ground.
+    bench.fly(107.0, 2.0, |_| [1000; 4]);
+    assert_eq!(
+        bench.count(|event| matches!(event, Event::Level { .. })),
+        before
+    );
+    let is_good = |event: &Event| match event {
+        Event::Level { level, text, .. } => *level == Some(Level::Good) || text.contains("GOOD"),
+        Event::Risk { update } => update.risk.is_err() && update.level == Some(Level::Good),
+        _ => false,
+    };
+    assert_eq!(bench.count(is_good), 0);
 }
 
 #[test]

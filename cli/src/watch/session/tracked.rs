@@ -58,6 +58,8 @@ pub(super) struct Watch {
     pub(super) is_flying: bool,
     /// The notice that was open after the sample before.
     pub(super) noticed: Option<Measure>,
+    /// The level of the sample before; `None` where it was unknown.
+    pub(super) level: Option<Level>,
     pub(super) latest: Option<Update>,
 }
 
@@ -333,6 +335,7 @@ impl Watch {
             risk_sent_s: None,
             is_flying: false,
             noticed: None,
+            level: None,
             latest: None,
         }
     }
@@ -351,7 +354,9 @@ impl Watch {
     /// Takes in a flight up to now; its findings are told anew, its levels are not.
     fn replay(&mut self, flown: &[(f64, Pulses)], out: &mut Out) {
         for (t_s, pulses) in flown {
-            self.latest = Some(self.push(*t_s, true, pulses));
+            let update = self.push(*t_s, true, pulses);
+            self.level = update.level;
+            self.latest = Some(update);
             tell(self.assessor.ended(), out);
         }
         self.is_flying = !flown.is_empty();

@@ -6,7 +6,9 @@ local settled, settling = false, huge -- whether the take-off is dropped, and th
 local idle -- "landing" or "trouble"
 local since_high_us, unknown_us -- since a high risk, and since a risk was known
 
-function forget()
+-- Resets the state after a flight or a gap. After a gap in the air, trims and the doubt about an alarm stay.
+function forget(is_gap)
+  local was_alarm = is_gap and level_now() > GOOD
   for _, window in ipairs(windows) do
     clear(window)
   end
@@ -19,6 +21,12 @@ function forget()
   forget_noise()
 -- @end
   stop_judging()
+  doubt_us = was_alarm and 0 or nil
+-- @if imbalance
+  if not is_gap then
+    forget_trims()
+  end
+-- @end
 end
 
 -- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end.
@@ -28,7 +36,11 @@ local function rests()
     return false
   end
   if not idle then
-    idle = since_high_us and since_high_us <= 2000000 and "trouble" or "landing"
+    local is_trouble = since_high_us and since_high_us <= 2000000
+-- @if imbalance
+    is_trouble = is_trouble or not is_together()
+-- @end
+    idle = is_trouble and "trouble" or "landing"
   end
   return idle == "landing"
 end
@@ -58,7 +70,7 @@ function fly()
   bin_us = bin_us + held_us
   bin, bin_us = bin + bin_us // BIN_US, bin_us % BIN_US
   if held_us > LONGEST_GAP_US then
-    forget()
+    forget(true)
     held_us, held_s = 0, 0.0
   end
   for _, window in ipairs(windows) do
@@ -68,6 +80,7 @@ function fly()
   end
   since_high_us = since_high_us and later(since_high_us, held_us)
   unknown_us = unknown_us and later(unknown_us, held_us)
+  doubt_us = doubt_us and later(doubt_us, held_us)
   flown_us = flown_us and later(flown_us, held_us)
   read_commands()
 -- @if noise
@@ -78,8 +91,14 @@ function fly()
     if flown_us then
       down_us = down_us and later(down_us, held_us) or 0
       if down_us >= 1000000 then
-        forget()
+        forget(false)
       end
+    else
+      -- It landed in a gap.
+      doubt_us = nil
+-- @if imbalance
+      forget_trims()
+-- @end
     end
     return nil
   end
@@ -95,6 +114,7 @@ function fly()
   local risk = read_inputs() and estimate()
   if not risk then
     if unknown_us and unknown_us > LONGEST_GAP_US then
+      doubt_us = level_now() > GOOD and unknown_us or nil
       stop_judging()
       unknown_us = nil
     end

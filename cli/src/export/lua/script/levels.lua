@@ -90,6 +90,9 @@ end
 local function watch_motors(risk, takes_off)
   local warns = not takes_off and is_reached(risk, warn_risk, WARN_ELEVATED)
   local fails = is_reached(risk, fail_risk, FAIL_ELEVATED)
+-- @if imbalance
+  fails = fails and not sinks
+-- @end
   if not warns and not fails then
     return
   end
@@ -114,20 +117,39 @@ local function lower(until_risk, risk)
   return until_risk and risk and min(until_risk, risk) or until_risk
 end
 
+doubt_us = nil -- since an alarm: for how long the motors have worked as before
+
+-- After an alarm the level is GOOD again when the motors have worked as before for as long as a level is held.
+local function doubt()
+  local is_back = true
+-- @if imbalance
+  is_back = works_as_before()
+-- @end
+  if (risk_level > GOOD or doubt_us) and not is_back then
+    doubt_us = 0
+  elseif risk_level == GOOD and doubt_us and doubt_us >= CLEAR_AFTER_US then
+    doubt_us = nil
+  end
+end
+
 function judge(risk, takes_off)
 -- @if motor_cause
   watch_motors(risk, takes_off)
 -- @end
-  local held = GOOD
+  local held, can_fail = GOOD, true
+-- @if imbalance
+  can_fail = not sinks
+-- @end
   local warn_until, fail_until = lower(WARN_UNTIL_RISK, warn_risk), lower(FAIL_UNTIL_RISK, fail_risk)
   held = follow(WARN, held, risk, not takes_off, warn_risk, WARN_ELEVATED, WARN_AFTER_US, warn_until, WARN_UNTIL_ELEVATED)
-  held = follow(FAIL, held, risk, true, fail_risk, FAIL_ELEVATED, FAIL_AFTER_US, fail_until, FAIL_UNTIL_ELEVATED)
+  held = follow(FAIL, held, risk, can_fail, fail_risk, FAIL_ELEVATED, FAIL_AFTER_US, fail_until, FAIL_UNTIL_ELEVATED)
   if held >= risk_level then
     held_at = clock_us
   elseif clock_us - held_at >= CLEAR_AFTER_US then
     risk_level, held_at = held, clock_us
     is_open = held > GOOD
   end
+  doubt()
 end
 
 function stop_judging()

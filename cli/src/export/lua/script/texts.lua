@@ -1,16 +1,16 @@
 local LEVELS = {[GOOD] = "GOOD", [WARN] = "WARN", [FAIL] = "FAIL"}
 
 function say(level, risk, of_notice)
-  if level == GOOD and not risk then
-    gcs:send_text(INFO, "FLAGRED: risk unknown")
-    return
-  end
   local severity = level == FAIL and CRITICAL or level == WARN and WARNING or INFO
   local text = "FLAGRED: " .. LEVELS[level]
 -- @if imbalance
+  if (of_notice or not is_open) and weak then
+    gcs:send_text(severity, format("%s motor %d weak: +%.0f %%", text, numbers[weak_motor], weak))
+    return
+  end
   if (of_notice or not is_open) and imbalance then
-    local kind = of_pair and "pair imbalance" or "imbalance"
-    gcs:send_text(severity, format("%s %s %.0f %%, motor %d", text, kind, imbalance, numbers[unbalanced]))
+    text = format("%s %s %.0f %%, motor %d", text, imbalance_words, imbalance, numbers[unbalanced])
+    gcs:send_text(severity, text .. (or_unbalanced and format(" or %d", numbers[or_unbalanced]) or ""))
     return
   end
 -- @end
@@ -20,6 +20,10 @@ function say(level, risk, of_notice)
     return
   end
 -- @end
+  if not is_open and level > GOOD then
+    gcs:send_text(severity, text .. " stands: motors not as before")
+    return
+  end
   if is_open and by_elevated then
     text = format("%s elevated %.0f %%", text, elevated)
   elseif risk then

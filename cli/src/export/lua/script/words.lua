@@ -6,9 +6,9 @@ function level_now()
   level = little_reserve and max(level, WARN) or level
 -- @end
 -- @if imbalance
-  level = imbalance and max(level, WARN) or level
+  level = (imbalance or weak) and max(level, WARN) or level
 -- @end
-  return level
+  return doubt_us and max(level, WARN) or level
 end
 
 -- A cause in two parts; where there is no room for the last one, the first one is true alone.

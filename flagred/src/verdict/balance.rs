@@ -1,0 +1,228 @@
+//! The balance of the motors: a motor that works harder than before, and whether all work as before.
+//!
+//! A motor that loses thrust is commanded higher until the vehicle is level again. Its own command rises most, with the turn
+//! of the nose left in: yaw is what distinguishes it from the motor opposite and from the other motor of its arm.
+
+use super::{Limit, Measure, MotorFinding};
+use crate::{
+    average::Average,
+    margin::{Side, margin},
+    motor::{Motor, less_yaw},
+};
+
+/// Time constants of the averages, in seconds.
+const LATELY_S: f64 = 5.0;
+const TRIM_S: f64 = 30.0;
+const LOAD_S: f64 = 3.0;
+
+/// For so long the trim is learned before anything is compared with it, in seconds.
+const TRIM_KNOWN_AFTER_S: f64 = 10.0;
+
+/// The share of all shifts that one weak motor explains at least. A vehicle that leans towards a motor has 2/3.
+const ONE_MOTOR: f64 = 0.75;
+
+/// Shifts this close are equal.
+const EQUAL: f64 = 0.02;
+
+/// Motors that are farther apart than lately by this much do not go down together.
+const APART: f64 = 0.05;
+
+/// The balance of one flight. The averages of each motor are in [`Motor`].
+#[derive(Debug, Clone)]
+pub(super) struct Balance {
+    load: Average,
+    is_back: bool,
+    sinks: bool,
+}
+
+/// What is out of balance.
+pub(super) struct Unbalanced {
+    pub(super) measure: Measure,
+    /// On the effective range.
+    pub(super) value: f64,
+    pub(super) limit: f64,
+    pub(super) motor: MotorFinding,
+}
+
+/// What a sample shows.
+#[derive(Default)]
+pub(super) struct Seen {
+    pub(super) weak: Option<Unbalanced>,
+    pub(super) imbalance: Option<Unbalanced>,
+}
+
+impl Balance {
+    pub(super) const NONE: Balance = Balance {
+        load: Average::NONE,
+        is_back: false,
+        sinks: false,
+    };
+
+    /// Whether all motors work as before the alarm; without a trim from before it, whether they work alike.
+    pub(super) fn is_back(&self) -> bool {
+        self.is_back
+    }
+
+    /// Whether the motors go down together, as they do at touch-down.
+    pub(super) fn sinks(&self) -> bool {
+        self.sinks
+    }
+
+    /// Takes in a sample of which every command is known. Trims are learned while no alarm stands.
+    pub(super) fn push(
+        &mut self,
+        motors: &mut [Motor],
+        held_s: f64,
+        limit: Limit,
+        is_calm: bool,
+    ) -> Seen {
+        let limit = limit.value;
+        let mean = motors.iter().map(|m| m.command).sum::<f64>() / motors.len() as f64;
+        let load = self.load.known_after(LOAD_S);
+        self.sinks = load.is_some_and(|load| mean < load / 2.0) && is_together(motors);
+        if !mean.is_finite() {
+            return Seen::default();
+        }
+        self.load.add(mean, held_s, LOAD_S);
+        for motor in motors.iter_mut() {
+            motor.difference.add(motor.command - mean, held_s, LATELY_S);
+            let is_at_zero = motor.command <= 0.0;
+            motor.at_zero_s = if is_at_zero {
+                motor.at_zero_s + held_s
+            } else {
+                0.0
+            };
+        }
+        let is_settled = is_settled(motors);
+        let has_trim = motors.iter().all(|m| m.trim.known_s >= TRIM_KNOWN_AFTER_S);
+        let is_near = |motors: &[Motor]| motors.iter().all(|m| m.shift().abs() < limit / 2.0);
+        if is_calm && (!has_trim || is_settled && is_near(motors)) {
+            for motor in motors.iter_mut() {
+                motor.trim.add(motor.command - mean, held_s, TRIM_S);
+            }
+        }
+        let is_known = has_trim && is_settled;
+        let is_alike = motors.iter().all(|m| m.difference.value.abs() < limit);
+        self.is_back = is_settled && if has_trim { is_near(motors) } else { is_alike };
+        let weak = weak(motors, limit / 2.0).filter(|_| is_known);
+        let imbalance = match &weak {
+            Some(_) => None,
+            None => from_trim(motors, limit)
+                .filter(|_| is_known)
+                .or_else(|| at_odds(motors, 2.0 * limit)),
+        };
+        Seen { weak, imbalance }
+    }
+}
+
+/// Whether the motors are no farther apart than in the last seconds. In a fall they are.
+pub(super) fn is_together(motors: &[Motor]) -> bool {
+    let count = motors.len() as f64;
+    let mean = motors.iter().map(|m| m.command).sum::<f64>() / count;
+    let spread = |value: &dyn Fn(&Motor) -> f64| {
+        let squares = motors.iter().map(|motor| value(motor) * value(motor));
+        libm::sqrt(squares.sum::<f64>() / count)
+    };
+    let now = spread(&|motor| motor.command - mean);
+    let lately = spread(&|motor| motor.difference.value);
+    let is_apart = now >= lately + APART;
+    !is_settled(motors) || !is_apart
+}
+
+/// Whether the averages of the last seconds have values of that long.
+fn is_settled(motors: &[Motor]) -> bool {
+    motors.iter().all(|m| m.difference.known_s >= LATELY_S)
+}
+
+/// One motor above its trim, where that explains how all have moved: by the mixer, a motor `i` that loses thrust moves the
+/// commands by the column `i` of the projection onto roll, pitch, yaw and thrust.
+fn weak(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
+    let (motor, shift) = highest(motors, Motor::shift, None)?;
+    let count = motors.len() as f64;
+    let own = (count - 1.0).min(3.0) / count;
+    let all: f64 = motors.iter().map(|m| m.shift() * m.shift()).sum();
+    let is_alone = shift * shift >= ONE_MOTOR * own * all;
+    (shift > limit && is_alone).then(|| Unbalanced {
+        measure: Measure::WeakMotor,
+        value: shift,
+        limit,
+        motor: named(motors, motor, Side::High, None),
+    })
+}
+
+/// A motor that is farther from its trim than the limit, without the part that turns the nose.
+fn from_trim(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
+    let farthest = less_yaw(motors, Motor::shift).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let motor = culprit(motors, Motor::shift)?;
+    (farthest > limit).then_some(Unbalanced {
+        measure: Measure::Imbalance,
+        value: farthest,
+        limit,
+        motor,
+    })
+}
+
+/// A motor that is farther above the one opposite than the limit. A fault that was there before the trim was learned shows
+/// only here.
+fn at_odds(motors: &[Motor], limit: f64) -> Option<Unbalanced> {
+    let lately = |motor: &Motor| motor.difference.value;
+    let above = less_yaw(motors, lately)
+        .zip(motors)
+        .filter_map(|(own, motor)| {
+            let opposite = less_yaw(motors, lately).nth(motor.opposite as usize)?;
+            Some(own - opposite)
+        });
+    let farthest = above.fold(0.0, f64::max);
+    let motor = culprit(motors, lately)?;
+    (farthest > limit && is_settled(motors)).then_some(Unbalanced {
+        measure: Measure::PairImbalance,
+        value: farthest,
+        limit,
+        motor,
+    })
+}
+
+/// The motor that does not give its part: the highest one, where it is alone up there. Otherwise the one that stopped first,
+/// and where none did, the highest one. Two are named where nothing tells them apart.
+fn culprit(motors: &[Motor], value: impl Fn(&Motor) -> f64 + Copy) -> Option<MotorFinding> {
+    let (highest_one, most) = highest(motors, value, None)?;
+    let next = highest(motors, value, Some(highest_one));
+    let is_alone = next.is_none_or(|(_, next)| most - next >= most / 3.0);
+    let at_zero = |motor: &Motor| motor.at_zero_s;
+    let stopped = highest(motors, at_zero, None).filter(|(_, at_zero_s)| *at_zero_s > 0.0);
+    if let (false, Some((first, at_zero_s))) = (is_alone, stopped) {
+        let other = highest(motors, at_zero, Some(first));
+        let other = other.filter(|(_, other_s)| *other_s >= at_zero_s);
+        return Some(named(
+            motors,
+            first,
+            Side::Low,
+            other.map(|(other, _)| other),
+        ));
+    }
+    let other = next.filter(|(_, next)| most - next < EQUAL);
+    let other = other.map(|(other, _)| other);
+    Some(named(motors, highest_one, Side::High, other))
+}
+
+/// The motor with the largest value, the first of equal ones, of all but one.
+fn highest(
+    motors: &[Motor],
+    value: impl Fn(&Motor) -> f64,
+    except: Option<usize>,
+) -> Option<(usize, f64)> {
+    let values = motors.iter().map(value).enumerate();
+    let values = values.filter(|(motor, _)| Some(*motor) != except);
+    values.reduce(|most, next| if next.1 > most.1 { next } else { most })
+}
+
+fn named(motors: &[Motor], motor: usize, side: Side, or: Option<usize>) -> MotorFinding {
+    let margin = motors.get(motor).map_or(0.0, |motor| margin(motor.command));
+    MotorFinding {
+        motor,
+        or,
+        side,
+        mean_margin: margin,
+        least_margin: margin,
+    }
+}
