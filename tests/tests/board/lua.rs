@@ -209,6 +209,9 @@ fn in_short(line: &str) -> String {
     let about = text
         .split_once(" %, ")
         .map(|(_, about)| format!(", {about}"));
+    let weak = text.split_once(" weak: ");
+    let weak = weak.and_then(|(before, _)| before.split_once(' '));
+    let about = about.or(weak.map(|(_, motor)| format!(", {motor}")));
     let about = about.unwrap_or_default();
     let about = about.replace(", upper limit", ", limit");
     let about = about.replace(", lower limit", ", limit");
