@@ -311,7 +311,7 @@ fn the_script_obeys_its_parameters_and_survives_an_error() {
 /// Whatever the size of the heap, the script flies or sends one text and ends, and the vehicle can be armed.
 #[test]
 fn a_heap_that_is_too_small_does_not_block_arming() {
-    const ENOUGH: u64 = 143_360;
+    const ENOUGH: u64 = 153_600;
     let folder = Folder::new();
     let script = script("flagred", &folder);
     let vehicle = Vehicle::named("OCTAQUAD/X");
