@@ -56,17 +56,38 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     } else {
         fs::File::open(path).and_then(read_up_to_limit)
     };
+    let shown = shown.to_string();
+    text(whole(bytes, &shown)?, &shown)
+}
+
+/// Reads the bytes of an open rule set or profile.
+pub(crate) fn read_bytes(file: fs::File, shown: &str) -> Result<Vec<u8>, Failure> {
+    whole(read_up_to_limit(file), shown)
+}
+
+/// The bytes of a rule set or profile that could be read and is not too large.
+fn whole(bytes: io::Result<Vec<u8>>, shown: &str) -> Result<Vec<u8>, Failure> {
     let bytes = bytes.map_err(|error| {
         Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
     })?;
-    if bytes.len() > LARGEST_BYTES {
-        let limit = LARGEST_BYTES / 1_000_000;
-        return Err(
-            Failure::unreadable(format!("`{shown}` is larger than {limit} MB"))
-                .help("rule sets and profiles are small YAML files"),
-        );
+    match bytes.len() > LARGEST_BYTES {
+        true => {
+            let limit = LARGEST_BYTES / 1_000_000;
+            let failure = Failure::unreadable(format!("`{shown}` is larger than {limit} MB"));
+            Err(failure.help("rule sets and profiles are small YAML files"))
+        }
+        false => Ok(bytes),
     }
-    decoded(bytes).map_err(|error| error.failure(&shown.to_string()))
+}
+
+/// The text of a rule set or profile.
+pub(crate) fn text(bytes: Vec<u8>, shown: &str) -> Result<String, Failure> {
+    decoded(bytes).map_err(|error| error.failure(shown))
+}
+
+/// Whether bytes are announced as UTF-16.
+pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
+    matches!(bytes.get(..2), Some([0xff, 0xfe] | [0xfe, 0xff]))
 }
 
 /// Why bytes are no text.

@@ -256,18 +256,29 @@ pub(crate) fn new_file(named: &Path) -> Result<File, Failure> {
     })
 }
 
+/// Whether a file can be replaced: written beside its place and renamed.
+pub(crate) fn can_replace(path: &Path) -> bool {
+    let target = target(path).ok();
+    let folder = target.as_deref().and_then(Path::parent);
+    folder.is_some_and(|folder| draft().tempfile_in(folder).is_ok())
+}
+
+fn draft() -> tempfile::Builder<'static, 'static> {
+    let mut draft = tempfile::Builder::new();
+    draft.prefix(".flagred-").suffix(".part");
+    // As any new file: less what the user masks.
+    #[cfg(unix)]
+    draft.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    draft
+}
+
 fn write_file(
     target: &Path,
     replace: Replace,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let folder = target.parent().unwrap_or(Path::new("/"));
-    let mut draft = tempfile::Builder::new();
-    draft.prefix(".flagred-").suffix(".part");
-    // As any new file: less what the user masks.
-    #[cfg(unix)]
-    draft.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let draft = draft.tempfile_in(folder)?;
+    let draft = draft().tempfile_in(folder)?;
     let mut out = BufWriter::new(draft.as_file());
     fill(&mut out)?;
     out.flush()?;

@@ -14,7 +14,7 @@ use std::{
 pub(crate) use report::table::{cell, number_or_cell};
 
 pub(crate) use self::{
-    file::{Files, Output, Replace, new_file, write_all},
+    file::{Files, Output, Replace, can_replace, new_file, write_all},
     stdout::Stdout,
 };
 

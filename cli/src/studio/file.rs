@@ -1,8 +1,8 @@
 //! The file that the page edits.
 
 use std::{
-    fs::{self, OpenOptions},
-    io::ErrorKind,
+    fs::{self, File, OpenOptions},
+    io::{self, ErrorKind},
     path::{Path, PathBuf},
 };
 
@@ -10,9 +10,9 @@ use authoring::provenance::digits;
 use sha2::{Digest, Sha256};
 
 use crate::{
-    diagnostics::read_text,
+    diagnostics::{is_utf16, read_bytes, text},
     failure::Failure,
-    output::{Files, Replace},
+    output::{Files, Replace, can_replace},
 };
 
 /// Digits of a hash that tell texts apart: 128 bits.
@@ -20,7 +20,8 @@ const TAG_DIGITS: usize = 32;
 
 pub(super) struct EditedFile {
     path: PathBuf,
-    pub(super) is_read_only: bool,
+    /// Why it is not written, if it is not; empty where the user asked for that.
+    pub(super) read_only: Option<&'static str>,
 }
 
 /// What is in the file now.
@@ -59,7 +60,13 @@ impl EditedFile {
         Files::reading([path])?;
         let file = EditedFile {
             path: path.to_owned(),
-            is_read_only: is_read_only || OpenOptions::new().write(true).open(path).is_err(),
+            read_only: match is_read_only {
+                true => Some(""),
+                false if !can_write(path) => Some("the file cannot be written to"),
+                // The new file is written beside the old one.
+                false if !can_replace(path) => Some("its folder cannot be written to"),
+                false => None,
+            },
         };
         file.read()?;
         Ok(file)
@@ -72,7 +79,24 @@ impl EditedFile {
     }
 
     pub(super) fn read(&self) -> Result<Content, Failure> {
-        let text = read_text(&self.path)?;
+        let shown = self.path.display().to_string();
+        let failed = |error: io::Error| {
+            Failure::unreadable(format!("`{shown}` cannot be read: {error}")).help("check the path")
+        };
+        let file = open(&self.path).map_err(failed)?;
+        // It may have become something else, which is read without end or writes what it is sent somewhere.
+        if !file.metadata().map_err(failed)?.is_file() {
+            return Err(Failure::unreadable(format!(
+                "`{shown}` is not a file any more"
+            )));
+        }
+        let bytes = read_bytes(file, &shown)?;
+        if self.read_only.is_none() && is_utf16(&bytes) {
+            let message = format!("`{shown}` is in UTF-16, and the page would save it in UTF-8");
+            return Err(Failure::unreadable(message)
+                .help("convert the file to UTF-8, or show it with `--read-only`"));
+        }
+        let text = text(bytes, &shown)?;
         let tag = tag(&text);
         Ok(Content { text, tag })
     }
@@ -86,6 +110,22 @@ impl EditedFile {
         files.output(&self.path, Replace::Yes)?.write(text)?;
         Ok(Saved::Yes(tag(text)))
     }
+}
+
+/// Opens a file for reading without waiting for the other end of a FIFO.
+fn open(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        let flags = rustix::fs::OFlags::NONBLOCK.bits();
+        options.custom_flags(flags.cast_signed());
+    }
+    options.read(true).open(path)
+}
+
+fn can_write(path: &Path) -> bool {
+    OpenOptions::new().write(true).open(path).is_ok()
 }
 
 fn tag(text: &str) -> String {

@@ -10,8 +10,10 @@ use std::{
 /// The largest head of a request; browsers send about one kilobyte.
 const HEAD: usize = 16_384;
 const HEADERS: usize = 64;
-/// How long a request may take, and its answer.
+/// How long a request may take in all, with what of it is read after the answer.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// How long the answer may take: the page may go through a slow tunnel.
+const PATIENCE_TO_ANSWER: Duration = Duration::from_secs(60);
 /// How much of a body that is refused is read all the same, so that whoever sends it comes to read the answer.
 const DRAINED: u64 = 64_000_000;
 
@@ -67,7 +69,6 @@ impl<S: Read> Request<S> {
     /// Reads the head. `None` where nothing came, as of the connections that browsers keep ready.
     pub(super) fn read(mut stream: S) -> Result<Option<Request<S>>, Refusal> {
         let mut bytes = Vec::new();
-        let start = Instant::now();
         loop {
             let mut headers = [httparse::EMPTY_HEADER; HEADERS];
             let mut parsed = httparse::Request::new(&mut headers);
@@ -94,7 +95,7 @@ impl<S: Read> Request<S> {
             }
             let mut buffer = [0; 4096];
             match stream.read(&mut buffer) {
-                Ok(count) if count > 0 && start.elapsed() < PATIENCE => {
+                Ok(count) if count > 0 => {
                     bytes.extend_from_slice(buffer.get(..count).unwrap_or_default());
                 }
                 _ if bytes.is_empty() => return Ok(None),
@@ -112,8 +113,20 @@ impl<S: Read> Request<S> {
 
     /// Reads the body, a text of not more than so many bytes.
     pub(super) fn body(&mut self, limit: usize) -> Result<String, Refusal> {
-        let length = self
-            .header("content-length")
+        let length = self.header("content-length");
+        if self.header("transfer-encoding").is_some() {
+            let status = match length {
+                None => Status::LENGTH_REQUIRED,
+                Some(_) => Status::BAD_REQUEST,
+            };
+            return Err(status.says("send the text with its length, not in chunks"));
+        }
+        if self.header("content-encoding").is_some() {
+            return Err(
+                Status::BAD_REQUEST.says("send the text as it is, without a content encoding")
+            );
+        }
+        let length = length
             .and_then(|length| length.parse::<usize>().ok())
             .ok_or_else(|| Status::LENGTH_REQUIRED.says("the length of the text is missing"))?;
         if length > limit {
@@ -123,11 +136,10 @@ impl<S: Read> Request<S> {
             );
         }
         let mut bytes = std::mem::take(&mut self.begun);
-        let start = Instant::now();
         while bytes.len() < length {
             let mut buffer = [0; 16_384];
             match self.stream.read(&mut buffer) {
-                Ok(count) if count > 0 && start.elapsed() < PATIENCE => {
+                Ok(count) if count > 0 => {
                     bytes.extend_from_slice(buffer.get(..count).unwrap_or_default());
                 }
                 _ => return Err(Status::BAD_REQUEST.says("the text ends too early")),
@@ -174,24 +186,61 @@ impl Response<'_> {
     }
 }
 
+/// A connection that ends at some time, however slowly the other side sends or reads.
+pub(super) struct Timed<'s> {
+    stream: &'s TcpStream,
+    end: Instant,
+}
+
+impl<'s> Timed<'s> {
+    fn new(stream: &'s TcpStream, patience: Duration) -> Timed<'s> {
+        let end = Instant::now() + patience;
+        Timed { stream, end }
+    }
+
+    fn left(&self) -> io::Result<Duration> {
+        let left = self.end.saturating_duration_since(Instant::now());
+        match left.is_zero() {
+            true => Err(io::ErrorKind::TimedOut.into()),
+            false => Ok(left),
+        }
+    }
+}
+
+impl Read for Timed<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.stream.set_read_timeout(Some(self.left()?))?;
+        self.stream.read(bytes)
+    }
+}
+
+impl Write for Timed<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.set_write_timeout(Some(self.left()?))?;
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
 /// Answers the request of a connection, and ends it. `respond` is given the request; HEAD is answered as GET.
 pub(super) fn serve<'a>(
     stream: &TcpStream,
-    respond: impl FnOnce(&mut Request<&TcpStream>) -> Response<'a>,
+    respond: impl FnOnce(&mut Request<&mut Timed<'_>>) -> Response<'a>,
 ) -> io::Result<()> {
-    stream.set_read_timeout(Some(PATIENCE))?;
-    stream.set_write_timeout(Some(PATIENCE))?;
-    let (response, with_body) = match Request::read(stream) {
+    let mut reading = Timed::new(stream, PATIENCE);
+    let (response, with_body) = match Request::read(&mut reading) {
         Ok(None) => return Ok(()),
         Ok(Some(mut request)) => (respond(&mut request), request.method != "HEAD"),
         Err(refusal) => (refusal.into(), true),
     };
-    let mut stream = stream;
-    stream.write_all(&response.bytes(with_body))?;
+    Timed::new(stream, PATIENCE_TO_ANSWER).write_all(&response.bytes(with_body))?;
     stream.shutdown(Shutdown::Write)?;
     // Closed while something is left to read, the connection would be reset, and the answer lost.
-    stream.set_read_timeout(Some(Duration::from_secs(1)))?;
-    io::copy(&mut stream.take(DRAINED), &mut io::sink())?;
+    reading.end = reading.end.min(Instant::now() + Duration::from_secs(1));
+    io::copy(&mut reading.take(DRAINED), &mut io::sink())?;
     Ok(())
 }
 

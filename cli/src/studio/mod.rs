@@ -4,6 +4,7 @@ mod file;
 mod http;
 mod page;
 mod server;
+mod strangers;
 
 use std::{
     io::{self, Write},
@@ -26,9 +27,10 @@ use crate::{
 };
 use file::EditedFile;
 use server::Server;
+use strangers::Strangers;
 
-/// How many connections are open at a time; a browser opens about six.
-const CONNECTIONS: usize = 64;
+/// How many connections are open at a time.
+const CONNECTIONS: usize = 256;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -84,9 +86,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let (listener, address) = TcpListener::bind((Ipv4Addr::LOCALHOST, arguments.port))
         .and_then(|listener| listener.local_addr().map(|address| (listener, address)))
         .map_err(|error| cannot_serve(arguments.port, &error))?;
-    let said = file.as_ref().map(|file| match file.is_read_only {
-        true => format!("shows `{}`, read only", file.name()),
-        false => format!("edits `{}`", file.name()),
+    let said = file.as_ref().map(|file| match file.read_only {
+        None => format!("edits `{}`", file.name()),
+        Some("") => format!("shows `{}`, read only", file.name()),
+        Some(why) => format!("shows `{}`, read only: {why}", file.name()),
     });
     let server = Arc::new(Server::new(address, page, file)?);
     let mut out = Stdout::text();
@@ -112,6 +115,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// Answers each connection in a thread of its own: browsers keep some open that they do not use yet.
 fn accept(listener: &TcpListener, server: &Arc<Server>) {
     let open = Arc::new(AtomicUsize::new(0));
+    let strangers = Arc::new(Strangers::default());
     for connection in listener.incoming() {
         let Ok(stream) = connection else {
             // Such as too many open files, which passes.
@@ -123,9 +127,17 @@ fn accept(listener: &TcpListener, server: &Arc<Server>) {
             continue;
         }
         let (server, open) = (Arc::clone(server), Arc::clone(&open));
+        let strangers = Arc::clone(&strangers);
+        let number = strangers.admit(&stream);
         thread::spawn(move || {
             // A connection that fails has nobody to tell.
-            let _ = http::serve(&stream, |request| server.respond(request));
+            let _ = http::serve(&stream, |request| {
+                if server.is_for_the_user(request) {
+                    strangers.forget(number);
+                }
+                server.respond(request)
+            });
+            strangers.forget(number);
             open.fetch_sub(1, Ordering::Relaxed);
         });
     }

@@ -79,6 +79,12 @@ impl Server {
         drop(self.saving.lock());
     }
 
+    /// Whether a request shows the token, or the ticket.
+    pub(super) fn is_for_the_user<S: Read>(&self, request: &Request<S>) -> bool {
+        let first = request.path.split('/').nth(1);
+        first.is_some_and(|first| first == self.token || first == self.ticket)
+    }
+
     pub(super) fn respond<S: Read>(&self, request: &mut Request<S>) -> Response<'_> {
         let mut response = self.answer(request).unwrap_or_else(Response::from);
         let has_policy = |(name, _): &(&str, String)| *name == "Content-Security-Policy";
@@ -170,7 +176,7 @@ impl Server {
                 ("Content-Type", "text/plain; charset=utf-8".to_owned()),
                 ("ETag", content.tag),
                 ("X-File-Name", name),
-                ("X-Read-Only", file.is_read_only.to_string()),
+                ("X-Read-Only", file.read_only.is_some().to_string()),
             ],
             body: match is_known {
                 true => Cow::Borrowed(""),
@@ -187,7 +193,7 @@ impl Server {
         let expected = request
             .header("if-match")
             .ok_or_else(|| Status::PRECONDITION_REQUIRED.says("`If-Match` is missing"))?;
-        if file.is_read_only {
+        if file.read_only.is_some() {
             return Err(Status::FORBIDDEN.says(&format!("`{}` is read only", file.name())));
         }
         let text = request.body(LARGEST_BYTES)?;

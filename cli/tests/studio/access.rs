@@ -2,6 +2,8 @@
 
 use std::{
     fs,
+    io::Write,
+    net::TcpStream,
     os::unix::fs::PermissionsExt,
     process::Command,
     thread,
@@ -163,4 +165,50 @@ fn the_address_that_a_browser_is_given_works_once() {
     let second = studio.send(&request);
     assert_eq!(second.status, 404);
     assert!(second.body.contains("opened already"), "{}", second.body);
+}
+
+/// Whoever is on the machine can connect, and send a byte now and then.
+#[test]
+fn connections_that_drip_keep_nobody_out() {
+    let folder = folder(&[("rules.yaml", RULES)]);
+    let studio = Studio::start(folder.path(), &["rules.yaml"]);
+    let start = Instant::now();
+    let mut dripping = Vec::new();
+    for i in 0..200 {
+        let mut stream = TcpStream::connect(&studio.authority).unwrap();
+        let head = match i % 2 {
+            // In the head, and in a body that is refused.
+            0 => "GET / HTTP/1.1\r\n",
+            _ => "PUT /wrong/api/file HTTP/1.1\r\nHost: x\r\nContent-Length: 60000000\r\n\r\n",
+        };
+        stream.write_all(head.as_bytes()).unwrap();
+        dripping.push(stream);
+    }
+    for stream in &mut dripping {
+        // Some of them are closed by now.
+        let _ = stream.write_all(b"x");
+    }
+    assert_eq!(studio.file().status, 200);
+    let tag = studio.file().header("etag").to_owned();
+    assert_eq!(studio.save(&tag, RULES).status, 204);
+    assert!(
+        start.elapsed() < Duration::from_secs(5),
+        "{:?}",
+        start.elapsed()
+    );
+}
+
+/// However it drips, a request ends.
+#[test]
+fn a_request_that_is_refused_is_not_listened_to_for_long() {
+    let folder = folder(&[]);
+    let studio = Studio::start(folder.path(), &[]);
+    let mut stream = TcpStream::connect(&studio.authority).unwrap();
+    let head = "PUT /wrong/api/file HTTP/1.1\r\nHost: x\r\nContent-Length: 60000000\r\n\r\n";
+    stream.write_all(head.as_bytes()).unwrap();
+    let start = Instant::now();
+    while stream.write_all(b"x").is_ok() {
+        assert!(start.elapsed() < Duration::from_secs(15), "it listens on");
+        thread::sleep(Duration::from_millis(100));
+    }
 }

@@ -81,6 +81,14 @@ fn a_text_that_is_too_large_or_none_changes_nothing() {
         format!("PUT /{token}/api/file HTTP/1.1\r\nHost: {authority}\r\nIf-Match: {tag}\r\n");
     let chunked = format!("{head}Transfer-Encoding: chunked\r\n\r\n1\r\na\r\n0\r\n\r\n");
     assert_eq!(studio.send(&chunked).status, 411);
+    let both = format!(
+        "{head}Content-Length: 11\r\nTransfer-Encoding: chunked\r\n\r\n1\r\na\r\n0\r\n\r\n"
+    );
+    let refused = studio.send(&both);
+    assert_eq!(refused.status, 400);
+    assert!(refused.body.contains("not in chunks"), "{}", refused.body);
+    let packed = format!("{head}Content-Length: 2\r\nContent-Encoding: gzip\r\n\r\nab");
+    assert_eq!(studio.send(&packed).status, 400);
     let endless = format!("{head}Content-Length: 999999999999\r\n\r\n");
     assert_eq!(studio.send(&endless).status, 413);
     let mut stream = TcpStream::connect(authority).unwrap();
@@ -148,4 +156,66 @@ fn the_file_is_replaced_where_its_link_leads_and_keeps_its_mode() {
     let names = fs::read_dir(folder.path()).unwrap();
     let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
     assert!(names.into_iter().all(|name| !name.ends_with(".part")));
+}
+
+/// A FIFO would wait for its other end for ever, and so would whoever saves next.
+#[test]
+fn a_file_that_becomes_something_else_is_told_at_once() {
+    let folder = folder(&[("rules.yaml", RULES)]);
+    let studio = Studio::start(folder.path(), &["rules.yaml"]);
+    let tag = studio.file().header("etag").to_owned();
+    let path = folder.path().join("rules.yaml");
+    fs::remove_file(&path).unwrap();
+    let made = std::process::Command::new("mkfifo").arg(&path).status();
+    assert!(made.unwrap().success());
+    let start = Instant::now();
+    for answer in [studio.file(), studio.save(&tag, "lost")] {
+        assert_eq!(answer.status, 500);
+        assert!(
+            answer.body.contains("is not a file any more"),
+            "{}",
+            answer.body
+        );
+    }
+    assert!(start.elapsed() < Duration::from_secs(5));
+    assert_eq!(studio.interrupt(), Some(0));
+}
+
+#[test]
+fn a_file_in_utf_16_is_shown_and_not_rewritten() {
+    let folder = folder(&[]);
+    let mut bytes = vec![0xff, 0xfe];
+    bytes.extend(RULES.encode_utf16().flat_map(u16::to_le_bytes));
+    fs::write(folder.path().join("rules.yaml"), &bytes).unwrap();
+    fs::write(folder.path().join("page.html"), super::client::page()).unwrap();
+    let refused = [
+        "studio",
+        "rules.yaml",
+        "--no-browser",
+        "--page",
+        "page.html",
+    ];
+    let (code, _, error) = super::common::flagred(folder.path(), &refused);
+    assert_eq!(code, Some(3));
+    assert!(
+        error.contains("`rules.yaml` is in UTF-16") && error.contains("show it with `--read-only`"),
+        "{error}"
+    );
+    let studio = Studio::start(folder.path(), &["rules.yaml", "--read-only"]);
+    assert_eq!(studio.file().body, RULES);
+    assert_eq!(fs::read(folder.path().join("rules.yaml")).unwrap(), bytes);
+}
+
+/// Nothing can be written beside a file of `/proc`, whoever asks.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_file_in_a_folder_that_cannot_be_written_is_read_only_from_the_start() {
+    let folder = folder(&[]);
+    let studio = Studio::start(folder.path(), &["/proc/sys/kernel/hostname"]);
+    assert!(
+        studio.said[1].starts_with("shows `hostname`, read only: "),
+        "{:?}",
+        studio.said
+    );
+    assert_eq!(studio.file().header("x-read-only"), "true");
 }

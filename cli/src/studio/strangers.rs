@@ -1,0 +1,46 @@
+//! Connections that have not shown the token yet. They must not keep the user's out, however many there are.
+
+use std::{
+    collections::VecDeque,
+    net::{Shutdown, TcpStream},
+    sync::{Mutex, PoisonError},
+};
+
+/// How many there are at a time; a browser opens about six.
+const MOST: usize = 64;
+
+/// Connections that have not shown the token yet, the oldest first.
+#[derive(Default)]
+pub(super) struct Strangers(Mutex<Waiting>);
+
+#[derive(Default)]
+struct Waiting {
+    count: u64,
+    open: VecDeque<(u64, TcpStream)>,
+}
+
+impl Strangers {
+    /// Takes in a connection, and returns its number. Where there are too many, the oldest is closed: a browser sends its request
+    /// at once.
+    pub(super) fn admit(&self, stream: &TcpStream) -> u64 {
+        let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.count += 1;
+        let number = waiting.count;
+        if let Ok(stream) = stream.try_clone() {
+            waiting.open.push_back((number, stream));
+        }
+        if waiting.open.len() > MOST
+            && let Some((_, oldest)) = waiting.open.pop_front()
+        {
+            // One that is closed already has no place to free.
+            let _ = oldest.shutdown(Shutdown::Both);
+        }
+        number
+    }
+
+    /// The connection ended, or showed the token.
+    pub(super) fn forget(&self, number: u64) {
+        let mut waiting = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.open.retain(|(other, _)| *other != number);
+    }
+}
