@@ -97,17 +97,18 @@ pub(crate) fn air_from_commands(
         return (None, None);
     };
     let first_s = flight.commands.t_s().first().copied().unwrap_or_default();
-    let running = |row: &[f64]| row.iter().any(|&raw| raw > range.low + 1.0);
-    let flying = |row: &[f64]| {
+    let running = |row: &[f64], _| row.iter().any(|&raw| raw > range.low + 1.0);
+    // Motors that are unknown may run: they end no flight.
+    let flying = |row: &[f64], before: bool| {
         let known: Vec<f64> = row.iter().filter_map(|&raw| flight.command(raw)).collect();
-        known.iter().sum::<f64>() > 0.2 * known.len() as f64
+        known.iter().sum::<f64>() > 0.2 * known.len() as f64 || before && known.len() < row.len()
     };
-    let mut intervals = |state: &dyn Fn(&[f64]) -> bool, rule: &str| {
+    let mut intervals = |state: &dyn Fn(&[f64], bool) -> bool, rule: &str| {
         let rule = format!("{rule} (the log has no events that tell)");
         let mut changes: Vec<(f64, bool)> = Vec::new();
         let (mut last, mut end_s) = (None, None);
         for (t_s, row) in flight.commands.rows() {
-            let state = state(row);
+            let state = state(row, last == Some(true));
             if last.replace(state) == Some(state) {
                 continue;
             }

@@ -179,6 +179,11 @@ impl Commands {
         );
     }
 
+    /// Whether not a single value is known.
+    pub(crate) fn are_unknown(&self) -> bool {
+        self.raw.iter().all(|raw| raw.is_nan())
+    }
+
     /// Times of the rows, seconds on the log's clock.
     pub fn t_s(&self) -> &[f64] {
         &self.t_s
@@ -276,6 +281,8 @@ pub struct Flight {
     pub utc_at_zero_s: Option<f64>,
     /// Times at which the autopilot booted again within the log; empty for one boot.
     pub boots_s: Vec<f64>,
+    /// The reboots in the air. The end of such a flight is not in the log.
+    pub rebooted_in_air_s: Vec<f64>,
     /// Header lines of a CSV file as keys and values, in their order.
     pub header: Vec<(String, String)>,
     /// Amount of data and damage.
@@ -302,6 +309,7 @@ impl Flight {
             in_air: None,
             utc_at_zero_s: None,
             boots_s: Vec::new(),
+            rebooted_in_air_s: Vec::new(),
             header: Vec::new(),
             report: Report::default(),
         }

@@ -52,6 +52,20 @@ impl Intervals {
             .is_some_and(|span| span.contains(t_s))
     }
 
+    /// The times that lie within one of the intervals, their ends not included.
+    pub(crate) fn within(&self, times_s: &[f64]) -> Vec<f64> {
+        let is_within = |t_s: f64| {
+            self.spans
+                .iter()
+                .any(|span| span.start_s < t_s && t_s < span.end_s)
+        };
+        times_s
+            .iter()
+            .copied()
+            .filter(|t_s| is_within(*t_s))
+            .collect()
+    }
+
     /// Sum of the lengths of all intervals, in seconds.
     pub fn duration_s(&self) -> f64 {
         self.spans.iter().map(Interval::duration_s).sum()

@@ -11,6 +11,9 @@ const LONGEST_PULSE_US: f64 = 2200.0;
 /// (<https://dronecan.github.io/Specification/7._List_of_standard_data_types/#rawcommand>).
 const UAVCAN_FULL: f64 = 8191.0;
 
+/// Full throttle of DShot in `actuator_outputs` of PX4: 2047 less the 48 values that are commands.
+const DSHOT_FULL: f64 = 1999.0;
+
 /// The vehicle from MAV_TYPE (or the type in vehicle_status) and the build information.
 pub(crate) fn vehicle(
     parameters: &Parameters,
@@ -155,13 +158,13 @@ fn bank(instance: u8) -> &'static str {
     }
 }
 
-/// Range of `actuator_outputs`, from the build, the parameters of the bank and the largest
-/// command seen; `first` is the index of the output of a motor.
+/// Range of `actuator_outputs`, from the build, the parameters of the bank, and the smallest and largest command seen but 0;
+/// `first` is the index of the output of a motor.
 pub(crate) fn output_range(
     parameters: &Parameters,
     instance: u8,
     first: usize,
-    largest: f64,
+    (smallest, largest): (f64, f64),
     hardware: &str,
 ) -> Option<Range> {
     let range = |low, high, unit, source: String| Range {
@@ -173,6 +176,19 @@ pub(crate) fn output_range(
     if largest > LONGEST_PULSE_US {
         let source = "raw commands of UAVCAN ESCs".into();
         return Some(range(0.0, UAVCAN_FULL, "raw", source));
+    }
+    // Before 1.14 (which logs actuator_motors), DShot commands are counts of the throttle, and the limits of pulses are not used.
+    let is_dshot = parameters
+        .get("DSHOT_CONFIG")
+        .is_some_and(|rate| rate > 0.0);
+    if is_dshot && smallest < crate::outputs::PULSES_US.least && largest <= DSHOT_FULL {
+        let least = parameters
+            .get("DSHOT_MIN")
+            .filter(|least| (0.0..0.9).contains(least))?;
+        let is_both_ways = parameters.get("DSHOT_3D_ENABLE").is_some_and(|on| on > 0.0);
+        let low = (least * DSHOT_FULL).round();
+        let source = format!("DShot, from DSHOT_MIN = {} of the throttle", least as f32);
+        return (!is_both_ways).then(|| range(low, DSHOT_FULL, "raw", source));
     }
     let bank = bank(instance);
     let output = first + 1;
@@ -311,16 +327,48 @@ mod tests {
             (&mixer[..], 0, 0, 1075.0),
             (&aux[..], 1, 2, 1050.0),
         ] {
-            let range = output_range(&parameters(pairs), instance, first, 1800.0, "X").unwrap();
+            let range =
+                output_range(&parameters(pairs), instance, first, (900.0, 1800.0), "X").unwrap();
             assert_eq!((range.low, range.unit), (low, "us"), "{}", range.source);
         }
         let none = parameters(&[]);
-        assert_eq!(output_range(&none, 0, 0, 1800.0, "PX4_FMU_V5"), None);
         assert_eq!(
-            output_range(&none, 0, 0, 1800.0, "SITL").unwrap().high,
+            output_range(&none, 0, 0, (900.0, 1800.0), "PX4_FMU_V5"),
+            None
+        );
+        assert_eq!(
+            output_range(&none, 0, 0, (900.0, 1800.0), "SITL")
+                .unwrap()
+                .high,
             2000.0
         );
-        assert_eq!(output_range(&none, 1, 0, 5200.0, "X").unwrap().high, 8191.0);
+        assert_eq!(
+            output_range(&none, 1, 0, (200.0, 5200.0), "X")
+                .unwrap()
+                .high,
+            8191.0
+        );
+    }
+
+    #[test]
+    fn the_range_of_dshot_is_that_of_the_throttle() {
+        let dshot = [
+            ("DSHOT_CONFIG", 600.0),
+            ("DSHOT_MIN", 0.055),
+            ("PWM_MAIN_MIN", 1075.0),
+            ("PWM_MAIN_MAX", 1950.0),
+        ];
+        let of = |pairs: &[(&str, f64)], seen| {
+            let found = output_range(&parameters(pairs), 0, 0, seen, "X");
+            found.map(|range| (range.low, range.high, range.unit))
+        };
+        assert_eq!(of(&dshot, (110.0, 1999.0)), Some((110.0, 1999.0, "raw")));
+        // Pulses of another bank, as the values tell.
+        assert_eq!(of(&dshot, (900.0, 1800.0)), Some((1075.0, 1950.0, "us")));
+        // Without the minimum, or where the throttle goes both ways, there is no range.
+        assert_eq!(of(&dshot[..1], (110.0, 1999.0)), None);
+        let both_ways = [dshot[0], dshot[1], ("DSHOT_3D_ENABLE", 1.0)];
+        assert_eq!(of(&both_ways, (110.0, 1999.0)), None);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{self, TEXT, UNNAMED, io_error};
 use crate::input::Input;
-use crate::{Flight, ReadError, csv, dataflash, geometry, tlog, ulog};
+use crate::{Commands, Flight, ReadError, csv, dataflash, geometry, tlog, ulog};
 
 /// What to read.
 ///
@@ -124,6 +124,10 @@ fn read_unpacked(input: &mut Input<'_>, options: &Options) -> Result<Flight, Rea
     flight.in_air = flight
         .in_air
         .map(|in_air| in_air.joined(SHORTEST_LANDING_S));
+    // Rows without a single known value are none.
+    if flight.commands.are_unknown() {
+        flight.commands = Commands::default();
+    }
     for series in &mut flight.series {
         series.retain(|name| options.keeps(name));
     }

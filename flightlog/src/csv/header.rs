@@ -8,7 +8,7 @@ use crate::flight::whole_range;
 use crate::geometry::{Declared, tables};
 use crate::input::Input;
 use crate::outputs::{Bounds, FRACTIONS, PULSES_US};
-use crate::{Flight, Range, ReadError, VehicleKind, identity};
+use crate::{Flight, Intervals, Range, ReadError, VehicleKind, identity};
 
 /// An entry, and the line it stands in.
 pub(super) struct HeaderLine {
@@ -44,24 +44,31 @@ pub(super) fn read_header(input: &mut Input<'_>) -> Result<(Vec<HeaderLine>, u64
     }
 }
 
+/// The end of the last time in the air, where the log ended in the air.
+pub(super) fn end_s(header: &[HeaderLine]) -> Result<Option<f64>, ReadError> {
+    number_of(header, "end_s")
+}
+
+fn number_of(header: &[HeaderLine], key: &str) -> Result<Option<f64>, ReadError> {
+    let Some(entry) = header.iter().find(|entry| entry.key == key) else {
+        return Ok(None);
+    };
+    match entry.value.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(Some(value)),
+        _ => {
+            let text = format!("`{key}` is `{}`, not a number", entry.value);
+            Err(problem(entry.line, text, "write it as `# key: number`"))
+        }
+    }
+}
+
 /// Gives the flight what the header says of it: limits, vehicle, geometry.
 pub(super) fn apply_header(
     flight: &mut Flight,
     header: Vec<HeaderLine>,
     layout: &Layout,
 ) -> Result<Declared, ReadError> {
-    let value = |key: &str| -> Result<Option<f64>, ReadError> {
-        let Some(entry) = header.iter().find(|entry| entry.key == key) else {
-            return Ok(None);
-        };
-        match entry.value.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Some(value)),
-            _ => {
-                let text = format!("`{key}` is `{}`, not a number", entry.value);
-                Err(problem(entry.line, text, "write it as `# key: number`"))
-            }
-        }
-    };
+    let value = |key: &str| number_of(&header, key);
     let line_of = |key: &str| {
         let entry = header.iter().find(|entry| entry.key == key);
         entry.map_or(1, |entry| entry.line)
@@ -134,6 +141,30 @@ pub(super) fn apply_header(
             "system_id" => flight.vehicle.system_id = entry.value.parse().ok(),
             "boot_count" => flight.vehicle.boot_count = entry.value.parse().ok(),
             "firmware" => flight.vehicle.firmware = Some(entry.value.clone()),
+            "motors" => flight.vehicle.motors = entry.value.parse().ok(),
+            "armed" if entry.value == "never" => {
+                flight.armed = Some(Intervals {
+                    spans: Vec::new(),
+                    rule: "header armed".into(),
+                });
+            }
+            "armed" => {
+                let text = format!("`armed` is `{}`", entry.value);
+                let help = "write `never`, or leave the line out";
+                return Err(problem(entry.line, text, help));
+            }
+            "rebooted_in_air_s" => {
+                let numbers = entry.value.split_whitespace().map(str::parse::<f64>);
+                let times = numbers.collect::<Result<Vec<f64>, _>>().map_err(|_| {
+                    let text = format!("`rebooted_in_air_s` is `{}`", entry.value);
+                    problem(
+                        entry.line,
+                        text,
+                        "write times in seconds, with spaces between them",
+                    )
+                })?;
+                flight.rebooted_in_air_s.extend(times);
+            }
             "vehicle_kind" => {
                 flight.vehicle.kind = VehicleKind::from_name(&entry.value);
                 flight.vehicle.source = "header vehicle_kind".into();

@@ -6,8 +6,9 @@ use crate::{Basis, Flight, Hold, VehicleKind};
 
 impl Flight {
     /// Writes the flight as CSV: its vehicle and ranges in the lines on top, then a row for
-    /// each row of motor commands, with the latest value of every signal at that time. A
-    /// flight without motor commands has a row for each row of its longest series.
+    /// each row of motor commands, with the latest value of every signal at that time. A take-off
+    /// or a landing between two of them has a row without commands. A flight without motor commands
+    /// has a row for each row of its longest series.
     ///
     /// Commands in us are written as they are (`pwm1`..), all others as fractions of the
     /// full range (`motor1`..). What is not known is an empty cell. Numbers are written so
@@ -34,11 +35,7 @@ impl Flight {
         let in_us = self.range.as_ref().is_none_or(|range| range.unit == "us");
         let stem = if in_us { "pwm" } else { "motor" };
         write!(out, "t_s")?;
-        let motors = if self.commands.is_empty() {
-            0
-        } else {
-            self.motors.len()
-        };
+        let motors = self.motors.len();
         for number in 1..=motors {
             write!(out, ",{stem}{number}")?;
         }
@@ -50,7 +47,7 @@ impl Flight {
         writeln!(out)?;
 
         let mut holds: Vec<Hold<'_>> = self.signals().map(|signal| signal.hold()).collect();
-        let mut row = |out: &mut dyn Write, t_s: f64, commands: &[f64]| {
+        let mut write_row = |out: &mut dyn Write, t_s: f64, commands: &[f64]| {
             write!(out, "{t_s}")?;
             for &raw in commands {
                 let known = if in_us { Some(raw) } else { self.command(raw) };
@@ -65,19 +62,46 @@ impl Flight {
             }
             writeln!(out)
         };
-        if motors > 0 {
-            return self
-                .commands
-                .rows()
-                .try_for_each(|(t_s, raw)| row(out, t_s, raw));
+        // A take-off or a landing between two rows has a row of its own, without commands.
+        let mut changes = self.air_changes().into_iter().peekable();
+        let unknown = vec![f64::NAN; motors];
+        let mut row = |out: &mut dyn Write, t_s: f64, commands: &[f64]| {
+            while let Some(change_s) = changes.next_if(|change_s| *change_s <= t_s) {
+                // A row of unknown commands at this time is a sample all the same.
+                if change_s < t_s || commands.iter().all(|raw| raw.is_nan()) {
+                    write_row(out, change_s, &unknown)?;
+                }
+            }
+            match t_s.is_finite() {
+                true => write_row(out, t_s, commands),
+                false => Ok(()),
+            }
+        };
+        if !self.commands.is_empty() {
+            for (t_s, raw) in self.commands.rows() {
+                row(out, t_s, raw)?;
+            }
+            return row(out, f64::INFINITY, &[]);
         }
         let longest = self
             .series
             .iter()
             .map(|series| series.t_s())
             .max_by_key(|t_s| t_s.len());
-        let times = longest.unwrap_or_default();
-        times.iter().try_for_each(|&t_s| row(out, t_s, &[]))
+        for &t_s in longest.unwrap_or_default() {
+            row(out, t_s, &unknown)?;
+        }
+        row(out, f64::INFINITY, &[])
+    }
+
+    /// The times of take-offs and landings, in order.
+    fn air_changes(&self) -> Vec<f64> {
+        let spans = self.in_air.iter().flat_map(|in_air| &in_air.spans);
+        let times = spans.flat_map(|span| {
+            let end_s = (!span.ends_with_log).then_some(span.end_s);
+            [Some(span.start_s), end_s]
+        });
+        times.flatten().collect()
     }
 
     fn write_header(&self, out: &mut dyn Write) -> io::Result<()> {
@@ -127,6 +151,24 @@ impl Flight {
                     line(out, &key, &format!("{roll} {pitch} {yaw}"))?;
                 }
             }
+        }
+        if let Some(motors) = self.vehicle.motors {
+            line(out, "motors", &motors.to_string())?;
+        }
+        if self
+            .armed
+            .as_ref()
+            .is_some_and(|armed| armed.spans.is_empty())
+        {
+            line(out, "armed", "never")?;
+        }
+        let spans = self.in_air.iter().flat_map(|in_air| &in_air.spans);
+        if let Some(span) = spans.last().filter(|span| span.ends_with_log) {
+            line(out, "end_s", &span.end_s.to_string())?;
+        }
+        if !self.rebooted_in_air_s.is_empty() {
+            let times: Vec<String> = self.rebooted_in_air_s.iter().map(f64::to_string).collect();
+            line(out, "rebooted_in_air_s", &times.join(" "))?;
         }
         if let Some(utc_s) = self.utc_at_zero_s {
             line(out, "utc_at_zero_s", &utc_s.to_string())?;

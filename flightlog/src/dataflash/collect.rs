@@ -1,7 +1,7 @@
 //! From DataFlash messages, binary or text, to a `Flight`.
 
 use super::format::{Cells, Column, FMT, Format};
-use super::landing::{Landing, air_from_events};
+use super::landing::{Landing, air_from_events, boots_in_air};
 use super::plan::{Kind, MOTORS, Part, Role};
 use super::signals::SPECS;
 use super::untimed::{Kept, Untimed};
@@ -299,11 +299,17 @@ impl<'o> Collector<'o> {
         left_out.parameters = self.parameters.left_out();
         (flight.armed, flight.in_air) =
             ardupilot::air_from_commands(&flight, &mut left_out.changes);
+        if let Some(by_commands) = &flight.in_air {
+            flight.rebooted_in_air_s = by_commands.within(self.clock.boots_s());
+        }
         if !self.events.is_empty() {
             let span_s = span_s.unwrap_or_default();
             let (armed, in_air) = air_from_events(&self.events, self.clock.boots_s(), span_s);
             flight.armed = Some(armed);
-            flight.in_air = in_air.or(flight.in_air);
+            if let Some(in_air) = in_air {
+                flight.in_air = Some(in_air);
+                flight.rebooted_in_air_s = boots_in_air(&self.events, self.clock.boots_s());
+            }
         }
         flight.effective = ardupilot::range_in_force(&self.parameters, &flight);
         flight.effective_doubt = ardupilot::effective_doubt(&self.parameters);

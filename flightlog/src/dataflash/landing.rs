@@ -66,3 +66,18 @@ pub(super) fn air_from_events(
     let told = events.iter().any(|&(_, event)| tells(event));
     (armed, told.then_some(in_air))
 }
+
+/// The boots at which the vehicle was in the air by the events before them.
+pub(super) fn boots_in_air(events: &[(f64, Landing)], boots_s: &[f64]) -> Vec<f64> {
+    let is_flying = |boot_s: f64| {
+        let before = events
+            .iter()
+            .rfind(|(t_s, event)| *t_s <= boot_s && *event != Landing::Armed);
+        before.is_some_and(|(_, event)| *event == Landing::Left)
+    };
+    boots_s
+        .iter()
+        .copied()
+        .filter(|boot_s| is_flying(*boot_s))
+        .collect()
+}

@@ -39,7 +39,7 @@ impl KnownOutputs {
         let known_range = match is_px4 {
             true => {
                 let (bank, index) = bank(motors.first().map_or(1, |(_, output)| *output));
-                px4::output_range(parameters, bank, index, 0.0, "")
+                px4::output_range(parameters, bank, index, (f64::INFINITY, 0.0), "")
             }
             false => ardupilot::pwm_range(parameters),
         };

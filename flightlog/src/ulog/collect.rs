@@ -297,6 +297,14 @@ impl<'o> Collector<'o> {
                 }
             });
         }
+        let restarts = self
+            .outputs
+            .iter()
+            .filter_map(|outputs| outputs.restarted_s);
+        let lost_s = restarts
+            .reduce(f64::min)
+            .filter(|t_s| flight.is_in_air(*t_s) == Some(true));
+        flight.rebooted_in_air_s = lost_s.into_iter().collect();
         flight.geometry = geometry::find(&flight, &Declared::of_px4(&self.parameters));
         flight
     }
@@ -326,15 +334,14 @@ impl<'o> Collector<'o> {
             let Some(&(_, first)) = found.first() else {
                 continue;
             };
-            let largest = outputs.largest(found.iter().map(|(_, index)| *index));
-            if largest <= 0.0 {
+            let extremes = outputs.extremes(found.iter().map(|(_, index)| *index));
+            if extremes.1 <= 0.0 {
                 continue;
             }
             let hardware = &self.hardware;
             let indices = found.iter().map(|(_, index)| *index);
             flight.commands = outputs.commands(indices, f64::from);
-            flight.range =
-                px4::output_range(&self.parameters, instance, first, largest.into(), hardware);
+            flight.range = px4::output_range(&self.parameters, instance, first, extremes, hardware);
             flight.motors = found.into_iter().map(|(motor, _)| motor).collect();
             return;
         }

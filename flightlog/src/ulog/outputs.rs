@@ -11,7 +11,14 @@ pub(super) struct Outputs {
     /// Rows of `width` values.
     values: Vec<f32>,
     width: usize,
+    /// The time of the row before, where it was dropped because it goes back.
+    back_s: Option<f64>,
+    /// The last time before the clock started again.
+    pub(super) restarted_s: Option<f64>,
 }
+
+/// A clock that goes back by more than this for two rows or more, in seconds, was started again.
+const RESTART_S: f64 = 10.0;
 
 impl Outputs {
     pub(super) fn new(topic: &'static str, instance: u8, width: usize) -> Self {
@@ -21,6 +28,8 @@ impl Outputs {
             t_s: Vec::new(),
             values: Vec::new(),
             width,
+            back_s: None,
+            restarted_s: None,
         }
     }
 
@@ -37,7 +46,14 @@ impl Outputs {
                 self.t_s.pop();
                 self.values.truncate(self.t_s.len() * self.width);
             }
-            Order::Back => return true,
+            Order::Back => {
+                let before_s = self.back_s.replace(t_s).filter(|before_s| *before_s <= t_s);
+                let last_s = self.t_s.last().filter(|last_s| **last_s - t_s > RESTART_S);
+                if let (Some(_), Some(last_s)) = (before_s, last_s) {
+                    self.restarted_s.get_or_insert(*last_s);
+                }
+                return true;
+            }
         }
         self.t_s.push(t_s);
         self.values
@@ -58,10 +74,15 @@ impl Outputs {
             .map_or(0, |last| last + 1)
     }
 
-    pub(super) fn largest(&self, columns: impl Iterator<Item = usize> + Clone) -> f32 {
-        self.rows()
+    /// The smallest and the largest value above 0; infinity and 0 without any.
+    pub(super) fn extremes(&self, columns: impl Iterator<Item = usize> + Clone) -> (f64, f64) {
+        let values = self
+            .rows()
             .flat_map(|row| columns.clone().filter_map(|column| row.get(column)))
-            .fold(0.0, |largest: f32, &value| largest.max(value))
+            .filter(|value| **value > 0.0);
+        values.fold((f64::INFINITY, 0.0), |(smallest, largest), &value| {
+            (smallest.min(value.into()), largest.max(value.into()))
+        })
     }
 
     pub(super) fn commands(
