@@ -222,6 +222,17 @@ pub(crate) fn motors_needed(channels: &[Channel]) -> usize {
     needed.max().unwrap_or(1)
 }
 
+/// Whether an input reads the commands of the motors.
+pub(crate) fn read_motors((channels, inputs): (&[Channel], &[Input])) -> bool {
+    inputs.iter().any(|input| {
+        let observed = channels.get(input.channel).map(|channel| channel.observed);
+        !matches!(
+            observed,
+            None | Some(Observed::Named(_) | Observed::Difference { .. })
+        )
+    })
+}
+
 /// An input: a statistic of a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Input {

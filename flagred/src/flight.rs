@@ -6,7 +6,8 @@ use crate::{
     estimator::Estimator,
     evaluation::Span,
     margin::margin,
-    monitor::{Craft, Monitor, MonitorError, Sample, Unknown, Update},
+    monitor::{Craft, Estimate, Monitor, MonitorError, Sample, Unknown, Update},
+    motor::counted,
     profile::Profile,
     verdict::{Ended, Level, VerdictSettings},
 };
@@ -98,6 +99,8 @@ struct Flight {
     saturated: u64,
     /// For how long the risk was unknown, by reason.
     unknown: Vec<(Unknown, f64)>,
+    /// The latest and the longest time in the air without the command of a motor.
+    motor_lost: [Option<MotorLost>; 2],
     /// Judged risks that a landing would still take back, in order of time.
     pending: VecDeque<Pending>,
 }
@@ -107,6 +110,30 @@ struct Flight {
 struct Last {
     t_s: f64,
     in_air: bool,
+}
+
+/// A time in the air in which the command of a motor was unknown.
+#[derive(Debug, Clone, Copy)]
+struct MotorLost {
+    /// Counted from 0.
+    motor: usize,
+    /// Where it is far outside [0, 1].
+    command: Option<f64>,
+    from_s: f64,
+    to_s: f64,
+    /// For how much longer it was unknown than known in between.
+    lost_s: f64,
+}
+
+impl MotorLost {
+    fn reason(&self) -> Reason {
+        Reason::MotorUnknown {
+            motor: self.motor + 1,
+            command: self.command,
+            from_s: self.from_s,
+            to_s: self.to_s,
+        }
+    }
 }
 
 /// A judged risk, or several at nearly the same time.
@@ -259,6 +286,7 @@ impl Flight {
             motor_samples: 0,
             saturated: 0,
             unknown: Vec::new(),
+            motor_lost: [None; 2],
             pending: VecDeque::new(),
         }
     }
@@ -292,10 +320,12 @@ impl Flight {
             }
             return;
         }
-        for e in sample.motors.iter().filter(|e| e.is_finite()) {
+        let commands = sample.motors.iter().map(|command| counted(*command));
+        for e in commands.filter(|e| e.is_finite()) {
             self.motor_samples += 1;
-            self.saturated += u64::from(margin(*e) < SATURATED_MARGIN);
+            self.saturated += u64::from(margin(e) < SATURATED_MARGIN);
         }
+        self.follow_motors(update.risk, t_s, flown_s);
         match update.risk {
             Ok(estimate) => {
                 match elsewhere {
@@ -326,6 +356,34 @@ impl Flight {
         match self.unknown.iter_mut().find(|(known, _)| same(known)) {
             Some((_, total_s)) => *total_s += flown_s,
             None => self.unknown.push((reason, flown_s)),
+        }
+    }
+
+    /// Adds up the time without a motor; known time in between is taken off, so that single damaged samples never add up.
+    fn follow_motors(&mut self, risk: Result<Estimate, Unknown>, t_s: f64, held_s: f64) {
+        let [latest, longest] = &mut self.motor_lost;
+        let (motor, command) = match risk {
+            Err(Unknown::NoCommand { motor }) => (motor, None),
+            Err(Unknown::CommandOutside { motor, command }) => (motor, Some(command)),
+            _ => {
+                if let Some(lost) = latest {
+                    lost.lost_s -= held_s;
+                }
+                *latest = latest.filter(|lost| lost.lost_s > 0.0);
+                return;
+            }
+        };
+        let lost = latest.get_or_insert(MotorLost {
+            motor,
+            command,
+            from_s: t_s - held_s,
+            to_s: t_s,
+            lost_s: 0.0,
+        });
+        lost.to_s = t_s;
+        lost.lost_s += held_s;
+        if longest.is_none_or(|longest| lost.lost_s > longest.lost_s) {
+            *longest = Some(*lost);
         }
     }
 
@@ -421,15 +479,18 @@ impl Flight {
         }
     }
 
-    /// Without findings the flight is good only where enough of it is known.
+    /// Without findings the flight is good only where enough of it is known, and every motor but for moments.
     fn verdict(&self, summary: &Summary, profile: &Profile) -> Verdict {
         let knows_enough =
             summary.assessed_s > 0.0 && summary.assessed_s >= KNOWN_SHARE * summary.in_air_s;
         let gravest = self.findings.first().map(|finding| finding.level);
-        match gravest.filter(|level| *level > Level::Info) {
-            Some(gravest) => Verdict::Known(gravest),
-            None if knows_enough => Verdict::Known(Level::Good),
-            None => {
+        let [_, longest] = self.motor_lost;
+        let lost = longest.filter(|lost| lost.lost_s > profile.sampling.longest_gap_s);
+        match (gravest.filter(|level| *level > Level::Info), lost) {
+            (Some(gravest), _) => Verdict::Known(gravest),
+            (None, Some(lost)) => Verdict::NotAvailable(lost.reason()),
+            (None, None) if knows_enough => Verdict::Known(Level::Good),
+            (None, None) => {
                 let longest = self.unknown.iter().max_by(|a, b| a.1.total_cmp(&b.1));
                 Verdict::NotAvailable(match longest {
                     Some((unknown, _)) => Reason::RiskUnknown {

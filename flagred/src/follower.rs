@@ -163,12 +163,14 @@ impl Follower {
         };
         push(plan.0, room.seen, (t_s, held_s), &now);
         self.settle(t_s, in_air_since_s, room);
-        if self.settled {
+        let unknown = unknown_motor(room.motors, sample.motors);
+        if self.settled && unknown.is_none() {
             let is_calm = self.alert.level() == Level::Good && self.in_doubt_s.is_none();
             self.notices
                 .push((t_s, held_s), together.noise, room.motors, is_calm);
         }
-        let said = match self.estimate(plan, room, estimate) {
+        let unknown = unknown.filter(|_| channel::read_motors(plan));
+        let said = match self.estimate(plan, room, unknown, estimate) {
             Ok(said) => said,
             Err(reason) => {
                 let known_s = self.last_known_s.unwrap_or(t_s);
@@ -270,12 +272,14 @@ impl Follower {
         }
     }
 
-    /// Whether the motors idle as they do on the ground: before take-off, and after a flight that was calm to its end.
+    /// Whether the motors idle as they do on the ground: before take-off, and after a flight that was calm to its end. With an
+    /// unknown motor that cannot be known, and the vehicle counts as in the air.
     fn rests(&mut self, t_s: f64, motors: &[Motor]) -> bool {
-        let commands = motors.iter().map(|motor| motor.command);
-        let known = commands.filter(|e| e.is_finite());
-        let (sum, count) = known.fold((0.0, 0.0), |(sum, count), e| (sum + e, count + 1.0));
-        if count == 0.0 || sum >= self.settings.verdict.idle_below * count {
+        let sum: f64 = motors.iter().map(|motor| motor.command).sum();
+        if sum.is_nan() {
+            return false;
+        }
+        if sum >= self.settings.verdict.idle_below * motors.len() as f64 {
             self.idle = None;
             return false;
         }
@@ -312,9 +316,9 @@ impl Follower {
         &self,
         plan: (&[Channel], &[Input]),
         room: &mut Room<'_>,
+        mut reason: Option<Unknown>,
         estimate: impl FnOnce(&[f64]) -> Option<Estimate>,
     ) -> Result<Estimate, Unknown> {
-        let mut reason = None;
         for (input, kept) in room.inputs.iter_mut().enumerate() {
             let value = reading(plan, room.seen, &self.settings.sampling, input);
             *kept = value.unwrap_or_else(|unknown| {
@@ -368,6 +372,16 @@ impl Follower {
         let step = self.alert.end(t_s, end == End::Landing);
         [step.ended, None, None, None]
     }
+}
+
+/// Why the risk is unknown where the command of a motor is; `None` where all are known.
+fn unknown_motor(motors: &[Motor], commands: &[f64]) -> Option<Unknown> {
+    let motor = motors.iter().position(|motor| motor.command.is_nan())?;
+    let given = commands.get(motor).copied();
+    Some(match given.filter(|command| !command.is_nan()) {
+        Some(command) => Unknown::CommandOutside { motor, command },
+        None => Unknown::NoCommand { motor },
+    })
 }
 
 /// The value of an input, where enough is known of its window.

@@ -10,7 +10,7 @@ use crate::{
     evaluation::Span,
     flight::{Assessment, Assessor, Reason, Verdict, judged_span},
     monitor::{Craft, Sample, Unknown},
-    verdict::VerdictSettings,
+    verdict::{Level, VerdictSettings},
 };
 
 /// The signals that an attitude error is made of.
@@ -48,13 +48,28 @@ pub fn assess(flight: &Flight, estimator: &Estimator, step_s: Option<f64>) -> As
     }
     let mut assessment = assessor.finish();
     let slow = gaps.iter().find(|gap| matches!(gap, Gap::TooSlow { .. }));
-    if let Verdict::NotAvailable(Reason::RiskUnknown {
-        unknown: Unknown::TooFewSamples { .. },
-        help,
-        ..
-    }) = &mut assessment.verdict
+    if let (Verdict::NotAvailable(Reason::RiskUnknown { unknown, help, .. }), Some(slow)) =
+        (&mut assessment.verdict, slow)
     {
-        *help = slow.and_then(Gap::help);
+        match unknown {
+            Unknown::TooFewSamples { .. } => *help = slow.help(),
+            // Two samples or none in a window: the rate is the reason, not the signal.
+            Unknown::NoValue { .. } | Unknown::WarmingUp { .. } => {
+                assessment.verdict = Verdict::NotAvailable(Reason::Log(slow.clone()));
+            }
+            _ => {}
+        }
+    }
+    if let Verdict::NotAvailable(Reason::MotorUnknown { motor, .. }) = &mut assessment.verdict
+        && let Some(logged) = flight.motors.get(*motor - 1)
+    {
+        *motor = logged.number.into();
+    }
+    // As for a vehicle that is lost on a live link: what was seen of the flight is not GOOD for that.
+    if let Some(&at_s) = flight.rebooted_in_air_s.first()
+        && assessment.verdict == Verdict::Known(Level::Good)
+    {
+        assessment.verdict = Verdict::NotAvailable(Reason::RebootedInAir { at_s });
     }
     assessment
 }

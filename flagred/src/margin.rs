@@ -54,7 +54,8 @@ impl Range {
         high: 1.0,
     };
 
-    /// A range from `low` to `high`; `None` unless both and their difference are finite and `low < high`.
+    /// A range from `low` to `high`; `None` unless both and their difference are finite and `low < high`. A difference of less than
+    /// 1e-9, or of less than this share of the larger limit, is not a range: every command would be at a limit.
     ///
     /// # Example
     /// ```
@@ -64,8 +65,10 @@ impl Range {
     /// assert!(Range::new(1940.0, 1100.0).is_none() && Range::new(1100.0, f64::NAN).is_none());
     /// ```
     pub fn new(low: f64, high: f64) -> Option<Range> {
+        const LEAST_SPAN: f64 = 1e-9;
         let span = high - low;
-        (span > 0.0 && span.is_finite()).then_some(Range { low, high })
+        let least = LEAST_SPAN * low.abs().max(high.abs()).max(1.0);
+        (span >= least && span.is_finite()).then_some(Range { low, high })
     }
 
     /// The lower limit.
@@ -204,6 +207,8 @@ mod tests {
             (2.0, 1.0),
             (f64::NAN, 1.0),
             (0.0, f64::INFINITY),
+            (0.0, 5e-324),
+            (1e6, 1e6 + 1e-4),
         ] {
             assert_eq!(Range::new(low, high), None, "{low} {high}");
         }

@@ -14,7 +14,11 @@ use crate::{
 };
 
 pub use crate::sample::{Estimate, Sample, Unknown, Update};
-pub use crate::{craft::Craft, effort::Factors};
+pub use crate::{
+    craft::Craft,
+    effort::Factors,
+    motor::{MOST_OUTSIDE, counted},
+};
 
 impl Unknown {
     /// The reason in words, with the names of the profile's inputs.
@@ -50,6 +54,13 @@ impl Unknown {
                 format!("the signal of input `{}` has no known value", name(input).0)
             }
             Unknown::NoRule => "no rule applies, and there is nothing to interpolate from".into(),
+            Unknown::NoCommand { motor } => {
+                format!("the command of motor {} is unknown", motor + 1)
+            }
+            Unknown::CommandOutside { motor, command } => format!(
+                "the command of motor {} is `{command}`, and a command is a fraction from 0 to 1",
+                motor + 1
+            ),
         }
     }
 }

@@ -16,6 +16,10 @@ pub(crate) fn bin_of(t_s: f64) -> f64 {
     libm::floor(t_s / BIN_S + ROUNDING)
 }
 
+/// A command this far outside [0, 1] comes from rounding or from limits that are slightly exceeded. A larger one has another unit,
+/// such as microseconds or percent.
+pub const MOST_OUTSIDE: f64 = 0.5;
+
 /// No motor.
 const NONE: u32 = u32::MAX;
 
@@ -208,13 +212,26 @@ pub(crate) fn forget_trims(motors: &mut [Motor]) {
     }
 }
 
-/// Takes in the effective command of each motor at a time; values outside [0, 1] and missing ones are unknown.
+/// The command of a motor as it counts: clamped to [0, 1] where it is at most [`MOST_OUTSIDE`] outside, as readers of logs do;
+/// else NaN, unknown.
+///
+/// ```
+/// use flagred::monitor::counted;
+///
+/// assert_eq!((counted(1.0000001), counted(-0.1), counted(0.3)), (1.0, 0.0, 0.3));
+/// assert!(counted(1500.0).is_nan() && counted(f64::NAN).is_nan());
+/// ```
+pub fn counted(command: f64) -> f64 {
+    match (-MOST_OUTSIDE..=1.0 + MOST_OUTSIDE).contains(&command) {
+        true => command.clamp(0.0, 1.0),
+        false => f64::NAN,
+    }
+}
+
+/// Takes in the effective command of each motor at a time; missing ones are unknown.
 pub(crate) fn take(motors: &mut [Motor], bin: &mut Bin, t_s: f64, commands: &[f64]) -> Together {
     let noise = bin.begin(t_s, motors);
-    let commands = commands.iter().map(|e| match e {
-        0.0..=1.0 => *e,
-        _ => f64::NAN,
-    });
+    let commands = commands.iter().map(|command| counted(*command));
     let commands = commands.chain(core::iter::repeat(f64::NAN));
     let mut efforts = [0.0; 4];
     let mut has_geometry = false;
@@ -244,25 +261,20 @@ impl Bin {
     };
 
     /// The noise of the bin that a new one at a time completes: `sqrt(mean over motors of (step^2) / 2)`, with the steps
-    /// from the bin before.
+    /// from the bin before. Unknown where the step of a motor is.
     fn begin(&mut self, t_s: f64, motors: &mut [Motor]) -> f64 {
         let index = bin_of(t_s);
         let mut noise = f64::NAN;
         if index != self.index {
-            let (mut squares, mut known) = (0.0, 0.0);
+            let mut squares = 0.0;
             for motor in motors.iter_mut() {
                 let mean = motor.bin_sum / f64::from(self.samples);
                 let step = mean - motor.bin_before;
-                if step.is_finite() {
-                    squares += step * step;
-                    known += 1.0;
-                }
+                squares += step * step;
                 motor.bin_before = mean;
                 motor.bin_sum = 0.0;
             }
-            if known > 0.0 {
-                noise = libm::sqrt(squares / known / 2.0);
-            }
+            noise = libm::sqrt(squares / motors.len() as f64 / 2.0);
             *self = Bin { index, samples: 0 };
         }
         self.samples += 1;

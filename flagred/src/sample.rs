@@ -7,7 +7,8 @@ use crate::verdict::{Ended, Level};
 pub struct Sample<'a> {
     /// Its time in seconds; times must not decrease.
     pub t_s: f64,
-    /// The effective command of each motor in [0, 1]; any other value, such as NaN, is unknown.
+    /// The effective command of each motor, from 0 to 1; NaN is unknown. Values from -0.5 to 1.5 are clamped to [0, 1], all
+    /// others count as unknown. While a motor is unknown, so is the risk of a profile that reads motors.
     pub motors: &'a [f64],
     /// Whether the vehicle is in the air.
     pub in_air: bool,
@@ -77,6 +78,18 @@ pub enum Unknown {
     },
     /// No rule applies, and there is nothing to interpolate from.
     NoRule,
+    /// The command of a motor is unknown.
+    NoCommand {
+        /// The first such motor, counted from 0.
+        motor: usize,
+    },
+    /// The command of a motor is so far outside [0, 1] that it has another unit.
+    CommandOutside {
+        /// The first such motor, counted from 0.
+        motor: usize,
+        /// Its command.
+        command: f64,
+    },
 }
 
 /// When an input counts as known.

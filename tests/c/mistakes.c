@@ -162,5 +162,44 @@ int main(void) {
         CHECK(flagred_push(monitor, &sample, &said) == FLAGRED_OK && isnan(said.risk_pct));
         sample.motors = MOTORS;
     }
+
+    /* One unknown motor, or fewer commands than motors, make the risk unknown, and the level after two seconds. */
+    const double one_odd[] = {NAN, 1500.0};
+    for (int i = 0; i < 3; i++) {
+        CHECK(start(plan, &monitor) == FLAGRED_OK);
+        for (int step = 0; step < 1000; step++) {
+            for (int motor = 0; motor < MOTORS; motor++) {
+                commands[motor] = 0.5;
+            }
+            int is_odd = step >= 500;
+            commands[2] = is_odd && i < 2 ? one_odd[i] : 0.5;
+            sample.t_s = step * 0.02;
+            sample.motors = is_odd && i == 2 ? 2 : MOTORS;
+            CHECK(flagred_push(monitor, &sample, &said) == FLAGRED_OK);
+            if (is_odd) {
+                CHECK(isnan(said.risk_pct) && said.unknown_motor == 2);
+                CHECK(said.unknown == (i == 1 ? FLAGRED_COMMAND_OUTSIDE : FLAGRED_NO_COMMAND));
+            } else {
+                CHECK(said.unknown_motor == -1);
+            }
+        }
+        CHECK(said.level == FLAGRED_LEVEL_NONE);
+        /* Rounding is clamped. */
+        commands[2] = 1.0000001;
+        sample.motors = MOTORS;
+        for (int step = 1000; step < 1500; step++) {
+            sample.t_s = step * 0.02;
+            CHECK(flagred_push(monitor, &sample, &said) == FLAGRED_OK);
+        }
+        CHECK(said.unknown == FLAGRED_KNOWN && said.unknown_motor == -1);
+    }
+
+    /* Limits between which there is nothing. */
+    flagred_limits narrow[MOTORS];
+    for (int motor = 0; motor < MOTORS; motor++) {
+        narrow[motor].low = 0.0;
+        narrow[motor].high = 5e-324;
+    }
+    CHECK(flagred_start(plan, MOTORS, narrow, memory, sizeof memory, &monitor) == FLAGRED_BAD_LIMITS);
     return 0;
 }

@@ -854,9 +854,13 @@ function forget(is_gap)
   doubt_us = was_alarm and 0 or nil
 end
 
--- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end.
+-- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end. While the command of a
+-- motor is unknown, the vehicle counts as in the air.
 local function rests()
-  if not sum or sum >= 0.1 * motors then
+  if not sum then
+    return false
+  end
+  if sum >= 0.1 * motors then
     idle = nil
     return false
   end
@@ -922,7 +926,8 @@ function fly()
   flown_us = flown_us or 0
   observe()
   settle()
-  local risk = read_inputs() and estimate()
+  -- While the command of a motor is unknown, so is the risk.
+  local risk = read_inputs() and sum and estimate()
   if not risk then
     if unknown_us and unknown_us > 2000000 then
       doubt_us = level_now() > 0 and unknown_us or nil

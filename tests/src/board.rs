@@ -229,6 +229,8 @@ pub fn told(said: &Update) -> String {
         Err(Unknown::TooFewSamples { input, .. }) => (4, input as i32),
         Err(Unknown::NoValue { input }) => (5, input as i32),
         Err(Unknown::NoRule) => (6, -1),
+        Err(Unknown::NoCommand { .. }) => (7, -1),
+        Err(Unknown::CommandOutside { .. }) => (8, -1),
     };
     let level = |level: Option<flagred::verdict::Level>| level.map_or(-1, |level| level as i32);
     let mut text = moment(said.risk.ok().as_ref());

@@ -2,8 +2,13 @@
 
 use std::path::Path;
 
+use flagred::{
+    flight::{Reason, Verdict},
+    log::assess,
+    shipped,
+};
 use flagred_tests::{Folder, STEADY, flagred, log_writer::ULog, reference_data};
-use flightlog::{Flight, Options};
+use flightlog::{Flight, Gap, Options};
 
 fn open(path: &Path) -> Flight {
     flightlog::open(path, &Options::default()).unwrap()
@@ -61,6 +66,109 @@ fn flights_of_other_formats_are_the_same_as_csv() {
     ] {
         compare(&data.join("logs").join(log));
     }
+}
+
+/// Verdict, reason, findings and summary of a log are those of its CSV.
+fn compare_assessments(log: &Path) {
+    let Ok(flight) = flightlog::open(log, &Options::default()) else {
+        return;
+    };
+    let mut csv = Vec::new();
+    flight.write_csv(&mut csv).unwrap();
+    let again = flightlog::read(&csv[..], &Options::default()).unwrap();
+    for estimator in [shipped::flagred(), shipped::flagred_paper()] {
+        let [of_log, of_csv] = [&flight, &again].map(|flight| assess(flight, &estimator, None));
+        let reason = |verdict: &Verdict| match verdict {
+            // How the kind is known is told otherwise.
+            Verdict::NotAvailable(Reason::Log(Gap::NotAMultirotor { kind, .. })) => {
+                kind.to_string()
+            }
+            Verdict::NotAvailable(reason) => reason.to_string(),
+            Verdict::Known(level) => level.to_string(),
+        };
+        let name = log.display();
+        assert_eq!(reason(&of_csv.verdict), reason(&of_log.verdict), "{name}");
+        assert_eq!(of_csv.findings, of_log.findings, "{name}");
+        assert_eq!(of_csv.summary, of_log.summary, "{name}");
+    }
+}
+
+#[test]
+fn the_shipped_flights_are_assessed_alike_as_csv() {
+    let flights = Path::new(STEADY).parent().unwrap();
+    let logs = std::fs::read_dir(flights).unwrap();
+    let logs: Vec<_> = logs.map(|entry| entry.unwrap().path()).collect();
+    assert!(logs.iter().any(|log| log == Path::new(STEADY)));
+    logs.iter().for_each(|log| compare_assessments(log));
+}
+
+/// Motors that stop long before the log ends: the landing is between two rows.
+#[test]
+fn a_landing_between_two_motor_commands_is_the_same_as_csv() {
+    let mut log = ULog::new(1_000_000);
+    log.define("actuator_motors:uint64_t timestamp;float[12] control;");
+    log.define("vehicle_land_detected:uint64_t timestamp;bool landed;");
+    log.parameter("CA_ROTOR_COUNT", 4.0);
+    log.announce(0, 1, "actuator_motors");
+    log.announce(0, 2, "vehicle_land_detected");
+    let mut controls = [f32::NAN; 12];
+    controls[..4].fill(0.4);
+    for second in 0..240 {
+        let us = 1_000_000 * (second + 1);
+        log.flags(2, us + 500, &[u8::from(!(3..60).contains(&second))]);
+        // No commands are logged after the landing, but for the last seconds.
+        if !(60..230).contains(&second) {
+            for row in 0..20 {
+                log.floats(1, us + 50_000 * row + 1000, &controls);
+            }
+        }
+    }
+    let folder = Folder::new();
+    let log = folder.file("landing.ulg", &log.bytes);
+    let flight = open(Path::new(&log));
+    let again = converted(Path::new(&log));
+    assert_eq!(
+        flight.in_air.as_ref().unwrap().spans,
+        again.in_air.unwrap().spans
+    );
+    assert_eq!(flight.commands, again.commands);
+    assert_eq!(
+        assess(&flight, &shipped::flagred(), None)
+            .verdict
+            .to_string(),
+        "GOOD"
+    );
+    compare_assessments(Path::new(&log));
+}
+
+#[test]
+#[ignore = "needs FLAGRED_SHARED"]
+fn all_logs_are_assessed_alike_as_csv() {
+    let data = reference_data();
+    let mut count = 0;
+    for folder in [
+        "flights",
+        "logs",
+        "real/flights",
+        "real2/flights",
+        "real2/logs",
+    ] {
+        let Ok(entries) = std::fs::read_dir(data.join(folder)) else {
+            continue;
+        };
+        for entry in entries {
+            let log = entry.unwrap().path();
+            if log.is_file()
+                && log
+                    .extension()
+                    .is_none_or(|end| end != "json" && end != "md")
+            {
+                compare_assessments(&log);
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 90, "{count}");
 }
 
 #[test]

@@ -67,7 +67,9 @@ typedef enum flagred_unknown {
     FLAGRED_WARMING_UP = 3,     /* the window of an input is not full enough yet */
     FLAGRED_TOO_FEW_SAMPLES = 4,
     FLAGRED_NO_VALUE = 5,       /* the signal of an input is unknown */
-    FLAGRED_NO_RULE = 6         /* no rule covers the inputs, and nothing fills the gap */
+    FLAGRED_NO_RULE = 6,        /* no rule covers the inputs, and nothing fills the gap */
+    FLAGRED_NO_COMMAND = 7,     /* the command of a motor is unknown */
+    FLAGRED_COMMAND_OUTSIDE = 8 /* the command of a motor is far outside 0 to 1, and there are no limits: another unit */
 } flagred_unknown;
 
 /* The commands of a motor's least and most thrust, in the unit of its commands. On an ArduPilot vehicle, in us:
@@ -89,7 +91,7 @@ typedef struct flagred_sample {
     double t_s;                 /* seconds; must increase */
     const double *commands;     /* the command of each motor, in the unit of its limits; NAN where unknown (replace
                                    codes such as 65535 by NAN) */
-    size_t motors;              /* the number of commands; missing ones are unknown */
+    size_t motors;              /* the number of commands; missing ones are unknown, and so is the risk then */
     const double *signals;      /* the signals of the profile, in its order; NAN where unknown; may be NULL */
     size_t signal_count;
     int32_t in_air;             /* 0 on the ground */
@@ -135,6 +137,7 @@ typedef struct flagred_update {
     int32_t change;             /* flagred_level: the new level, where this sample changed it */
     int32_t unknown;            /* flagred_unknown */
     int32_t unknown_input;      /* the index of the unknown input of the profile; else -1 */
+    int32_t unknown_motor;      /* the index of the motor whose command is unknown; else -1 */
 } flagred_update;
 
 typedef struct flagred_rules flagred_rules;
@@ -152,8 +155,8 @@ const char *flagred_status_text(int32_t status);
 size_t flagred_memory_size(const flagred_plan *plan, size_t motors);
 
 /* Makes a monitor of a new flight in `memory`; there is nothing to free. `plan` and `memory` must outlive it. `limits`,
- * one for each motor, are copied, and commands are clamped to them. If `limits` is NULL, commands are from 0 to 1, and
- * others are unknown. */
+ * one for each motor, are copied, and commands are clamped to them. If `limits` is NULL, commands are from 0 to 1: commands
+ * from -0.5 to 1.5 are clamped to this range, and others are unknown. While a motor is unknown, so is the risk. */
 int32_t flagred_start(const flagred_plan *plan, size_t motors, const flagred_limits *limits, void *memory, size_t size,
                       flagred_monitor **monitor);
 

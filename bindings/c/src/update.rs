@@ -48,6 +48,7 @@ pub struct Update {
     change: i32,
     unknown: i32,
     unknown_input: i32,
+    unknown_motor: i32,
 }
 
 impl Finding {
@@ -105,14 +106,16 @@ pub(crate) fn findings(ended: Ended) -> [Finding; ENDED] {
 
 impl Update {
     pub(crate) fn of(update: &sample::Update) -> Update {
-        let (unknown, unknown_input) = match update.risk {
-            Ok(_) => (0, -1),
-            Err(Unknown::OnGround) => (1, -1),
-            Err(Unknown::OutOfOrder) => (2, -1),
-            Err(Unknown::WarmingUp { input }) => (3, index(input)),
-            Err(Unknown::TooFewSamples { input, .. }) => (4, index(input)),
-            Err(Unknown::NoValue { input }) => (5, index(input)),
-            Err(Unknown::NoRule) => (6, -1),
+        let (unknown, unknown_input, unknown_motor) = match update.risk {
+            Ok(_) => (0, -1, -1),
+            Err(Unknown::OnGround) => (1, -1, -1),
+            Err(Unknown::OutOfOrder) => (2, -1, -1),
+            Err(Unknown::WarmingUp { input }) => (3, index(input), -1),
+            Err(Unknown::TooFewSamples { input, .. }) => (4, index(input), -1),
+            Err(Unknown::NoValue { input }) => (5, index(input), -1),
+            Err(Unknown::NoRule) => (6, -1, -1),
+            Err(Unknown::NoCommand { motor }) => (7, -1, index(motor)),
+            Err(Unknown::CommandOutside { motor, .. }) => (8, -1, index(motor)),
         };
         Update {
             t_s: update.t_s,
@@ -122,6 +125,7 @@ impl Update {
             change: level(update.change),
             unknown,
             unknown_input,
+            unknown_motor,
             ..Update::of_estimate(update.risk.ok())
         }
     }
@@ -144,6 +148,7 @@ impl Update {
             change: -1,
             unknown: if estimate.is_some() { 0 } else { 6 },
             unknown_input: -1,
+            unknown_motor: -1,
         }
     }
 }

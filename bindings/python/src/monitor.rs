@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use flagred::{
     flight::Assessor,
-    monitor::{Craft, Sample, Update as Said},
+    monitor::{Craft, Sample, Update as Said, counted},
 };
 use pyo3::prelude::*;
 use report::{document::FindingDocument, finding::Teller};
@@ -70,6 +70,14 @@ struct Followed {
     motors: usize,
 }
 
+/// Python's `None` is unknown, as NaN is.
+fn numbers(values: &[Option<f64>]) -> Vec<f64> {
+    values
+        .iter()
+        .map(|value| value.unwrap_or(f64::NAN))
+        .collect()
+}
+
 impl MonitorData {
     fn followed(&self) -> MutexGuard<'_, Option<Followed>> {
         self.followed.lock().unwrap_or_else(PoisonError::into_inner)
@@ -107,10 +115,26 @@ impl MonitorData {
     fn _push(
         &self,
         t_s: f64,
-        commands: Vec<f64>,
+        commands: Vec<Option<f64>>,
         in_air: bool,
-        signals: Vec<f64>,
+        signals: Vec<Option<f64>>,
     ) -> PyResult<Update> {
+        let commands = numbers(&commands);
+        let signals = numbers(&signals);
+        // Refused before anything is followed: with another unit, no sample of the flight is right.
+        if let Some(motor) = commands
+            .iter()
+            .position(|e| counted(*e).is_nan() && !e.is_nan())
+        {
+            return Err(data_error(
+                format!(
+                    "the command of motor {} is `{}`, and a command is a fraction from 0 to 1",
+                    motor + 1,
+                    commands[motor]
+                ),
+                Some("scale it: 0 is the lower limit of the motor, 1 the upper limit".to_owned()),
+            ));
+        }
         let mut followed = self.followed();
         let followed = match &mut *followed {
             Some(followed) => followed,

@@ -291,11 +291,14 @@ impl Channel {
             let one = motors.nth(motor as usize);
             return self.threshold(one.unwrap_or(f64::NAN));
         }
-        let known = motors.filter(|value| value.is_finite());
-        if self.motors == Motors::Pooled {
-            return Moments::alike(known.map(|value| self.counted(value)));
+        // The motors that are known tell nothing of one that is not.
+        if motors.clone().any(|value| !value.is_finite()) {
+            return Moments::EMPTY;
         }
-        let all = Moments::alike(known);
+        if self.motors == Motors::Pooled {
+            return Moments::alike(motors.map(|value| self.counted(value)));
+        }
+        let all = Moments::alike(motors);
         let one = match self.motors {
             Motors::Pooled | Motors::Mean | Motors::One(_) => all.mean(),
             Motors::Std => all.std(),

@@ -1,5 +1,7 @@
+use proptest::prelude::*;
+
 use super::*;
-use crate::{shipped, verdict::Measure};
+use crate::{monitor::Factors, shipped, verdict::Measure};
 
 /// Flies at 50 Hz: for each phase its seconds, whether in the air, and the motors.
 fn fly(phases: &[(f64, bool, [f64; 4])]) -> Assessment {
@@ -422,4 +424,83 @@ fn a_flight_is_good_where_every_risk_is_known() {
         help: None,
     });
     assert_eq!(fly(&estimator), unknown);
+}
+
+const QUAD_X: [Factors; 4] = [
+    [-1.0, 1.0, 1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, 1.0, -1.0],
+    [-1.0, -1.0, -1.0],
+];
+
+/// Hovers, then is in trouble from 10 to 30 s, then hovers until 40 s; `change` may change the motors of a sample.
+fn in_trouble(
+    estimator: &Estimator,
+    factors: &[Factors],
+    trouble: [f64; 4],
+    change: impl Fn(f64, &mut [f64; 4]),
+) -> Assessment {
+    let craft = Craft::new(4).with_geometry(factors);
+    let mut assessor = Assessor::new(estimator, craft, None).unwrap();
+    for i in 0..2000 {
+        let t_s = f64::from(i) * 0.02;
+        let mut motors = if (10.0..30.0).contains(&t_s) {
+            trouble
+        } else {
+            HOVER
+        };
+        change(t_s, &mut motors);
+        assessor.push(&Sample {
+            t_s,
+            motors: &motors,
+            in_air: true,
+            signals: &[],
+        });
+    }
+    assessor.finish()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever motors are unknown, all the time or again and again, a flight that fails is never GOOD for it.
+    #[test]
+    fn no_unknown_motor_makes_a_failed_flight_good(
+        unknown in prop::array::uniform4(any::<bool>()),
+        is_paper: bool,
+        has_geometry: bool,
+        is_pair: bool,
+        from_s in 0.0..12.0f64,
+        to_s in 28.0..40.0f64,
+        (unknown_s, known_s) in (0.1..20.0f64, 0.0..0.9f64),
+    ) {
+        let estimator = if is_paper { shipped::flagred_paper() } else { shipped::flagred() };
+        let factors = if has_geometry { &QUAD_X[..] } else { &[] };
+        let trouble = if is_pair { LIMIT } else { [1.0, 1.0, 0.0, 1.0] };
+        let failed = in_trouble(&estimator, factors, trouble, |_, _| {});
+        prop_assert_eq!(failed.verdict, Verdict::Known(Level::Fail));
+        let hidden = in_trouble(&estimator, factors, trouble, |t_s, motors| {
+            let is_off = (from_s..to_s).contains(&t_s) && t_s % (unknown_s + known_s) < unknown_s;
+            for (motor, unknown) in motors.iter_mut().zip(unknown) {
+                if unknown && is_off {
+                    *motor = f64::NAN;
+                }
+            }
+        });
+        prop_assert_ne!(hidden.verdict, Verdict::Known(Level::Good));
+    }
+}
+
+#[test]
+fn a_moment_without_a_motor_changes_no_verdict() {
+    let estimator = shipped::flagred();
+    let moment = |t_s: f64, motors: &mut [f64; 4]| {
+        if t_s % 10.0 < 0.5 {
+            motors[2] = f64::NAN;
+        }
+    };
+    let failed = in_trouble(&estimator, &QUAD_X, LIMIT, moment);
+    assert_eq!(failed.verdict, Verdict::Known(Level::Fail));
+    let calm = in_trouble(&estimator, &QUAD_X, HOVER, moment);
+    assert_eq!(calm.verdict, Verdict::Known(Level::Good));
 }

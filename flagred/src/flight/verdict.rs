@@ -1,6 +1,6 @@
 //! The verdict of a flight, or why there is none.
 
-use alloc::string::String;
+use alloc::{format, string::String};
 use core::fmt;
 
 use crate::{
@@ -47,7 +47,7 @@ impl Verdict {
     fn gravity(&self) -> u8 {
         match self {
             Verdict::NotAvailable(Reason::NoFlight) => 0,
-            Verdict::NotAvailable(Reason::LostInAir) => 3,
+            Verdict::NotAvailable(Reason::LostInAir | Reason::RebootedInAir { .. }) => 3,
             Verdict::NotAvailable(_) => 1,
             Verdict::Known(Level::Good | Level::Info) => 2,
             Verdict::Known(Level::Warn) => 4,
@@ -87,15 +87,41 @@ pub enum Reason {
         /// What helps, where something does.
         help: Option<&'static str>,
     },
+    /// The command of a motor was unknown in the air for longer than the profile's `longest_gap_s`.
+    #[error("{}", motor_unknown(.motor, .command, (.from_s, .to_s)))]
+    MotorUnknown {
+        /// The number of the motor.
+        motor: usize,
+        /// Its first such command, where it is known and far outside 0 to 1.
+        command: Option<f64>,
+        /// Since when, in seconds.
+        from_s: f64,
+        /// Until when, in seconds.
+        to_s: f64,
+    },
     /// There was hardly a motor command in the air.
     #[error("hardly any motor command was known in the air")]
     NoCommands,
     /// The vehicle was in the air when it was last heard, or rebooted there.
     #[error("the vehicle was lost in the air")]
     LostInAir,
+    /// The clock of the log starts again in the air: the autopilot rebooted there.
+    #[error("the autopilot rebooted in the air at {at_s:.1} s")]
+    RebootedInAir {
+        /// When, in seconds.
+        at_s: f64,
+    },
     /// No flight was watched.
     #[error("no flight was seen")]
     NoFlight,
+}
+
+fn motor_unknown(motor: &usize, command: &Option<f64>, (from_s, to_s): (&f64, &f64)) -> String {
+    let why = match command {
+        Some(command) => format!("is `{command}`, not a fraction from 0 to 1,"),
+        None => "is unknown".into(),
+    };
+    format!("the command of motor {motor} {why} in the air from {from_s:.1} to {to_s:.1} s")
 }
 
 impl Reason {
@@ -108,9 +134,18 @@ impl Reason {
                 Some("`flagred inspect` lists the signals that a log carries")
             }
             Reason::RiskUnknown { help, .. } => *help,
+            Reason::MotorUnknown { command, .. } => Some(match command {
+                Some(_) => {
+                    "scale the commands: 0 is the lower limit of the motor, 1 the upper limit"
+                }
+                None => "a missing motor can hide any risk: log the commands of all motors",
+            }),
             Reason::LostInAir => {
                 Some("the log on board tells how the flight ended: `flagred assess`")
             }
+            Reason::RebootedInAir { .. } => Some(
+                "what came after is not assessed: look for a reset of the autopilot or a loss of its power",
+            ),
             Reason::Monitor(_) | Reason::NoCommands | Reason::NoFlight => None,
         }
     }

@@ -282,29 +282,104 @@ fn repeated_late_and_damaged_samples_change_nothing() {
 }
 
 #[test]
-fn a_motor_that_is_no_number_between_0_and_1_is_unknown() {
+fn an_unknown_motor_makes_the_risk_unknown_and_rounding_does_not() {
     let estimator = Estimator::new(&profile(), &rules(false)).unwrap();
-    for garbage in [f64::NAN, f64::INFINITY, 65535.0, -0.1] {
+    let follow = |command: f64| {
         let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
-        let mut last = None;
-        for i in 0..100 {
-            last = Some(monitor.push(&Sample {
+        let mut push = |i: u32, motors: &[f64]| {
+            monitor.push(&Sample {
                 t_s: f64::from(i) * 0.04,
-                motors: &[0.5, garbage],
+                motors,
                 in_air: true,
                 signals: &[],
-            }));
+            })
+        };
+        for i in 0..100 {
+            assert_eq!(push(i, &[0.5, 0.5]).risk.is_ok(), i >= 25, "{i}");
         }
-        let risk = last.unwrap().risk.unwrap().risk_pct;
-        approx::assert_abs_diff_eq!(risk, 10.0, epsilon = 1e-9);
-        let all_unknown = monitor.push(&Sample {
-            t_s: 10.0,
-            motors: &[garbage; 2],
-            in_air: true,
-            signals: &[],
-        });
-        assert_eq!(all_unknown.risk, Err(Unknown::NoValue { input: 0 }));
+        let updates: Vec<Update> = (100..200).map(|i| push(i, &[0.5, command])).collect();
+        for i in 200..299 {
+            push(i, &[0.5, 0.5]);
+        }
+        let again = push(299, &[0.5, 0.5]);
+        assert!(again.risk.is_ok() && again.level.is_some(), "{again:?}");
+        updates
+    };
+    for garbage in [
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        65535.0,
+        1500.0,
+        50.0,
+        -1.0,
+    ] {
+        let outside = Unknown::CommandOutside {
+            motor: 1,
+            command: garbage,
+        };
+        let updates = follow(garbage);
+        assert!(updates.iter().all(|update| update.risk == Err(outside)));
+        // The level is held for two seconds.
+        assert_eq!(
+            (updates[40].level, updates[99].level),
+            (Some(Level::Good), None)
+        );
     }
+    let unknown = follow(f64::NAN);
+    assert!(
+        unknown
+            .iter()
+            .all(|update| update.risk == Err(Unknown::NoCommand { motor: 1 }))
+    );
+    assert_eq!(unknown[99].level, None);
+    for (rounded, limit) in [(1.000_000_1, 1.0), (1.5, 1.0), (-0.1, 0.0)] {
+        let of = |command| {
+            follow(command)
+                .iter()
+                .map(|update| update.risk)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(of(rounded), of(limit), "{rounded}");
+        assert!(of(rounded).iter().all(Result::is_ok));
+    }
+    // Fewer commands than motors.
+    let mut monitor = Monitor::new(&estimator, Craft::new(2)).unwrap();
+    let update = monitor.push(&Sample {
+        t_s: 0.0,
+        motors: &[0.5],
+        in_air: true,
+        signals: &[],
+    });
+    assert_eq!(update.risk, Err(Unknown::NoCommand { motor: 1 }));
+    let why = Unknown::CommandOutside {
+        motor: 1,
+        command: 1500.0,
+    };
+    assert_eq!(
+        why.explain(&profile()),
+        "the command of motor 2 is `1500`, and a command is a fraction from 0 to 1"
+    );
+}
+
+#[test]
+fn a_profile_that_reads_no_motor_needs_none() {
+    let mut profile = profile();
+    profile.inputs[0].source.signal = Signal::named("battery_v");
+    let estimator = Estimator::new(&profile, &rules(false)).unwrap();
+    let craft = Craft::new(2).with_signals(&["battery_v"]);
+    let mut monitor = Monitor::new(&estimator, craft).unwrap();
+    let mut push = |i: u32| {
+        monitor.push(&Sample {
+            t_s: f64::from(i) * 0.04,
+            motors: &[f64::NAN; 2],
+            in_air: true,
+            signals: &[0.3],
+        })
+    };
+    for i in 0..99 {
+        push(i);
+    }
+    assert!(push(99).risk.is_ok());
 }
 
 #[test]

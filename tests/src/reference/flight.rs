@@ -1,7 +1,8 @@
 //! A whole flight, sample by sample.
 
 use flagred::{
-    profile::Profile,
+    profile::{Profile, ProfileInput},
+    source::Signal,
     verdict::{Level, VerdictSettings},
 };
 use fuzzy::Model;
@@ -30,6 +31,12 @@ pub struct Sample {
     pub signals: Vec<f64>,
     /// Whether the log says that the vehicle is in the air.
     pub in_air: bool,
+}
+
+impl Sample {
+    fn lacks_a_motor(&self) -> bool {
+        self.commands.iter().any(|e| e.is_nan())
+    }
 }
 
 /// What is known after a sample that the log says is in the air.
@@ -145,13 +152,11 @@ pub fn follow(
 
 /// Whether the motors idle on the ground: before take-off, and after a flight unless a high risk came just before.
 fn rests(air: &mut Option<Air>, sample: &Sample, profile: &Profile) -> bool {
-    let known: Vec<f64> = sample
-        .commands
-        .iter()
-        .copied()
-        .filter(|e| e.is_finite())
-        .collect();
-    let idles = known.iter().sum::<f64>() / (known.len() as f64) < profile.verdict.idle_below;
+    if sample.lacks_a_motor() {
+        return false;
+    }
+    let mean = sample.commands.iter().sum::<f64>() / sample.commands.len() as f64;
+    let idles = mean < profile.verdict.idle_below;
     let Some(air) = air else { return idles };
     if !idles {
         air.fell = None;
@@ -267,6 +272,7 @@ impl Air {
         let settled_s = profile.sampling.take_off_s + profile.sampling.warm_up_s;
         if let Some(limit) = profile.verdict.notices.imbalance
             && t_s - self.take_off_s >= settled_s
+            && !sample.lacks_a_motor()
         {
             let is_calm = self.levels.level == Level::Good && self.in_doubt_s.is_none();
             let limit = (limit.value, limit.after_s);
@@ -274,7 +280,12 @@ impl Air {
             self.balance.push(time, commands, factors, limit, is_calm);
         }
         let inputs = inputs::values(profile, &self.observed, t_s, self.since_s);
-        let risk = risk(profile, model, &inputs);
+        let is_of_motors = |input: &ProfileInput| {
+            let signal = &input.source.signal;
+            !matches!(signal, Signal::Named(_) | Signal::Difference { .. })
+        };
+        let is_unknown = sample.lacks_a_motor() && profile.inputs.iter().any(is_of_motors);
+        let risk = risk(profile, model, &inputs).filter(|_| !is_unknown);
         let elevated = risk.map(|risk| self.add(risk, span, profile));
         let known_s = self.moments.last().map_or(t_s, |moment| moment.t_s);
         if t_s - known_s > profile.sampling.longest_gap_s {

@@ -66,7 +66,11 @@ impl Observed {
         if let Motors::One(motor) = source.motors {
             return one(of_motors.get(motor as usize).copied().unwrap_or(f64::NAN));
         }
-        let known: Vec<f64> = of_motors.into_iter().filter(|e| e.is_finite()).collect();
+        // One unknown motor makes all of them unknown.
+        let known = match of_motors.iter().any(|e| e.is_nan()) {
+            true => Vec::new(),
+            false => of_motors,
+        };
         let mean = mean(known.iter().map(|e| (1.0, *e)));
         let squares = known.iter().map(|e| (1.0, (e - mean).powi(2)));
         let std = super::window::mean(squares).sqrt();

@@ -65,10 +65,10 @@ class Monitor(MonitorData):
     def push(
         self,
         t_s: float,
-        commands: Sequence[float] | NDArray[np.float64],
+        commands: Sequence[float | None] | NDArray[np.float64],
         *,
         in_air: bool = True,
-        signals: Mapping[str, float] | None = None,
+        signals: Mapping[str, float | None] | None = None,
     ) -> Update:
         """Takes a sample.
 
@@ -77,7 +77,9 @@ class Monitor(MonitorData):
         t_s
             Its time in seconds; times do not decrease.
         commands
-            The command of each motor on its effective range, from 0 to 1. NaN is unknown.
+            The command of each motor on its effective range, from 0 to 1. NaN and None are unknown. While a motor is unknown,
+            so is the risk. Values from -0.5 to 1.5 are clamped to [0, 1]; others have another unit and raise a
+            :class:`DataError`.
         in_air
             Whether the vehicle is in the air.
         signals

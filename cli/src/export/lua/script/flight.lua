@@ -29,9 +29,13 @@ function forget(is_gap)
 -- @end
 end
 
--- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end.
+-- Whether the motors idle as on the ground: before take-off, and after a flight that was calm to its end. While the command of a
+-- motor is unknown, the vehicle counts as in the air.
 local function rests()
-  if not sum or sum >= IDLE_BELOW * motors then
+  if not sum then
+    return false
+  end
+  if sum >= IDLE_BELOW * motors then
     idle = nil
     return false
   end
@@ -111,7 +115,8 @@ function fly()
     notice()
   end
 -- @end
-  local risk = read_inputs() and estimate()
+  -- While the command of a motor is unknown, so is the risk.
+  local risk = read_inputs() and sum and estimate()
   if not risk then
     if unknown_us and unknown_us > LONGEST_GAP_US then
       doubt_us = level_now() > GOOD and unknown_us or nil

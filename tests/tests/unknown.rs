@@ -1,0 +1,315 @@
+//! What a log does not tell of the motors or the end of a flight is never GOOD, whatever reads it.
+
+use std::fmt::Write as _;
+
+use flagred::{
+    flight::{Reason, Verdict},
+    log::assess,
+    shipped,
+};
+use flagred_tests::{
+    Folder, flagred,
+    log_writer::{DataFlash, ULog, Value},
+};
+use flightlog::{Options, ReadError};
+
+/// Runs `flagred assess` on a flight CSV; gives the exit code and what it printed.
+fn assess_csv(csv: &str, more: &[&str]) -> (Option<i32>, String) {
+    let folder = Folder::new();
+    let log = folder.file("flight.csv", csv.as_bytes());
+    let output = flagred()
+        .arg("assess")
+        .arg(log)
+        .args(more)
+        .output()
+        .unwrap();
+    let text = [output.stdout, output.stderr].concat();
+    (output.status.code(), String::from_utf8(text).unwrap())
+}
+
+/// A flight of 60 s at 25 Hz of six motors, which swing against each other between their limits from 20 s on. `known` of the
+/// motors have cells, the others are empty.
+fn hexa(frame: &str, known: &[usize]) -> String {
+    let mut csv = format!(
+        "# vehicle_kind: multirotor\n{frame}t_s,motor1,motor2,motor3,motor4,motor5,motor6,in_air\n"
+    );
+    for i in 0..1500 {
+        let t_s = f64::from(i) * 0.04;
+        let up = (t_s as u32) % 2 == 0;
+        let _ = write!(csv, "{t_s}");
+        for motor in 0..6 {
+            let command = match (t_s > 20.0, up == (motor % 2 == 0)) {
+                (false, _) => 0.5,
+                (true, true) => 1.0,
+                (true, false) => 0.0,
+            };
+            match known.contains(&motor) {
+                true => write!(csv, ",{command}"),
+                false => write!(csv, ","),
+            }
+            .unwrap();
+        }
+        csv += ",1\n";
+    }
+    csv
+}
+
+#[test]
+fn a_motor_without_commands_is_the_reason_for_no_verdict() {
+    for frame in ["", "# frame: HEXA/X\n", "# frame: HEXA/PLUS\n"] {
+        for profile in ["flagred", "flagred-paper"] {
+            let more = ["--profile", profile];
+            let (code, text) = assess_csv(&hexa(frame, &[0, 1, 2, 3, 4, 5]), &more);
+            assert_eq!(code, Some(1), "{frame} {profile}: {text}");
+            for known in [&[5][..], &[0, 1, 2, 4, 5], &[0, 2, 4]] {
+                let (code, text) = assess_csv(&hexa(frame, known), &more);
+                let missing = (0..6).find(|motor| !known.contains(motor)).unwrap() + 1;
+                assert_eq!(code, Some(3), "{frame} {profile} {known:?}: {text}");
+                let reason = format!(
+                    "the command of motor {missing} is unknown in the air from 0.0 to 60.0 s"
+                );
+                assert!(text.contains(&reason), "{known:?}: {text}");
+            }
+            let (code, text) = assess_csv(&hexa(frame, &[]), &more);
+            assert_eq!(code, Some(3), "{text}");
+            assert!(
+                text.contains("the commands of the motors are not in the log"),
+                "{text}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_motor_without_commands_for_a_while_is_the_reason_unless_it_fails_elsewhere() {
+    let whole = hexa("", &[0, 1, 2, 3, 4, 5]);
+    let without = |from_s: f64, to_s: f64| -> String {
+        let rows = whole.lines().map(|row| {
+            let mut cells: Vec<&str> = row.split(',').collect();
+            if cells[0]
+                .parse()
+                .is_ok_and(|t_s: f64| from_s <= t_s && t_s < to_s)
+            {
+                cells[3] = "";
+            }
+            cells.join(",") + "\n"
+        });
+        rows.collect()
+    };
+    // The whole trouble without one motor.
+    let (code, text) = assess_csv(&without(20.0, 60.0), &[]);
+    assert_eq!(code, Some(3), "{text}");
+    assert!(
+        text.contains("motor 3 is unknown in the air from 20.0 to 60.0 s"),
+        "{text}"
+    );
+    // What was seen without it is FAIL all the same, and a moment without it changes nothing.
+    for (from_s, to_s) in [(50.0, 60.0), (22.0, 22.5), (10.0, 10.5)] {
+        let (code, text) = assess_csv(&without(from_s, to_s), &[]);
+        assert_eq!((code, text.starts_with("FAIL")), (Some(1), true), "{text}");
+    }
+}
+
+/// A DataFlash log of a hexacopter: parameters, then rows of outputs from `outputs(t_s)` at 25 Hz. It takes off at 1 s.
+fn dataflash(outputs: impl Fn(f64) -> [u16; 6], clock_back: Option<f64>) -> Vec<u8> {
+    let mut log = DataFlash::new();
+    log.define(129, "PARM", "QNf", "TimeUS,Name,Value");
+    log.define(130, "RCOU", "QHHHHHH", "TimeUS,C1,C2,C3,C4,C5,C6");
+    log.define(131, "MSG", "QZ", "TimeUS,Message");
+    log.define(132, "EV", "QB", "TimeUS,Id");
+    for (name, value) in [
+        ("MOT_PWM_MIN", 1000.0),
+        ("MOT_PWM_MAX", 2000.0),
+        ("FRAME_CLASS", 2.0),
+    ] {
+        log.parameter(1e5, name, value);
+    }
+    for output in 0..6 {
+        log.parameter(
+            1e5,
+            &format!("SERVO{}_FUNCTION", output + 1),
+            f64::from(33 + output),
+        );
+    }
+    log.write("MSG", [1e5.into(), "ArduCopter V4.5.1 (abcdef12)".into()]);
+    for (t_s, id) in [(0.5, 10.0), (1.0, 28.0)] {
+        log.write("EV", [Value::Number(t_s * 1e6), id.into()]);
+    }
+    for i in 0..3000 {
+        let t_s = 1.0 + f64::from(i) * 0.04;
+        let row = outputs(t_s).map(|pulse| Value::Number(pulse.into()));
+        let back_s = clock_back.filter(|at_s| t_s > *at_s).map_or(0.0, |_| 40.0);
+        log.write(
+            "RCOU",
+            std::iter::once(Value::Number((t_s - back_s) * 1e6)).chain(row),
+        );
+    }
+    log.bytes
+}
+
+#[test]
+fn outputs_that_are_no_pulses_are_the_reason_for_no_verdict() {
+    let outputs = |t_s: f64| {
+        let high = if t_s > 30.0 { 2000 } else { 1500 };
+        [1500, u16::MAX, high, 1500, u16::MAX, high]
+    };
+    let flight = flightlog::read(&dataflash(outputs, None)[..], &Options::default()).unwrap();
+    for estimator in [shipped::flagred(), shipped::flagred_paper()] {
+        let verdict = assess(&flight, &estimator, None).verdict;
+        assert!(
+            matches!(
+                verdict,
+                Verdict::NotAvailable(Reason::MotorUnknown { motor: 2, .. })
+            ),
+            "{verdict:?}"
+        );
+    }
+}
+
+/// Live, the same is `lost_in_air`: docs/live.md.
+#[test]
+fn a_clock_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
+    let calm = |_| [1500; 6];
+    let estimator = shipped::flagred();
+    let read = |bytes: &[u8]| flightlog::read(bytes, &Options::default()).unwrap();
+    let whole = read(&dataflash(calm, None));
+    assert_eq!(assess(&whole, &estimator, None).verdict.to_string(), "GOOD");
+    assert!(whole.rebooted_in_air_s.is_empty());
+
+    let lost = read(&dataflash(calm, Some(61.0)));
+    let mut csv = Vec::new();
+    lost.write_csv(&mut csv).unwrap();
+    for flight in [&lost, &read(&csv)] {
+        assert_eq!(flight.rebooted_in_air_s.len(), 1);
+        let verdict = assess(flight, &estimator, None).verdict;
+        let Verdict::NotAvailable(reason @ Reason::RebootedInAir { .. }) = &verdict else {
+            panic!("{verdict:?}");
+        };
+        assert_eq!(
+            reason.to_string(),
+            "the autopilot rebooted in the air at 61.0 s"
+        );
+    }
+    // Trouble before it is known.
+    let trouble = |t_s: f64| match t_s > 30.0 {
+        true => [2000, 1000, 2000, 1000, 2000, 1000],
+        false => [1500; 6],
+    };
+    let failed = assess(&read(&dataflash(trouble, Some(61.0))), &estimator, None);
+    assert_eq!(failed.verdict.to_string(), "FAIL");
+}
+
+#[test]
+fn a_clock_of_px4_that_goes_back_in_the_air_is_the_reason_for_no_verdict() {
+    let fly = |back_at: u64| {
+        let mut log = ULog::new(1_000_000);
+        log.define("actuator_motors:uint64_t timestamp;float[12] control;");
+        log.define("vehicle_land_detected:uint64_t timestamp;bool landed;");
+        log.parameter("CA_ROTOR_COUNT", 4.0);
+        log.announce(0, 1, "actuator_motors");
+        log.announce(0, 2, "vehicle_land_detected");
+        for row in 0..3000 {
+            let us = 1_000_000 + 40_000 * (if row < back_at { row } else { row - 1000 });
+            if row % 25 == 0 {
+                log.flags(2, us, &[0]);
+            }
+            log.floats(1, us + 1000, &[0.4; 12]);
+        }
+        let flight = flightlog::read(&log.bytes[..], &Options::default()).unwrap();
+        assess(&flight, &shipped::flagred(), None)
+            .verdict
+            .to_string()
+    };
+    assert_eq!((fly(3000).as_str(), fly(1500).as_str()), ("GOOD", "NA"));
+}
+
+#[test]
+fn a_flight_csv_whose_clock_starts_again_in_the_air_has_no_verdict() {
+    let rows = |air: u8| -> String {
+        let row = |i: u32| format!("{},0.5,0.5,0.5,0.5,{air}\n", f64::from(i) * 0.04);
+        (0..1000).map(row).collect()
+    };
+    let head = "t_s,motor1,motor2,motor3,motor4,in_air\n";
+    let (code, text) = assess_csv(&format!("{head}{}{}", rows(1), rows(1)), &[]);
+    assert_eq!(code, Some(3), "{text}");
+    assert!(
+        text.contains("the autopilot rebooted in the air at 40.0 s"),
+        "{text}"
+    );
+    // On the ground it is the next flight.
+    let ground = "40,0,0,0,0,0\n41.5,0,0,0,0,0\n";
+    let (code, text) = assess_csv(&format!("{head}{}{ground}{}", rows(1), rows(1)), &[]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("0.0 to 40.0 s, 41.5 to"), "{text}");
+}
+
+#[test]
+fn a_rate_below_that_of_the_windows_is_the_reason_for_no_verdict() {
+    for step_s in [1.0, 1.5, 2.5, 4.0] {
+        let row = |i: u32| format!("{},0.4,0.41,0.42,0.4\n", 0.5 + f64::from(i) * step_s);
+        let rows: String = (0..200).map(row).collect();
+        let (code, text) = assess_csv(&format!("t_s,motor1,motor2,motor3,motor4\n{rows}"), &[]);
+        assert_eq!(code, Some(3), "{text}");
+        assert!(
+            !text.contains("no known value") && !text.contains("does not cover"),
+            "{text}"
+        );
+        assert!(
+            text.contains("too slow for a spread") || text.contains("log the motors at"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn cells_with_another_unit_are_refused_where_they_stand() {
+    for (motor, t_step, said) in [
+        (
+            "1500",
+            0.04,
+            "line 2: `motor1` is 1500, not a fraction from 0 to 1",
+        ),
+        (
+            "50",
+            0.04,
+            "line 2: `motor1` is 50, not a fraction from 0 to 1",
+        ),
+        (
+            "-1",
+            0.04,
+            "line 2: `motor1` is -1, not a fraction from 0 to 1",
+        ),
+        (
+            "0.5",
+            40.0,
+            "line 3: `t_s` goes from 0 to 40 in one row, and is in seconds",
+        ),
+    ] {
+        let row = |i: u32| format!("{},{motor},0.5,0.5,0.5\n", f64::from(i) * t_step);
+        let rows: String = (0..1000).map(row).collect();
+        let csv = format!("t_s,motor1,motor2,motor3,motor4\n{rows}");
+        let refused = flightlog::read(csv.as_bytes(), &Options::default()).unwrap_err();
+        assert!(matches!(refused, ReadError::Csv { .. }), "{refused}");
+        let (code, text) = assess_csv(&csv, &[]);
+        assert_eq!(code, Some(3), "{text}");
+        assert!(text.contains(said) && text.contains("help: "), "{text}");
+    }
+    // Rounding is clamped.
+    let of = |motors: &str| {
+        let row = |i: u32| format!("{},{motors}\n", f64::from(i) * 0.04);
+        let rows: String = (0..1000).map(row).collect();
+        assess_csv(
+            &format!("t_s,motor1,motor2,motor3,motor4\n{rows}"),
+            &["--json"],
+        )
+    };
+    let verdict = |(_, text): (Option<i32>, String)| -> Vec<serde_json::Value> {
+        let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+        ["verdict", "findings", "summary"]
+            .map(|key| document[key].clone())
+            .to_vec()
+    };
+    assert_eq!(of("1,0,1,0").0, Some(1));
+    let rounded = verdict(of("1.0000001,-0.01,1.2,0"));
+    assert_eq!(rounded, verdict(of("1,0,1,0")));
+}
