@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     csv: bool,
 
-    /// List every finding with its measurements
+    /// List every finding with its measurements; of several logs, all of each instead of one line
     #[arg(short, long, conflicts_with_all = ["json", "csv"])]
     verbose: bool,
 
@@ -119,6 +119,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 out.flush()?;
                 failure.help_if(reason.help()).report();
             }
+        } else if several && !arguments.verbose {
+            words::write_line(&mut out, log, &flight, estimator, &assessed)?;
+            out.flush()?;
         } else {
             words::write(
                 &mut out,
@@ -157,7 +160,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 }
                 Err(error) => {
                     Failure::from(error).report();
-                    exit = Exit::Unreadable;
+                    exit = exit.max(Exit::Unreadable);
                 }
             }
             shown.is_ok()

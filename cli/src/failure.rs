@@ -5,15 +5,15 @@ use std::{fmt, io, io::Write, path::Path, process::ExitCode};
 use clap::error::{ContextKind, ContextValue};
 use fuzzy::drawing::{visible, visible_lines};
 
-/// How a command that ran to its end ended.
+/// How a command that ran to its end ended. Of several inputs the last of these counts: a finding is known, whatever else is not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Exit {
     /// Nothing to report: 0.
     Clean,
-    /// Findings at or over what the user asked to fail on: 1.
-    Findings,
     /// Ran, but some of the input could not be read or was no multirotor: 3.
     Unreadable,
+    /// Findings at or over what the user asked to fail on: 1.
+    Findings,
 }
 
 impl From<Exit> for ExitCode {

@@ -12,16 +12,15 @@ use crate::table::cell;
 /// How far the steps that are shown are apart where nothing else is asked for, in seconds.
 pub const STEP_S: f64 = 0.1;
 
-/// A step as columns and fields: margin and spread always, then what the rules said, then the rules' other inputs. What is
-/// unknown is an empty field.
-fn row<'a>(estimator: &'a Estimator, step: &Step) -> Vec<(&'a str, String)> {
+/// A step as columns and fields, named as in JSON; the inputs of the profile are `input_NAME`. An unknown value is an empty field.
+fn row(estimator: &Estimator, step: &Step) -> Vec<(String, String)> {
     let number = |value: Option<f64>| {
         let known = value.filter(|value| value.is_finite());
         known.map(|value| value.to_string()).unwrap_or_default()
     };
     let estimate = step.estimate;
     let filled = estimate.map(|e| u8::from(e.filled_from.is_some()).to_string());
-    let mut row = vec![
+    let mut row = [
         ("t_s", number(Some(step.t_s))),
         ("margin", number(step.margin)),
         ("spread", number(step.spread)),
@@ -29,15 +28,15 @@ fn row<'a>(estimator: &'a Estimator, step: &Step) -> Vec<(&'a str, String)> {
         ("filled", filled.unwrap_or_default()),
         ("risk", number(estimate.map(|e| e.risk_pct))),
         ("elevated_risk", number(step.elevated_risk_pct)),
-    ];
-    for (i, input) in estimator.profile().inputs.iter().enumerate() {
+    ]
+    .map(|(name, field)| (name.to_owned(), field))
+    .to_vec();
+    // A profile may have an input `spread` with another window than the column of that name.
+    let inputs = estimator.profile().inputs.iter().enumerate();
+    row.extend(inputs.map(|(i, input)| {
         let field = number(step.inputs.get(i).copied());
-        match row.iter_mut().find(|(known, _)| *known == input.name) {
-            // A profile may define its margin or spread differently; the rules' is the one to show.
-            Some(known) => known.1 = field,
-            None => row.push((&input.name, field)),
-        }
-    }
+        (format!("input_{}", input.name), field)
+    }));
     row
 }
 
@@ -56,7 +55,7 @@ pub fn write_csv(
     let mut table = csv::Writer::from_writer(out);
     if head {
         let columns = row(estimator, &Step::default()).into_iter();
-        let names = columns.map(|(name, _)| cell(name).into_owned());
+        let names = columns.map(|(name, _)| cell(&name).into_owned());
         let record = log.map(|_| "log".to_owned()).into_iter().chain(names);
         table.write_record(record).map_err(io_error)?;
     }

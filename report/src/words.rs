@@ -96,6 +96,48 @@ pub fn write(
     Ok(())
 }
 
+/// Writes the assessment of one of several flights in a line: the verdict, the log, and its gravest finding or the reason why there
+/// is no verdict.
+pub fn write_line(
+    out: &mut impl Write,
+    name: &str,
+    flight: &Flight,
+    estimator: &Estimator,
+    assessed: &Assessment,
+) -> io::Result<()> {
+    let style = style(&assessed.verdict);
+    let verdict = &assessed.verdict;
+    let mut parts = Vec::new();
+    if let Verdict::NotAvailable(reason) = verdict {
+        parts.push(format!("no verdict: {reason}"));
+    }
+    if let Some(peak) = assessed.summary.risk_max {
+        parts.push(format!(
+            "highest risk {:.0} % in {:.1} s in the air",
+            peak.value_pct, assessed.summary.in_air_s
+        ));
+    }
+    let teller = Teller {
+        model: estimator.model(),
+        motors: &flight.motors,
+    };
+    let lines = finding::lines(&assessed.findings);
+    if let Some(gravest) = lines.first() {
+        parts.push(teller.line(gravest));
+    }
+    match lines.len() {
+        0 | 1 => {}
+        2 => parts.push("1 more finding".into()),
+        count => parts.push(format!("{} more findings", count - 1)),
+    }
+    let (name, text) = (visible(name), parts.join("; "));
+    writeln!(
+        out,
+        "{style}{verdict:<4}{style:#} {name}: {}",
+        visible(&text)
+    )
+}
+
 fn line(out: &mut impl Write, level: Level, text: &str) -> io::Result<()> {
     let style = level_style(level);
     writeln!(out, "{style}{level:<4}{style:#} {}", visible(text))

@@ -65,6 +65,22 @@ fn csv_has_a_row_for_each_step_of_the_json() {
     let (_, document) = json(STEADY);
     let steps = document["steps"].as_array().unwrap();
     assert_eq!(rows.lines().count(), steps.len());
+    // An input has a column of its own beside that of the summary: the names are those of the JSON.
+    let names: Vec<&str> = head.split(',').collect();
+    let step = &steps[800];
+    let of_csv = |name: &str| {
+        let column = names.iter().position(|known| *known == name).unwrap();
+        let row = rows.lines().nth(800).unwrap();
+        row.split(',').nth(column).unwrap().parse::<f64>().unwrap()
+    };
+    for (name, value) in step["inputs"].as_object().unwrap() {
+        let value = value.as_f64().unwrap();
+        assert!(
+            (of_csv(&format!("input_{name}")) - value).abs() < 1e-12,
+            "{name}"
+        );
+    }
+    assert!((of_csv("spread") - step["spread"].as_f64().unwrap()).abs() < 1e-12);
     for (row, step) in rows.lines().zip(steps) {
         let risk = row.split(',').nth(5).unwrap();
         // The last digit is JSON's to round.
@@ -81,8 +97,47 @@ fn several_logs_are_told_apart_and_one_that_fails_stops_no_other() {
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(text.starts_with("log,t_s,"));
-    assert_eq!(text.matches("t_s").count(), 1, "one head");
+    assert_eq!(text.matches("log,t_s,").count(), 1, "one head");
     assert!(String::from_utf8_lossy(&output.stderr).contains("`/nowhere.BIN`"));
+}
+
+#[test]
+fn several_logs_are_a_line_each_and_a_finding_counts_more_than_no_answer() {
+    let folder = Folder::new();
+    let row = |i: u32, low: f64| format!("{},{low},1,{low},1\n", f64::from(i) * 0.04);
+    let head = "t_s,motor1,motor2,motor3,motor4\n";
+    let failing = folder.file(
+        "failing.csv",
+        (0..1000).fold(head.to_owned(), |csv, i| csv + &row(i, 0.0)),
+    );
+    let short = folder.file(
+        "short.csv",
+        (0..10).fold(head.to_owned(), |csv, i| csv + &row(i, 0.0)),
+    );
+    for (logs, code) in [
+        (&[&*failing, &short][..], 1),
+        (&[&short, &failing], 1),
+        (&[&failing, "/nowhere.BIN"], 1),
+        (&[&failing, STEADY], 1),
+        (&[&short, STEADY], 3),
+        (&[STEADY, "/nowhere.BIN"], 3),
+        (&[&short, &short], 3),
+        (&[STEADY, STEADY], 0),
+    ] {
+        let output = assess(logs);
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{logs:?}: {text}");
+        let known = logs.iter().filter(|log| **log != "/nowhere.BIN");
+        assert_eq!(text.lines().count(), known.clone().count(), "{text}");
+        for (log, line) in known.zip(text.lines()) {
+            let verdict = [(&*failing, "FAIL"), (&short, "NA  "), (STEADY, "GOOD")];
+            let (_, verdict) = verdict.into_iter().find(|(name, _)| name == log).unwrap();
+            assert!(line.starts_with(&format!("{verdict} {log}: ")), "{line}");
+        }
+    }
+    let output = assess(&["-v", STEADY, STEADY]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(text.matches("risk over time").count(), 2, "{text}");
 }
 
 #[test]

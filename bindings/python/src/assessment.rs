@@ -156,13 +156,14 @@ pub(crate) fn steps(assessed: &Assessment) -> PyResult<Table> {
         ("spread", "1", number(&|step| step.spread)),
         ("judged", "", Arc::new(judged)),
     ];
-    for (i, name) in assessed.inputs.iter().enumerate() {
-        let values = number(&|step| step.inputs.get(i).copied());
-        match columns.iter_mut().find(|(known, _, _)| known == name) {
-            // A profile may define its margin or spread differently; the rules' is the one to show.
-            Some(column) => column.2 = values,
-            None => columns.push((name, "", values)),
-        }
+    // A profile may have an input `spread` with another window than the column of that name.
+    let inputs: Vec<String> = assessed
+        .inputs
+        .iter()
+        .map(|name| format!("input_{name}"))
+        .collect();
+    for (i, name) in inputs.iter().enumerate() {
+        columns.push((name, "", number(&|step| step.inputs.get(i).copied())));
     }
     let fields = columns.iter().map(|(name, unit, values)| {
         let field = Field::new(*name, values.data_type().clone(), *name != "t_s");

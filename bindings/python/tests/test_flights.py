@@ -76,9 +76,16 @@ def test_an_assessment_is_that_of_the_command_line(flight):
         expected = [np.nan if step[name] is None else step[name] for step in document["steps"]]
         assert np.array_equal(steps[name], expected, equal_nan=True), name
     for name, first in document["steps"][500]["inputs"].items():
-        assert steps[name][500] == first
+        assert steps[f"input_{name}"][500] == first
     rules = [np.nan if step["dominant_rule"] is None else step["dominant_rule"] - 1 for step in document["steps"]]
     assert np.array_equal(steps["dominant_rule"], rules, equal_nan=True)
+
+
+def test_an_input_has_a_column_beside_that_of_the_summary():
+    assessment = flagred.assess(CSV.encode(), "flagred-paper")
+    step = json.loads(assessment.to_json())["steps"][500]
+    assert assessment.steps["spread"][500] == step["spread"]
+    assert assessment.steps["input_spread"][500] == step["inputs"]["spread"]
 
 
 def test_findings_and_the_report():
@@ -153,6 +160,34 @@ def test_a_monitor_says_what_the_assessment_says():
     assert monitor.push(0.0, [0.5] * 4, in_air=False).unknown == "on the ground"
     with pytest.raises(flagred.DataError, match="4 commands are followed, and 3 were given"):
         monitor.push(1.0, [0.5] * 3)
+
+
+@pytest.mark.parametrize("unknown", [float("nan"), None])
+def test_a_monitor_without_the_command_of_a_motor_knows_no_risk(unknown):
+    monitor = flagred.Monitor("flagred-paper")
+    for i in range(1000):
+        update = monitor.push(i * 0.04, [1.0, 0.0, 1.0, unknown if i >= 250 else 0.0])
+        assert i < 250 or (update.risk is None and update.unknown == "the command of motor 4 is unknown")
+    assert update.level is None
+    monitor = flagred.Monitor("flagred-paper")
+    for i in range(1000):
+        monitor.push(i * 0.04, [0.5, 0.5, 0.5, unknown if i >= 250 else 0.5])
+    followed = monitor.finish()
+    assert followed.verdict == "NA"
+    assert "the command of motor 4 is unknown in the air from 10.0 to 40.0 s" in followed.reason
+
+
+def test_a_monitor_clamps_rounding_and_refuses_other_units():
+    def levels(command):
+        monitor = flagred.Monitor("flagred-paper")
+        return [monitor.push(i * 0.04, [command, 0.0, command, 0.0]).level for i in range(1000)]
+
+    assert levels(1.0000001) == levels(1.0) and levels(1.0)[-1] == "FAIL"
+    monitor = flagred.Monitor("flagred-paper")
+    for command in [1500, 50.0, -1.0, float("inf")]:
+        with pytest.raises(flagred.DataError, match="the command of motor 2 is `.*`, and a command is a fraction from 0 to 1"):
+            monitor.push(0.0, [0.5, command, 0.5, 0.5])
+    assert monitor.push(0.0, [0.5] * 4).unknown.startswith("the 10 s window")
 
 
 @settings(max_examples=200, deadline=None)

@@ -284,7 +284,7 @@ class Assessment(AssessmentData):
     @cached_property
     def steps(self) -> Table:
         """The risk over time, a row each step: ``t_s``, ``risk`` and ``elevated_risk`` in %, ``coverage``, ``filled``,
-        ``dominant_rule``, ``margin``, ``spread``, ``judged``, and the inputs of the rules."""
+        ``dominant_rule``, ``margin``, ``spread``, ``judged``, and ``input_NAME`` for each input of the profile."""
         return self._steps()
 
     def _repr_html_(self) -> str:
