@@ -6,12 +6,21 @@ use fuzzy::{
     Diagnostic, Findings, Model,
     diagnostic::nearest,
     format::{Document, Spans},
+    model::Variable,
 };
 
 use crate::{
     Format, Losses, comments,
+    shapes::{self, Shape},
     words::{self, Words},
 };
+
+/// Inputs, and outputs, of a rule set.
+pub(crate) const MOST_VARIABLES: usize = 1000;
+/// Terms of an input or output.
+pub(crate) const MOST_TERMS: usize = 1000;
+/// Rule blocks of a rule set.
+pub(crate) const MOST_BLOCKS: usize = 1000;
 
 /// A model that is being read from a text.
 pub(crate) struct Draft<'t> {
@@ -83,6 +92,18 @@ impl<'t> Draft<'t> {
         number
     }
 
+    /// Whether the parameters of a shape, in numbers and in words, are finite where it needs finite ones; an error if not.
+    pub(crate) fn is_finite(&mut self, shape: Shape, numbers: &[f64], words: &[&str]) -> bool {
+        let Some(index) = shapes::not_finite(shape, numbers) else {
+            return true;
+        };
+        let word = words.get(index).copied().unwrap_or_default();
+        let message = format!("the parameter `{word}` is not a finite number");
+        let help = "only a triangle or a trapezoid has an open side: `-inf` on the left or `inf` on the right";
+        self.error("not-finite", word, message, help);
+        false
+    }
+
     /// The value of a word; `part` is the part of the text to show where it has none. `what` says in a message what it should
     /// name.
     pub(crate) fn word<T: Copy>(
@@ -123,18 +144,38 @@ impl<'t> Draft<'t> {
     pub(crate) fn range(
         &mut self,
         part: &str,
-        low: &str,
-        high: &str,
+        (low, high): (f64, f64),
         computed: bool,
-    ) -> Option<(f64, f64)> {
-        let (low, high) = (self.number(low)?, self.number(high)?);
+    ) -> (f64, f64) {
         if low != high || !computed {
-            return Some((low, high));
+            return (low, high);
         }
         let message = format!("the range from {low} to {high} is empty");
         let help = "the output computes its values, and its range becomes one wide";
         self.note("empty-range", part, message, help);
-        Some((low - 0.5, high + 0.5))
+        (low - 0.5, high + 0.5)
+    }
+
+    /// Whether there may be one more than `count`; an error, reported once, if not. What is read is compared with what was read
+    /// before, so that the time grows by the square of the number.
+    pub(crate) fn has_room(&mut self, count: usize, most: usize, what: &str, part: &str) -> bool {
+        let is_told = |finding: &Diagnostic| finding.code == "too-large";
+        if count >= most && !self.findings.last().is_some_and(is_told) {
+            let message = format!("there are more than {most} {what}");
+            self.error(
+                "too-large",
+                part,
+                message,
+                "split the rule set into several",
+            );
+        }
+        count < most
+    }
+
+    /// Whether a variable may have one more term.
+    pub(crate) fn has_room_for_term(&mut self, variable: &Variable, part: &str) -> bool {
+        let what = format!("terms of `{}`", variable.name);
+        self.has_room(variable.terms.len(), MOST_TERMS, &what, part)
     }
 
     /// Whether something makes the text unreadable.

@@ -31,7 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use fuzzy::{Findings, Model, format::Document};
+use fuzzy::{Diagnostic, Findings, Model, format::Document};
 
 mod blocks;
 mod comments;
@@ -173,17 +173,35 @@ pub struct Written {
 ///
 /// # Errors
 ///
-/// What is wrong with the model, and what the format cannot say where losses are refused.
+/// What is wrong with the model, and what the format cannot say where losses are refused. What is left with losses must be a rule
+/// set, too: it is read back.
 pub fn write(model: &Model, format: Format, losses: Losses) -> Result<Written, Findings> {
     let invalid = fuzzy::validate(model, &fuzzy::format::Spans::default());
     if !invalid.is_empty() {
         return Err(Findings(invalid));
     }
-    match format {
+    let written = match format {
         Format::Fis => fis::write(model, losses),
         Format::Fll => fll::write(model, losses),
         Format::Fcl => fcl::write(model, losses),
         Format::Fml => fml::write(model, losses),
+    }?;
+    let again = read(&written.text, format, losses);
+    match again.and_then(|document| document.validate(&written.text)) {
+        Ok(()) => Ok(written),
+        Err(Findings(unreadable)) => {
+            let what = unreadable.first().map_or("", |finding| &finding.message);
+            let message = format!(
+                "what {} can hold of it is not a rule set: {what}",
+                format.name()
+            );
+            let finding = Diagnostic::error("unreadable", 0..0, message);
+            let mut findings = written.findings;
+            findings
+                .0
+                .push(finding.help("change what the other findings name"));
+            Err(findings)
+        }
     }
 }
 

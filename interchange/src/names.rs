@@ -49,6 +49,13 @@ pub(crate) fn is_plain_first(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 
+/// A name that stands alone, as that of the rule set, in the form that a format takes; a note reports a change.
+pub(crate) fn one(name: &str, allowed: &Allowed, paper: &mut Paper) -> String {
+    let plain = allowed.name(name, &[]);
+    note(paper, name, &plain);
+    plain
+}
+
 /// The model with names that a format takes; a note tells those that change.
 pub(crate) fn plain(model: &Model, allowed: &Allowed, paper: &mut Paper) -> Model {
     let mut model = model.clone();

@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use fuzzy::{
-    Diagnostic, Findings,
-    model::{Operators, Term, Variable},
+    Diagnostic, Findings, Model,
+    model::{LEAST_STRENGTH, Operators, Term, Variable},
 };
 
 use crate::{
@@ -21,13 +21,45 @@ pub(crate) struct Paper {
 }
 
 impl Paper {
-    pub(crate) fn new(format: Format, losses: Losses) -> Self {
-        Paper {
+    pub(crate) fn new(format: Format, losses: Losses, model: &Model) -> Self {
+        let mut paper = Paper {
             text: String::new(),
             format,
             losses,
             findings: vec![],
+        };
+        if model.least_strength != LEAST_STRENGTH {
+            let message = format!(
+                "rules below the strength {} do not fire",
+                model.least_strength
+            );
+            let help = format!("{} has no `least_strength`", format.name());
+            paper.loss("least-strength", message, &help);
         }
+        paper
+    }
+
+    /// The coefficient of each input, of a term that is a linear function.
+    pub(crate) fn coefficients(
+        &mut self,
+        term: &str,
+        coefficients: &[(String, f64)],
+        model: &Model,
+    ) -> Vec<f64> {
+        let is_input = |name: &str| model.inputs.iter().any(|input| input.name == name);
+        if let Some((name, _)) = coefficients.iter().find(|(name, _)| !is_input(name)) {
+            let message = format!("the term `{term}` reads the output `{name}`");
+            let help = format!(
+                "a linear function of {} reads inputs alone",
+                self.format.name()
+            );
+            self.refuse("no-shape", message, &help);
+        }
+        let each = model.inputs.iter().map(|input| {
+            let own = coefficients.iter().find(|(name, _)| *name == input.name);
+            own.map_or(0.0, |(_, coefficient)| *coefficient)
+        });
+        each.collect()
     }
 
     pub(crate) fn line(&mut self, line: impl AsRef<str>) {

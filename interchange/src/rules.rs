@@ -2,13 +2,13 @@
 
 use fuzzy::{
     model::Operators,
-    rule::{Condition, Consequent, Hedge, Name, Proposition, Rule},
+    rule::{Condition, Consequent, DEEPEST_NESTING, Hedge, Name, Proposition, Rule},
 };
 
 use crate::{conditions, draft::Draft};
 
-/// How deep brackets may be nested.
-const DEEPEST: usize = 100;
+/// Hedges of a conclusion, with those of the conclusions before it.
+const MOST_HEDGES: usize = 64;
 
 /// A rule of words and brackets, which are parts of the text of `draft`; `None` with a finding where it cannot be read.
 pub(crate) fn read(draft: &mut Draft<'_>, words: &[&str]) -> Option<Rule> {
@@ -110,6 +110,9 @@ impl<'r> Reader<'r, '_, '_> {
             };
             // fuzzylite hands a hedged strength on to the conclusions behind.
             hedges.splice(0..0, own);
+            if hedges.len() > MOST_HEDGES {
+                return self.unexpected(&format!("at most {MOST_HEDGES} hedges"));
+            }
             consequents.push(Consequent {
                 output,
                 hedges: hedges.clone(),
@@ -154,8 +157,8 @@ impl<'r> Reader<'r, '_, '_> {
     }
 
     fn condition(&mut self) -> Option<Condition> {
-        if self.depth > DEEPEST {
-            return self.unexpected(&format!("at most {DEEPEST} brackets"));
+        if self.depth > DEEPEST_NESTING {
+            return self.unexpected(&format!("at most {DEEPEST_NESTING} brackets"));
         }
         self.depth += 1;
         let condition = if self.take("not") {

@@ -1,6 +1,6 @@
 //! The spellings of membership functions whose parameters are a fixed number of numbers.
 
-use fuzzy::model::{MembershipFunction, Model, Term};
+use fuzzy::model::{MembershipFunction, Term};
 
 use crate::Format;
 
@@ -148,14 +148,6 @@ pub(crate) fn linear(numbers: &[f64], inputs: &[&str]) -> MembershipFunction {
     }
 }
 
-/// The coefficient of each input of a model.
-pub(crate) fn coefficients(named: &[(String, f64)], model: &Model) -> impl Iterator<Item = f64> {
-    model.inputs.iter().map(|input| {
-        let own = named.iter().find(|(name, _)| *name == input.name);
-        own.map_or(0.0, |(_, coefficient)| *coefficient)
-    })
-}
-
 /// The shape of a name in a format, and how many parameters it has there.
 pub(crate) fn named(format: Format, name: &str) -> Option<(Shape, usize)> {
     let is = |known: &str| known.eq_ignore_ascii_case(name);
@@ -170,7 +162,33 @@ pub(crate) fn names(format: Format) -> impl Iterator<Item = &'static str> + Clon
         .filter_map(move |spelling| spelling.names(format).next())
 }
 
-/// The membership function of a shape, from its parameters in the order of a format.
+/// The parameter of a shape that is not a finite number, by its index in the order of a format. Only an outer side of a triangle or
+/// a trapezoid may be open: `-inf` on the left or `inf` on the right.
+pub(crate) fn not_finite(shape: Shape, written: &[f64]) -> Option<usize> {
+    let closed = |from: usize, to: usize| {
+        let inner = written.iter().enumerate().take(to).skip(from);
+        inner
+            .filter(|(_, x)| !x.is_finite())
+            .map(|(index, _)| index)
+            .next()
+    };
+    let last = written.len().saturating_sub(1);
+    let has_sides = matches!(shape, Shape::Triangle | Shape::Trapezoid);
+    let is_open = |index: usize, side: f64| has_sides && written.get(index) == Some(&side);
+    match (is_open(0, f64::NEG_INFINITY), is_open(last, f64::INFINITY)) {
+        (false, false) => closed(0, written.len()),
+        // The top of an open side may be as far away as the side.
+        (true, false) if written.get(1) == Some(&f64::NEG_INFINITY) => closed(2, written.len()),
+        (true, false) => closed(1, written.len()),
+        (false, true) if written.get(last.saturating_sub(1)) == Some(&f64::INFINITY) => {
+            closed(0, last.saturating_sub(1))
+        }
+        (false, true) => closed(0, last),
+        (true, true) => Some(last),
+    }
+}
+
+/// The membership function of a shape, from its parameters in the order of a format, of which none is [`not_finite`].
 pub(crate) fn read(format: Format, shape: Shape, written: &[f64]) -> Option<MembershipFunction> {
     use MembershipFunction as To;
     let spelling = SPELLINGS.iter().find(|known| known.shape == shape)?;

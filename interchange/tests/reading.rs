@@ -139,13 +139,13 @@ fn mistakes_are_told_with_their_place() {
         (Format::Fis, "'wtaver'", "'centroid'"),
         (Format::Fis, "'gaussmf',[1.5 0]", "'gausmf',[1.5 0]"),
         (Format::Fis, "[1.5 0]", "[1.5]"),
-        (Format::Fis, "[1.5 0]", "[1.5 pi/4]"),
+        (Format::Fis, "[1.5 0]", "[1.5 pi/x]"),
         (Format::Fis, "'prod'", "'myand'"),
         (Format::Fis, "'sugeno'", "'mamtype2'"),
         (Format::Fis, "1 -1, 1 (1) : 2", "1 -2, 1 (1) : 2"),
         (Format::Fis, "1 -1, 1 (1) : 2", "1, 1 (1) : 2"),
         (Format::Fis, "1 -1, 1 (1) : 2", "1 -1, -1 (1) : 2"),
-        (Format::Fis, "1 -1, 1 (1) : 2", "1.3 -1, 1 (1) : 2"),
+        (Format::Fis, "1 -1, 1 (1) : 2", "1.7 -1, 1 (1) : 2"),
         (Format::Fis, "1 -1, 1 (1) : 2", "1 -1, 1 (1) : 3"),
         (Format::Fis, "Range=[0 10]", "Range=[0]"),
         (Format::Fll, "Gaussian 30", "Gausian 30"),
@@ -322,4 +322,246 @@ fn damage(rounds: usize) {
         }
     }
     assert!(readable > 1_000, "{readable}");
+}
+
+/// What is found in a text, by code, and whether it can be read.
+fn codes(text: &str, format: Format) -> (bool, Vec<&'static str>) {
+    match interchange::read(text, format, Losses::Refuse) {
+        Ok(document) => (true, document.warnings.0.iter().map(|f| f.code).collect()),
+        Err(findings) => (false, findings.0.iter().map(|f| f.code).collect()),
+    }
+}
+
+#[test]
+fn a_fis_that_lacks_what_it_announces_gets_a_warning() {
+    assert_eq!(codes(FIS, Format::Fis), (true, vec![]));
+    for (before, after) in [
+        ("NumRules=2", "NumRules=3"),
+        ("2 0, 2 (0.5) : 1\n", ""),
+        ("[Rules]\n", "[Rules]\n1 1, 1 (1) : 1\n"),
+        ("NumMFs=1", "NumMFs=2"),
+        ("NumInputs=2", "NumInputs=3"),
+        ("NumOutputs=1", "NumOutputs=two"),
+    ] {
+        let text = FIS.replace(before, after);
+        assert_eq!(
+            codes(&text, Format::Fis),
+            (true, vec!["wrong-count"]),
+            "{after}"
+        );
+    }
+    let cut = FIS.split("[Rules]").next().unwrap();
+    assert_eq!(codes(cut, Format::Fis), (true, vec!["wrong-count"]));
+}
+
+#[test]
+fn a_fis_may_calculate_with_numbers_and_pi() {
+    let text = FIS.replace("Range=[0 10]\nNumMFs=2", "Range=[-pi/4 3*(pi-1)]\nNumMFs=2");
+    let text = text.replace("[1.5 0]", "[1/2 -2*pi]");
+    let model = interchange::read(&text, Format::Fis, Losses::Refuse)
+        .unwrap()
+        .model;
+    use std::f64::consts::PI;
+    assert_eq!(
+        (model.inputs[0].low, model.inputs[0].high),
+        (-PI / 4.0, 3.0 * (PI - 1.0))
+    );
+    let fuzzy::model::MembershipFunction::Gaussian { mean, sd } =
+        model.inputs[0].terms[0].membership_function
+    else {
+        panic!("{model:?}")
+    };
+    assert_eq!((mean, sd), (-2.0 * PI, 0.5));
+    for wrong in [
+        "[1.5 pie]",
+        "[1.5 1/0]",
+        "[1.5 sin(1)]",
+        "[1.5 2^3]",
+        "[1.5 pi/]",
+        "[1.5 ()]",
+    ] {
+        let (is_read, codes) = codes(&FIS.replace("[1.5 0]", wrong), Format::Fis);
+        assert_eq!((is_read, codes), (false, vec!["not-a-number"]), "{wrong}");
+    }
+}
+
+#[test]
+fn octaves_cube_is_read_where_a_product_gives_it() {
+    let values = |rule: &str, and: &str| {
+        let text = FIS.replace("1 -1, 1 (1) : 2", rule).replace("'prod'", and);
+        let document = interchange::read(&text, Format::Fis, Losses::Refuse)?;
+        let engine = fuzzy::Engine::new(&document.model)?;
+        let explanation = engine.explain(&[1.0, 2.0]).unwrap();
+        let first = explanation.rules.iter().find(|rule| rule.rule == 0);
+        Ok::<_, fuzzy::Findings>(first.unwrap().strength)
+    };
+    let gauss = (-0.5 * (1.0_f64 / 1.5).powi(2)).exp();
+    for (rule, expected) in [
+        ("1.3 0, 1 (1) : 1", gauss.powi(3)),
+        ("-1.30 0, 1 (1) : 1", 1.0 - gauss.powi(3)),
+        // `bad` has the degree 0.5 at 2.
+        ("1.3 1.3, 1 (1) : 1", gauss.powi(3) * 0.125),
+        (
+            "1.3 1.3, 1 (1) : 2",
+            gauss.powi(3) + 0.125 - gauss.powi(3) * 0.125,
+        ),
+    ] {
+        let strength = values(rule, "'prod'").unwrap();
+        assert!(
+            (strength - expected).abs() < 1e-15,
+            "{rule}: {strength} {expected}"
+        );
+    }
+    let findings = values("1.3 0, 1 (1) : 1", "'min'").unwrap_err();
+    assert_eq!(findings.0[0].code, "unknown-hedge");
+}
+
+#[test]
+fn numbers_in_rules_of_a_fis_name_a_term_or_are_0() {
+    for (word, is_read) in [
+        ("0.0", true),
+        ("-0", true),
+        ("NaN", false),
+        ("inf", false),
+        ("-inf", false),
+        ("0.5", false),
+        ("-0.2", false),
+        ("1e300", false),
+    ] {
+        let rule = format!("{word} 1, 1 (1) : 1");
+        let text = FIS.replace("1 -1, 1 (1) : 2", &rule);
+        let (found, codes) = codes(&text, Format::Fis);
+        assert_eq!(found, is_read, "{word}: {codes:?}");
+        assert!(is_read || codes == ["unknown-term"], "{word}: {codes:?}");
+    }
+}
+
+#[test]
+fn only_an_outer_side_of_a_shape_may_be_infinite() {
+    let fll = |shape: &str| codes(&FLL.replace("Ramp 20 10", shape), Format::Fll);
+    for open in [
+        "Triangle -inf 5 9",
+        "Triangle 1 5 inf",
+        "Trapezoid -inf 2 5 9",
+        "Trapezoid -inf -inf 5 9",
+        "Trapezoid 1 5 9 inf",
+        "Trapezoid 1 5 inf inf",
+        "Trapezoid 1 5 9 inf 0.5",
+        "Binary 5 inf",
+        "Binary 5 -inf",
+    ] {
+        assert_eq!(fll(open), (true, vec![]), "{open}");
+    }
+    for wrong in [
+        "Triangle nan 1 1.5",
+        "Triangle 0 nan 1",
+        "Triangle 0 1 nan",
+        "Triangle inf 0 1",
+        "Triangle 0 1 -inf",
+        "Triangle -inf 1 inf",
+        "Trapezoid 0 1 2 nan",
+        "Trapezoid nan 1 2 3",
+        "Trapezoid -inf nan 2 3",
+        "Trapezoid -inf 1 inf 3",
+        "Trapezoid 0 inf 2 3",
+        "Rectangle -inf 3",
+        "Ramp inf 3",
+        "Ramp nan 3",
+        "Gaussian nan 1",
+        "Sigmoid 1 inf",
+        "SShape 1 nan",
+        "PiShape -inf 1 2 3",
+    ] {
+        assert_eq!(fll(wrong), (false, vec!["not-finite"]), "{wrong}");
+    }
+    assert_eq!(fll("Binary 5 nan"), (false, vec!["parameter-count"]));
+    assert_eq!(fll("Binary nan inf"), (false, vec!["parameter-count"]));
+    let fis = |shape: &str| codes(&FIS.replace("'trapmf',[-1 0 1 3]", shape), Format::Fis);
+    assert_eq!(fis("'trapmf',[-Inf -Inf 1 3]"), (true, vec![]));
+    assert_eq!(fis("'trapmf',[-1 0 1 NaN]"), (false, vec!["not-finite"]));
+    // What is not a shape is found when the rule set is used.
+    for (text, format) in [
+        (FLL.replace("Discrete 5 0", "Discrete nan 0"), Format::Fll),
+        (FLL.replace("with 0.5", "with nan"), Format::Fll),
+        (FLL.replace("5 0.5", "5 nan"), Format::Fll),
+        (FLL.replace("default: 4.5", "default: inf"), Format::Fll),
+        (FLL.replace("range: 0 40", "range: 0 inf"), Format::Fll),
+        (
+            FLL.replace("activation: General", "activation: Threshold >= nan"),
+            Format::Fll,
+        ),
+        (
+            FIS.replace("'constant',[5]", "'constant',[NaN]"),
+            Format::Fis,
+        ),
+        (FIS.replace("[1 2 3]", "[1 -Inf 3]"), Format::Fis),
+        (FCL.replace("(10, 0)", "(10, nan)"), Format::Fcl),
+        (FCL.replace("low := -12", "low := nan"), Format::Fcl),
+        (FML.replace("param2=\"2\"", "param2=\"NaN\""), Format::Fml),
+        (
+            FML.replace("defaultValue=\"0\"", "defaultValue=\"NaN\""),
+            Format::Fml,
+        ),
+    ] {
+        let is_used = interchange::read(&text, format, Losses::Refuse)
+            .is_ok_and(|document| fuzzy::Engine::new(&document.model).is_ok());
+        assert!(!is_used, "{text}");
+    }
+}
+
+#[test]
+fn a_flag_of_an_fll_is_true_or_false() {
+    for (before, after) in [
+        ("  range: 0 40", "  range: 0 40\n  lock-range: falsch"),
+        ("  range: 0 9", "  range: 0 9\n  lock-range: falsch"),
+        ("  range: 0 9", "  range: 0 9\n  lock-previous: 1"),
+        (
+            "  range: 0 9",
+            "  range: 0 9\n  lock-previous: true\n  lock-valid: falsch",
+        ),
+        ("  range: 0 9", "  range: 0 9\n  enabled: yes"),
+    ] {
+        let found = codes(&FLL.replace(before, after), Format::Fll);
+        assert_eq!(found, (false, vec!["not-a-flag"]), "{after}");
+    }
+}
+
+#[test]
+fn where_no_rule_fires_maxima_have_no_value_unless_a_default_is_written() {
+    for method in [
+        "SmallestOfMaximum",
+        "MeanOfMaximum",
+        "LargestOfMaximum",
+        "Centroid",
+        "Bisector",
+    ] {
+        for (default, expected) in [
+            ("default: nan", None),
+            ("default: 4.5", Some(4.5)),
+            ("", None),
+        ] {
+            let text = FLL
+                .replace("Centroid", method)
+                .replace("default: 4.5", default)
+                .replace("  rule: if heat is any then speed is fast with 0.5\n", "")
+                .replace(
+                    "heat is low or (heat is very high and heat is not low)",
+                    "heat is low",
+                );
+            let model = interchange::read(&text, Format::Fll, Losses::Refuse)
+                .unwrap()
+                .model;
+            let value = |model: &fuzzy::Model| {
+                fuzzy::Engine::new(model)
+                    .unwrap()
+                    .evaluate(&[30.0])
+                    .unwrap()[0]
+                    .value()
+            };
+            assert_eq!(value(&model), expected, "{method} {default}");
+            let written = interchange::write(&model, Format::Fll, Losses::Refuse).unwrap();
+            let again = interchange::read(&written.text, Format::Fll, Losses::Refuse).unwrap();
+            assert_eq!(value(&again.model), expected, "{method} {default}");
+        }
+    }
 }

@@ -124,3 +124,78 @@ fn what_is_written_is_read_again_and_gives_the_same_values() {
     }
     insta::assert_snapshot!(refused);
 }
+
+/// A rule set of one rule for each term of the output.
+fn with_output(name: &str, output: &str) -> Model {
+    let text = format!(
+        "fuzzy: 1\nname: {name}\ninputs: {{x: {{range: [0, 1], partition: [low, high]}}}}\n\
+         outputs: {{y: {{range: [0, 1], {output}}}}}\n\
+         rules: [IF x IS low THEN y IS a, IF x IS high THEN y IS b]\n"
+    );
+    text.parse().unwrap_or_else(|findings| panic!("{findings}"))
+}
+
+const NUMBERS: &str =
+    "defuzzifier: weighted_average, terms: {a: {constant: -5}, b: {constant: 20}}";
+
+#[test]
+fn an_fcl_keeps_constants_outside_the_range() {
+    let model = with_output("outside", NUMBERS);
+    let written = interchange::write(&model, Format::Fcl, Losses::Refuse).unwrap();
+    assert!(
+        written.text.contains("RANGE := (-5 .. 20);"),
+        "{}",
+        written.text
+    );
+    let again = interchange::read(&written.text, Format::Fcl, Losses::Refuse).unwrap();
+    same_values(&model, &again.model, "outside");
+}
+
+#[test]
+fn names_of_rule_sets_are_written_so_that_they_can_be_read() {
+    for name in ["3d", "'my rules'", "var_input", "'1 + 1'", "größe"] {
+        let model = with_output(name, NUMBERS);
+        let written = interchange::write(&model, Format::Fcl, Losses::Refuse).unwrap();
+        let told = written.findings.to_string();
+        assert!(told.contains("renamed"), "{name}: {told}");
+        let again = interchange::read(&written.text, Format::Fcl, Losses::Refuse)
+            .unwrap_or_else(|findings| panic!("{findings}\n{}", written.text));
+        same_values(&model, &again.model, name);
+    }
+}
+
+#[test]
+fn what_no_format_can_carry_is_refused_even_where_losses_are_accepted() {
+    let tsukamoto =
+        "defuzzifier: tsukamoto, terms: {a: {left_shoulder: [0, 1]}, b: {right_shoulder: [0, 1]}}";
+    let model = with_output("tsukamoto", tsukamoto);
+    let refused = interchange::write(&model, Format::Fis, Losses::Accept).unwrap_err();
+    assert!(refused.to_string().contains("`tsukamoto`"), "{refused}");
+    let text = "fuzzy: 1\nname: chain\ninputs: {x: {range: [0, 1], partition: [low, high]}}\n\
+                outputs: {y: {range: [0, 1], partition: [low, high]}, \
+                z: {range: [0, 1], defuzzifier: weighted_average, terms: {a: {linear: {y: 2, constant: 1}}}}}\n\
+                rules: [IF x IS low THEN y IS low, IF x IS high THEN y IS high, IF x IS low THEN z IS a]\n";
+    let model: Model = text.parse().unwrap();
+    for format in [Format::Fis, Format::Fll, Format::Fml] {
+        let refused = interchange::write(&model, format, Losses::Accept).unwrap_err();
+        assert!(!refused.0.is_empty());
+        assert!(interchange::write(&model, format, Losses::Refuse).is_err());
+    }
+}
+
+#[test]
+fn what_means_something_else_elsewhere_is_a_loss() {
+    let mut model = with_output("weak", NUMBERS);
+    model.least_strength = 0.25;
+    let text = "fuzzy: 1\nname: chain\ninputs: {x: {range: [0, 1], partition: [low, high]}}\n\
+                outputs: {y: {range: [0, 1], partition: [low, high]}, z: {range: [0, 1], partition: [low, high]}}\n\
+                rules: [IF x IS low THEN y IS low, IF x IS high THEN y IS high, IF y IS high THEN z IS low]\n";
+    let chain: Model = text.parse().unwrap();
+    for format in Format::ALL {
+        let refused = interchange::write(&model, format, Losses::Refuse).unwrap_err();
+        assert_eq!(refused.0[0].code, "least-strength");
+        assert!(interchange::write(&model, format, Losses::Accept).is_ok());
+    }
+    let refused = interchange::write(&chain, Format::Fll, Losses::Refuse).unwrap_err();
+    assert!(refused.0.iter().any(|finding| finding.code == "chain"));
+}

@@ -6,7 +6,7 @@ use fuzzy::{
 };
 
 use super::{read::Reader, term::is_number};
-use crate::{Format, blocks, conditions::dual, rules, words};
+use crate::{Format, blocks, conditions::dual, draft::MOST_BLOCKS, rules, words};
 
 impl Reader<'_, '_> {
     /// `KEY : WORD;`
@@ -33,6 +33,11 @@ impl Reader<'_, '_> {
         let is_key = |word: &&str| KEYS.iter().any(|key| key.eq_ignore_ascii_case(word));
         let name = self.peek().filter(|word| !is_key(word));
         self.next += usize::from(name.is_some());
+        let part = self.here();
+        let count = self.blocks.len();
+        if !self.draft.has_room(count, MOST_BLOCKS, "rule blocks", part) {
+            return self.skip("RULEBLOCK");
+        }
         let mut block = Block::new(name.unwrap_or_default());
         let (mut and, mut or) = (None, None);
         while !self.take("END_RULEBLOCK") && self.peek().is_some() {

@@ -93,6 +93,9 @@ fn shape<'t>(
         draft.error("parameter-count", shape, message, "count the numbers");
         return None;
     }
+    if !draft.is_finite(known, &numbers, words) {
+        return None;
+    }
     let function = match (known, &numbers[..]) {
         // jFuzzyLogic takes 0 where the difference is negative, and not its size.
         (Shape::SigmoidDifference, [a, b, c, d]) if format == Format::Fcl && (a != c || b > d) => {

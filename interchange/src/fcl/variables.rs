@@ -8,6 +8,7 @@ use fuzzy::{
 
 use super::{extent::extent, read::Reader, term};
 use crate::{
+    draft::MOST_VARIABLES,
     fll::{self, habits},
     words,
 };
@@ -25,8 +26,18 @@ impl<'t> Reader<'_, 't> {
                 continue;
             };
             if outputs {
-                self.outputs.push(name);
-            } else {
+                if self
+                    .draft
+                    .has_room(self.outputs.len(), MOST_VARIABLES, "outputs", name)
+                {
+                    self.outputs.push(name);
+                }
+            } else if self.draft.has_room(
+                self.draft.model.inputs.len(),
+                MOST_VARIABLES,
+                "inputs",
+                name,
+            ) {
                 self.draft
                     .model
                     .inputs
@@ -94,6 +105,10 @@ impl<'t> Reader<'_, 't> {
                 .iter()
                 .any(|m| m.eq_ignore_ascii_case(word))
         });
+        let count = self.draft.model.outputs.len();
+        if !self.draft.has_room(count, MOST_VARIABLES, "outputs", name) {
+            return self.skip("DEFUZZIFY");
+        }
         let mut output = Output::new(Variable::new(name, f64::NAN, f64::NAN));
         let mut accumulation = None;
         let mut spans = VariableSpans::default();
@@ -130,7 +145,6 @@ impl<'t> Reader<'_, 't> {
         }
         if self.is_fuzzylite {
             habits::tsukamoto(&mut output);
-            habits::unfired(&mut self.draft, &mut output, name);
         }
         self.universe(&mut output.variable, &mut spans, name);
         self.accumulations.push(accumulation);
@@ -178,11 +192,11 @@ impl<'t> Reader<'_, 't> {
                 Some(read) if self.is_fuzzylite => {
                     habits::add(&mut self.draft, (variable, spans), read, name);
                 }
-                Some((term, span)) => {
+                Some((term, span)) if self.draft.has_room_for_term(variable, name) => {
                     variable.terms.push(term);
                     spans.terms.push(span);
                 }
-                None => {}
+                _ => {}
             }
             return true;
         }
@@ -195,7 +209,9 @@ impl<'t> Reader<'_, 't> {
                 return true;
             };
             spans.range = self.draft.span(low).start..self.draft.span(high).end;
-            if let Some(range) = self.draft.range(first, low, high, self.computes) {
+            let ends = (self.draft.number(low), self.draft.number(high));
+            if let (Some(low), Some(high)) = ends {
+                let range = self.draft.range(first, (low, high), self.computes);
                 (variable.low, variable.high) = range;
             }
             return true;

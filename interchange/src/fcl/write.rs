@@ -2,7 +2,10 @@
 
 use fuzzy::{
     Findings, Model,
-    model::{Activation, Aggregation, MembershipFunction, NoRuleFires, Term, Variable},
+    model::{
+        Activation, Aggregation, Defuzzifier, MembershipFunction, NoRuleFires, Output, Term,
+        Variable,
+    },
 };
 
 use crate::{
@@ -39,13 +42,31 @@ const NAMES: Allowed = Allowed {
         "act",
         "accu",
         "nc",
+        "cogs",
+        "cogss",
+        "function",
+        "pi",
+        "var",
+        "options",
+        "var_input",
+        "var_output",
+        "fuzzify",
+        "defuzzify",
+        "ruleblock",
+        "function_block",
+        "end_var",
+        "end_options",
+        "end_fuzzify",
+        "end_defuzzify",
+        "end_ruleblock",
+        "end_function_block",
     ],
 };
 
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(Format::Fcl, losses);
+    let mut paper = Paper::new(Format::Fcl, losses, model);
     let model = names::plain(model, &NAMES, &mut paper);
-    let name = identifier(&model.name);
+    let name = names::one(&model.name, &NAMES, &mut paper);
     if let Some(description) = &model.description {
         paper.line(format!(
             "(* {} *)",
@@ -63,17 +84,21 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     paper.line("END_VAR");
     for input in &model.inputs {
         paper.line(format!("\nFUZZIFY {}", input.name));
-        terms(&mut paper, input);
+        terms(&mut paper, input, false);
         paper.line("END_FUZZIFY");
     }
     for output in &model.outputs {
         let name = &output.variable.name;
         paper.line(format!("\nDEFUZZIFY {name}"));
-        terms(&mut paper, &output.variable);
+        let computes = words::is_weighted(output.defuzzifier);
+        match output.defuzzifier {
+            Defuzzifier::WeightedAverage => terms(&mut paper, &widened(output), computes),
+            _ => terms(&mut paper, &output.variable, computes),
+        }
         let word = paper.word(words::DEFUZZIFIERS, output.defuzzifier, "the defuzzifier");
         paper.line(format!("  METHOD : {word};"));
         // The sum of singletons weighs each rule.
-        let aggregation = match words::is_weighted(output.defuzzifier) {
+        let aggregation = match computes {
             true => Aggregation::Sum,
             false => output.aggregation.unwrap_or(model.operators.aggregation),
         };
@@ -106,19 +131,33 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
     paper.finish()
 }
 
-fn terms(paper: &mut Paper, variable: &Variable) {
+/// The output with a range around its numbers: `COGS` is a centroid, for which a number outside the range does not exist.
+fn widened(output: &Output) -> Variable {
+    let mut variable = output.variable.clone();
+    for term in &output.variable.terms {
+        if let MembershipFunction::Singleton { at } | MembershipFunction::Constant { value: at } =
+            term.membership_function
+        {
+            (variable.low, variable.high) = (variable.low.min(at), variable.high.max(at));
+        }
+    }
+    variable
+}
+
+/// The range and the terms; where an output `computes` values, a constant is one of them, elsewhere a degree.
+fn terms(paper: &mut Paper, variable: &Variable, computes: bool) {
     paper.line(format!(
         "  RANGE := ({} .. {});",
         variable.low, variable.high
     ));
     for term in &variable.terms {
-        if let Some(shape) = shape(paper, term, variable) {
+        if let Some(shape) = shape(paper, term, variable, computes) {
             paper.line(format!("  TERM {} := {shape};", term.name));
         }
     }
 }
 
-fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<String> {
+fn shape(paper: &mut Paper, term: &Term, variable: &Variable, computes: bool) -> Option<String> {
     use MembershipFunction as Of;
     let height = term.height;
     let points = |points: &[(f64, f64)]| {
@@ -148,7 +187,12 @@ fn shape(paper: &mut Paper, term: &Term, variable: &Variable) -> Option<String> 
             points(&[(left, 0.0), (left, 1.0), (right, 1.0), (right, 0.0)])
         }
         Of::Piecewise { points: ref all } => points(all),
-        Of::Singleton { at } | Of::Constant { value: at } if height == 1.0 => Some(at.to_string()),
+        Of::Constant { value } if !computes => {
+            points(&[(variable.low, value), (variable.high, value)])
+        }
+        Of::Singleton { at } | Of::Constant { value: at } if computes || height == 1.0 => {
+            Some(at.to_string())
+        }
         Of::Function { ref formula } if height == 1.0 => {
             function(paper, term, variable);
             Some(format!("FUNCTION {}", formula::write(formula, None)))
@@ -227,7 +271,7 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
         paper.loss("activation", message, "FCL has no activation methods");
     }
     let [and, or, implication] = paper.operators(operators);
-    let name = identifier(block.name);
+    let name = names::one(block.name, &NAMES, paper);
     paper.line(format!(
         "\nRULEBLOCK {name}\n  AND : {and};\n  OR : {or};\n  ACT : {implication};"
     ));
@@ -246,11 +290,6 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>, number: &mut usize) {
         }
     }
     paper.line("END_RULEBLOCK");
-}
-
-fn identifier(name: &str) -> String {
-    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    name.chars().map(plain).collect()
 }
 
 /// The keywords in capitals, as IEC 61131-7 writes them.

@@ -2,11 +2,15 @@
 
 use fuzzy::{
     format::{Document, TermSpans, VariableSpans},
-    model::{Defuzzifier, Output, Variable},
+    model::{Defuzzifier, Formula, Output, Variable},
 };
 
 use super::{rules, term};
-use crate::{Format, Losses, draft::Draft, shapes, words};
+use crate::{
+    Format, Losses,
+    draft::{self, Draft, MOST_VARIABLES},
+    shapes, words,
+};
 
 /// `[Name]` and its lines.
 pub(super) struct Section<'t> {
@@ -69,6 +73,10 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     let inputs = Section::numbered(&sections, "Input");
     let names: Vec<&str> = inputs.iter().map(|input| name(input)).collect();
     for section in &inputs {
+        let count = draft.model.inputs.len();
+        if !draft.has_room(count, MOST_VARIABLES, "inputs", section.name) {
+            break;
+        }
         if let Some((variable, spans)) = variable(&mut draft, section, &names, false) {
             draft.model.inputs.push(variable);
             draft.spans.inputs.push(spans);
@@ -76,6 +84,10 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     }
     let defuzzifier = defuzzifier(&mut draft, system, weighted);
     for section in Section::numbered(&sections, "Output") {
+        let count = draft.model.outputs.len();
+        if !draft.has_room(count, MOST_VARIABLES, "outputs", section.name) {
+            break;
+        }
         if let Some((variable, spans)) = variable(&mut draft, section, &names, weighted) {
             // fuzzylite writes Tsukamoto's kind in this way.
             let defuzzifier = match variable.terms.iter().any(shapes::is_computed) {
@@ -89,13 +101,17 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
             draft.spans.outputs.push(spans);
         }
     }
+    let outputs = draft.model.outputs.len();
+    count(&mut draft, system, "NumInputs", names.len());
+    count(&mut draft, system, "NumOutputs", outputs);
     // Rules name terms by number, so the variables must all be there.
     if !draft.has_errors() {
-        counts(&mut draft, system, names.len());
         let section = sections
             .iter()
             .find(|s| s.name.eq_ignore_ascii_case("Rules"));
-        for entry in section.into_iter().flat_map(|section| &section.entries) {
+        let entries = section.map_or(&[][..], |section| &section.entries);
+        count(&mut draft, system, "NumRules", entries.len());
+        for entry in entries {
             rules::read(&mut draft, entry.value);
         }
     }
@@ -270,15 +286,19 @@ fn variable(
         draft.error("no-range", range, message, "write `Range=[0 10]`");
         return None;
     };
-    let (low, high) = draft.range(range, low, high, weighted)?;
+    let ends = (number(draft, low)?, number(draft, high)?);
+    let (low, high) = draft.range(range, ends, weighted);
     let mut variable = Variable::new(name, low, high);
-    for entry in &section.entries {
-        let number = entry
-            .key
-            .split_at_checked(2)
-            .filter(|(mf, _)| mf.eq_ignore_ascii_case("MF"));
-        if number.is_none_or(|(_, index)| index.parse::<usize>().is_err()) {
-            continue;
+    let is_term = |entry: &&Entry<'_>| {
+        let number = entry.key.split_at_checked(2);
+        let number = number.filter(|(mf, _)| mf.eq_ignore_ascii_case("MF"));
+        number.is_some_and(|(_, index)| index.parse::<usize>().is_ok())
+    };
+    let terms: Vec<&Entry<'_>> = section.entries.iter().filter(is_term).collect();
+    count(draft, section, "NumMFs", terms.len());
+    for entry in terms {
+        if !draft.has_room_for_term(&variable, entry.value) {
+            break;
         }
         if let Some((mut term, term_spans)) = term::read(draft, entry.value, inputs) {
             term.name = distinct(draft, &variable, term.name, &term_spans);
@@ -317,17 +337,30 @@ pub(super) fn bracketed(text: &str) -> Vec<&str> {
     words.filter(|word| !word.is_empty()).collect()
 }
 
-/// Says where the file has another number of variables than it announces.
-fn counts(draft: &mut Draft<'_>, system: &Section<'_>, inputs: usize) {
-    let outputs = draft.model.outputs.len();
-    for (key, found) in [("NumInputs", inputs), ("NumOutputs", outputs)] {
-        let Some(written) = system.get(key) else {
-            continue;
-        };
-        if written.parse() != Ok(found) {
-            let message = format!("`{key}` is {written}, but the file has {found}");
-            let help = "the rules are read with the variables that the file has";
-            draft.warning("wrong-count", written, message, help);
+/// A number, or a calculation with numbers and `pi` alone, such as `-pi/4`: MATLAB evaluates what it reads.
+pub(super) fn number(draft: &mut Draft<'_>, word: &str) -> Option<f64> {
+    let is_arithmetic = |c: char| c.is_ascii_digit() || ".eEpi+-*/()".contains(c);
+    if draft::number(word).is_none()
+        && word.chars().all(is_arithmetic)
+        && let Ok(formula) = word.parse::<Formula>()
+        && formula.variables().len() == 0
+    {
+        let value = formula.evaluate(|_| f64::NAN);
+        if value.is_finite() {
+            return Some(value);
         }
+    }
+    draft.number(word)
+}
+
+/// Warns where a section has another number of parts than its key announces: a file that was cut off lacks some.
+fn count(draft: &mut Draft<'_>, section: &Section<'_>, key: &str, found: usize) {
+    let Some(written) = section.get(key) else {
+        return;
+    };
+    if written.parse() != Ok(found) {
+        let message = format!("`{key}` is {written}, but the file has {found}");
+        let help = "check that the file is complete; what it has is read";
+        draft.warning("wrong-count", written, message, help);
     }
 }

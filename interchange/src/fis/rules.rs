@@ -3,7 +3,7 @@
 
 use fuzzy::{
     format::RuleSpans,
-    model::{Rule, Variable},
+    model::{Conjunction, Model, Rule, Variable},
     rule::{self, Condition, Consequent, Hedge, Name, Proposition},
 };
 
@@ -33,23 +33,20 @@ pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
     };
     let mut conditions = vec![];
     for (index, word) in parts.inputs.iter().enumerate() {
-        match proposition(draft, word, |draft| draft.model.inputs.get(index).cloned()) {
-            Ok(Some(proposition)) => conditions.push(Condition::Is(proposition)),
+        match proposition(draft, word, |model| model.inputs.get(index)) {
+            Ok(Some(named)) => conditions.push(named.condition()),
             Ok(None) => {}
             Err(()) => return,
         }
     }
     let mut consequents = vec![];
     for (index, word) in parts.outputs.iter().enumerate() {
-        let output = |draft: &Draft<'_>| Some(draft.model.outputs.get(index)?.variable.clone());
-        match proposition(draft, word, output) {
-            Ok(Some(Proposition {
-                variable,
-                hedges,
-                term: Some(term),
-            })) => {
-                if let Some(hedge) = hedges.first() {
-                    let message = format!("a hedge, `{}`, stands in a conclusion", hedge.word());
+        match proposition(draft, word, |model| {
+            Some(&model.outputs.get(index)?.variable)
+        }) {
+            Ok(Some(named)) => {
+                if !named.hedges.is_empty() {
+                    let message = format!("`{word}` has a hedge in a conclusion");
                     draft.loss(
                         "hedge-in-conclusion",
                         word,
@@ -58,12 +55,12 @@ pub(super) fn read(draft: &mut Draft<'_>, line: &str) {
                     );
                 }
                 consequents.push(Consequent {
-                    output: variable,
+                    output: named.variable,
                     hedges: vec![],
-                    term,
+                    term: named.term,
                 });
             }
-            Ok(_) => {}
+            Ok(None) => {}
             Err(()) => return,
         }
     }
@@ -132,27 +129,62 @@ fn parts(line: &str) -> Option<Parts<'_>> {
     })
 }
 
-/// The proposition of a number: of `-2.3` the second term, hedged with NOT and Octave's third hedge; `None` of 0.
+/// What a number in a rule names.
+struct Named {
+    variable: Name,
+    term: Name,
+    /// `NOT` and those of Octave.
+    hedges: Vec<Hedge>,
+    /// The hedged degree is multiplied by the degree of the term.
+    once_more: bool,
+}
+
+impl Named {
+    fn condition(self) -> Condition {
+        let is = |hedges| {
+            Condition::Is(Proposition {
+                variable: self.variable.clone(),
+                hedges,
+                term: Some(self.term.clone()),
+            })
+        };
+        if !self.once_more {
+            return is(self.hedges);
+        }
+        let hedges = self.hedges.iter().copied();
+        let hedged = is(hedges.filter(|hedge| *hedge != Hedge::Not).collect());
+        let both = Condition::And(vec![hedged, is(vec![])]);
+        match self.hedges.first() {
+            Some(Hedge::Not) => Condition::Not(Box::new(both)),
+            _ => both,
+        }
+    }
+}
+
+/// What a number in a rule names: of `-2.3` the second term, hedged with NOT and Octave's `extremely`; `None` of 0.
 fn proposition(
     draft: &mut Draft<'_>,
     word: &str,
-    variable: impl Fn(&Draft<'_>) -> Option<Variable>,
-) -> Result<Option<Proposition>, ()> {
+    variable: impl Fn(&Model) -> Option<&Variable>,
+) -> Result<Option<Named>, ()> {
     let number = draft.number(word).ok_or(())?;
     let index = number.abs().trunc();
+    if !number.is_finite() || (index == 0.0 && number != 0.0) {
+        let message = format!("`{word}` names no term");
+        let help = "write the number of a term, 1 for the first, or 0 to leave the variable out";
+        draft.error("unknown-term", word, message, help);
+        return Err(());
+    }
     if index == 0.0 {
         return Ok(None);
     }
-    let variable = variable(draft).ok_or(())?;
-    let Some(term) = variable.terms.get(index as usize - 1) else {
-        let count = variable.terms.len();
-        let message = format!("`{}` has no term {index}", variable.name);
-        draft.error(
-            "unknown-term",
-            word,
-            message,
-            &format!("it has {count} terms"),
-        );
+    let variable = variable(&draft.model).ok_or(())?;
+    let name = variable.name.clone();
+    let term = variable.terms.get((index as usize).saturating_sub(1));
+    let Some(term) = term.map(|term| term.name.clone()) else {
+        let help = format!("it has {} terms", variable.terms.len());
+        let message = format!("`{name}` has no term {index}");
+        draft.error("unknown-term", word, message, &help);
         return Err(());
     };
     let mut hedges = vec![];
@@ -160,35 +192,44 @@ fn proposition(
         hedges.push(Hedge::Not);
     }
     let fraction = ((number.abs() - index) * 100.0).round();
-    hedges.extend(octave(draft, word, fraction)?);
-    let name = |text: &str, span| Name {
-        text: text.to_owned(),
-        span,
-    };
+    let (own, once_more) = octave(draft, word, fraction)?;
+    hedges.extend(own);
     let span = draft.span(word);
-    Ok(Some(Proposition {
-        variable: name(&variable.name, span.clone()),
+    let named = |text| Name {
+        text,
+        span: span.clone(),
+    };
+    Ok(Some(Named {
+        variable: named(name),
+        term: named(term),
         hedges,
-        term: Some(name(&term.name, span)),
+        once_more,
     }))
 }
 
-/// The hedges of Octave's toolkit, the digits behind the point, in hundredths. Its `extremely` is a cube.
-fn octave(draft: &mut Draft<'_>, word: &str, hundredths: f64) -> Result<Vec<Hedge>, ()> {
+/// The hedges of Octave's toolkit, the digits behind the point, in hundredths. Its `extremely` is a cube: the square times the degree,
+/// which a product of conditions gives.
+fn octave(
+    draft: &mut Draft<'_>,
+    word: &str,
+    hundredths: f64,
+) -> Result<(&'static [Hedge], bool), ()> {
+    const SQUARE: &[Hedge] = &[Hedge::Very];
     match hundredths as i64 {
-        0 => Ok(vec![]),
-        5 => Ok(vec![Hedge::Somewhat]),
-        20 => Ok(vec![Hedge::Very]),
-        40 => Ok(vec![Hedge::Very, Hedge::Very]),
+        0 => Ok((&[], false)),
+        5 => Ok((&[Hedge::Somewhat], false)),
+        20 => Ok((SQUARE, false)),
+        40 => Ok((&[Hedge::Very, Hedge::Very], false)),
+        30 if draft.model.operators.and == Conjunction::Product => Ok((SQUARE, true)),
         30 => {
             let message = format!("`{word}` has Octave's hedge `extremely`, the cube");
-            let help = "there is no such hedge; `very very` is the fourth power";
+            let help = "it can be read with `AndMethod='prod'`, as `very` times the term; no hedge is a cube";
             draft.loss("unknown-hedge", word, message, help);
-            Ok(vec![Hedge::Extremely])
+            Ok((&[Hedge::Extremely], false))
         }
         _ => {
             let message = format!("`{word}` has an unknown hedge");
-            let help = "known are .05 somewhat, .2 very, .4 very very";
+            let help = "known are .05 somewhat, .2 very, .3 extremely, .4 very very";
             draft.error("unknown-hedge", word, message, help);
             Err(())
         }

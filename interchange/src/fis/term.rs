@@ -6,7 +6,7 @@ use fuzzy::{
     model::{MembershipFunction, Term},
 };
 
-use super::read::{bracketed, unquoted};
+use super::read::{bracketed, number, unquoted};
 use crate::{Format, draft::Draft, shapes};
 
 const OTHERS: [&str; 3] = ["discretemf", "constant", "linear"];
@@ -29,8 +29,9 @@ pub(super) fn read(
     let mut spans = TermSpans::default();
     spans.name = draft.span(name);
     let mut numbers = vec![];
-    for word in bracketed(parameters) {
-        numbers.push(draft.number(word)?);
+    let words = bracketed(parameters);
+    for word in &words {
+        numbers.push(number(draft, word)?);
         spans.parameters.push(draft.span(word));
     }
     let (function, count) = match shape.to_ascii_lowercase().as_str() {
@@ -58,10 +59,11 @@ pub(super) fn read(
                 draft.error("unknown-shape", shape, message, &help);
                 return None;
             };
-            (
-                shapes::read(Format::Fis, known, numbers.get(..count).unwrap_or(&numbers))?,
-                count,
-            )
+            let own = numbers.get(..count).unwrap_or(&numbers);
+            if !draft.is_finite(known, own, &words) {
+                return None;
+            }
+            (shapes::read(Format::Fis, known, own)?, count)
         }
     };
     if numbers.len() < count {

@@ -15,13 +15,13 @@ use crate::{
 
 /// Quotes end a name, and `:` follows one.
 const NAMES: Allowed = Allowed {
-    is_letter: |c| words::is_printable(c) && !matches!(c, '\'' | ':'),
+    is_letter: |c| words::is_printable(c) && !matches!(c, '\'' | '"' | ':'),
     is_first: words::is_printable,
     keywords: &[],
 };
 
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(Format::Fis, losses);
+    let mut paper = Paper::new(Format::Fis, losses, model);
     let model = &names::plain(model, &NAMES, &mut paper);
     system(&mut paper, model);
     for (index, input) in model.inputs.iter().enumerate() {
@@ -87,19 +87,16 @@ fn system(paper: &mut Paper, model: &Model) {
         .outputs
         .first()
         .map_or(Defuzzifier::Centroid, |output| output.defuzzifier);
-    if model
-        .outputs
-        .iter()
-        .any(|output| output.defuzzifier != first)
-    {
-        let message = "the outputs have different defuzzifiers".into();
-        paper.loss(
-            "two-defuzzifiers",
-            message,
-            "write a rule set for each output",
-        );
-    }
     let weighted = words::is_weighted(first);
+    let mut others = model.outputs.iter().map(|output| output.defuzzifier);
+    if others.clone().any(|other| other != first) {
+        let message = "the outputs have different defuzzifiers".into();
+        let help = "write a rule set for each output";
+        match others.any(|other| words::is_weighted(other) != weighted) {
+            true => paper.refuse("two-defuzzifiers", message, help),
+            false => paper.loss("two-defuzzifiers", message, help),
+        }
+    }
     let operators = model.operators;
     let quoted = |text: &str| format!("'{}'", one_line(&text.replace('\'', "")));
     if let Some(description) = &model.description {
@@ -114,7 +111,8 @@ fn system(paper: &mut Paper, model: &Model) {
     paper.line("Version=2.0");
     paper.line(format!("NumInputs={}", model.inputs.len()));
     paper.line(format!("NumOutputs={}", model.outputs.len()));
-    paper.line(format!("NumRules={}", model.rules.len()));
+    let rules = model.rules.iter().filter(|rule| line(rule, model).is_ok());
+    paper.line(format!("NumRules={}", rules.count()));
     let [and, or, implication] = paper.operators(operators);
     let aggregation = paper.word(
         words::AGGREGATIONS,
@@ -132,6 +130,15 @@ fn system(paper: &mut Paper, model: &Model) {
         if weighted { "sum" } else { aggregation }
     ));
     let defuzzifier = paper.word(words::DEFUZZIFIERS, first, "the defuzzifier");
+    let outputs = &model.outputs;
+    if outputs
+        .iter()
+        .any(|output| output.defuzzifier == Defuzzifier::Tsukamoto)
+    {
+        let message = "FIS has no word for the defuzzifier `tsukamoto`".into();
+        let help = "no method of a Sugeno system takes fuzzy sets as terms of its outputs";
+        paper.refuse("no-word", message, help);
+    }
     paper.line(format!("DefuzzMethod='{defuzzifier}'"));
     let known = ["min", "max", "prod", "probor", "sum"];
     for word in [and, or, implication, aggregation] {
@@ -143,19 +150,16 @@ fn system(paper: &mut Paper, model: &Model) {
 }
 
 fn variable(paper: &mut Paper, variable: &Variable, model: &Model) {
-    paper.line(format!(
-        "Name='{}'",
-        one_line(&variable.name.replace('\'', ""))
-    ));
+    paper.line(format!("Name='{}'", variable.name));
     paper.line(format!("Range=[{} {}]", variable.low, variable.high));
     paper.line(format!("NumMFs={}", variable.terms.len()));
     for (index, term) in variable.terms.iter().enumerate() {
         let Some((shape, parameters)) = shape(paper, term, variable, model) else {
             continue;
         };
-        let name = one_line(&term.name.replace('\'', ""));
         let parameters = numbers(&parameters);
-        paper.line(format!("MF{}='{name}':'{shape}',[{parameters}]", index + 1));
+        let (number, name) = (index + 1, &term.name);
+        paper.line(format!("MF{number}='{name}':'{shape}',[{parameters}]"));
     }
 }
 
@@ -188,8 +192,9 @@ fn shape(
             ref coefficients,
             constant,
         } => {
-            let each = shapes::coefficients(coefficients, model);
-            Some(("linear", each.chain([constant]).collect()))
+            let mut each = paper.coefficients(&term.name, coefficients, model);
+            each.push(constant);
+            Some(("linear", each))
         }
         Of::Piecewise { ref points } => Some((
             "discretemf",

@@ -2,7 +2,7 @@
 
 use fuzzy::{
     format::{TermSpans, VariableSpans},
-    model::{Defuzzifier, NoRuleFires, Output, Term, Variable},
+    model::{Defuzzifier, Output, Term, Variable},
 };
 
 use crate::{draft::Draft, shapes};
@@ -16,25 +16,6 @@ pub(crate) fn tsukamoto(output: &mut Output) {
     }
 }
 
-/// Where no rule fires, a defuzzifier of maxima gives the middle or an end of the range. `part` names the output in the text.
-pub(crate) fn unfired(draft: &mut Draft<'_>, output: &mut Output, part: &str) {
-    let (low, high) = (output.variable.low, output.variable.high);
-    let value = match output.defuzzifier {
-        Defuzzifier::SmallestOfMaxima => low,
-        Defuzzifier::MeanOfMaxima => 0.5 * (low + high),
-        Defuzzifier::LargestOfMaxima => high,
-        _ => return,
-    };
-    if output.when_no_rule_fires != NoRuleFires::Undefined {
-        return;
-    }
-    output.when_no_rule_fires = NoRuleFires::Value(value);
-    let name = &output.variable.name;
-    let message = format!("where no rule fires, fuzzylite gives `{name}` the value {value}");
-    let help = "take `when_no_rule_fires` out of the rule set to leave it undefined";
-    draft.note("no-rule-fires", part, message, help);
-}
-
 /// Adds a term to a variable, unless it has one of that name: rules find the first one.
 pub(crate) fn add(
     draft: &mut Draft<'_>,
@@ -42,6 +23,9 @@ pub(crate) fn add(
     (term, span): (Term, TermSpans),
     part: &str,
 ) {
+    if !draft.has_room_for_term(variable, part) {
+        return;
+    }
     if variable.terms.iter().any(|known| known.name == term.name) {
         let message = format!("`{}` has a term `{}` before", variable.name, term.name);
         let help = "no rule finds this one, and it is left out";

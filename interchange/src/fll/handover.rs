@@ -1,28 +1,58 @@
 //! Conditions about outputs. In fuzzylite such a condition is as true as the rules before it that conclude the term are: the
 //! degrees are handed over, not the value. So the condition becomes the conditions of those rules.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use fuzzy::{
     model::{Activation, Aggregation, Disjunction, Model, Operators, Rule},
-    rule::{Condition, Hedge, Proposition},
+    rule::{Condition, DEEPEST_NESTING, Hedge, Proposition},
 };
 
 use crate::draft::Draft;
 
+/// Propositions that conditions about outputs become in all: a rule may repeat what the rules before it repeat.
+const MOST_PROPOSITIONS: usize = 100_000;
+
 pub(crate) fn replace(draft: &mut Draft<'_>) {
+    let concluding = concluding(&draft.model);
+    let outputs = draft.model.outputs.iter();
+    let outputs: BTreeSet<String> = outputs.map(|output| output.variable.name.clone()).collect();
+    let mut room = MOST_PROPOSITIONS;
     for index in 0..draft.model.rules.len() {
         let Some(rule) = draft.model.rules.get(index) else {
             return;
         };
+        if !mentions(&rule.rule.condition, &outputs) {
+            continue;
+        }
         let mut condition = rule.rule.condition.clone();
-        let mut problems = vec![];
-        resolve(&mut condition, &draft.model, index, &mut problems);
+        let mut handover = Handover {
+            model: &draft.model,
+            concluding: &concluding,
+            outputs: &outputs,
+            rule: index,
+            room,
+            problems: vec![],
+        };
+        let resolved = handover.resolve(&mut condition);
+        room = handover.room;
+        let problems = handover.problems;
+        let span = draft.spans.rules.get(index).map(|rule| rule.whole.clone());
+        let part = draft.text.get(span.unwrap_or_default()).unwrap_or_default();
+        if resolved.is_none() || depth(&condition) > 2 * DEEPEST_NESTING {
+            let message =
+                "the conditions of the rules that conclude its outputs are too many".into();
+            let help = format!(
+                "conditions about outputs may become {MOST_PROPOSITIONS} propositions in all, in {DEEPEST_NESTING} brackets"
+            );
+            draft.error("too-large", part, message, &help);
+            return;
+        }
         let Some(rule) = draft.model.rules.get_mut(index) else {
             return;
         };
         let changes = rule.rule.condition != condition;
         rule.rule.condition = condition;
-        let span = draft.spans.rules.get(index).map(|rule| rule.whole.clone());
-        let part = draft.text.get(span.unwrap_or_default()).unwrap_or_default();
         if changes && problems.is_empty() {
             let message = "a condition is about an output".into();
             let help = "fuzzylite hands degrees over, so it becomes the conditions of the rules that conclude the term";
@@ -35,90 +65,141 @@ pub(crate) fn replace(draft: &mut Draft<'_>) {
     }
 }
 
-/// Replaces the propositions about outputs in the condition of a rule.
-fn resolve(condition: &mut Condition, model: &Model, rule: usize, problems: &mut Vec<String>) {
-    match condition {
-        Condition::Not(inner) => resolve(inner, model, rule, problems),
-        Condition::And(parts) | Condition::Or(parts) => {
-            for part in parts {
-                resolve(part, model, rule, problems);
+/// The rules that conclude each term of each output, in their order.
+type Concluding = BTreeMap<(String, String), Vec<usize>>;
+
+fn concluding(model: &Model) -> Concluding {
+    let mut concluding = Concluding::new();
+    for (index, rule) in model.rules.iter().enumerate() {
+        for consequent in &rule.rule.consequents {
+            let key = (consequent.output.text.clone(), consequent.term.text.clone());
+            let rules = concluding.entry(key).or_default();
+            if rules.last() != Some(&index) {
+                rules.push(index);
             }
         }
-        Condition::Is(proposition) => {
-            if let Some(replaced) = concluded(proposition, model, rule, problems) {
-                *condition = replaced;
-            }
+    }
+    concluding
+}
+
+fn mentions(condition: &Condition, outputs: &BTreeSet<String>) -> bool {
+    let mut mentions = false;
+    condition.visit(&mut |about| mentions |= outputs.contains(&about.variable.text));
+    mentions
+}
+
+fn propositions(condition: &Condition) -> usize {
+    let mut count = 0;
+    condition.visit(&mut |_| count += 1);
+    count
+}
+
+fn depth(condition: &Condition) -> usize {
+    match condition {
+        Condition::Is(_) => 0,
+        Condition::Not(inner) => 1 + depth(inner),
+        Condition::And(parts) | Condition::Or(parts) => {
+            1 + parts.iter().map(depth).max().unwrap_or(0)
         }
     }
 }
 
-/// What concludes the term of a proposition about an output; `None` of an input.
-fn concluded(
-    proposition: &Proposition,
-    model: &Model,
+/// The replacement in the condition of one rule.
+struct Handover<'m> {
+    model: &'m Model,
+    concluding: &'m Concluding,
+    outputs: &'m BTreeSet<String>,
     rule: usize,
-    problems: &mut Vec<String>,
-) -> Option<Condition> {
-    let name = &proposition.variable.text;
-    let is_output = model
-        .outputs
-        .iter()
-        .any(|output| output.variable.name == *name);
-    let term = proposition.term.as_ref().filter(|_| is_output)?;
-    let concludes = |rule: &&Rule| {
-        let mut consequents = rule.rule.consequents.iter();
-        consequents
-            .any(|consequent| consequent.output == proposition.variable && consequent.term == *term)
-    };
-    let before: Vec<_> = model.rules.get(..rule)?.iter().filter(concludes).collect();
-    if model.rules.get(rule..)?.iter().any(|rule| concludes(&rule)) {
-        problems.push(format!("`{name}` is concluded after its use"));
-    }
-    if before.iter().any(|rule| rule.rule.weight != 1.0) {
-        problems.push(format!(
-            "`{name}` is concluded with a weight and used in a condition"
-        ));
-    }
-    let mut conditions: Vec<Condition> = before
-        .iter()
-        .map(|rule| rule.rule.condition.clone())
-        .collect();
-    let user = model.rules.get(rule)?;
-    let (operators, activation) = operators(model, user);
-    let plain = |condition: &Condition| matches!(condition, Condition::Is(_));
-    for other in &before {
-        let (others, others_activation) = self::operators(model, other);
-        let same = (others.and, others.or) == (operators.and, operators.or)
-            || plain(&other.rule.condition);
-        if !same || (activation, others_activation) != (Activation::General, Activation::General) {
-            problems.push(format!(
-                "`{name}` is concluded in a block with other operators or another activation"
-            ));
+    /// How many more propositions there may be.
+    room: usize,
+    problems: Vec<String>,
+}
+
+impl Handover<'_> {
+    /// Replaces the propositions about outputs; `None` where there is no more room.
+    fn resolve(&mut self, condition: &mut Condition) -> Option<()> {
+        match condition {
+            Condition::Not(inner) => self.resolve(inner),
+            Condition::And(parts) | Condition::Or(parts) => {
+                parts.iter_mut().try_for_each(|part| self.resolve(part))
+            }
+            Condition::Is(proposition) => {
+                if self.outputs.contains(&proposition.variable.text)
+                    && let Some(term) = proposition.term.clone()
+                {
+                    *condition = self.concluded(&proposition.clone(), &term.text)?;
+                }
+                Some(())
+            }
         }
     }
-    let output = model
-        .outputs
-        .iter()
-        .find(|output| output.variable.name == *name);
-    let aggregation = output
-        .and_then(|output| output.aggregation)
-        .unwrap_or(operators.aggregation);
-    let largest = aggregation == Aggregation::Maximum && operators.or == Disjunction::Maximum;
-    if conditions.len() > 1 && !largest {
-        problems.push(format!(
-            "`{name}` is concluded by several rules that are not joined by the maximum"
-        ));
+
+    /// What concludes the term of a proposition about an output; `None` where there is no more room.
+    fn concluded(&mut self, proposition: &Proposition, term: &str) -> Option<Condition> {
+        let (model, name) = (self.model, &proposition.variable.text);
+        let key = (name.clone(), term.to_owned());
+        let all = self.concluding.get(&key).map_or(&[][..], Vec::as_slice);
+        let before = all.partition_point(|&index| index < self.rule);
+        if before < all.len() {
+            self.problems
+                .push(format!("`{name}` is concluded after its use"));
+        }
+        let before = all.get(..before).unwrap_or_default();
+        let before = before.iter().filter_map(|&index| model.rules.get(index));
+        let before: Vec<&Rule> = before.collect();
+        let mut conditions = vec![];
+        for rule in &before {
+            let count = propositions(&rule.rule.condition);
+            self.room = self.room.checked_sub(count)?;
+            conditions.push(rule.rule.condition.clone());
+        }
+        if before.iter().any(|rule| rule.rule.weight != 1.0) {
+            self.problems.push(format!(
+                "`{name}` is concluded with a weight and used in a condition"
+            ));
+        }
+        let user = model.rules.get(self.rule)?;
+        let (operators, activation) = operators(model, user);
+        let plain = |condition: &Condition| matches!(condition, Condition::Is(_));
+        for other in &before {
+            let (others, others_activation) = self::operators(model, other);
+            let same = (others.and, others.or) == (operators.and, operators.or)
+                || plain(&other.rule.condition);
+            if !same
+                || (activation, others_activation) != (Activation::General, Activation::General)
+            {
+                self.problems.push(format!(
+                    "`{name}` is concluded in a block with other operators or another activation"
+                ));
+            }
+        }
+        let output = model
+            .outputs
+            .iter()
+            .find(|output| output.variable.name == *name);
+        let aggregation = output
+            .and_then(|output| output.aggregation)
+            .unwrap_or(operators.aggregation);
+        let largest = aggregation == Aggregation::Maximum && operators.or == Disjunction::Maximum;
+        if conditions.len() > 1 && !largest {
+            self.problems.push(format!(
+                "`{name}` is concluded by several rules that are not joined by the maximum"
+            ));
+        }
+        let condition = match conditions.len() {
+            0 => match model.inputs.first() {
+                Some(input) => Condition::Not(Box::new(Condition::Is(Proposition {
+                    variable: input.name.as_str().into(),
+                    hedges: vec![Hedge::Any],
+                    term: None,
+                }))),
+                None => return Some(Condition::Is(proposition.clone())),
+            },
+            1 => conditions.remove(0),
+            _ => Condition::Or(conditions),
+        };
+        Some(hedged(condition, &proposition.hedges, &mut self.problems))
     }
-    let condition = match conditions.len() {
-        0 => Condition::Not(Box::new(Condition::Is(Proposition {
-            variable: model.inputs.first()?.name.as_str().into(),
-            hedges: vec![Hedge::Any],
-            term: None,
-        }))),
-        1 => conditions.remove(0),
-        _ => Condition::Or(conditions),
-    };
-    Some(hedged(condition, &proposition.hedges, problems))
 }
 
 /// The operators of a rule, and which rules of its block fire.

@@ -7,7 +7,11 @@ use fuzzy::{
 };
 
 use super::{activation, habits, handover, term};
-use crate::{Format, Losses, blocks, draft::Draft, rules, words};
+use crate::{
+    Format, Losses, blocks,
+    draft::{Draft, MOST_BLOCKS, MOST_VARIABLES},
+    rules, words,
+};
 
 /// A section and its lines.
 struct Section<'t> {
@@ -99,12 +103,22 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     draft.model.description = engine.and_then(description);
     let inputs: Vec<&str> = of(Kind::Input).map(|input| input.name).collect();
     for section in of(Kind::Input) {
+        let count = draft.model.inputs.len();
+        if !draft.has_room(count, MOST_VARIABLES, "inputs", section.name) {
+            break;
+        }
+        // Values outside the range count as the nearest inside, whatever it says; it must be readable all the same.
+        flag(&mut draft, section, "lock-range");
         if let Some((variable, spans)) = variable(&mut draft, section, &inputs) {
             draft.model.inputs.push(variable);
             draft.spans.inputs.push(spans);
         }
     }
     for section in of(Kind::Output) {
+        let count = draft.model.outputs.len();
+        if !draft.has_room(count, MOST_VARIABLES, "outputs", section.name) {
+            return draft.finish();
+        }
         output(&mut draft, section, &inputs);
     }
     blocks(&mut draft, &of(Kind::Rules).collect::<Vec<_>>());
@@ -215,7 +229,8 @@ fn variable(
     let computed = section
         .get("defuzzifier")
         .is_some_and(|word| word.starts_with("Weighted"));
-    let (low, high) = draft.range(range, low, high, computed)?;
+    let ends = (draft.number(low)?, draft.number(high)?);
+    let (low, high) = draft.range(range, ends, computed);
     let mut variable = Variable::new(section.name, low, high);
     // Computed values read the inputs, a degree its own variable.
     let own = (!computed).then_some(section.name);
@@ -244,19 +259,16 @@ fn output(draft: &mut Draft<'_>, section: &Section<'_>, inputs: &[&str]) {
             _ => NoRuleFires::Undefined,
         };
     }
-    habits::unfired(draft, &mut output, section.name);
-    if ["lock-previous", "lock-valid"]
-        .into_iter()
-        .any(|key| flag(draft, section, key) == Some(true))
-    {
+    let locks = ["lock-previous", "lock-valid"].map(|key| flag(draft, section, key) == Some(true));
+    if locks.contains(&true) {
         output.when_no_rule_fires = NoRuleFires::Previous(match output.when_no_rule_fires {
             NoRuleFires::Value(value) => Some(value),
             _ => None,
         });
     }
     // Fuzzy sets have their values inside the range anyway.
-    output.clamp =
-        words::is_weighted(output.defuzzifier) && flag(draft, section, "lock-range") == Some(true);
+    let is_locked = flag(draft, section, "lock-range") == Some(true);
+    output.clamp = words::is_weighted(output.defuzzifier) && is_locked;
     draft.model.outputs.push(output);
     draft.spans.outputs.push(spans);
 }
@@ -311,6 +323,9 @@ fn operator<T: Copy>(
 fn blocks(draft: &mut Draft<'_>, sections: &[&Section<'_>]) {
     let mut blocks = vec![];
     for (index, section) in sections.iter().enumerate() {
+        if !draft.has_room(index, MOST_BLOCKS, "rule blocks", section.name) {
+            break;
+        }
         let mut block = Block::new(section.name);
         block.description = description(section);
         block.enabled = is_enabled(draft, section);

@@ -52,7 +52,8 @@ pub(crate) fn of_shape(
         return Some((term, spans));
     }
     let mut numbers = vec![];
-    for word in rest.split_whitespace() {
+    let words: Vec<&str> = rest.split_whitespace().collect();
+    for word in &words {
         numbers.push(draft.number(word)?);
         spans.parameters.push(draft.span(word));
     }
@@ -65,7 +66,7 @@ pub(crate) fn of_shape(
             1,
         ),
         "Linear" => (shapes::linear(&numbers, inputs), numbers.len()),
-        "Binary" => (binary(&numbers), 2),
+        "Binary" => (binary(draft, &numbers, shape)?, 2),
         _ => {
             let Some((known, count)) = shapes::named(Format::Fll, shape) else {
                 let help = match nearest(shape, shapes::names(Format::Fll).chain(OTHERS)) {
@@ -76,7 +77,11 @@ pub(crate) fn of_shape(
                 draft.error("unknown-shape", shape, message, &help);
                 return None;
             };
-            (shapes::read(Format::Fll, known, &numbers)?, count)
+            let own = numbers.get(..count).unwrap_or(&numbers);
+            if !draft.is_finite(known, own, &words) {
+                return None;
+            }
+            (shapes::read(Format::Fll, known, own)?, count)
         }
     };
     if numbers.len() < used || numbers.len() > used + 1 {
@@ -110,11 +115,18 @@ fn points(numbers: &[f64]) -> (MembershipFunction, usize) {
     (MembershipFunction::Piecewise { points }, used)
 }
 
-/// A step up at a place, or down where the direction is `-inf`.
-fn binary(numbers: &[f64]) -> MembershipFunction {
+/// A step up at a place, or down where the direction is less than the place, such as `-inf`; `part` names the shape in the text.
+fn binary(draft: &mut Draft<'_>, numbers: &[f64], part: &str) -> Option<MembershipFunction> {
     let at = numbers.first().copied().unwrap_or(f64::NAN);
-    match numbers.get(1).is_some_and(|&direction| direction > at) {
-        true => MembershipFunction::RightShoulder { foot: at, top: at },
-        false => MembershipFunction::LeftShoulder { top: at, foot: at },
+    let direction = numbers.get(1).copied().unwrap_or(f64::NAN);
+    if direction > at {
+        return Some(MembershipFunction::RightShoulder { foot: at, top: at });
     }
+    if direction < at {
+        return Some(MembershipFunction::LeftShoulder { top: at, foot: at });
+    }
+    let message = "`Binary` has no direction".into();
+    let help = "write a number and `inf` for a step up, or `-inf` for a step down";
+    draft.error("parameter-count", part, message, help);
+    None
 }

@@ -31,6 +31,7 @@ const NAMES: Allowed = Allowed {
         "somewhat",
         "seldom",
         "extremely",
+        "pi",
     ],
 };
 
@@ -38,9 +39,9 @@ const NAMES: Allowed = Allowed {
 const SAMPLES: usize = 1000;
 
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(Format::Fll, losses);
+    let mut paper = Paper::new(Format::Fll, losses, model);
     let model = names::plain(model, &NAMES, &mut paper);
-    paper.line(format!("Engine: {}", one_line(&model.name)));
+    paper.line(format!("Engine: {}", uncommented(&model.name)));
     description(&mut paper, model.description.as_deref());
     for input in &model.inputs {
         paper.line(format!("InputVariable: {}", input.name));
@@ -55,15 +56,20 @@ pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> 
         self::output(&mut paper, output, &model);
     }
     for block in blocks::of(&model) {
-        rule_block(&mut paper, &block);
+        rule_block(&mut paper, &block, &model);
     }
     paper.finish()
 }
 
 fn description(paper: &mut Paper, text: Option<&str>) {
     if let Some(text) = text {
-        paper.line(format!("  description: {}", one_line(text)));
+        paper.line(format!("  description: {}", uncommented(text)));
     }
+}
+
+/// A text on one line, without the sign that begins a comment.
+fn uncommented(text: &str) -> String {
+    one_line(&text.replace('#', " "))
 }
 
 fn variable(paper: &mut Paper, variable: &Variable) {
@@ -145,8 +151,9 @@ fn term(paper: &mut Paper, term: &Term, model: &Model, own: Option<&str>) {
             coefficients,
             constant,
         } => {
-            let each = shapes::coefficients(coefficients, model);
-            Some(("Linear", each.chain([*constant]).collect()))
+            let mut each = paper.coefficients(&term.name, coefficients, model);
+            each.push(*constant);
+            Some(("Linear", each))
         }
         other => shapes::write(Format::Fll, other),
     };
@@ -158,7 +165,7 @@ fn term(paper: &mut Paper, term: &Term, model: &Model, own: Option<&str>) {
         paper.refuse("no-shape", message, "write it as points: `piecewise`");
         return;
     };
-    if term.height != 1.0 {
+    if term.height != 1.0 && shape != "Linear" {
         parameters.push(term.height);
     }
     paper.line(format!(
@@ -168,9 +175,9 @@ fn term(paper: &mut Paper, term: &Term, model: &Model, own: Option<&str>) {
     ));
 }
 
-fn rule_block(paper: &mut Paper, block: &Rules<'_>) {
+fn rule_block(paper: &mut Paper, block: &Rules<'_>, model: &Model) {
     let operators = block.operators;
-    paper.line(format!("RuleBlock: {}", one_line(block.name)));
+    paper.line(format!("RuleBlock: {}", uncommented(block.name)));
     paper.line(format!("  enabled: {}", block.enabled));
     let [and, or, implication] = paper.operators(operators);
     paper.line(format!("  conjunction: {and}"));
@@ -181,6 +188,14 @@ fn rule_block(paper: &mut Paper, block: &Rules<'_>) {
         activation::write(block.activation)
     ));
     for (number, rule) in &block.rules {
+        rule.rule.condition.visit(&mut |about| {
+            let name = &about.variable.text;
+            if model.outputs.iter().any(|output| output.variable.name == *name) {
+                let message = format!("rule {number} has a condition about the output `{name}`");
+                let help = "fuzzylite uses the degrees of the rules there, not the value: write a rule set for each stage";
+                paper.loss("chain", message, help);
+            }
+        });
         match rules::write(&rule.rule, operators, " and ") {
             Some(rules) => rules
                 .iter()

@@ -6,10 +6,15 @@ use fuzzy::{
     model::{Aggregation, Block, Defuzzifier, NoRuleFires, Output, Rule, Variable},
     rule::{self, Condition, Consequent, Hedge, Name, Proposition},
 };
+use quick_xml::events::Event;
 use roxmltree::Node;
 
 use super::term;
-use crate::{Format, Losses, blocks, draft::Draft, words};
+use crate::{
+    Format, Losses, blocks,
+    draft::{Draft, MOST_BLOCKS, MOST_VARIABLES},
+    words,
+};
 
 /// The namespace of the standard's schema.
 pub(super) const NAMESPACE: &str = "http://www.ieee1855.org";
@@ -26,6 +31,16 @@ pub(super) const HEDGES: [(&str, Hedge); 6] = [
 
 pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findings> {
     let mut draft = Draft::new(text, losses);
+    if let Some(part) = too_many_attributes(text) {
+        let message = format!("an element has more than {MOST_ATTRIBUTES} attributes");
+        draft.error(
+            "too-large",
+            part,
+            message,
+            "elements of FML have fewer than ten",
+        );
+        return draft.finish();
+    }
     let document = match roxmltree::Document::parse(text) {
         Ok(document) => document,
         Err(error) => {
@@ -57,6 +72,30 @@ pub(crate) fn read(text: &str, losses: Losses) -> Result<Document, fuzzy::Findin
     blocks::aggregate(&mut reader.draft.model, &reader.aggregations);
     blocks::settle(&mut reader.draft.model, reader.blocks);
     reader.draft.finish()
+}
+
+/// Attributes of an element: each is compared with those before it.
+const MOST_ATTRIBUTES: usize = 1000;
+
+/// The start of the first element that has too many attributes.
+fn too_many_attributes(text: &str) -> Option<&str> {
+    let mut reader = quick_xml::Reader::from_str(text);
+    loop {
+        let start = usize::try_from(reader.buffer_position()).ok()?;
+        // What is not XML is an error of the parser behind this.
+        match reader.read_event().ok()? {
+            Event::Start(element) | Event::Empty(element) => {
+                let mut attributes = element.attributes();
+                let attributes = attributes.with_checks(false);
+                if attributes.take(MOST_ATTRIBUTES + 1).count() > MOST_ATTRIBUTES {
+                    let name = text.get(start..)?;
+                    return name.split_whitespace().next();
+                }
+            }
+            Event::Eof => return None,
+            _ => {}
+        }
+    }
 }
 
 struct Reader<'t> {
@@ -167,6 +206,14 @@ impl Reader<'_> {
             self.draft.error("no-range", part, message, help);
             return None;
         };
+        let count = self.draft.model.inputs.len() + self.draft.model.outputs.len();
+        let part = tag(self.draft.text, node);
+        if !self
+            .draft
+            .has_room(count, 2 * MOST_VARIABLES, "inputs and outputs", part)
+        {
+            return None;
+        }
         let mut variable = Variable::new(name, low, high);
         variable.unit = attribute(node, "scale")
             .filter(|scale| !scale.is_empty() && *scale != "null")
@@ -225,6 +272,10 @@ impl Reader<'_> {
     /// A Takagi-Sugeno output: its terms have a constant, then a coefficient for each input.
     fn tsk(&mut self, node: Node<'_, '_>) {
         let part = tag(self.draft.text, node);
+        let count = self.draft.model.outputs.len();
+        if !self.draft.has_room(count, MOST_VARIABLES, "outputs", part) {
+            return;
+        }
         let name = attribute(node, "name").unwrap_or_default();
         let low = self.number(node, "domainleft").unwrap_or(0.0);
         let high = self.number(node, "domainright").unwrap_or(1.0);
@@ -285,6 +336,11 @@ impl Reader<'_> {
                 self.draft.loss("unknown-element", part, message, help);
                 return;
             }
+        }
+        let part = tag(self.draft.text, base);
+        let count = self.blocks.len();
+        if !self.draft.has_room(count, MOST_BLOCKS, "rule blocks", part) {
+            return;
         }
         let block = self.operators(
             base,

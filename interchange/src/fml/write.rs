@@ -20,7 +20,7 @@ use crate::{
     conditions,
     names::{self, Allowed},
     paper::{Paper, named, one_line},
-    shapes, words,
+    words,
 };
 
 /// An element with attributes and content.
@@ -91,7 +91,7 @@ const NAMES: Allowed = Allowed {
 };
 
 pub(crate) fn write(model: &Model, losses: Losses) -> Result<Written, Findings> {
-    let mut paper = Paper::new(Format::Fml, losses);
+    let mut paper = Paper::new(Format::Fml, losses, model);
     let model = &names::plain(model, &NAMES, &mut paper);
     let mut base = Element::new("knowledgeBase");
     for input in &model.inputs {
@@ -241,8 +241,9 @@ fn tsk(paper: &mut Paper, output: &Output, model: &Model) -> Element {
                 coefficients,
                 constant,
             } => {
-                let each = shapes::coefficients(coefficients, model);
-                ([*constant].into_iter().chain(each).collect(), 1)
+                let mut each = paper.coefficients(&term.name, coefficients, model);
+                each.insert(0, *constant);
+                (each, 1)
             }
             MembershipFunction::Constant { value }
             | MembershipFunction::Singleton { at: value } => (vec![*value], 0),
